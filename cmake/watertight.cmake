@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One folder = one target = one responsibility.
+
+find_program(WATERTIGHT_CCACHE ccache)
+if(WATERTIGHT_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER "${WATERTIGHT_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${WATERTIGHT_CCACHE}")
+endif()
+
+# What every target of ours is compiled with. Contraction is off so that each machine and
+# compiler computes the same doubles.
+add_library(watertight_options INTERFACE)
+target_include_directories(watertight_options INTERFACE "${PROJECT_SOURCE_DIR}")
+target_compile_options(watertight_options INTERFACE
+  -ffp-contract=off
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror>)
+target_compile_definitions(watertight_options INTERFACE $<$<CONFIG:Debug>:WATERTIGHT_CHECKED=1>)
+if(WATERTIGHT_SANITIZE)
+  target_compile_options(watertight_options INTERFACE
+    -fsanitize=${WATERTIGHT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(watertight_options INTERFACE -fsanitize=${WATERTIGHT_SANITIZE})
+  target_compile_definitions(watertight_options INTERFACE WATERTIGHT_CHECKED=1)
+endif()
+if(WATERTIGHT_FUZZ)
+  target_compile_options(watertight_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# CGAL as a system, header-only dependency: no warnings from it, EPICK's rounding mode respected.
+add_library(watertight_cgal INTERFACE)
+target_link_libraries(watertight_cgal INTERFACE CGAL::CGAL)
+target_compile_definitions(watertight_cgal INTERFACE CGAL_NDEBUG=1)
+
+# watertight_folder(NAME SOURCES files... DEPENDS folders... [PRIVATE third-party targets...])
+# Declares the library watertight_NAME. DEPENDS is the list of folders whose headers NAME may
+# include: the link line and tests/architecture both read it.
+function(watertight_folder name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;PRIVATE")
+  set(libraries)
+  foreach(folder IN LISTS arg_DEPENDS)
+    list(APPEND libraries watertight_${folder})
+  endforeach()
+  if(arg_SOURCES)
+    add_library(watertight_${name} STATIC ${arg_SOURCES})
+    target_link_libraries(watertight_${name} PUBLIC watertight_options ${libraries} PRIVATE ${arg_PRIVATE})
+  else()
+    add_library(watertight_${name} INTERFACE)
+    target_link_libraries(watertight_${name} INTERFACE watertight_options ${libraries})
+  endif()
+endfunction()

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The canonical Delaunay tetrahedralization (design section 5): the Delaunay tetrahedralization of
+// a point set with ties broken by lexicographic symbolic perturbation, so that it is unique. Part
+// of the blob format. Depends on CGAL only; for the codec and for rung 0 of the CDT ladder.
+// Source: Verbree & Si 2008, section 2.2 and composition steps 2 and 4; the tie rule is Devillers &
+// Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations" (2011), section 3.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "delaunay/tetrahedralization.h"
+
+namespace watertight {
+
+struct CanonicalDelaunay {
+  /// Positively oriented (orient3d > 0), smallest index first; the list sorted lexicographically.
+  std::vector<Tetrahedron> tetrahedra;
+  /// All faces as sorted vertex triples, in lexicographic order: the order of the bitmap.
+  std::vector<Triangle> faces;
+};
+
+/// Requires distinct points. Guarantees the same result for every insertion order, compiler and
+/// machine; indices refer to `points`. Returns an empty tetrahedralization if the points span no
+/// volume (fewer than 4, or all coplanar).
+/// Errors: limit_exceeded beyond `max_tetrahedra`. Cost: O(n log n) typical, O(n^2) worst.
+Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
+                                             std::uint64_t max_tetrahedra = 64'000'000);
+
+}  // namespace watertight

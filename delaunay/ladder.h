@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The CDT ladder (design section 4): rung 0 in this process, the engines in worker processes, each
+// rung's result accepted only by the certificate.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delaunay/certificate.h"
+#include "workers/worker_pool.h"
+
+namespace watertight {
+
+enum class Engine : std::uint8_t { automatic, cgal, tetgen };
+
+/// The processes a ladder may use. One object per process of ours; thread-safe.
+class EngineWorkers {
+ public:
+  struct Options {
+    std::string cgal_executable;    // "" = find_helper("watertight-worker")
+    std::string tetgen_executable;  // "" = find_helper("watertight-tetgen")
+    std::size_t processes = 2;
+  };
+  explicit EngineWorkers(Options options);
+  EngineWorkers();
+  WorkerPool* cgal();    // null when the executable does not exist
+  WorkerPool* tetgen();  // null when the executable does not exist
+
+ private:
+  std::unique_ptr<WorkerPool> cgal_;
+  std::unique_ptr<WorkerPool> tetgen_;
+};
+
+struct LadderOptions {
+  Engine engine = Engine::automatic;
+  bool strict = false;         // triangle mode only: the CDT must hold the canonical triangles
+  Rung last_rung = Rung::tetgen;
+  double seconds_per_rung = 0;  // 0: by size (2 s and more)
+  CancelPoll cancel = {};
+};
+
+/// One rung's attempt, for the report and for statistics.
+struct RungAttempt {
+  Rung rung = Rung::none;
+  std::string outcome;  // "accepted", "refused: ...", "crashed: ...", "timed-out", ...
+  double seconds = 0;
+};
+
+struct LadderResult {
+  std::optional<Certificate> certificate;  // the accepted one
+  /// A refusal that is a property of the solid (interior_disconnected, cavity_mismatch,
+  /// wrong_orientation): the solid is invalid, whatever the engine.
+  CertificateRefusal property = CertificateRefusal::none;
+  std::string detail;
+  Index facet = kNone;
+  std::vector<RungAttempt> attempts;
+};
+
+/// Requires a solid that passed the exact tests. Neither result set = undecided.
+/// `workers` may be null: rung 0 only.
+LadderResult climb_ladder(const Solid& solid, const FacetTriangles& facets, EngineWorkers* workers,
+                          const LadderOptions& options);
+
+}  // namespace watertight

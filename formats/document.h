@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Documents: bytes to features with solids, and back. A feature keeps everything that is not solid
+// geometry in a skeleton, so that writing returns the same document (design section 6).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/limits.h"
+#include "base/result.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+enum class Format : std::uint8_t { city_json, city_json_seq, obj, off, wkt, ewkb };
+std::string_view to_string(Format format);
+
+/// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb"), else by the first
+/// bytes. Errors: unsupported.
+Result<Format> detect_format(std::string_view file_name, ByteView bytes);
+
+/// Where a solid stands in its document.
+struct SolidSource {
+  std::string object_id;      // CityObject id; OBJ object name; "" elsewhere
+  std::string geometry_type;  // "Solid", "MultiSolid", "CompositeSolid", "POLYHEDRALSURFACE Z", ...
+  std::string lod;            // as written, "" when absent
+  std::uint32_t geometry = 0; // index of the geometry within its object
+  std::uint32_t ordinal = 0;  // index of the solid within its geometry
+  std::string pointer;        // JSON Pointer to the solid's array of shells; "" when not JSON
+};
+
+struct SubmittedSolid {
+  Solid solid;  // vertices in order of first use; equal vertices are not merged
+  SolidSource source;
+  std::vector<Index> rounded;  // vertices whose source digits were rounded
+};
+
+/// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one
+/// geometry elsewhere.
+struct Feature {
+  std::string id;
+  std::string type;  // type of the top-level object, "" when there is none
+  std::uint32_t srid = 0;
+  std::vector<SubmittedSolid> solids;
+  /// Everything but the solids' geometry, as UTF-8 JSON; write_feature needs it. Opaque.
+  std::string skeleton;
+};
+
+struct Document {
+  Format format = Format::city_json;
+  /// What features share (CityJSON: version, transform, metadata, templates, ...), as the first
+  /// line of a CityJSONSeq: UTF-8 JSON. "" for formats that share nothing.
+  std::string header;
+  std::vector<Feature> features;
+  std::vector<std::string> notes;  // readings of doubtful input, one clause each
+};
+
+struct ReadOptions {
+  Limits limits;
+  /// false: a CityJSON document becomes one feature whose skeleton returns the whole document
+  /// (files); true: one feature per top-level object (stores). Solids are the same either way.
+  bool split_features = true;
+};
+
+/// Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or JSON Pointer
+/// (content). Cost: linear; CityJSON is read by SAX, boundaries never become JSON values.
+Result<Document> read_document(ByteView bytes, Format format, const ReadOptions& options = {});
+
+/// The feature with its solids put back: a CityJSONFeature (one line) for CityJSON and Seq. Solids
+/// must be in the order and with the facet, ring and vertex order of the feature that was read.
+/// Errors: malformed if skeleton and solids do not fit.
+Result<std::string> write_feature(const Document& document, const Feature& feature);
+
+/// The whole document. City models: a CityJSON of all features when `format` is city_json, header
+/// line + feature lines when city_json_seq. For obj, off, wkt and ewkb the solids of all features.
+/// Errors: unsupported when a format cannot hold what is asked (OFF: several solids; OBJ, OFF: rings
+/// with holes are triangulated only by `convert`, never silently here).
+Result<Bytes> write_document(const Document& document, Format format);
+
+}  // namespace watertight

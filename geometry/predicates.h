@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The exact decisions of this program. Each is correct for any finite doubles (CGAL's filtered
+// predicates on the EPICK kernel). Never call them with a repeated point: the answer is right but
+// the exact zero misses the filter and costs a hundred times more.
+#pragma once
+
+#include "geometry/point.h"
+
+namespace watertight {
+
+/// Sign of det(b-a, c-a, d-a), six times the signed volume of tetrahedron abcd: +1 when a, b, c
+/// turn clockwise as seen from d, -1 when counter-clockwise, 0 when the points are coplanar. For an
+/// outward oriented facet (a, b, c) a point inside the solid beside it gives -1.
+int orient3d(const Point& a, const Point& b, const Point& c, const Point& d);
+
+/// Sign of the turn a, b, c in the plane left when `axis` (0 x, 1 y, 2 z) is dropped; the kept
+/// axes are (y, z), (z, x), (x, y), so that dropping keeps right-handedness. +1 is a left turn.
+int orient2d(const Point& a, const Point& b, const Point& c, int axis);
+
+/// True if the three points lie on one line, exactly.
+bool are_collinear(const Point& a, const Point& b, const Point& c);
+
+/// True if q lies on the closed segment ab, exactly.
+bool is_on_segment(const Point& a, const Point& b, const Point& q);
+
+}  // namespace watertight

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The solid as submitted: immutable flat arrays of vertices, rings, facets and shells. Guarantees
+// that indices are in range, and nothing about geometry. For every folder above.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/limits.h"
+#include "base/result.h"
+#include "geometry/lattice.h"
+#include "geometry/point.h"
+
+namespace watertight {
+
+/// Half-open range of indices into the next lower array: rings of a facet, facets of a shell.
+struct IndexRange {
+  Index begin = 0;
+  Index end = 0;
+  Index size() const { return end - begin; }
+};
+
+/// Flat arrays. Offsets start with 0 and end with the size of the array below: ring r is
+/// ring_vertices[ring_offsets[r] .. ring_offsets[r+1]).
+struct SolidArrays {
+  std::vector<Point> vertices;
+  std::vector<Index> ring_vertices;
+  std::vector<Index> ring_offsets{0};   // ring -> ring_vertices
+  std::vector<Index> facet_offsets{0};  // facet -> rings; the first ring of a facet is exterior
+  std::vector<Index> shell_offsets{0};  // shell -> facets; shell 0 is exterior
+
+  void end_ring() { ring_offsets.push_back(static_cast<Index>(ring_vertices.size())); }
+  void end_facet() { facet_offsets.push_back(static_cast<Index>(ring_offsets.size() - 1)); }
+  void end_shell() { shell_offsets.push_back(static_cast<Index>(facet_offsets.size() - 1)); }
+  friend bool operator==(const SolidArrays&, const SolidArrays&) = default;
+};
+
+/// A solid with its lattice and coordinate reference system. The closing vertex of a ring is not
+/// repeated. Rings may be short, facets may be empty, vertices may repeat or be unused: those are
+/// findings, not errors. Cheap to move, thread-safe to read.
+class Solid {
+ public:
+  /// Errors: malformed if offsets are not monotone, an index is out of range or a coordinate is
+  /// not finite (or is -0: pass +0); limit_exceeded. Cost: linear.
+  static Result<Solid> make(SolidArrays arrays, Lattice lattice, std::uint32_t srid,
+                            const Limits& limits = {});
+
+  std::span<const Point> vertices() const { return arrays_.vertices; }
+  Index vertex_count() const { return static_cast<Index>(arrays_.vertices.size()); }
+  Index ring_count() const { return static_cast<Index>(arrays_.ring_offsets.size() - 1); }
+  Index facet_count() const { return static_cast<Index>(arrays_.facet_offsets.size() - 1); }
+  Index shell_count() const { return static_cast<Index>(arrays_.shell_offsets.size() - 1); }
+
+  /// Vertices of a ring, in order.
+  std::span<const Index> ring(Index ring) const {
+    return std::span<const Index>(arrays_.ring_vertices)
+        .subspan(arrays_.ring_offsets[ring], arrays_.ring_offsets[ring + 1] - arrays_.ring_offsets[ring]);
+  }
+  IndexRange rings_of(Index facet) const {
+    return {arrays_.facet_offsets[facet], arrays_.facet_offsets[facet + 1]};
+  }
+  IndexRange facets_of(Index shell) const {
+    return {arrays_.shell_offsets[shell], arrays_.shell_offsets[shell + 1]};
+  }
+  /// The shell that holds a facet. Cost: logarithmic.
+  Index shell_of(Index facet) const;
+
+  const SolidArrays& arrays() const { return arrays_; }
+  const Lattice& lattice() const { return lattice_; }
+  /// EPSG code, 0 when not stated.
+  std::uint32_t srid() const { return srid_; }
+  Box box() const { return box_of(arrays_.vertices); }
+  std::array<double, 3> world(Index vertex) const { return lattice_.world(arrays_.vertices[vertex]); }
+
+  friend bool operator==(const Solid&, const Solid&) = default;
+
+ private:
+  Solid(SolidArrays arrays, Lattice lattice, std::uint32_t srid)
+      : arrays_(std::move(arrays)), lattice_(lattice), srid_(srid) {}
+
+  SolidArrays arrays_;
+  Lattice lattice_;
+  std::uint32_t srid_ = 0;
+};
+
+/// The same solid with exactly equal vertices merged (first one kept) and unused ones dropped.
+/// `vertex_of[i]` is the merged index of source vertex i, or kNone if unused.
+struct MergedSolid {
+  Solid solid;
+  std::vector<Index> vertex_of;
+};
+MergedSolid merge_equal_vertices(const Solid& solid);
+
+}  // namespace watertight

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Validity as a type (design section 3): a ValidSolid exists only because the validator made it,
+// and it is the only thing that the public encoder takes.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// Tolerances a solid was certified under. All in world units of its CRS axis unit unless named.
+/// They measure (planarity); no decision about side, order or crossing uses them.
+struct Tolerances {
+  double planarity_metres = 0.01;   // largest distance of a facet's vertex to its fitted plane
+  double planarity_degrees = 20.0;  // largest angle between two triangles of a facet
+  double snap_metres = 0.0;         // 0: only exactly equal vertices are one vertex
+  friend bool operator==(const Tolerances&, const Tolerances&) = default;
+};
+
+/// What proves that the boundary encloses one connected interior.
+enum class Proof : std::uint8_t {
+  tetrahedralization = 0,  // a certified constrained Delaunay tetrahedralization
+  boundary = 1             // exact tests only: one closed, orientable 2-manifold shell
+};
+
+/// The number of the rule set that this program applies. Raised when a rule changes.
+inline constexpr std::uint16_t kRuleSet = 1;
+
+/// What a valid solid was accepted under; stored with it.
+struct Acceptance {
+  Tolerances tolerances;
+  Proof proof = Proof::tetrahedralization;
+  std::uint16_t rule_set = kRuleSet;
+  friend bool operator==(const Acceptance&, const Acceptance&) = default;
+};
+
+/// Closed and oriented by edges: every directed ring edge is met by its reverse exactly as often.
+/// Geometry is not promised. What the codec works on, and what benches on dirty meshes use.
+class OrientedBoundary {
+ public:
+  /// Errors: not_encodable naming the first unmatched edge, a ring below 3 vertices, a facet
+  /// without rings or a repeated vertex in a ring. Equal vertices must have been merged.
+  static Result<OrientedBoundary> make(Solid solid);
+  const Solid& solid() const { return solid_; }
+
+ private:
+  explicit OrientedBoundary(Solid solid) : solid_(std::move(solid)) {}
+  Solid solid_;
+};
+
+/// A solid that certify() (validate/certify.h) accepted: oriented outward, equal vertices merged,
+/// facets, rings and vertices in source order.
+class ValidSolid {
+ public:
+  const OrientedBoundary& boundary() const { return boundary_; }
+  const Solid& solid() const { return boundary_.solid(); }
+  const Acceptance& acceptance() const { return acceptance_; }
+
+ private:
+  friend class Certifier;  // validate/: the one maker
+  ValidSolid(OrientedBoundary boundary, Acceptance acceptance)
+      : boundary_(std::move(boundary)), acceptance_(acceptance) {}
+  OrientedBoundary boundary_;
+  Acceptance acceptance_;
+};
+
+}  // namespace watertight

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The store of valid solids (design section 7): collections of features, each a document skeleton
+// with the blobs of its solids. Knows blobs as bytes only. Implementations are thread-safe.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/result.h"
+
+namespace watertight {
+
+struct StoredBox {
+  std::array<double, 3> min{};
+  std::array<double, 3> max{};
+};
+
+struct StoredCollection {
+  std::string id;       // [A-Za-z0-9_.-]{1,64}
+  std::uint32_t srid = 0;
+  std::string header;   // shared document header (formats/document.h) of its first document
+  std::uint64_t features = 0;
+  std::uint64_t solids = 0;
+  std::uint64_t blob_bytes = 0;
+  std::optional<StoredBox> box;
+};
+
+struct StoredSolid {
+  std::string object_id;
+  std::uint32_t geometry = 0;
+  std::uint32_t ordinal = 0;
+  std::string lod;
+  Bytes blob;
+  std::string measures;  // JSON
+  std::string report;    // JSON
+};
+
+struct StoredFeature {
+  std::string collection;
+  std::string id;
+  std::string type;
+  std::string format;    // to_string(Format) of the document it came in
+  std::string header;    // document header it needs (may differ from the collection's)
+  std::string skeleton;
+  std::optional<StoredBox> box;  // world coordinates, over its solids
+  std::vector<StoredSolid> solids;
+  std::uint64_t version = 0;     // set by the store; the ETag
+};
+
+struct FeatureQuery {
+  std::string collection;
+  std::uint64_t limit = 10;
+  std::string after;               // id after which the page starts; "" = from the start
+  std::optional<StoredBox> box;    // closed boxes that share a point
+};
+
+struct FeaturePage {
+  std::vector<StoredFeature> features;  // ordered by id, bytewise
+  std::uint64_t matched = 0;            // of the whole query
+  std::string next;                     // `after` of the next page; "" = this is the last
+};
+
+class SolidStore {
+ public:
+  virtual ~SolidStore() = default;
+  /// Ok when the database answers and its schema is current.
+  virtual Status ping() = 0;
+  virtual Result<std::vector<StoredCollection>> collections() = 0;
+  virtual Result<StoredCollection> collection(const std::string& id) = 0;
+  /// Stores all features or none, durably, creating the collection when it does not exist; an id that
+  /// exists is replaced and its version raised. All in one round trip per table.
+  /// Returns the new versions in order.
+  virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) = 0;
+  virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;
+  virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
+  /// Errors: not_found.
+  virtual Status remove(const std::string& collection, const std::string& id) = 0;
+};
+
+/// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
+/// Reconnects after a lost connection; an operation that was in flight is retried only when it is
+/// known not to have been committed or is idempotent. Errors: unavailable with the server's words.
+Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection, std::size_t connections = 4);
+
+}  // namespace watertight

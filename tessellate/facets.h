@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The canonical triangulation of planar facets (design section 4.1): a constrained 2D Delaunay
+// triangulation of each facet's rings on an exact coordinate-plane projection. Same facet, same
+// triangles, whatever the order of vertices, rings and facets. For validate, delaunay and codec.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// The exact projection of a facet: the axis dropped is the one with the largest component of the
+/// exact doubled area vector (in world scale; ties x, y, z).
+struct Projection {
+  int axis = 2;             // 0 x, 1 y, 2 z: the dropped axis
+  bool is_mirrored = false; // the exterior ring turns clockwise in the projection of orient2d(axis)
+  bool is_degenerate = false;  // the area vector is exactly zero
+};
+Projection facet_projection(const Solid& solid, Index facet);
+
+enum class FacetState : std::uint8_t {
+  triangulated,
+  degenerate,      // no area: nothing to triangulate
+  not_simple,      // rings cross, touch or nest wrongly in the projection: no triangulation
+};
+
+/// Triangles of all facets, grouped by facet. Vertex order keeps the facet's orientation.
+struct FacetTriangles {
+  std::vector<Triangle> triangles;
+  std::vector<Index> facet_of;       // triangle -> facet
+  std::vector<Index> first{0};       // facet -> first triangle; facet_count + 1 entries
+  std::vector<FacetState> state;     // per facet
+};
+
+/// Requires merged vertices. Facets whose rings are not simple in projection get no triangles.
+/// Guarantees: the triangles of a triangulated facet use exactly its ring vertices, cover the
+/// region between its rings, and are the same set for every numbering of the input.
+/// Cost: O(n log n) per facet.
+FacetTriangles triangulate_facets(const Solid& solid);
+
+}  // namespace watertight

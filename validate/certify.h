@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The validator (design section 4; Verbree & Si 2008, section 3): runs every rule on a solid,
+// reports all findings, and is the only maker of a ValidSolid.
+#pragma once
+
+#include <optional>
+
+#include "delaunay/ladder.h"
+#include "geometry/valid_solid.h"
+#include "validate/report.h"
+
+namespace watertight {
+
+struct CertifyOptions {
+  Tolerances tolerances;
+  Proof proof = Proof::tetrahedralization;
+  Limits limits;
+  LadderOptions ladder;
+};
+
+/// A solid that passed, with what proves it.
+struct Certified {
+  ValidSolid solid;
+  std::optional<Certificate> certificate;  // absent when proof is `boundary`
+};
+
+struct Inspection {
+  Report report;
+  std::optional<Certified> certified;  // present exactly when the verdict is valid
+};
+
+/// Never fails: what cannot be evaluated is said in the report. Deterministic but for `seconds`
+/// and time-outs of engines. `workers` may be null (rung 0 only). Thread-safe.
+Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options = {});
+
+}  // namespace watertight

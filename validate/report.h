@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the validator says about a solid: a verdict and every finding with code, place, witness and
+// measured value. Plain data for service, CLI, SQL and library.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delaunay/ladder.h"
+#include "geometry/measures.h"
+#include "geometry/valid_solid.h"
+
+namespace watertight {
+
+enum class Verdict : std::uint8_t { valid, invalid, undecided };
+enum class Severity : std::uint8_t { error, warning };
+std::string_view to_string(Verdict verdict);
+std::string_view to_string(Severity severity);
+
+/// Where in the solid; indices into the submitted Solid, kNone where they do not apply.
+struct Place {
+  Index shell = kNone;
+  Index facet = kNone;
+  Index ring = kNone;    // index of the ring within its facet: 0 is the exterior ring
+  Index vertex = kNone;  // index into the submitted vertices
+  friend auto operator<=>(const Place&, const Place&) = default;
+};
+
+struct Finding {
+  int code = 0;  // see docs/findings.md; val3dity's numbers, ours from 800
+  Severity severity = Severity::error;
+  Place place;
+  std::optional<Place> other;                    // the other member of a pair
+  std::optional<std::array<double, 3>> witness;  // world coordinates, correctly rounded
+  std::optional<double> measured;
+  std::optional<double> limit;
+  std::string unit;      // of measured and limit: "m", "degree", "facets", ...
+  std::string detail;    // one clause, lower case, for a person
+  bool uncertain = false;  // a finding of a lower level makes this one unreliable
+};
+
+/// A rule that could not be evaluated, and why.
+struct SkippedRule {
+  std::vector<int> codes;
+  std::string reason;
+};
+
+struct Report {
+  Verdict verdict = Verdict::undecided;
+  std::string undecided_reason;         // when undecided
+  std::vector<Finding> findings;        // ordered by level, then place
+  std::uint64_t findings_omitted = 0;   // beyond Limits::findings
+  std::vector<SkippedRule> not_run;
+  std::vector<int> first_level;         // the codes val3dity's cascade would give, sorted
+  Acceptance acceptance;
+  std::vector<std::string> notes;       // e.g. unit assumptions
+  std::vector<RungAttempt> attempts;    // of the CDT ladder
+  Rung rung = Rung::none;
+  std::optional<Measures> measures;     // when the boundary is closed and triangulated
+  double seconds = 0;                   // wall; not part of the deterministic content
+};
+
+/// The name of a code, e.g. 302 -> "SHELL_NOT_CLOSED"; "" for an unknown one.
+std::string_view finding_name(int code);
+
+}  // namespace watertight

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Helper processes that may crash, hang or eat memory without hurting the caller. A job is a frame
+// of bytes in and a frame of bytes out over a socketpair; what the bytes mean is the caller's
+// business. For delaunay's CDT engines; used by service, CLI and SQL alike.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "base/bytes.h"
+#include "base/result.h"
+
+namespace watertight {
+
+struct WorkerLimits {
+  double wall_seconds = 20;
+  double cpu_seconds = 15;
+  std::uint64_t memory_bytes = 2ULL << 30;  // RLIMIT_AS of the process
+  std::uint64_t reply_bytes = 1ULL << 30;
+};
+
+enum class JobOutcome : std::uint8_t { ok, crashed, timed_out, out_of_memory, garbage, cancelled, not_started };
+std::string_view to_string(JobOutcome outcome);
+
+struct JobResult {
+  JobOutcome outcome = JobOutcome::not_started;
+  Bytes reply;         // when ok
+  std::string detail;  // e.g. "killed by signal 11"
+  double seconds = 0;  // wall
+};
+
+/// Asked every few milliseconds while a job runs; true cancels it.
+using CancelPoll = std::function<bool()>;
+
+/// A pool of processes of one executable. Thread-safe: concurrent run() calls use different
+/// processes, at most `size` at a time. Processes start on first use, serve many jobs, and are
+/// replaced after `jobs_per_process` jobs and after every outcome but ok. A process has its own
+/// group, an empty private directory, all descriptors but the socket closed, stdout and stderr to
+/// /dev/null, no core dumps, a parent-death signal, and the limits of its job.
+class WorkerPool {
+ public:
+  struct Options {
+    std::string executable;  // absolute path
+    std::size_t size = 2;
+    std::size_t jobs_per_process = 500;
+    double idle_seconds = 60;  // a process without a job for this long ends itself
+  };
+  explicit WorkerPool(Options options);
+  ~WorkerPool();  // kills every process group and reaps it
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  JobResult run(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel = {});
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The worker's side: reads frames from descriptor 3, answers each with `handle`, ends on end of
+/// file or when idle. Returns the exit status for main().
+int serve_jobs(const std::function<Bytes(ByteView)>& handle);
+
+/// Finds a helper executable: the WATERTIGHT_LIBEXEC environment variable's folder, the folder of
+/// the running executable, `../libexec/watertight` beside it, then the installation's libexec
+/// folder. Errors: unavailable, naming where it looked.
+Result<std::string> find_helper(const std::string& name);
+
+}  // namespace watertight

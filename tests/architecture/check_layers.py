@@ -1,0 +1,301 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The layer check: fails on anything that breaks the layout docs/architecture.md describes.
+
+    check_layers.py ROOT          checks the tree and prints one line per violation
+    check_layers.py --self-test   breaks a small tree in every way there is a rule for, and fails
+                                  unless each break is found
+
+Rules, one function each:
+  layers       a folder includes only itself, base, and the folders its CMakeLists.txt DEPENDS on
+  existence    a quoted include names a file of the repository, from the repository's root
+  homes        third-party headers stay in their folders
+  cgal         a header that (transitively) includes CGAL is included by its own folder only
+  licence      every source file states its SPDX licence in its first two lines
+  places       no file names a path of one machine, or the host of a package registry
+  unfinished   no word that marks unfinished work
+  length       no source file of the product is longer than 600 lines
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "repair", "codec",
+           "formats", "store", "pipeline", "server", "cli", "sql"]
+MAX_LINES = 600
+
+# header pattern -> (what it is, path patterns it may be included from). First match decides.
+HOMES = [
+    (r"boost/(?!multiprecision)", "Boost", [r"server/"]),
+    (r"spdlog/", "spdlog", [r"server/"]),
+    (r"(postgresql/)?(libpq-fe|libpq-events)\.h", "libpq",
+     [r"store/", r"tests/unit/store/", r"tests/integration/", r"bench/"]),
+    (r"nlohmann/", "nlohmann-json",
+     [r"formats/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
+    (r"CGAL/", "CGAL",
+     [r"geometry/", r"tessellate/", r"delaunay/", r"repair/", r"tests/", r"bench/"]),
+    (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),
+    (r"CLI/", "CLI11", [r"cli/", r"bench/"]),
+    (r"(zstd|zstd_errors|zdict)\.h", "zstd", [r"codec/", r"formats/", r"bench/"]),
+    (r"draco/", "Draco", [r"bench/"]),
+    (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|storage|parser|"
+     r"nodes|commands|common|tcop)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/[^/]+\.c$"]),
+]
+
+SOURCE = re.compile(r"\.(h|cpp|c)$")
+LICENSED = re.compile(r"(\.(h|cpp|c|cmake|sh|py|sql\.in|toml|ya?ml)|CMakeLists\.txt|Dockerfile|"
+                      r"^scripts/[a-z-]+|^\.ci/run)$")
+TEXT = re.compile(r"(\.(h|cpp|c|cmake|sh|py|sql|in|toml|ya?ml|md|json|txt)|Dockerfile|^scripts/[a-z-]+|"
+                  r"^\.ci/run)$")
+# Written apart so that this file does not find itself.
+MACHINE = re.compile(r"(?<![\w.])/" + r"(work/(main|shared)|root/|home/[a-z]+/|tmp/build-)"
+                     r"|https?://" + r"(deb|registry|snapshot|ftp)\.")
+UNFINISHED = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X|HA" + r"CK)\b")
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.M)
+
+
+def repository_files(root):
+    """Paths relative to root: what git tracks or would track; without git, every file but builds."""
+    try:
+        out = subprocess.run(
+            ["git", "-c", f"safe.directory={root}", "-C", str(root), "ls-files", "-z", "--cached",
+             "--others", "--exclude-standard"],
+            capture_output=True, check=True).stdout.decode()
+        names = [name for name in out.split("\0") if name]
+    except (OSError, subprocess.CalledProcessError):
+        names = []
+    if not names:
+        for directory, subdirectories, files in os.walk(root):
+            subdirectories[:] = [d for d in subdirectories
+                                 if d not in (".git", "data") and not d.startswith("build")]
+            names += [os.path.relpath(os.path.join(directory, file), root) for file in files]
+    return sorted(name for name in set(names) if (root / name).is_file())
+
+
+def declared_depends(root):
+    """folder -> the set of folders it may include, from watertight_folder(... DEPENDS ...)."""
+    depends = {}
+    for folder in FOLDERS:
+        path = root / folder / "CMakeLists.txt"
+        if not path.is_file():
+            continue
+        text = re.sub(r"#.*", "", path.read_text())
+        call = re.search(r"watertight_folder\(\s*(\w+)([^)]*)\)", text)
+        if not call or call.group(1) != folder:
+            depends[folder] = None
+            continue
+        declared = re.search(r"\bDEPENDS\b([^A-Z]*)", call.group(2))
+        depends[folder] = set(declared.group(1).split()) if declared else set()
+    return depends
+
+
+class Tree:
+    def __init__(self, root):
+        self.root = root
+        self.files = repository_files(root)
+        self.text = {}
+        for name in self.files:
+            if TEXT.search(name) or SOURCE.search(name) or LICENSED.search(name):
+                self.text[name] = (root / name).read_text(encoding="utf-8", errors="replace")
+        self.includes = {name: INCLUDE.findall(text) for name, text in self.text.items()
+                         if SOURCE.search(name)}
+        self.depends = declared_depends(root)
+
+
+def folder_of(name):
+    head = name.split("/", 1)[0]
+    return head if head in FOLDERS else None
+
+
+def check_layers(tree):
+    for folder, allowed in tree.depends.items():
+        if allowed is None:
+            yield f"{folder}/CMakeLists.txt: layers: does not call watertight_folder({folder} ...)"
+            continue
+        for other in sorted(allowed - set(FOLDERS)):
+            yield f"{folder}/CMakeLists.txt: layers: DEPENDS on unknown folder '{other}'"
+    for name, includes in tree.includes.items():
+        folder = folder_of(name)
+        if folder is None or tree.depends.get(folder) is None:
+            continue
+        allowed = tree.depends[folder] | {folder, "base"}
+        for _, path in includes:
+            target = folder_of(path) if "/" in path else None
+            # A third-party header may live under a like-named folder (e.g. <server/...>): ours exist.
+            if target and path in tree.text and target not in allowed:
+                yield f"{name}: layers: includes \"{path}\", but {folder} does not declare {target}"
+
+
+def check_existence(tree):
+    for name, includes in tree.includes.items():
+        for quote, path in includes:
+            if quote != '"' or path in tree.text or path.endswith((".inc", ".ipp")):
+                continue
+            if name.startswith("sql/") and name.endswith(".c") and is_home_header(path):
+                continue
+            yield f"{name}: existence: \"{path}\" is not a file of the repository (paths start at its root)"
+
+
+def is_home_header(path):
+    return any(re.match(pattern, path) for pattern, _, _ in HOMES)
+
+
+def check_homes(tree):
+    for name, includes in tree.includes.items():
+        for _, path in includes:
+            if path in tree.text:
+                continue
+            for pattern, what, homes in HOMES:
+                if re.match(pattern, path):
+                    if not any(re.match(home, name) for home in homes):
+                        yield f"{name}: homes: includes <{path}>, but {what} has its home elsewhere"
+                    break
+
+
+def check_cgal(tree):
+    tainted = {name for name, includes in tree.includes.items()
+               if any(path.startswith("CGAL/") for _, path in includes)}
+    while True:
+        more = {name for name, includes in tree.includes.items()
+                if name not in tainted and any(path in tainted for _, path in includes)}
+        if not more:
+            break
+        tainted |= more
+    for name, includes in tree.includes.items():
+        if folder_of(name) is None:
+            continue
+        for _, path in includes:
+            if path in tainted and path.endswith(".h") and folder_of(path) != folder_of(name):
+                yield f"{name}: cgal: includes \"{path}\", which brings CGAL out of its folder"
+
+
+def check_licence(tree):
+    for name in tree.files:
+        if LICENSED.search(name) and name in tree.text and tree.text[name].strip():
+            if not any("SPDX-License-Identifier:" in line
+                       for line in tree.text[name].split("\n", 2)[:2]):
+                yield f"{name}: licence: no SPDX-License-Identifier in the first two lines"
+
+
+def check_places(tree):
+    for name, text in tree.text.items():
+        for number, line in enumerate(text.split("\n"), 1):
+            found = MACHINE.search(line)
+            if found:
+                yield f"{name}:{number}: places: names '{found.group(0)}'"
+
+
+def check_unfinished(tree):
+    for name, text in tree.text.items():
+        if not (SOURCE.search(name) or LICENSED.search(name)):
+            continue
+        for number, line in enumerate(text.split("\n"), 1):
+            found = UNFINISHED.search(line)
+            if found:
+                yield f"{name}:{number}: unfinished: says '{found.group(0)}'"
+
+
+def check_length(tree):
+    for name in tree.includes:
+        lines = tree.text[name].count("\n")
+        if folder_of(name) and lines > MAX_LINES:
+            yield f"{name}: length: {lines} lines, at most {MAX_LINES}"
+
+
+RULES = [check_layers, check_existence, check_homes, check_cgal, check_licence, check_places,
+         check_unfinished, check_length]
+
+
+def violations(root):
+    tree = Tree(pathlib.Path(root).resolve())
+    return [line for rule in RULES for line in rule(tree)]
+
+
+SPDX = "// SPDX-License-Identifier: GPL-3.0-or-later\n"
+GOOD_TREE = {
+    "base/CMakeLists.txt": "# SPDX-License-Identifier: X\nwatertight_folder(base SOURCES a.cpp)\n",
+    "base/result.h": SPDX + "#pragma once\n#include <string>\n",
+    "geometry/CMakeLists.txt":
+        "# SPDX-License-Identifier: X\nwatertight_folder(geometry\n  SOURCES b.cpp\n  DEPENDS base\n"
+        "  PRIVATE watertight_cgal)\n",
+    "geometry/solid.h": SPDX + '#include "base/result.h"\n',
+    "geometry/kernel.h": SPDX + "#include <CGAL/Kernel.h>\n",
+    "geometry/solid.cpp": SPDX + '#include "geometry/kernel.h"\n#include "geometry/solid.h"\n',
+    "store/CMakeLists.txt": "# SPDX-License-Identifier: X\nwatertight_folder(store DEPENDS base)\n",
+    "store/store.cpp": SPDX + "#include <libpq-fe.h>\n",
+    "codec/CMakeLists.txt": "# SPDX-License-Identifier: X\nwatertight_folder(codec DEPENDS base geometry)\n",
+    "codec/blob.cpp": SPDX + '#include <zstd.h>\n#include "geometry/solid.h"\n',
+    "sql/CMakeLists.txt": "# SPDX-License-Identifier: X\nwatertight_folder(sql DEPENDS base)\n",
+    "sql/bridge.c": SPDX + '#include "postgres.h"\n#include "utils/builtins.h"\n',
+    "scripts/test": "#!/bin/sh\n# SPDX-License-Identifier: X\n",
+}
+# (file, its text, the rule that must speak, words that must be in the line)
+BREAKS = [
+    ("store/store.cpp", SPDX + '#include "geometry/solid.h"\n', "layers", "does not declare geometry"),
+    ("geometry/solid.h", SPDX + '#include "codec/blob.h"\n', "existence", "codec/blob.h"),
+    ("codec/CMakeLists.txt", "# SPDX-License-Identifier: X\nadd_library(codec)\n", "layers",
+     "watertight_folder"),
+    ("codec/CMakeLists.txt", "# SPDX-License-Identifier: X\nwatertight_folder(codec DEPENDS geometri)\n",
+     "layers", "geometri"),
+    ("codec/blob.cpp", SPDX + '#include "geometry/kernel.h"\n', "cgal", "out of its folder"),
+    ("geometry/solid.h", SPDX + '#include "geometry/kernel.h"\n', "cgal", "geometry/solid.h"),
+    ("codec/blob.cpp", SPDX + "#include <CGAL/Kernel.h>\n", "homes", "CGAL"),
+    ("codec/blob.cpp", SPDX + "#include <boost/asio.hpp>\n", "homes", "Boost"),
+    ("codec/blob.cpp", SPDX + "#include <spdlog/spdlog.h>\n", "homes", "spdlog"),
+    ("codec/blob.cpp", SPDX + "#include <libpq-fe.h>\n", "homes", "libpq"),
+    ("codec/blob.cpp", SPDX + "#include <nlohmann/json.hpp>\n", "homes", "nlohmann"),
+    ("codec/blob.cpp", SPDX + "#include <CLI/CLI.hpp>\n", "homes", "CLI11"),
+    ("codec/blob.cpp", SPDX + "#include <tetgen.h>\n", "homes", "TetGen"),
+    ("store/store.cpp", SPDX + "#include <zstd.h>\n", "homes", "zstd"),
+    ("sql/bridge.cpp", SPDX + "#include <postgres.h>\n", "homes", "PostgreSQL"),
+    ("geometry/solid.h", "#pragma once\n", "licence", "geometry/solid.h"),
+    ("scripts/test", "#!/bin/sh\necho\n", "licence", "scripts/test"),
+    ("scripts/test", "#!/bin/sh\n# SPDX-License-Identifier: X\ncd /" + "work/main\n", "places", "scripts/test:3"),
+    ("docs/build.md", "get it from http://" + "deb.example.org\n", "places", "docs/build.md:1"),
+    ("geometry/solid.cpp", SPDX + "// TO" + "DO: later\n", "unfinished", "geometry/solid.cpp:2"),
+    ("geometry/solid.cpp", SPDX + "\n" * MAX_LINES, "length", "601 lines"),
+]
+
+
+def write_tree(root, tree):
+    for name, text in tree.items():
+        path = pathlib.Path(root) / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+def self_test():
+    failures = 0
+    with tempfile.TemporaryDirectory() as root:
+        write_tree(root, GOOD_TREE)
+        for line in violations(root):
+            print(f"self-test: a good tree is refused: {line}")
+            failures += 1
+    for name, text, rule, words in BREAKS:
+        with tempfile.TemporaryDirectory() as root:
+            write_tree(root, {**GOOD_TREE, name: text})
+            if not any(f" {rule}: " in line and words in line for line in violations(root)):
+                print(f"self-test: rule '{rule}' does not see the break in {name} ({words})")
+                failures += 1
+    print(f"self-test: {len(BREAKS)} broken trees, {failures} failures")
+    return failures
+
+
+def main(arguments):
+    if arguments == ["--self-test"]:
+        return 1 if self_test() else 0
+    if len(arguments) != 1:
+        print(__doc__, file=sys.stderr)
+        return 2
+    found = violations(arguments[0])
+    for line in found:
+        print(line)
+    print(f"layer check: {len(found)} violations")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The axis along which a facet is projected, decided exactly.
+#include <algorithm>
+#include <cmath>
+
+#include <CGAL/Exact_rational.h>
+
+#include "tessellate/facets.h"
+
+namespace watertight {
+namespace {
+
+__extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
+
+// Integer coordinates up to 2^53 give differences below 2^54 and terms below 2^109: this many of
+// them cannot overflow 127 bits.
+constexpr std::size_t kMostWideTerms = 1U << 17;
+constexpr double kLargestInteger = 9007199254740992.0;  // 2^53
+// Steps whose exponents are further apart than this compare like steps this far apart: beyond it,
+// one axis decides whatever the coordinates are (finite doubles span fewer than 2^2100).
+constexpr std::int32_t kMostStepSpread = 5000;
+
+bool is_wide_enough(const Point& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(std::fabs(p[axis]) <= kLargestInteger) || p[axis] != std::trunc(p[axis])) return false;
+  }
+  return true;
+}
+
+/// Components of the exact doubled area vector of a ring, in lattice units.
+template <class Number>
+std::array<Number, 3> doubled_area(std::span<const Point> vertices, std::span<const Index> ring) {
+  std::array<Number, 3> area{Number(0), Number(0), Number(0)};
+  const Point& base = vertices[ring[0]];
+  const std::array<Number, 3> origin{Number(base.x), Number(base.y), Number(base.z)};
+  const auto relative = [&](Index vertex) {
+    const Point& p = vertices[vertex];
+    return std::array<Number, 3>{Number(p.x) - origin[0], Number(p.y) - origin[1],
+                                 Number(p.z) - origin[2]};
+  };
+  std::array<Number, 3> from = relative(ring[1]);
+  for (std::size_t i = 2; i < ring.size(); ++i) {
+    const std::array<Number, 3> to = relative(ring[i]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t u = (axis + 1) % 3;
+      const std::size_t v = (axis + 2) % 3;
+      area[axis] += from[u] * to[v] - from[v] * to[u];
+    }
+    from = to;
+  }
+  return area;
+}
+
+/// Requires `weight`: what a component is multiplied by to be in world scale.
+template <class Number>
+Projection largest_component(const std::array<Number, 3>& area,
+                             const std::array<Number, 3>& weight) {
+  Projection projection;
+  projection.axis = 0;
+  Number largest(0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Number size = (area[axis] < Number(0) ? -area[axis] : area[axis]) * weight[axis];
+    if (size > largest) {
+      largest = size;
+      projection.axis = static_cast<int>(axis);
+    }
+  }
+  projection.is_degenerate = largest == Number(0);
+  projection.is_mirrored = area[static_cast<std::size_t>(projection.axis)] < Number(0);
+  return projection;
+}
+
+CGAL::Exact_rational power(int radix, std::int32_t exponent) {
+  CGAL::Exact_rational result(1);
+  CGAL::Exact_rational square(radix);
+  for (; exponent > 0; exponent /= 2) {
+    if (exponent % 2 != 0) result *= square;
+    square *= square;
+  }
+  return result;
+}
+
+/// The component along an axis scales with the product of the two other steps, that is, up to a
+/// common factor, with one over its own step.
+std::array<CGAL::Exact_rational, 3> world_weights(const Lattice& lattice) {
+  std::int32_t largest = lattice.step[0].exponent;
+  for (const GridNumber& step : lattice.step) largest = std::max(largest, step.exponent);
+  std::array<CGAL::Exact_rational, 3> weights;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const GridNumber& step = lattice.step[axis];
+    const std::int64_t spread = std::int64_t{largest} - step.exponent;
+    const auto exponent =
+        static_cast<std::int32_t>(std::min<std::int64_t>(spread, kMostStepSpread));
+    const std::int64_t mantissa = step.mantissa == 0 ? 1 : std::abs(step.mantissa);
+    weights[axis] = power(lattice.kind == LatticeKind::decimal ? 10 : 2, exponent) /
+                    CGAL::Exact_rational(static_cast<double>(mantissa));
+  }
+  return weights;
+}
+
+}  // namespace
+
+Projection facet_projection(const Solid& solid, Index facet) {
+  Projection none;
+  none.is_degenerate = true;
+  const IndexRange rings = solid.rings_of(facet);
+  if (rings.size() == 0 || solid.ring(rings.begin).size() < 3) return none;
+  const std::span<const Index> ring = solid.ring(rings.begin);
+  const std::span<const Point> vertices = solid.vertices();
+
+  const auto& step = solid.lattice().step;
+  const bool has_equal_steps = step[0] == step[1] && step[1] == step[2];
+  const bool is_wide =
+      has_equal_steps && ring.size() < kMostWideTerms &&
+      std::all_of(ring.begin(), ring.end(), [&](Index v) { return is_wide_enough(vertices[v]); });
+  if (is_wide) return largest_component<Wide>(doubled_area<Wide>(vertices, ring), {1, 1, 1});
+  return largest_component<CGAL::Exact_rational>(doubled_area<CGAL::Exact_rational>(vertices, ring),
+                                                 world_weights(solid.lattice()));
+}
+
+}  // namespace watertight

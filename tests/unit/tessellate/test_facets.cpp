@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "geometry/predicates.h"
+#include "tessellate/facets.h"
+
+using namespace watertight;
+
+namespace {
+
+using Ring = std::vector<Point>;
+using PointTriangle = std::array<Point, 3>;
+
+/// A solid of one facet. Equal points are one vertex; vertices are numbered by `random`.
+Solid facet_solid(const std::vector<Ring>& rings, std::mt19937* random = nullptr) {
+  std::vector<Point> points;
+  for (const Ring& ring : rings) points.insert(points.end(), ring.begin(), ring.end());
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (random != nullptr) std::shuffle(points.begin(), points.end(), *random);
+  std::map<Point, Index> number;
+  for (const Point& p : points) number.emplace(p, static_cast<Index>(number.size()));
+  SolidArrays arrays;
+  arrays.vertices = points;
+  for (const Point& p : points) number[p] = static_cast<Index>(&p - points.data());
+  for (const Ring& ring : rings) {
+    for (const Point& p : ring) arrays.ring_vertices.push_back(number[p]);
+    arrays.end_ring();
+  }
+  arrays.end_facet();
+  arrays.end_shell();
+  auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
+  REQUIRE(solid);
+  return *solid;
+}
+
+std::vector<PointTriangle> point_triangles(const Solid& solid) {
+  std::vector<PointTriangle> result;
+  for (const Triangle& t : triangulate_facets(solid).triangles) {
+    result.push_back({solid.vertices()[t[0]], solid.vertices()[t[1]], solid.vertices()[t[2]]});
+  }
+  return result;
+}
+
+FacetState state_of(const std::vector<Ring>& rings) {
+  const FacetTriangles result = triangulate_facets(facet_solid(rings));
+  if (result.state[0] != FacetState::triangulated) REQUIRE(result.triangles.empty());
+  return result.state[0];
+}
+
+/// Twice the area in the plane z = 0, by integers.
+std::int64_t doubled_area(const Ring& ring) {
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Point& a = ring[i];
+    const Point& b = ring[(i + 1) % ring.size()];
+    sum += static_cast<std::int64_t>(a.x * b.y - a.y * b.x);
+  }
+  return sum;
+}
+
+/// Incircle determinant of small integers, > 0 when d is inside the circle of a left-turning abc.
+std::int64_t in_circle(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const auto row = [&](const Point& p) {
+    const auto x = static_cast<std::int64_t>(p.x - d.x);
+    const auto y = static_cast<std::int64_t>(p.y - d.y);
+    return std::array<std::int64_t, 3>{x, y, x * x + y * y};
+  };
+  const auto u = row(a);
+  const auto v = row(b);
+  const auto w = row(c);
+  return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) +
+         u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
+/// Every edge that is not a ring edge is Delaunay, ties by the rule "the largest is outside".
+bool is_canonical(const std::vector<PointTriangle>& triangles, const std::vector<Ring>& rings) {
+  std::set<std::pair<Point, Point>> ring_edges;
+  for (const Ring& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      ring_edges.insert(std::minmax(ring[i], ring[(i + 1) % ring.size()]));
+    }
+  }
+  std::map<std::pair<Point, Point>, std::vector<std::pair<PointTriangle, Point>>> edges;
+  for (const PointTriangle& t : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::pair<Point, Point> key = std::minmax(t[i], t[(i + 1) % 3]);
+      edges[key].push_back({t, t[(i + 2) % 3]});
+    }
+  }
+  for (const auto& [edge, sides] : edges) {
+    if (ring_edges.count(edge) != 0) {
+      if (sides.size() != 1) return false;
+      continue;
+    }
+    if (sides.size() != 2) return false;
+    const PointTriangle& t = sides[0].first;
+    const Point& apex = sides[1].second;
+    const std::int64_t inside = in_circle(t[0], t[1], t[2], apex);
+    if (inside > 0) return false;
+    const Point largest = std::max({t[0], t[1], t[2], apex});
+    const bool is_apex_largest = largest == sides[0].second || largest == apex;
+    if (inside == 0 && !is_apex_largest) return false;
+  }
+  return true;
+}
+
+Ring random_star(std::mt19937& random, int count, int radius) {
+  // Integer points around the origin by angle: a simple, star-shaped ring.
+  std::map<std::pair<double, double>, Point> by_angle;
+  std::uniform_int_distribution<int> coordinate(-radius, radius);
+  std::vector<Point> points;
+  while (static_cast<int>(points.size()) < count) {
+    const Point p{static_cast<double>(coordinate(random)), static_cast<double>(coordinate(random)),
+                  0};
+    if (p.x == 0 && p.y == 0) continue;
+    points.push_back(p);
+  }
+  const auto half = [](const Point& p) { return p.y < 0 || (p.y == 0 && p.x < 0); };
+  std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) {
+    if (half(a) != half(b)) return half(a) < half(b);
+    return a.x * b.y - a.y * b.x > 0;
+  });
+  Ring ring;
+  for (const Point& p : points) {
+    if (!ring.empty() && ring.back().x * p.y - ring.back().y * p.x == 0 &&
+        half(ring.back()) == half(p)) {
+      continue;
+    }
+    ring.push_back(p);
+  }
+  return ring;
+}
+
+Ring rectangle(double x0, double y0, double x1, double y1, bool is_clockwise = false) {
+  Ring ring{{x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}};
+  if (is_clockwise) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+/// The same ring from another start.
+Ring rotated(Ring ring, std::mt19937& random) {
+  std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(random() % ring.size()),
+              ring.end());
+  return ring;
+}
+
+}  // namespace
+
+TEST_CASE("the triangles of a facet do not depend on the numbering of its vertices") {
+  std::mt19937 random(7);
+  for (int round = 0; round < 200; ++round) {
+    // Grids full of cocircular points: a rectangle with every grid point of its border, and holes.
+    const int n = 3 + round % 7;
+    Ring outer;
+    for (int i = 0; i < n; ++i) outer.push_back({double(i), 0, 0});
+    for (int i = 0; i < n; ++i) outer.push_back({double(n), double(i), 0});
+    for (int i = n; i > 0; --i) outer.push_back({double(i), double(n), 0});
+    for (int i = n; i > 0; --i) outer.push_back({0, double(i), 0});
+    std::vector<Ring> rings{outer};
+    if (n >= 4) rings.push_back(rectangle(1, 1, n - 2, n - 2, true));
+    if (n >= 6) rings.push_back(rectangle(n - 2, n - 2, n - 1, n - 1, true));
+    const auto expected = point_triangles(facet_solid(rings));
+    REQUIRE(!expected.empty());
+    CHECK(is_canonical(expected, rings));
+    std::vector<Ring> shuffled;
+    for (const Ring& ring : rings) shuffled.push_back(rotated(ring, random));
+    if (shuffled.size() > 2) std::swap(shuffled[1], shuffled[2]);
+    CHECK(point_triangles(facet_solid(shuffled, &random)) == expected);
+  }
+}
+
+TEST_CASE("random star-shaped facets are covered and canonical") {
+  std::mt19937 random(11);
+  for (int round = 0; round < 500; ++round) {
+    const Ring ring = random_star(random, 4 + round % 40, 3 + round % 5);
+    if (ring.size() < 3) continue;
+    const Solid solid = facet_solid({ring}, &random);
+    const FacetTriangles result = triangulate_facets(solid);
+    if (result.state[0] != FacetState::triangulated) continue;  // the origin can lie outside
+    const auto triangles = point_triangles(solid);
+    CHECK(triangles.size() == ring.size() - 2);
+    std::int64_t area = 0;
+    for (const PointTriangle& t : triangles) {
+      const std::int64_t part = doubled_area({t[0], t[1], t[2]});
+      CHECK((part > 0) == (doubled_area(ring) > 0));
+      area += part;
+    }
+    CHECK(area == doubled_area(ring));
+    if (doubled_area(ring) > 0) CHECK(is_canonical(triangles, {ring}));
+    CHECK(point_triangles(facet_solid({rotated(ring, random)}, &random)) == triangles);
+  }
+}
+
+TEST_CASE("a reversed facet has the same triangles, turned over") {
+  const std::vector<Ring> rings{rectangle(0, 0, 4, 4)};
+  std::vector<Ring> reversed = rings;
+  std::reverse(reversed[0].begin(), reversed[0].end());
+  auto a = point_triangles(facet_solid(rings));
+  auto b = point_triangles(facet_solid(reversed));
+  for (PointTriangle& t : b) std::swap(t[1], t[2]);
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  CHECK(a == b);
+}
+
+TEST_CASE("a facet is projected along the largest component of its world area, ties x, y, z") {
+  const Ring tilted{{0, 0, 0}, {4, 0, 4}, {0, 4, 0}};  // normal (-16, 0, 16)
+  CHECK(facet_projection(facet_solid({tilted}), 0).axis == 0);
+  CHECK(facet_projection(facet_solid({tilted}), 0).is_mirrored);
+  const Ring flat = rectangle(0, 0, 3, 3);
+  CHECK(facet_projection(facet_solid({flat}), 0).axis == 2);
+  CHECK_FALSE(facet_projection(facet_solid({flat}), 0).is_mirrored);
+
+  // A coarser step along x makes the same lattice triangle steeper in x.
+  Solid solid = facet_solid({Ring{{0, 0, 0}, {1, 0, 5}, {0, 1, 0}}});
+  CHECK(facet_projection(solid, 0).axis == 0);
+  Lattice lattice;
+  lattice.step = {GridNumber{1, 1}, GridNumber{1, 0}, GridNumber{1, 0}};
+  auto coarse = Solid::make(solid.arrays(), lattice, 0);
+  REQUIRE(coarse);
+  CHECK(facet_projection(*coarse, 0).axis == 2);
+
+  const Solid line = facet_solid({Ring{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}}});
+  CHECK(facet_projection(line, 0).is_degenerate);
+}
+
+TEST_CASE("the projection of large and of fractional coordinates is exact") {
+  const double large = 4503599627370496.0;  // 2^52
+  // The two largest components differ by one part in 2^104.
+  const Ring ring{{0, 0, 0}, {large, 0, large - 1}, {0, large, 0}};
+  const Projection projection = facet_projection(facet_solid({ring}), 0);
+  CHECK(projection.axis == 2);
+  const Ring fraction{{0.1, 0, 0}, {0.1, 0.3, 0}, {0.1, 0, 0.7}};
+  CHECK(facet_projection(facet_solid({fraction}), 0).axis == 0);
+}
+
+TEST_CASE("holes may touch the exterior ring and each other in vertices") {
+  const Ring outer{{0, 0, 0}, {5, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
+  const Ring hole{{5, 0, 0}, {4, 2, 0}, {6, 2, 0}};
+  CHECK(state_of({outer, hole}) == FacetState::triangulated);
+  const Ring other{{6, 2, 0}, {6, 4, 0}, {8, 3, 0}};
+  CHECK(state_of({outer, hole, other}) == FacetState::triangulated);
+  // Two holes that touch twice seal off a pocket, which still belongs to the facet.
+  const Ring left{{2, 5, 0}, {5, 3, 0}, {4, 5, 0}, {5, 7, 0}};
+  const Ring right{{8, 5, 0}, {5, 7, 0}, {6, 5, 0}, {5, 3, 0}};
+  const Solid solid = facet_solid({rectangle(0, 0, 10, 10), left, right});
+  std::int64_t area = 0;
+  for (const PointTriangle& t : point_triangles(solid)) area += doubled_area({t[0], t[1], t[2]});
+  CHECK(area == 200 - std::abs(doubled_area(left)) - std::abs(doubled_area(right)));
+}
+
+TEST_CASE("rings that are not simple or nest wrongly give no triangles") {
+  const Ring outer = rectangle(0, 0, 10, 10);
+  CHECK(state_of({{{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 6, 0}}}) == FacetState::not_simple);
+  CHECK(state_of({outer, rectangle(5, 5, 12, 8)}) == FacetState::not_simple);   // crosses
+  CHECK(state_of({outer, rectangle(20, 5, 22, 8)}) == FacetState::not_simple);  // outside
+  CHECK(state_of({outer, rectangle(1, 1, 9, 9), rectangle(2, 2, 3, 3)}) ==
+        FacetState::not_simple);                              // nested
+  CHECK(state_of({outer, outer}) == FacetState::not_simple);  // the same
+  CHECK(state_of({outer, {{0, 5, 0}, {3, 4, 0}, {3, 6, 0}}}) ==
+        FacetState::not_simple);  // a vertex inside an edge
+  CHECK(state_of({outer, {{0, 0, 0}, {0, 10, 0}, {3, 6, 0}}}) ==
+        FacetState::not_simple);                                              // an edge shared
+  CHECK(state_of({rectangle(2, 2, 3, 3), outer}) == FacetState::not_simple);  // inside out
+  CHECK(state_of({outer, {{1, 1, 0}, {2, 2, 0}}}) == FacetState::not_simple);
+  CHECK(state_of({{{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 0}}}) ==
+        FacetState::not_simple);  // passes a vertex twice
+  CHECK(state_of({{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 3, 0}}}) ==
+        FacetState::not_simple);  // spike
+}
+
+TEST_CASE("facets without area are degenerate") {
+  CHECK(state_of({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}}) == FacetState::degenerate);
+  CHECK(state_of({{{0, 0, 0}, {1, 1, 1}}}) == FacetState::degenerate);
+  CHECK(state_of({{{0, 0, 0}, {3, 3, 0}, {3, 0, 0}, {0, 3, 0}}}) == FacetState::degenerate);
+}
+
+TEST_CASE("different vertices with the same projection do not crash") {
+  const Ring ring{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {5, 5, 0}, {0, 10, 0}, {5, 5, 3}};
+  CHECK(state_of({ring}) == FacetState::not_simple);
+}
+
+TEST_CASE("a facet that is not planar is triangulated in projection") {
+  const Ring ring{{0, 0, 0}, {10, 0, 1}, {10, 10, 0}, {0, 10, 1}};
+  CHECK(state_of({ring}) == FacetState::triangulated);
+}
+
+TEST_CASE("triangles are grouped by facet and facets without triangles are kept") {
+  SolidArrays arrays;
+  arrays.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const std::vector<Index>& ring :
+       std::vector<std::vector<Index>>{{0, 1, 2}, {0, 1}, {1, 2, 3}}) {
+    arrays.ring_vertices.insert(arrays.ring_vertices.end(), ring.begin(), ring.end());
+    arrays.end_ring();
+    arrays.end_facet();
+  }
+  arrays.end_facet();  // a facet without rings
+  arrays.end_shell();
+  auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
+  REQUIRE(solid);
+  const FacetTriangles result = triangulate_facets(*solid);
+  CHECK(result.first == std::vector<Index>{0, 1, 1, 2, 2});
+  CHECK(result.facet_of == std::vector<Index>{0, 2});
+  CHECK(result.state[3] == FacetState::degenerate);
+  CHECK(result.triangles[1] == Triangle{3, 1, 2});
+}

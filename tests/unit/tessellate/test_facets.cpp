@@ -310,3 +310,27 @@ TEST_CASE("triangles are grouped by facet and facets without triangles are kept"
   CHECK(result.state[3] == FacetState::degenerate);
   CHECK(result.triangles[1] == Triangle{3, 1, 2});
 }
+
+TEST_CASE("every quadrilateral on a small grid is triangulated canonically or not simple") {
+  std::vector<Point> grid;
+  for (int i = 0; i < 16; ++i) grid.push_back({double(i % 4), double(i / 4), 0});
+  std::size_t wrong = 0;
+  std::size_t triangulated = 0;
+  for (std::size_t a = 0; a < 16; ++a) {
+    for (std::size_t b = 0; b < 16; ++b) {
+      for (std::size_t c = 0; c < 16; ++c) {
+        for (std::size_t d = 0; d < 16; ++d) {
+          if (std::set<std::size_t>{a, b, c, d}.size() != 4) continue;
+          const Ring ring{grid[a], grid[b], grid[c], grid[d]};
+          if (doubled_area(ring) <= 0) continue;
+          const auto triangles = point_triangles(facet_solid({ring}));
+          if (triangles.empty()) continue;
+          ++triangulated;
+          if (!is_canonical(triangles, {ring})) ++wrong;
+        }
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(triangulated > 5000);
+}

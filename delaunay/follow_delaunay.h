@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The triangulation of each facet that follows the canonical Delaunay tetrahedralization: as many
+// of its triangles as possible are Delaunay faces. A facet's triangulation is no part of a solid,
+// so the codec's bitmap mode is free to take this one (fewer unrecovered faces), and rung 0 of the
+// CDT ladder asks whether every facet is a union of Delaunay faces. Decoding does not need it: the
+// marks and the list of unrecovered faces say which triangles were taken.
+#pragma once
+
+#include <vector>
+
+#include "delaunay/canonical_delaunay.h"
+#include "geometry/solid.h"
+#include "tessellate/facets.h"
+
+namespace watertight {
+
+/// Triangles grouped by facet, with the facet's orientation; each starts with its smallest index,
+/// and those of one facet are sorted.
+struct FollowingTriangles {
+  std::vector<Triangle> triangles;
+  std::vector<Index> facet_of;  // triangle -> facet
+  std::vector<Index> first{0};  // facet -> first triangle; facet_count + 1 entries
+  /// Per facet: how many of its triangles are no faces of the Delaunay tetrahedralization.
+  std::vector<Index> missing;
+  /// Per triangle: its place in CanonicalDelaunay::faces, kNone if it is not there.
+  std::vector<Index> delaunay_face;
+  /// Of all facets together.
+  Index missing_total = 0;
+};
+
+/// Requires merged vertices, `canonical` = triangulate_facets(merged) and `delaunay` =
+/// canonical_delaunay(merged.vertices()). A facet without canonical triangles gets none here.
+/// Guarantees: the triangles of a facet use exactly its ring vertices and cover, in the projection
+/// facet_projection(), the region between its rings exactly once. A facet that lies exactly in a
+/// plane and is a union of Delaunay faces is found with missing = 0, as is every other such facet
+/// of one ring with at most 60 vertices, where `missing` is the least possible. The same set for
+/// every numbering of vertices, facets and rings.
+/// Cost: O(n log n) for facets that are unions, O(k^3) for one ring of k <= 60 vertices, else
+/// the canonical triangles improved by at most 3 k edge flips.
+/// Source: research of this project; Verbree & Si 2008, section 5, leave the choice of the
+/// facets' triangulation open.
+FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+                                   const CanonicalDelaunay& delaunay);
+
+}  // namespace watertight

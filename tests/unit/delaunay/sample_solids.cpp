@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "unit/delaunay/sample_solids.h"
+
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <numeric>
+#include <random>
+
+namespace watertight::samples {
+
+Solid make_solid(const Shape& shape) {
+  SolidArrays arrays;
+  arrays.vertices = shape.vertices;
+  for (const Shell& shell : shape.shells) {
+    for (const Facet& facet : shell) {
+      for (const Ring& ring : facet) {
+        arrays.ring_vertices.insert(arrays.ring_vertices.end(), ring.begin(), ring.end());
+        arrays.end_ring();
+      }
+      arrays.end_facet();
+    }
+    arrays.end_shell();
+  }
+  Result<Solid> solid = Solid::make(std::move(arrays), Lattice{}, 0);
+  REQUIRE(solid.has_value());
+  return std::move(*solid);
+}
+
+void add_box_facets(Shape& shape, const Point& low, const Point& high, bool is_cavity) {
+  const auto first = static_cast<Index>(shape.vertices.size());
+  for (int i = 0; i < 8; ++i) {
+    shape.vertices.push_back({(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                              (i & 4) != 0 ? high.z : low.z});
+  }
+  const std::vector<Ring> rings = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                   {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (Ring ring : rings) {
+    for (Index& vertex : ring) vertex += first;
+    if (is_cavity) std::reverse(ring.begin(), ring.end());
+    shape.shells.back().push_back({ring});
+  }
+}
+
+void add_box(Shape& shape, const Point& low, const Point& high, bool is_cavity) {
+  shape.shells.emplace_back();
+  add_box_facets(shape, low, high, is_cavity);
+}
+
+Shape box(const Point& low, const Point& high) {
+  Shape shape;
+  add_box(shape, low, high, false);
+  return shape;
+}
+
+Shape schoenhardt() {
+  // The upper triangle is the lower one turned by about 30 degrees; each side is split by the
+  // diagonal that bends inward.
+  Shape shape;
+  shape.vertices = {{1000, 0, 0},     {-500, 866, 0},    {-500, -866, 0},
+                    {866, 500, 1000}, {-866, 500, 1000}, {0, -1000, 1000}};
+  Shell shell = {{{0, 2, 1}}, {{3, 4, 5}}};
+  for (Index i = 0; i < 3; ++i) {
+    const Index j = (i + 1) % 3;
+    // Lower edge (i, j), upper edge (i + 3, j + 3), reflex diagonal i -> j + 3.
+    shell.push_back({{i, j, j + 3}});
+    shell.push_back({{i, j + 3, i + 3}});
+  }
+  shape.shells = {shell};
+  return shape;
+}
+
+Shape tunnelled_box() {
+  Shape shape;
+  const std::vector<std::array<double, 2>> outer = {{0, 0}, {60, 0}, {60, 60}, {0, 60}};
+  const std::vector<std::array<double, 2>> inner = {{20, 20}, {40, 20}, {40, 40}, {20, 40}};
+  for (const double z : {0.0, 30.0}) {
+    for (const auto& [x, y] : outer) shape.vertices.push_back({x, y, z});
+    for (const auto& [x, y] : inner) shape.vertices.push_back({x, y, z});
+  }
+  Shell shell;
+  shell.push_back({{3, 2, 1, 0}, {4, 5, 6, 7}});        // bottom, seen from below
+  shell.push_back({{8, 9, 10, 11}, {15, 14, 13, 12}});  // top
+  for (Index i = 0; i < 4; ++i) {
+    const Index j = (i + 1) % 4;
+    shell.push_back({{i, j, j + 8, i + 8}});
+    shell.push_back({{j + 4, i + 4, i + 12, j + 12}});
+  }
+  shape.shells = {shell};
+  return shape;
+}
+
+Shape warped_box(double lift) {
+  Shape shape = box({0, 0, 0}, {100, 80, 50});
+  shape.vertices[7].z += lift;
+  return shape;
+}
+
+Shape prism(const std::vector<std::array<double, 2>>& polygon, double height) {
+  Shape shape;
+  const auto n = static_cast<Index>(polygon.size());
+  for (const double z : {0.0, height}) {
+    for (const auto& [x, y] : polygon) shape.vertices.push_back({x, y, z});
+  }
+  Ring top(n);
+  std::iota(top.begin(), top.end(), n);
+  Ring bottom(n);
+  for (Index i = 0; i < n; ++i) bottom[i] = n - 1 - i;
+  Shell shell = {{bottom}, {top}};
+  for (Index i = 0; i < n; ++i) {
+    const Index j = (i + 1) % n;
+    shell.push_back({{i, j, j + n, i + n}});
+  }
+  shape.shells = {shell};
+  return shape;
+}
+
+Shape stairs(int steps) {
+  std::vector<std::array<double, 2>> polygon = {{0, 0}};
+  for (int step = 0; step < steps; ++step) {
+    polygon.push_back({double(10 * (steps - step)), double(7 * step)});
+    polygon.push_back({double(10 * (steps - step)), double(7 * (step + 1))});
+  }
+  polygon.push_back({0, double(7 * steps)});
+  return prism(polygon, 25);
+}
+
+Shape shuffled(const Shape& shape, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::vector<Index> place(shape.vertices.size());
+  std::iota(place.begin(), place.end(), Index{0});
+  std::shuffle(place.begin(), place.end(), generator);
+  Shape result = shape;
+  for (std::size_t i = 0; i < place.size(); ++i) result.vertices[place[i]] = shape.vertices[i];
+  for (Shell& shell : result.shells) {
+    std::shuffle(shell.begin(), shell.end(), generator);
+    for (Facet& facet : shell) {
+      std::shuffle(facet.begin() + 1, facet.end(), generator);
+      for (Ring& ring : facet) {
+        for (Index& vertex : ring) vertex = place[vertex];
+        std::rotate(ring.begin(), ring.begin() + long(generator() % ring.size()), ring.end());
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace watertight::samples

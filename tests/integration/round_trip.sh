@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Builds the images with podman, starts database and service by docker/compose.test.yaml, and runs
+# round_trip.py against them: a tile in by REST, out by REST and by SQL, compared exactly; the database
+# killed during an ingest. Removes what it started, whatever happens. Needs root and the packages of
+# `scripts/install-dependencies containers`.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+export CONTAINERS_CONF=$PWD/docker/containers.conf
+[ "$(id -u)" -eq 0 ] || { echo "round_trip: podman needs root here" >&2; exit 1; }
+
+project=watertight-test-$$
+folder=$(mktemp -d)
+free_port() { python3 -c 'import socket; s=socket.socket(); s.bind(("127.0.0.1",0)); print(s.getsockname()[1])'; }
+POSTGRES_PASSWORD=$(head -c 18 /dev/urandom | base64 | tr -d '+/=')
+POSTGRES_PORT=$(free_port)
+SERVICE_PORT=$(free_port)
+export POSTGRES_PASSWORD POSTGRES_PORT SERVICE_PORT
+compose() { podman-compose --project-name "$project" --file docker/compose.test.yaml "$@"; }
+
+clean_up() {
+  status=$?
+  if [ $status -ne 0 ]; then
+    for name in db service; do
+      echo "--- last lines of $name"
+      podman logs --tail 40 "${project}_${name}_1" 2>&1 || true
+    done
+  fi
+  compose down --volumes --timeout 5 >"$folder/down.log" 2>&1 || cat "$folder/down.log"
+  rm -rf "$folder"
+}
+trap clean_up EXIT
+
+scripts/make-base-image
+# The host's compiler cache, when there is one: same compiler, same flags, so mostly hits.
+cache=$(ccache --get-config cache_dir 2>/dev/null || true)
+volumes=()
+if [ -n "$cache" ]; then
+  mkdir -p "$cache"
+  volumes=(--volume "$cache:/root/.cache/ccache")
+fi
+for target in service postgres; do
+  echo "building the image watertight-$target"
+  podman build --network=host "${volumes[@]}" --file docker/Dockerfile --target "$target" \
+    --tag "localhost/watertight-$target:test" . >"$folder/build.log" 2>&1 ||
+    { tail -60 "$folder/build.log"; exit 1; }
+done
+
+compose up --detach --no-build >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; exit 1; }
+python3 tests/integration/round_trip.py --service "http://127.0.0.1:$SERVICE_PORT" \
+  --database "postgresql://watertight:$POSTGRES_PASSWORD@127.0.0.1:$POSTGRES_PORT/watertight" \
+  --kill "podman kill -s KILL ${project}_db_1" --start "podman start ${project}_db_1" \
+  --tile examples/delft.city.jsonl --invalid examples/invalid.city.jsonl

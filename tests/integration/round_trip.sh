@@ -37,7 +37,7 @@ cache=$(ccache --get-config cache_dir 2>/dev/null || true)
 volumes=()
 if [ -n "$cache" ]; then
   mkdir -p "$cache"
-  volumes=(--volume "$cache:/root/.cache/ccache")
+  volumes=(--volume "$cache:/ccache")
 fi
 for target in service postgres; do
   echo "building the image watertight-$target"

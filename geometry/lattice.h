@@ -7,9 +7,14 @@
 //   world(axis) = origin(axis) + step(axis) * coordinate(axis)        exactly
 //
 // Normal form: the origin is the minimum of the feature's box, all three steps are the same power
-// of ten (the largest that all coordinates share), and coordinates are non-negative integers. So
-// the integers of a CityJSON file and the doubles of the same decimals give equal lattices and
-// equal coordinates.
+// of ten (the largest that divides all distances from the origin), and coordinates are
+// non-negative integers. So the integers of a CityJSON file and the doubles of the same decimals
+// give equal lattices and equal coordinates. Where the common power of ten would push a coordinate
+// to 2^30 or beyond, the first of these that keeps them below is taken: a power of ten for each
+// axis (degrees beside metres); the greatest common divisor of all distances (a CityJSON scale of
+// 0.0003048). Else the first that stays below 2^53 of: common power of ten, a power of ten for each
+// axis, common divisor, a divisor for each axis (scales of 17 digits). The form depends on the
+// values alone.
 #pragma once
 
 #include <array>
@@ -33,8 +38,10 @@ struct GridNumber {
   friend auto operator<=>(const GridNumber&, const GridNumber&) = default;
 };
 
-/// Parses a decimal number ("-12.50e3") exactly. Errors: malformed (not a number, not finite);
-/// limit_exceeded when more than 18 significant digits are needed.
+/// Parses a decimal number ("-12.50e3", "+.5", "7.") exactly; no blanks around it. Errors:
+/// malformed (not a number, not finite); limit_exceeded when more than 18 significant digits are
+/// needed or the exponent is outside that of doubles. Callers that may round then take
+/// shortest_decimal() of the nearest double and report it.
 Result<GridNumber> parse_decimal(std::string_view text);
 
 /// The shortest decimal that reads back as `value` (at most 17 digits).
@@ -43,7 +50,7 @@ GridNumber shortest_decimal(double value);
 
 enum class LatticeKind : std::uint8_t {
   decimal = 0,  // steps and origin are decimals; coordinates are integers in [0, 2^53)
-  binary = 1,   // the same with powers of two
+  binary = 1,   // the same with one power of two as the step of all axes
   float64 = 2   // no common grid: coordinates are the source's doubles, origin 0, step 1
 };
 
@@ -53,11 +60,18 @@ struct Lattice {
   std::array<GridNumber, 3> origin{};
   friend auto operator<=>(const Lattice&, const Lattice&) = default;
 
-  /// The world coordinate as the nearest double. Cost: slow path with exact decimals.
+  /// True if the steps are positive, exponents are those of doubles (1200 at most) and a float64
+  /// lattice has origin 0 and step 1. Every Solid's lattice is; decoders must ask.
+  bool is_sane() const;
+
+  /// The world coordinate as the nearest double (ties to even); also of coordinates that are not
+  /// integers, such as Steiner points and witnesses. Requires is_sane(). Cost: constant; slow (a
+  /// microsecond or more) where 128-bit integers do not suffice.
   double world(double coordinate, int axis) const;
   std::array<double, 3> world(const Point& p) const;
-  /// The exact decimal, shortest text without exponent ("84616.468"); for float64 lattices the
-  /// shortest text that reads back as the double. Source digits are reproduced.
+  /// The exact decimal, shortest text without exponent ("84616.468"); for float64 and binary
+  /// lattices, and for coordinates that are not integers, the shortest text that reads back as
+  /// world(). Source digits are reproduced. Requires is_sane().
   std::string world_text(double coordinate, int axis) const;
   /// The step as the nearest double: world units per lattice unit.
   double scale(int axis) const;
@@ -79,14 +93,17 @@ struct Transform {
   friend auto operator<=>(const Transform&, const Transform&) = default;
 };
 
-/// Normal form of integer vertices under a transform.
-/// Errors: limit_exceeded if the exact coordinates do not fit a lattice.
+/// Normal form of integer vertices under a transform. A transform with so many digits that the
+/// exact origin needs more than 18 gives the nearest doubles, and all points are in `rounded`.
+/// Errors: malformed if a scale is not positive; limit_exceeded if the vertices spread over more
+/// than 2^53 steps or exceed the doubles. Cost: linear.
 Result<LatticePoints> lattice_of_integers(std::span<const std::array<std::int64_t, 3>> vertices,
                                           const Transform& transform);
 
 /// Normal form of exact decimals (numbers as text in OBJ, OFF, WKT, untransformed CityJSON).
-/// Where no common decimal grid below 2^53 exists, the nearest doubles are taken on a float64
-/// lattice and every point that changed is listed in `rounded`.
+/// Where no decimal grid below 2^53 exists, the lattice of the nearest doubles is taken, and every
+/// point whose decimals those doubles do not read back as is listed in `rounded`.
+/// Errors: limit_exceeded if a coordinate exceeds the doubles. Cost: linear.
 Result<LatticePoints> lattice_of_decimals(std::span<const std::array<GridNumber, 3>> vertices);
 
 /// Normal form of doubles (WKB): the common decimal grid of their shortest decimals if it fits,
@@ -94,10 +111,11 @@ Result<LatticePoints> lattice_of_decimals(std::span<const std::array<GridNumber,
 /// Errors: malformed if a value is not finite.
 Result<LatticePoints> lattice_of_doubles(std::span<const std::array<double, 3>> vertices);
 
-/// The integers that `points` were under `transform`: the inverse of lattice_of_integers.
+/// The integers that `points` are under `transform`: the inverse of lattice_of_integers. On binary
+/// and float64 lattices a coordinate stands for its shortest decimal.
 /// Errors: malformed if a point is not on the transform's grid.
 Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& lattice,
-                                                               std::span<const Point> points,
-                                                               const Transform& transform);
+                                                                std::span<const Point> points,
+                                                                const Transform& transform);
 
 }  // namespace watertight

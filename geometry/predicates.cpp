@@ -31,7 +31,8 @@ bool are_collinear(const Point& a, const Point& b, const Point& c) {
 bool is_on_segment(const Point& a, const Point& b, const Point& q) {
   if (!are_collinear(a, b, q)) return false;
   for (int axis = 0; axis < 3; ++axis) {
-    const bool is_between = (a[axis] <= q[axis] && q[axis] <= b[axis]) || (b[axis] <= q[axis] && q[axis] <= a[axis]);
+    const bool is_between =
+        (a[axis] <= q[axis] && q[axis] <= b[axis]) || (b[axis] <= q[axis] && q[axis] <= a[axis]);
     if (!is_between) return false;
   }
   return true;

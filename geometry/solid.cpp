@@ -16,33 +16,42 @@ bool are_offsets(const std::vector<Index>& offsets, std::size_t size) {
 Status check_sizes(const SolidArrays& arrays, const Limits& limits) {
   const auto over = [](const char* what, std::size_t count, std::uint64_t limit) {
     return Error{ErrorCode::limit_exceeded, std::to_string(count) + " " + what +
-                                                " in one solid; the limit is " + std::to_string(limit)};
+                                                " in one solid; the limit is " +
+                                                std::to_string(limit)};
   };
-  if (arrays.vertices.size() > limits.vertices) return over("vertices", arrays.vertices.size(), limits.vertices);
-  if (arrays.ring_offsets.size() - 1 > limits.rings) return over("rings", arrays.ring_offsets.size() - 1, limits.rings);
-  if (arrays.facet_offsets.size() - 1 > limits.facets) return over("facets", arrays.facet_offsets.size() - 1, limits.facets);
-  if (arrays.shell_offsets.size() - 1 > limits.shells) return over("shells", arrays.shell_offsets.size() - 1, limits.shells);
+  if (arrays.vertices.size() > limits.vertices)
+    return over("vertices", arrays.vertices.size(), limits.vertices);
+  if (arrays.ring_offsets.size() - 1 > limits.rings)
+    return over("rings", arrays.ring_offsets.size() - 1, limits.rings);
+  if (arrays.facet_offsets.size() - 1 > limits.facets)
+    return over("facets", arrays.facet_offsets.size() - 1, limits.facets);
+  if (arrays.shell_offsets.size() - 1 > limits.shells)
+    return over("shells", arrays.shell_offsets.size() - 1, limits.shells);
   return Done{};
 }
 
 }  // namespace
 
-Result<Solid> Solid::make(SolidArrays arrays, Lattice lattice, std::uint32_t srid, const Limits& limits) {
+Result<Solid> Solid::make(SolidArrays arrays, Lattice lattice, std::uint32_t srid,
+                          const Limits& limits) {
   if (!are_offsets(arrays.ring_offsets, arrays.ring_vertices.size()) ||
       !are_offsets(arrays.facet_offsets, arrays.ring_offsets.size() - 1) ||
       !are_offsets(arrays.shell_offsets, arrays.facet_offsets.size() - 1)) {
     return Error{ErrorCode::malformed, "ring, facet or shell offsets do not describe a solid"};
   }
+  if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice is not one"};
   if (auto sizes = check_sizes(arrays, limits); !sizes) return sizes.error();
   for (const Index vertex : arrays.ring_vertices) {
     if (vertex >= arrays.vertices.size()) {
-      return Error{ErrorCode::malformed, "vertex index " + std::to_string(vertex) + " is out of range (" +
+      return Error{ErrorCode::malformed, "vertex index " + std::to_string(vertex) +
+                                             " is out of range (" +
                                              std::to_string(arrays.vertices.size()) + " vertices)"};
     }
   }
   for (Point& p : arrays.vertices) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(p[axis])) return Error{ErrorCode::malformed, "a coordinate is not a finite number"};
+      if (!std::isfinite(p[axis]))
+        return Error{ErrorCode::malformed, "a coordinate is not a finite number"};
       p[axis] += 0.0;  // -0 becomes +0: one number, one representation
     }
   }
@@ -51,7 +60,8 @@ Result<Solid> Solid::make(SolidArrays arrays, Lattice lattice, std::uint32_t sri
 
 Index Solid::shell_of(Index facet) const {
   const auto& offsets = arrays_.shell_offsets;
-  return static_cast<Index>(std::upper_bound(offsets.begin(), offsets.end(), facet) - offsets.begin() - 1);
+  return static_cast<Index>(std::upper_bound(offsets.begin(), offsets.end(), facet) -
+                            offsets.begin() - 1);
 }
 
 MergedSolid merge_equal_vertices(const Solid& solid) {
@@ -88,8 +98,9 @@ MergedSolid merge_equal_vertices(const Solid& solid) {
   }
   for (Index& vertex : arrays.ring_vertices) vertex = vertex_of[vertex];
 
-  auto merged = Solid::make(std::move(arrays), solid.lattice(), solid.srid(),
-                            Limits{.vertices = kNone, .facets = kNone, .rings = kNone, .shells = kNone});
+  auto merged =
+      Solid::make(std::move(arrays), solid.lattice(), solid.srid(),
+                  Limits{.vertices = kNone, .facets = kNone, .rings = kNone, .shells = kNone});
   return {std::move(merged).value(), std::move(vertex_of)};
 }
 

@@ -43,8 +43,8 @@ struct SolidArrays {
 /// findings, not errors. Cheap to move, thread-safe to read.
 class Solid {
  public:
-  /// Errors: malformed if offsets are not monotone, an index is out of range or a coordinate is
-  /// not finite (or is -0: pass +0); limit_exceeded. Cost: linear.
+  /// Errors: malformed if offsets are not monotone, an index is out of range, a coordinate is not
+  /// finite or the lattice is not sane; limit_exceeded. A coordinate -0 becomes +0. Cost: linear.
   static Result<Solid> make(SolidArrays arrays, Lattice lattice, std::uint32_t srid,
                             const Limits& limits = {});
 
@@ -57,7 +57,8 @@ class Solid {
   /// Vertices of a ring, in order.
   std::span<const Index> ring(Index ring) const {
     return std::span<const Index>(arrays_.ring_vertices)
-        .subspan(arrays_.ring_offsets[ring], arrays_.ring_offsets[ring + 1] - arrays_.ring_offsets[ring]);
+        .subspan(arrays_.ring_offsets[ring],
+                 arrays_.ring_offsets[ring + 1] - arrays_.ring_offsets[ring]);
   }
   IndexRange rings_of(Index facet) const {
     return {arrays_.facet_offsets[facet], arrays_.facet_offsets[facet + 1]};
@@ -73,7 +74,9 @@ class Solid {
   /// EPSG code, 0 when not stated.
   std::uint32_t srid() const { return srid_; }
   Box box() const { return box_of(arrays_.vertices); }
-  std::array<double, 3> world(Index vertex) const { return lattice_.world(arrays_.vertices[vertex]); }
+  std::array<double, 3> world(Index vertex) const {
+    return lattice_.world(arrays_.vertices[vertex]);
+  }
 
   friend bool operator==(const Solid&, const Solid&) = default;
 

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From lattice coordinates to world coordinates, to the source's digits and to a transform's
+// integers. 128-bit integers decide nearly always; integers of any length do where they overflow.
+#include <gmpxx.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "base/assert.h"
+#include "geometry/grid_number.h"
+#include "geometry/lattice.h"
+
+namespace watertight {
+namespace {
+
+using BigInteger = mpz_class;
+
+constexpr double kExactEnd = 9007199254740992.0;  // 2^53
+
+/// mantissa * 10^exponent with an integer of any length.
+struct BigDecimal {
+  BigInteger mantissa = 0;
+  std::int64_t exponent = 0;
+};
+
+BigInteger big_power(unsigned base, std::int64_t exponent) {
+  BigInteger power;
+  mpz_ui_pow_ui(power.get_mpz_t(), base, static_cast<unsigned long>(exponent));
+  return power;
+}
+
+/// Requires 64-bit long, as on every platform of this program.
+BigInteger big(std::int64_t value) { return BigInteger(static_cast<long>(value)); }
+
+/// mantissa * 2^exponent: 2^-k = 5^k / 10^k.
+BigDecimal from_binary(std::int64_t mantissa, std::int64_t exponent) {
+  if (exponent >= 0) return {big(mantissa) << static_cast<unsigned long>(exponent), 0};
+  return {big(mantissa) * big_power(5, -exponent), exponent};
+}
+
+BigDecimal from_grid(const GridNumber& number, LatticeKind kind) {
+  if (kind == LatticeKind::binary) return from_binary(number.mantissa, number.exponent);
+  return {big(number.mantissa), number.exponent};
+}
+
+BigDecimal from_double(double value) {
+  int exponent = 0;
+  const double fraction = std::frexp(value, &exponent);
+  return from_binary(static_cast<std::int64_t>(std::ldexp(fraction, 53)), exponent - 53);
+}
+
+BigDecimal big_product(const BigDecimal& a, const BigDecimal& b) {
+  return {a.mantissa * b.mantissa, a.exponent + b.exponent};
+}
+
+BigDecimal big_sum(const BigDecimal& a, const BigDecimal& b) {
+  const std::int64_t exponent = std::min(a.exponent, b.exponent);
+  return {a.mantissa * big_power(10, a.exponent - exponent) +
+              b.mantissa * big_power(10, b.exponent - exponent),
+          exponent};
+}
+
+double big_nearest_double(const BigDecimal& decimal) {
+  if (decimal.mantissa == 0) return 0.0;
+  const std::string digits = decimal.mantissa.get_str();
+  const std::string text = digits + "e" + std::to_string(decimal.exponent);
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc::result_out_of_range) return value + 0.0;
+  const bool is_large = static_cast<std::int64_t>(digits.size()) + decimal.exponent > 0;
+  if (!is_large) return 0.0;
+  const double infinity = std::numeric_limits<double>::infinity();
+  return decimal.mantissa < 0 ? -infinity : infinity;
+}
+
+/// origin + step * coordinate, exactly.
+BigDecimal exact_world(const Lattice& lattice, double coordinate, std::size_t axis) {
+  return big_sum(from_grid(lattice.origin[axis], lattice.kind),
+                 big_product(from_grid(lattice.step[axis], lattice.kind), from_double(coordinate)));
+}
+
+bool is_small_integer(double coordinate) {
+  return std::abs(coordinate) <= kExactEnd && coordinate == std::trunc(coordinate);
+}
+
+/// origin + step * coordinate in 128 bits, if the coordinate is an integer and nothing overflows.
+std::optional<WideNumber> wide_world(const Lattice& lattice, double coordinate, std::size_t axis) {
+  if (!is_small_integer(coordinate)) return std::nullopt;
+  const GridNumber& step = lattice.step[axis];
+  const GridNumber& origin = lattice.origin[axis];
+  // |step| < 2^63 and |coordinate| <= 2^53.
+  const Wide moved = Wide{step.mantissa} * static_cast<std::int64_t>(coordinate);
+  return wide_sum({moved, step.exponent}, {origin.mantissa, origin.exponent},
+                  lattice.kind == LatticeKind::binary ? 2 : 10);
+}
+
+std::string shortest_text(double value) {
+  if (!std::isfinite(value)) return std::string(value < 0 ? "-inf" : "inf");
+  const GridNumber decimal = shortest_decimal(value);
+  return plain_decimal(std::to_string(decimal.mantissa), decimal.exponent);
+}
+
+bool is_sane(const GridNumber& number) {
+  return std::abs(std::int64_t{number.exponent}) <= kLargestExponent &&
+         number.mantissa != std::numeric_limits<std::int64_t>::min();
+}
+
+/// (world - translate) / scale if that is an integer of 64 bits.
+std::optional<std::int64_t> integer_under(const BigDecimal& world, const GridNumber& scale,
+                                          const GridNumber& translate) {
+  const BigDecimal moved = big_sum(world, {big(-translate.mantissa), translate.exponent});
+  BigInteger numerator = moved.mantissa;
+  BigInteger denominator = big(scale.mantissa);
+  const std::int64_t raise = moved.exponent - scale.exponent;
+  if (raise >= 0) {
+    numerator *= big_power(10, raise);
+  } else {
+    denominator *= big_power(10, -raise);
+  }
+  const BigInteger quotient = numerator / denominator;
+  if (quotient * denominator != numerator) return std::nullopt;
+  if (!quotient.fits_slong_p()) return std::nullopt;
+  return quotient.get_si();
+}
+
+/// The same in 128 bits; nothing when it overflows (the slow path then decides) or is no integer.
+std::optional<std::int64_t> quick_integer_under(const WideNumber& world, const GridNumber& scale,
+                                                const GridNumber& translate) {
+  const auto moved = wide_sum(world, WideNumber{-translate.mantissa, translate.exponent}, 10);
+  if (!moved) return std::nullopt;
+  const std::int64_t raise = std::int64_t{moved->exponent} - scale.exponent;
+  const auto numerator = scaled_up(moved->mantissa, 10, raise);
+  const auto denominator = scaled_up(scale.mantissa, 10, -raise);
+  if (!numerator || !denominator || *numerator % *denominator != 0) return std::nullopt;
+  const Wide quotient = *numerator / *denominator;
+  if (quotient > std::numeric_limits<std::int64_t>::max() ||
+      quotient < std::numeric_limits<std::int64_t>::min()) {
+    return std::nullopt;
+  }
+  return static_cast<std::int64_t>(quotient);
+}
+
+}  // namespace
+
+bool Lattice::is_sane() const {
+  if (kind != LatticeKind::decimal && kind != LatticeKind::binary && kind != LatticeKind::float64) {
+    return false;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!watertight::is_sane(step[axis]) || !watertight::is_sane(origin[axis])) return false;
+    if (step[axis].mantissa <= 0) return false;
+  }
+  if (kind != LatticeKind::float64) return true;
+  const Lattice plain{LatticeKind::float64};
+  return step == plain.step && origin == plain.origin;
+}
+
+double Lattice::world(double coordinate, int axis) const {
+  WATERTIGHT_ASSERT(is_sane());
+  if (kind == LatticeKind::float64 || !std::isfinite(coordinate)) return coordinate;
+  const auto at = static_cast<std::size_t>(axis);
+  if (const auto wide = wide_world(*this, coordinate, at)) {
+    if (kind == LatticeKind::decimal) return nearest_double(*wide);
+    constexpr Wide kExact = Wide{1} << 53U;
+    if (wide->mantissa <= kExact && wide->mantissa >= -kExact) {
+      return std::ldexp(static_cast<double>(wide->mantissa), wide->exponent) + 0.0;
+    }
+  }
+  return big_nearest_double(exact_world(*this, coordinate, at));
+}
+
+std::array<double, 3> Lattice::world(const Point& p) const {
+  return {world(p.x, 0), world(p.y, 1), world(p.z, 2)};
+}
+
+std::string Lattice::world_text(double coordinate, int axis) const {
+  const auto at = static_cast<std::size_t>(axis);
+  if (kind == LatticeKind::decimal && is_small_integer(coordinate)) {
+    if (const auto wide = wide_world(*this, coordinate, at)) {
+      return plain_decimal(digits_of(wide->mantissa), wide->exponent);
+    }
+    const BigDecimal exact = exact_world(*this, coordinate, at);
+    return plain_decimal(exact.mantissa.get_str(), exact.exponent);
+  }
+  return shortest_text(world(coordinate, axis));
+}
+
+double Lattice::scale(int axis) const {
+  const GridNumber& number = step[static_cast<std::size_t>(axis)];
+  return big_nearest_double(from_grid(number, kind));
+}
+
+Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& lattice,
+                                                                std::span<const Point> points,
+                                                                const Transform& transform) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (transform.scale[axis].mantissa <= 0 || !is_sane(transform.scale[axis]) ||
+        !is_sane(transform.translate[axis])) {
+      return Error{ErrorCode::malformed, "a transform's scale must be positive"};
+    }
+  }
+  if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice is not one"};
+  std::vector<std::array<std::int64_t, 3>> integers(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double coordinate = points[i][static_cast<int>(axis)];
+      std::optional<std::int64_t> integer;
+      if (lattice.kind == LatticeKind::decimal) {
+        if (const auto wide = wide_world(lattice, coordinate, axis)) {
+          integer = quick_integer_under(*wide, transform.scale[axis], transform.translate[axis]);
+        }
+        if (!integer && std::isfinite(coordinate)) {
+          integer = integer_under(exact_world(lattice, coordinate, axis), transform.scale[axis],
+                                  transform.translate[axis]);
+        }
+      } else if (const double world = lattice.world(coordinate, static_cast<int>(axis));
+                 std::isfinite(world)) {
+        // The decimal that such a coordinate stands for is its shortest one.
+        integer = integer_under(from_grid(shortest_decimal(world), LatticeKind::decimal),
+                                transform.scale[axis], transform.translate[axis]);
+      }
+      if (!integer) {
+        return Error{ErrorCode::malformed,
+                     "point " + std::to_string(i) + " is not on the transform's grid"};
+      }
+      integers[i][axis] = *integer;
+    }
+  }
+  return integers;
+}
+
+}  // namespace watertight

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Solids and random sources for the tests of this folder.
+#pragma once
+
+#include <catch2/catch_test_macros.hpp>
+#include <cstdint>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+#include "geometry/valid_solid.h"
+
+namespace watertight::test {
+
+/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t next() {
+    state_ += 0x9e3779b97f4a7c15ULL;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31U);
+  }
+  /// Uniform enough in [0, end).
+  std::uint64_t below(std::uint64_t end) { return next() % end; }
+  std::int64_t between(std::int64_t low, std::int64_t high) {
+    return low + static_cast<std::int64_t>(below(static_cast<std::uint64_t>(high - low + 1)));
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+template <class Value>
+void shuffle(std::vector<Value>& values, Random& random) {
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.below(i)]);
+}
+
+using Ring = std::vector<Index>;
+using Facet = std::vector<Ring>;
+using Shell = std::vector<Facet>;
+
+inline SolidArrays arrays_of(std::vector<Point> vertices, const std::vector<Shell>& shells) {
+  SolidArrays arrays;
+  arrays.vertices = std::move(vertices);
+  for (const Shell& shell : shells) {
+    for (const Facet& facet : shell) {
+      for (const Ring& ring : facet) {
+        arrays.ring_vertices.insert(arrays.ring_vertices.end(), ring.begin(), ring.end());
+        arrays.end_ring();
+      }
+      arrays.end_facet();
+    }
+    arrays.end_shell();
+  }
+  return arrays;
+}
+
+inline Solid solid_of(std::vector<Point> vertices, const std::vector<Shell>& shells) {
+  auto solid = Solid::make(arrays_of(std::move(vertices), shells), Lattice{}, 7415);
+  REQUIRE(solid.has_value());
+  return std::move(solid).value();
+}
+
+/// Appends the eight corners of a box and gives its six facets, outward or inward.
+inline Shell box_shell(std::vector<Point>& vertices, const Point& min, const Point& max,
+                       bool is_outward) {
+  const auto first = static_cast<Index>(vertices.size());
+  for (int i = 0; i < 8; ++i) {
+    vertices.push_back(
+        {(i & 1) != 0 ? max.x : min.x, (i & 2) != 0 ? max.y : min.y, (i & 4) != 0 ? max.z : min.z});
+  }
+  Shell shell;
+  for (const Ring& corners : {Ring{0, 2, 3, 1}, Ring{4, 5, 7, 6}, Ring{0, 1, 5, 4},
+                              Ring{2, 6, 7, 3}, Ring{0, 4, 6, 2}, Ring{1, 3, 7, 5}}) {
+    Ring ring;
+    for (const Index corner : corners) ring.push_back(first + corner);
+    if (!is_outward) ring = Ring(ring.rbegin(), ring.rend());
+    shell.push_back({ring});
+  }
+  return shell;
+}
+
+/// A box with a square tunnel along z (two facets with interior rings) and two cavities.
+inline std::pair<std::vector<Point>, std::vector<Shell>> tunnel_with_cavities() {
+  std::vector<Point> vertices;
+  Shell outer = box_shell(vertices, {0, 0, 0}, {30, 20, 10}, true);
+  Shell tunnel = box_shell(vertices, {2, 2, 0}, {5, 5, 10}, false);
+  outer[0].push_back(tunnel[0][0]);  // bottom
+  outer[1].push_back(tunnel[1][0]);  // top
+  outer.insert(outer.end(), tunnel.begin() + 2, tunnel.end());
+  Shell second = box_shell(vertices, {8, 2, 0}, {11, 5, 10}, false);
+  outer[0].push_back(second[0][0]);
+  outer[1].push_back(second[1][0]);
+  outer.insert(outer.end(), second.begin() + 2, second.end());
+  Shell cavity = box_shell(vertices, {20, 5, 2}, {22, 7, 4}, false);
+  Shell other = box_shell(vertices, {24, 5, 2}, {26, 7, 4}, false);
+  return {std::move(vertices), {outer, other, cavity}};
+}
+
+inline Solid tunnel_solid() {
+  auto [vertices, shells] = tunnel_with_cavities();
+  return solid_of(std::move(vertices), shells);
+}
+
+}  // namespace watertight::test

@@ -22,7 +22,15 @@ struct WorkerLimits {
   std::uint64_t reply_bytes = 1ULL << 30;
 };
 
-enum class JobOutcome : std::uint8_t { ok, crashed, timed_out, out_of_memory, garbage, cancelled, not_started };
+enum class JobOutcome : std::uint8_t {
+  ok,
+  crashed,
+  timed_out,
+  out_of_memory,
+  garbage,
+  cancelled,
+  not_started
+};
 std::string_view to_string(JobOutcome outcome);
 
 struct JobResult {

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A worker that misbehaves on demand. The request names the fault; anything else comes back
+// unchanged.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/checksum.h"
+#include "workers/worker_pool.h"
+
+namespace {
+
+using watertight::Bytes;
+using watertight::ByteView;
+using watertight::ByteWriter;
+
+void send_raw(ByteView bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = send(3, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent <= 0) return;
+    bytes = bytes.subspan(std::size_t(sent));
+  }
+}
+
+[[noreturn]] void sleep_for_ever() {
+  while (true) pause();
+}
+
+Bytes text_bytes(const std::string& text) {
+  const ByteView view = watertight::as_bytes(text);
+  return {view.begin(), view.end()};
+}
+
+/// Everything a test wants to know about where the worker lives, one item a line.
+Bytes surroundings() {
+  std::string text;
+  rlimit core{};
+  getrlimit(RLIMIT_CORE, &core);
+  text += "core=" + std::to_string(core.rlim_cur) + "\n";
+  text += "leader=" + std::string(getpgrp() == getpid() ? "yes" : "no") + "\n";
+  text += "descriptors=";
+  for (int descriptor = 0; descriptor < 1024; ++descriptor) {
+    if (fcntl(descriptor, F_GETFD) >= 0) text += std::to_string(descriptor) + ",";
+  }
+  text += "\n";
+  for (int descriptor = 0; descriptor < 3; ++descriptor) {
+    std::error_code failed;
+    text += std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor), failed)
+                .string() +
+            "\n";
+  }
+  std::ofstream file("file-in-the-directory");
+  text += "writable=" + std::string(file.good() ? "yes" : "no") + "\n";
+  sigset_t blocked;
+  sigemptyset(&blocked);
+  sigprocmask(SIG_SETMASK, nullptr, &blocked);
+  text += "blocked=" + std::string(sigismember(&blocked, SIGUSR1) == 1 ? "yes" : "no") + "\n";
+  text += "secret=" + std::string(std::getenv("WATERTIGHT_TEST_SECRET") ? "yes" : "no") + "\n";
+  return text_bytes(text);
+}
+
+void send_header(std::uint32_t length, std::uint32_t checksum, std::uint8_t status) {
+  ByteWriter header;
+  header.u32(length);
+  header.u32(checksum);
+  header.u8(status);
+  send_raw(header.bytes());
+}
+
+void misbehave_on_the_wire(const std::string& fault) {
+  if (fault == "garbage") {
+    send_raw(text_bytes("this is no frame at all, but long enough to look like one"));
+    sleep_for_ever();
+  }
+  if (fault == "wrong-checksum") {
+    send_header(4, 1, 0);
+    send_raw(text_bytes("four"));
+    sleep_for_ever();
+  }
+  if (fault == "huge-reply") {
+    send_header(0xFFFFFFFF, 0, 0);
+    sleep_for_ever();
+  }
+  if (fault == "half-reply") {
+    send_header(1000, 0, 0);
+    _exit(0);
+  }
+  if (fault == "slow-drip") {
+    send_header(100000, 0, 0);
+    while (true) {
+      send_raw(text_bytes("."));
+      usleep(2000);
+    }
+  }
+}
+
+Bytes handle(ByteView request) {
+  const std::string fault(
+      watertight::as_text(request.first(std::min<std::size_t>(request.size(), 40))));
+  misbehave_on_the_wire(fault);
+  if (fault == "crash") raise(SIGSEGV);
+  if (fault == "abort") std::abort();
+  if (fault == "exit") _exit(7);
+  if (fault == "hang") sleep_for_ever();
+  if (fault == "spin") {
+    while (getpid() > 0) {
+    }
+  }
+  if (fault == "orphan") {
+    // The child keeps the socket open and lives on, unless the whole group is killed.
+    if (fork() == 0) sleep_for_ever();
+    _exit(5);
+  }
+  if (fault == "child") {
+    const pid_t child = fork();
+    if (child == 0) sleep_for_ever();
+    return text_bytes(std::to_string(child));
+  }
+  if (fault == "memory") return Bytes(std::size_t{8} << 30);
+  if (fault == "exception") throw std::runtime_error("thrown on purpose");
+  if (fault == "surroundings") return surroundings();
+  if (fault == "process") return text_bytes(std::to_string(getpid()));
+  return {request.begin(), request.end()};
+}
+
+}  // namespace
+
+int main() { return watertight::serve_jobs(handle); }

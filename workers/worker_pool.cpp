@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The pool: who runs a job, and the conversation with the process that runs it.
+#include "workers/worker_pool.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/checksum.h"
+#include "workers/frames.h"
+#include "workers/worker_process.h"
+
+namespace watertight {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// How often a waiting pool asks whether it shall go on.
+constexpr std::chrono::milliseconds kPollInterval{5};
+/// Bytes asked of the socket at once.
+constexpr std::size_t kChunk = std::size_t{1} << 16;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// One job's conversation: sends the request, collects the reply, watches clock and caller.
+class Conversation {
+ public:
+  Conversation(WorkerProcess& process, ByteView request, const WorkerLimits& limits,
+               const CancelPoll& cancel)
+      : process_(process), unsent_body_(request), limits_(limits), cancel_(cancel) {
+    ByteWriter header;
+    header.u32(static_cast<std::uint32_t>(request.size()));
+    header.u32(crc32c(request));
+    header_ = std::move(header).bytes();
+    unsent_header_ = header_;
+  }
+
+  JobResult run() {
+    const Clock::time_point start = Clock::now();
+    while (!result_) {
+      if (cancel_ && cancel_()) return finish(JobOutcome::cancelled, "cancelled by the caller");
+      if (seconds_since(start) >= limits_.wall_seconds) {
+        return finish(JobOutcome::timed_out, "wall-clock limit");
+      }
+      wait();
+      if (!is_sent() && !transmit()) break;
+      if (!receive()) break;
+      parse();
+    }
+    return result_ ? std::move(*result_) : ended();
+  }
+
+  /// True if the process ended on its own before it saw this job: idle for too long.
+  bool was_idle_end() const { return was_idle_end_; }
+
+ private:
+  bool is_sent() const { return unsent_header_.empty() && unsent_body_.empty(); }
+
+  JobResult finish(JobOutcome outcome, std::string detail) {
+    JobResult result;
+    result.outcome = outcome;
+    result.detail = std::move(detail);
+    return result;
+  }
+
+  void wait() {
+    pollfd watched{process_.socket(), POLLIN, 0};
+    if (!is_sent()) watched.events |= POLLOUT;
+    poll(&watched, 1, static_cast<int>(kPollInterval.count()));
+  }
+
+  /// Sends what the socket takes. False if the process has gone.
+  bool transmit() {
+    for (ByteView* part : {&unsent_header_, &unsent_body_}) {
+      while (!part->empty()) {
+        const ssize_t sent = send(process_.socket(), part->data(), part->size(), MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
+        *part = part->subspan(static_cast<std::size_t>(sent));
+      }
+    }
+    return true;
+  }
+
+  /// Takes one chunk at most, so that a fast talker cannot keep the clock from being read.
+  bool receive() {
+    std::array<std::uint8_t, kChunk> chunk{};
+    bool has_ended = false;
+    while (true) {
+      const ssize_t got = recv(process_.socket(), chunk.data(), chunk.size(), 0);
+      if (got > 0) {
+        received_.insert(received_.end(), chunk.data(), chunk.data() + got);
+        return true;
+      }
+      if (got == 0) return false;
+      if (errno == EINTR) continue;
+      if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
+      if (has_ended) return false;
+      // A child of the process may hold the socket open after the process itself has ended. What
+      // it wrote before that is still to be read.
+      has_ended = process_.has_ended();
+      if (!has_ended) return true;
+    }
+  }
+
+  /// Makes a result of the reply when it is complete, or clear that it never can be.
+  void parse() {
+    if (received_.size() < kReplyHeader) return;
+    ByteReader reader(received_);
+    const std::size_t length = reader.u32();
+    const std::uint32_t checksum = reader.u32();
+    const std::uint8_t status = reader.u8();
+    if (status > static_cast<std::uint8_t>(ReplyStatus::exception)) {
+      result_ = finish(JobOutcome::garbage, "reply with an unknown status");
+    } else if (length > limits_.reply_bytes) {
+      result_ = finish(JobOutcome::garbage, "reply of " + std::to_string(length) + " bytes");
+    } else if (received_.size() > kReplyHeader + length) {
+      result_ = finish(JobOutcome::garbage, "bytes after the reply");
+    } else if (received_.size() == kReplyHeader + length) {
+      conclude(static_cast<ReplyStatus>(status), checksum);
+    }
+  }
+
+  void conclude(ReplyStatus status, std::uint32_t checksum) {
+    received_.erase(received_.begin(), received_.begin() + kReplyHeader);
+    if (!is_sent()) {
+      result_ = finish(JobOutcome::garbage, "a reply before the end of the request");
+    } else if (crc32c(received_) != checksum) {
+      result_ = finish(JobOutcome::garbage, "reply with a wrong checksum");
+    } else if (status == ReplyStatus::out_of_memory) {
+      result_ = finish(JobOutcome::out_of_memory, "out of memory");
+    } else if (status == ReplyStatus::exception) {
+      result_ = finish(JobOutcome::crashed, "exception: " + std::string(as_text(received_)));
+    } else {
+      result_ = finish(JobOutcome::ok, {});
+      result_->reply = std::move(received_);
+    }
+  }
+
+  /// The stream ended without a whole reply.
+  JobResult ended() {
+    const Ending ending = process_.end();
+    was_idle_end_ = ending.known && !ending.by_signal && ending.code == kExitIdle;
+    if (ending.by_signal && ending.code == SIGXCPU) {
+      return finish(JobOutcome::timed_out, "CPU limit");
+    }
+    return finish(JobOutcome::crashed, to_string(ending));
+  }
+
+  WorkerProcess& process_;
+  Bytes header_;
+  ByteView unsent_header_;
+  ByteView unsent_body_;
+  const WorkerLimits& limits_;
+  const CancelPoll& cancel_;
+  Bytes received_;
+  std::optional<JobResult> result_;
+  bool was_idle_end_ = false;
+};
+
+}  // namespace
+
+std::string_view to_string(JobOutcome outcome) {
+  switch (outcome) {
+    case JobOutcome::ok:
+      return "ok";
+    case JobOutcome::crashed:
+      return "crashed";
+    case JobOutcome::timed_out:
+      return "timed-out";
+    case JobOutcome::out_of_memory:
+      return "out-of-memory";
+    case JobOutcome::garbage:
+      return "garbage";
+    case JobOutcome::cancelled:
+      return "cancelled";
+    case JobOutcome::not_started:
+      return "not-started";
+  }
+  return "";
+}
+
+struct WorkerPool::State {
+  explicit State(Options given) : options(std::move(given)) {
+    options.size = std::max<std::size_t>(options.size, 1);
+    options.jobs_per_process = std::max<std::size_t>(options.jobs_per_process, 1);
+  }
+
+  Options options;
+  std::mutex mutex;
+  std::condition_variable returned;
+  std::vector<WorkerProcess> idle;
+  std::size_t running = 0;
+
+  /// Waits for a free place. False if cancelled meanwhile.
+  bool enter(const CancelPoll& cancel) {
+    std::unique_lock lock(mutex);
+    while (running >= options.size) {
+      returned.wait_for(lock, kPollInterval);
+      if (cancel && cancel()) return false;
+    }
+    ++running;
+    return true;
+  }
+
+  void leave(std::optional<WorkerProcess> process) {
+    {
+      const std::lock_guard lock(mutex);
+      --running;
+      if (process) idle.push_back(std::move(*process));
+    }
+    returned.notify_one();
+  }
+
+  /// A process that waits, or a new one. Also reaps the waiting ones that ended by themselves.
+  Result<WorkerProcess> take() {
+    std::vector<WorkerProcess> ended;
+    {
+      const std::lock_guard lock(mutex);
+      const auto gone = std::stable_partition(
+          idle.begin(), idle.end(), [](const WorkerProcess& p) { return !p.has_ended(); });
+      std::move(gone, idle.end(), std::back_inserter(ended));
+      idle.erase(gone, idle.end());
+      if (!idle.empty()) {
+        WorkerProcess process = std::move(idle.back());
+        idle.pop_back();
+        return process;
+      }
+    }
+    return WorkerProcess::start(options.executable, options.idle_seconds);
+  }
+
+  JobResult converse(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel,
+                     std::optional<WorkerProcess>& kept) {
+    JobResult result;
+    // A process can end from idleness at the very moment it gets a job: then another one runs it.
+    // A new process is never idle for long, so this ends.
+    for (std::size_t attempt = 0; attempt <= options.size + 1; ++attempt) {
+      Result<WorkerProcess> process = take();
+      if (!process) {
+        result.detail = process.error().message;
+        return result;
+      }
+      if (Status limited = process->limit(limits.cpu_seconds, limits.memory_bytes); !limited) {
+        result.detail = limited.error().message;
+        continue;  // it ended meanwhile
+      }
+      Conversation conversation(*process, request, limits, cancel);
+      result = conversation.run();
+      if (conversation.was_idle_end()) continue;
+      process->count_job();
+      if (result.outcome == JobOutcome::ok && process->jobs_done() < options.jobs_per_process) {
+        kept = std::move(*process);
+      }
+      return result;
+    }
+    result.outcome = JobOutcome::not_started;
+    return result;
+  }
+};
+
+WorkerPool::WorkerPool(Options options) : state_(std::make_unique<State>(std::move(options))) {}
+
+WorkerPool::~WorkerPool() = default;
+
+JobResult WorkerPool::run(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel) {
+  JobResult result;
+  if (request.size() > std::numeric_limits<std::uint32_t>::max()) {
+    result.detail = "request of more than 4 GiB";
+    return result;
+  }
+  if (!state_->enter(cancel)) {
+    result.outcome = JobOutcome::cancelled;
+    result.detail = "cancelled by the caller";
+    return result;
+  }
+  const Clock::time_point start = Clock::now();
+  std::optional<WorkerProcess> kept;
+  result = state_->converse(request, limits, cancel, kept);
+  state_->leave(std::move(kept));
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace watertight

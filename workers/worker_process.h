@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One helper process: started, limited, killed with its group and reaped. Private to workers/.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+
+#include "base/result.h"
+
+namespace watertight {
+
+/// What became of a process that was killed or ended.
+struct Ending {
+  bool by_signal = false;
+  int code = 0;        // signal number or exit status
+  bool known = false;  // false if somebody else reaped it
+};
+std::string to_string(const Ending& ending);
+
+/// Owns a process and our end of its socket. Not copyable; ends the process on destruction.
+class WorkerProcess {
+ public:
+  /// Starts `executable` as described at WorkerPool. Errors: unavailable, with the system's reason.
+  static Result<WorkerProcess> start(const std::string& executable, double idle_seconds);
+
+  WorkerProcess(WorkerProcess&& other) noexcept;
+  WorkerProcess& operator=(WorkerProcess&& other) noexcept;
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+  ~WorkerProcess();
+
+  int socket() const { return socket_; }
+  std::size_t jobs_done() const { return jobs_done_; }
+  void count_job() { ++jobs_done_; }
+
+  /// Sets the memory limit, and the CPU limit counted from now.
+  Status limit(double cpu_seconds, std::uint64_t memory_bytes);
+  /// True if the process has ended (and waits to be reaped).
+  bool has_ended() const;
+  /// Kills the whole group if it still runs, and reaps the process.
+  Ending end();
+
+ private:
+  WorkerProcess(pid_t process, int socket) : process_(process), socket_(socket) {}
+
+  pid_t process_ = -1;
+  int socket_ = -1;
+  std::size_t jobs_done_ = 0;
+};
+
+}  // namespace watertight

@@ -43,7 +43,7 @@ struct BlobInfo {
   Index facets = 0;
   Index rings = 0;
   Index shells = 0;
-  Index delaunay_faces = 0;     // bits of the bitmap
+  Index delaunay_faces = 0;  // bits of the bitmap
   Index marked_faces = 0;
   Index unrecovered_faces = 0;
   bool has_order = false;
@@ -52,7 +52,7 @@ struct BlobInfo {
     std::size_t bytes = 0;
   };
   std::vector<Part> parts;
-  std::uint32_t checksum = 0;   // CRC-32C over the decoded canonical solid
+  std::uint32_t checksum = 0;  // CRC-32C over the decoded canonical solid
 };
 
 struct Decoded {

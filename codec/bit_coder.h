@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One bit at a time, either packed eight to a byte (plain) or through an adaptive binary arithmetic
+// coder whose models and arithmetic are integers only, so that every compiler and machine writes
+// the same bytes. For the bitmap, the facet section and the order section of a blob. Source: the
+// carry-less coder of M. Mahoney's lpaq (32-bit interval, 16-bit probabilities).
+#pragma once
+
+#include <cstdint>
+
+#include "base/bytes.h"
+
+namespace watertight {
+
+enum class BitCoding : std::uint8_t { plain = 0, arithmetic = 1 };
+
+/// The probability of a 1, learned from the bits seen. Fast at first, then a moving average.
+class AdaptiveBit {
+ public:
+  /// `ones_of_65536` is the first estimate, 32 to 65504; `confidence` counts the observations it is
+  /// worth (0 to 30).
+  explicit constexpr AdaptiveBit(std::uint32_t ones_of_65536 = 32768, std::uint32_t confidence = 0)
+      : ones_(ones_of_65536), count_(confidence) {}
+  std::uint32_t ones_of_65536() const { return ones_; }
+  void learn(bool bit);
+
+ private:
+  std::uint32_t ones_;
+  std::uint32_t count_;
+};
+
+/// Writes bits. Cost: constant per bit.
+class BitEncoder {
+ public:
+  explicit BitEncoder(BitCoding coding) : coding_(coding) {}
+  /// One bit under a model; a plain encoder ignores the model.
+  void bit(bool value, AdaptiveBit& model);
+  /// A number in [0, size) with all values equally likely. Requires value < size.
+  void uniform(std::uint64_t value, std::uint64_t size);
+  /// The number of ones before a zero, each under `model`.
+  void unary(std::uint64_t value, AdaptiveBit& model);
+  /// Ends the stream.
+  Bytes finish() &&;
+
+ private:
+  void raw_bit(bool value);
+  void narrow(bool value, std::uint32_t ones_of_65536);
+
+  BitCoding coding_;
+  Bytes bytes_;
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = 0xFFFFFFFFU;
+  std::uint32_t pending_ = 0;  // plain: bits of the unfinished byte
+  int pending_count_ = 0;
+};
+
+/// Reads what a BitEncoder wrote. Past the end it yields zeros and failed() turns true; callers
+/// bound their loops themselves and check failed() at the end and wherever a loop could be long.
+class BitDecoder {
+ public:
+  BitDecoder(ByteView bytes, BitCoding coding);
+  bool bit(AdaptiveBit& model);
+  /// Requires size > 0.
+  std::uint64_t uniform(std::uint64_t size);
+  /// At most `limit`; fails beyond.
+  std::uint64_t unary(std::uint64_t limit, AdaptiveBit& model);
+  bool failed() const { return failed_; }
+  /// True if no read failed, all bytes were read and the padding bits are zero.
+  bool is_finished() const;
+
+ private:
+  bool raw_bit();
+  bool narrow(std::uint32_t ones_of_65536);
+  std::uint32_t next_byte();
+
+  ByteView bytes_;
+  BitCoding coding_;
+  std::size_t position_ = 0;  // bytes read, counting those past the end
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = 0xFFFFFFFFU;
+  std::uint32_t code_ = 0;
+  int bit_position_ = 0;  // plain: next bit of bytes_[position_]
+  bool failed_ = false;
+};
+
+}  // namespace watertight

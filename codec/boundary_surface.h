@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From the triangulated boundary of a solid, known as a set of triangles, back to its polygons:
+// which edges lie inside a facet, how the triangles turn, and the rings that remain. Composition
+// steps 5 and 7 of the paper end here. For the facet section of mode bitmap.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// An edge at which exactly two triangles meet. Edges with more (touching shells) join nothing.
+struct Joint {
+  Index from = 0;  // smaller vertex
+  Index to = 0;
+  Index triangles[2] = {0, 0};  // smaller triangle first
+  Index corners[2] = {0, 0};    // the vertex of each triangle off the edge
+};
+
+/// A ring of a facet, without Steiner vertices, smallest vertex first.
+using VertexRing = std::vector<Index>;
+
+class BoundarySurface {
+ public:
+  /// Requires strictly increasing triangles, each of three increasing vertices. Vertices from
+  /// `vertex_count` on are Steiner vertices. Cost: O(n log n).
+  BoundarySurface(std::span<const Triangle> triangles, Index vertex_count);
+
+  /// Sorted by (from, to).
+  std::span<const Joint> joints() const { return joints_; }
+  /// Parts connected through joints, numbered by their smallest triangle.
+  Index component_count() const { return static_cast<Index>(component_first_.size()); }
+  Index component_of(Index triangle) const { return component_of_[triangle]; }
+
+  /// Sets which joints lie inside a facet; facets are the parts connected through those, numbered
+  /// by their smallest triangle.
+  void set_interior(std::vector<bool> is_interior);
+  Index facet_count() const { return static_cast<Index>(facet_first_.size()); }
+  Index first_triangle_of(Index facet) const { return facet_first_[facet]; }
+
+  /// Turns every component so that its smallest triangle is as sorted, or the other way round where
+  /// `is_flipped`. Errors: malformed if a component cannot be oriented.
+  Status orient(const std::vector<bool>& is_flipped);
+
+  /// The rings of each facet, sorted. Requires set_interior() and orient(). Where a boundary walk
+  /// visits a vertex twice it is split there, so that holes that touch come apart. Cost: linear.
+  std::vector<std::vector<VertexRing>> rings_of_facets() const;
+
+  /// The arrays (without vertices) of the solid: each component a shell, `exterior_component`
+  /// first; in facets of several rings, that numbered `exterior_ring[facet]` first.
+  SolidArrays assemble(const std::vector<std::vector<VertexRing>>& rings, Index exterior_component,
+                       const std::vector<Index>& exterior_ring) const;
+
+ private:
+  void find_joints();
+  void find_components();
+  Index vertex_at(Index half_edge) const { return turned_[half_edge / 3][half_edge % 3]; }
+  static Index next_of(Index half_edge) {
+    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
+  }
+  Index half_edge_of(Index triangle, Index corner_vertex) const;
+  std::vector<Index> interior_twins() const;
+  void walk_rings(Index start, const std::vector<Index>& twin, std::vector<bool>& is_done,
+                  std::vector<VertexRing>& rings) const;
+  void close_ring(std::span<const Index> walk, std::vector<VertexRing>& rings) const;
+
+  std::vector<Triangle> triangles_;
+  Index vertex_count_;
+  std::vector<Joint> joints_;
+  std::vector<std::vector<Index>> joints_of_;  // triangle -> at most three joints
+  std::vector<Index> component_of_;
+  std::vector<Index> component_first_;
+  std::vector<bool> is_interior_;
+  std::vector<Index> facet_of_;
+  std::vector<Index> facet_first_;
+  std::vector<Triangle> turned_;
+};
+
+}  // namespace watertight

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The encoder without the promise of validity: for tests, fuzzing and benches on dirty meshes. The
+// public encode(ValidSolid) in codec/blob.h calls it; nothing else should.
+#pragma once
+
+#include "codec/blob.h"
+
+namespace watertight {
+
+/// Encodes, decodes, compares, and only then returns. In source order with `keep_order`, else the
+/// canonical form. Errors: not_encodable.
+Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
+                              const EncodeOptions& options = {});
+
+}  // namespace watertight

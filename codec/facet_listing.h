@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Shells, facets and rings listed with plain vertex indices: the facet section of mode raw, and of
+// mode bitmap where the marked faces alone do not tell the facets (docs/format.md).
+#pragma once
+
+#include "base/bytes.h"
+#include "base/limits.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// Everything of `arrays` but its vertices. Cost: linear.
+Bytes write_facet_listing(const SolidArrays& arrays);
+
+/// Ring, facet and shell arrays; no vertices. Indices are below `vertex_count`.
+/// Errors: malformed; limit_exceeded. Every ring vertex takes at least one byte of the section.
+Result<SolidArrays> read_facet_listing(ByteView section, Index vertex_count, const Limits& limits);
+
+}  // namespace watertight

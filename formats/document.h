@@ -21,8 +21,8 @@ namespace watertight {
 enum class Format : std::uint8_t { city_json, city_json_seq, obj, off, wkt, ewkb };
 std::string_view to_string(Format format);
 
-/// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb"), else by the first
-/// bytes. Errors: unsupported.
+/// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb"), else by
+/// the first bytes. Errors: unsupported.
 Result<Format> detect_format(std::string_view file_name, ByteView bytes);
 
 /// Where a solid stands in its document.
@@ -30,9 +30,9 @@ struct SolidSource {
   std::string object_id;      // CityObject id; OBJ object name; "" elsewhere
   std::string geometry_type;  // "Solid", "MultiSolid", "CompositeSolid", "POLYHEDRALSURFACE Z", ...
   std::string lod;            // as written, "" when absent
-  std::uint32_t geometry = 0; // index of the geometry within its object
-  std::uint32_t ordinal = 0;  // index of the solid within its geometry
-  std::string pointer;        // JSON Pointer to the solid's array of shells; "" when not JSON
+  std::uint32_t geometry = 0;  // index of the geometry within its object
+  std::uint32_t ordinal = 0;   // index of the solid within its geometry
+  std::string pointer;         // JSON Pointer to the solid's array of shells; "" when not JSON
 };
 
 struct SubmittedSolid {
@@ -68,6 +68,23 @@ struct ReadOptions {
   bool split_features = true;
 };
 
+/// What all features of a city model share, as stated by the first line of a CityJSONSeq.
+struct CityHeader {
+  std::string text;  // as Document::header
+  std::string version;
+  std::optional<Transform> transform;  // absent: vertices are coordinates (an error in a sequence)
+  std::uint32_t srid = 0;
+};
+
+/// For streams: the first line of a CityJSONSeq (or a Document::header), then one call per line, so
+/// that memory is bounded by the longest line. Errors: as read_document; the JSON Pointer and byte
+/// offset are within the line. Cost: linear.
+Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits = {});
+Result<Feature> read_city_json_feature(const CityHeader& header, std::string_view line,
+                                       const Limits& limits = {});
+/// write_feature() without reading the header again.
+Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature);
+
 /// Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or JSON Pointer
 /// (content). Cost: linear; CityJSON is read by SAX, boundaries never become JSON values.
 Result<Document> read_document(ByteView bytes, Format format, const ReadOptions& options = {});
@@ -79,8 +96,8 @@ Result<std::string> write_feature(const Document& document, const Feature& featu
 
 /// The whole document. City models: a CityJSON of all features when `format` is city_json, header
 /// line + feature lines when city_json_seq. For obj, off, wkt and ewkb the solids of all features.
-/// Errors: unsupported when a format cannot hold what is asked (OFF: several solids; OBJ, OFF: rings
-/// with holes are triangulated only by `convert`, never silently here).
+/// Errors: unsupported when a format cannot hold what is asked (OFF: several solids; OBJ, OFF:
+/// rings with holes are triangulated only by `convert`, never silently here).
 Result<Bytes> write_document(const Document& document, Format format);
 
 }  // namespace watertight

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // EWKB (PostGIS) and WKT of solids: POLYHEDRALSURFACE Z (one shell) and SOLID Z (shells).
-// For SQL, CLI and the service. Solids with cavities need SOLID Z; see docs/format.md for its layout.
+// For SQL, CLI and the service. Solids with cavities need SOLID Z; see docs/format.md for its
+// layout.
 #pragma once
 
 #include "base/bytes.h"

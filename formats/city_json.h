@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// CityJSON and CityJSONSeq between text and features. Internal to formats/; the public face is
+// formats/document.h.
+//
+// Skeleton of a feature: its CityJSONFeature (or the whole CityJSON) as compact JSON in which
+//   - the boundaries of a Solid are {"solid": k} and those of a MultiSolid or CompositeSolid
+//     {"solids": [k, n]}: solid k, or solids k to k + n - 1, of the feature;
+//   - "vertices" is {"count": N, "kind": "integers" | "decimals", "solids": [runs...],
+//     "others": [x, y, z, x, ...]}: for each solid, which vertex of the document each of its
+//     vertices is, as runs [first, length, first, length, ...]; then the vertices that no solid
+//     uses, in their order.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/city_json_sax.h"
+#include "formats/document.h"
+#include "formats/json.h"
+
+namespace watertight {
+
+/// A geometry of a city object whose boundaries were captured.
+struct GeometryRef {
+  std::uint32_t object = 0;    // position of the city object in the document
+  std::uint32_t geometry = 0;  // position in the object's geometry array
+  std::size_t boundary = 0;    // into CityModel
+  std::string type;
+  std::string lod;
+
+  bool is_solid() const { return type == "Solid"; }
+  bool is_of_solids() const {
+    return is_solid() || type == "MultiSolid" || type == "CompositeSolid";
+  }
+};
+
+/// What refers to what in a city model.
+struct ModelIndex {
+  std::vector<std::string> ids;         // of the city objects, in document order
+  std::vector<std::uint32_t> root_of;   // object -> its top-level object
+  std::vector<GeometryRef> geometries;  // by object, then geometry
+  std::vector<std::string> notes;
+};
+
+/// A solid with the vertex of the document that each of its vertices is.
+struct CitySolid {
+  SubmittedSolid submitted;
+  std::vector<Index> vertex_of;
+  std::uint32_t object = 0;
+  std::size_t boundary = 0;
+};
+
+/// Checks the shape of the document and finds geometries and top-level objects.
+/// Errors: malformed with JSON Pointer.
+Result<ModelIndex> index_city_model(const CityModel& model);
+
+/// One lattice for all solids whose objects have the same top-level object, or, for a
+/// CityJSONFeature, one for all. Solids come in document order.
+Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIndex& index,
+                                           const CityHeader& header, const Limits& limits);
+
+/// Under a transform vertices are grid integers; 10.0 is one too. Errors: malformed.
+Status require_integers(VertexList& list);
+
+/// The header that a document or first line states. Errors: malformed, unsupported.
+Result<CityHeader> city_header(const Json& root);
+
+/// One feature per top-level object. Takes the model apart.
+Result<std::vector<Feature>> split_city_model(CityModel model, const ModelIndex& index,
+                                              std::vector<CitySolid> solids,
+                                              const CityHeader& header);
+
+/// Appends a JSON value with the `boundaries` of its geometries replaced.
+using BoundaryPrinter = std::function<void(const Json& boundaries, std::string& out)>;
+void append_city_object(std::string& out, const Json& object, const BoundaryPrinter& print);
+void append_city_objects(std::string& out, const Json& objects, const BoundaryPrinter& print);
+
+/// Appends nested arrays; `vertex_of(i)` is what index i becomes.
+void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
+                     const std::function<std::uint64_t(Index)>& vertex_of);
+
+/// The members of the skeleton's "vertices". `others` are indices into the model's vertices.
+std::string skeleton_vertices(const CityModel& model, std::size_t count,
+                              std::span<const std::vector<Index>> vertex_of,
+                              std::span<const Index> others);
+
+Result<Document> read_city_json(std::string_view text, const ReadOptions& options);
+Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& options);
+Result<std::string> write_city_json(const Document& document);
+Result<std::string> write_city_json_seq(const Document& document);
+
+}  // namespace watertight

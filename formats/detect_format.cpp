@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "formats/document.h"
+
+namespace watertight {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), lower);
+  return out;
+}
+
+struct Ending {
+  std::string_view text;
+  Format format;
+};
+constexpr std::array kEndings{
+    Ending{".jsonl", Format::city_json_seq},
+    Ending{".ndjson", Format::city_json_seq},
+    Ending{".json", Format::city_json},
+    Ending{".obj", Format::obj},
+    Ending{".off", Format::off},
+    Ending{".wkt", Format::wkt},
+    Ending{".ewkt", Format::wkt},
+    Ending{".wkb", Format::ewkb},
+    Ending{".ewkb", Format::ewkb},
+};
+
+// A sequence has a second JSON text after the line that ends the first.
+Format json_format(std::string_view text) {
+  const std::size_t end = text.find('\n');
+  if (end == std::string_view::npos) return Format::city_json;
+  std::string_view first = text.substr(0, end);
+  while (!first.empty() && (first.back() == '\r' || first.back() == ' ')) first.remove_suffix(1);
+  const std::size_t second = text.find_first_not_of(" \t\r\n\x1E", end);
+  const bool is_sequence = first.size() > 1 && first.back() == '}' &&
+                           second != std::string_view::npos && text[second] == '{';
+  return is_sequence ? Format::city_json_seq : Format::city_json;
+}
+
+bool is_obj_line(std::string_view text) {
+  for (const std::string_view word : {"v", "vn", "vt", "f", "o", "g", "mtllib", "usemtl", "s"}) {
+    if (text.size() > word.size() && text.starts_with(word) &&
+        (text[word.size()] == ' ' || text[word.size()] == '\t')) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// By the first bytes of the first line that is neither blank nor a comment.
+Result<Format> format_of_text(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::size_t start = text.find_first_not_of(" \t\r\n\x1E");
+  while (start != std::string_view::npos && text[start] == '#') {
+    start = text.find('\n', start);
+    if (start != std::string_view::npos) start = text.find_first_not_of(" \t\r\n", start);
+  }
+  if (start != std::string_view::npos) {
+    text.remove_prefix(start);
+    if (text.front() == '{') return json_format(text);
+    const std::string head = lower_case(text.substr(0, 24));
+    for (const std::string_view word : {"srid=", "polyhedralsurface", "solid", "tin"}) {
+      if (head.starts_with(word)) return Format::wkt;
+    }
+    for (const std::string_view word : {"off", "coff", "noff", "cnoff", "stoff"}) {
+      if (head.starts_with(word)) return Format::off;
+    }
+    if (is_obj_line(text)) return Format::obj;
+  }
+  return Error{ErrorCode::unsupported,
+               "neither the name nor the first bytes tell the format; known are CityJSON, "
+               "CityJSONSeq, OBJ, OFF, WKT and EWKB"};
+}
+
+}  // namespace
+
+Result<Format> detect_format(std::string_view file_name, ByteView bytes) {
+  const std::string name = lower_case(file_name);
+  for (const Ending& ending : kEndings) {
+    if (name.ends_with(ending.text)) return ending.format;
+  }
+  // EWKB: byte order 0 or 1, then a type whose bytes no text has.
+  if (bytes.size() >= 9 && bytes[0] <= 1) return Format::ewkb;
+  return format_of_text(as_text(bytes));
+}
+
+}  // namespace watertight

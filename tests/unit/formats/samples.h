@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Small city models that the tests of formats/ share.
+#pragma once
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include "base/bytes.h"
+#include "formats/document.h"
+
+namespace watertight::test {
+
+inline std::string file_text(const std::string& name) {
+  std::ifstream file(std::string(WATERTIGHT_TEST_DATA) + "/" + name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline Result<Document> read(std::string_view text, Format format, bool is_split = true) {
+  ReadOptions options;
+  options.split_features = is_split;
+  return read_document(as_bytes(text), format, options);
+}
+
+/// A tetrahedron as a Solid, and a MultiSurface that uses a fifth vertex; two top-level objects,
+/// the second with a child that has a MultiSolid of two tetrahedra.
+inline const std::string kTwoBuildings =
+    R"({"type":"CityJSON","version":"2.0",)"
+    R"("transform":{"scale":[0.001,0.001,0.001],"translate":[85000.5,447000.25,-3.0]},)"
+    R"("metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/7415"},)"
+    R"("CityObjects":{)"
+    R"("a":{"type":"Building","attributes":{"height":12.50,"big":123456789012345678901234567890},)"
+    R"("geometry":[)"
+    R"({"type":"MultiSurface","lod":"0","boundaries":[[[0,1,7]]]},)"
+    R"({"type":"Solid","lod":"2.2","boundaries":[[[[0,2,1]],[[0,1,3]],[[1,2,3]],[[2,0,3]]]],)"
+    R"("semantics":{"surfaces":[{"type":"WallSurface"}],"values":[[0,null,0,0]]}}]},)"
+    R"("b":{"type":"Building","children":["b-1"]},)"
+    R"("b-1":{"type":"BuildingPart","parents":["b"],"geometry":[)"
+    R"({"type":"MultiSolid","lod":"1","boundaries":[)"
+    R"([[[[4,6,5]],[[4,5,3]],[[5,6,3]],[[6,4,3]]]],)"
+    R"([[[[0,2,1]],[[0,1,3]],[[1,2,3]],[[2,0,3]]]]]}]}},)"
+    R"("vertices":[[0,0,0],[1000,0,0],[0,1000,0],[0,0,1000],[5000,0,0],[6000,0,0],[5000,1000,0],)"
+    R"([99,98,97],[1,2,3]]})";
+
+}  // namespace watertight::test

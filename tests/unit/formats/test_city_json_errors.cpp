@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+
+#include "formats/document.h"
+#include "samples.h"
+
+namespace watertight {
+namespace {
+
+using test::kTwoBuildings;
+using test::read;
+
+Error error_of(const std::string& text, Format format = Format::city_json) {
+  const auto document = read(text, format);
+  REQUIRE_FALSE(document);
+  CHECK_FALSE(document.error().message.empty());
+  return document.error();
+}
+
+std::string with_object(const std::string& object) {
+  return R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],)"
+         R"("translate":[0,0,0]},"CityObjects":{"a":)" +
+         object + R"(},"vertices":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]})";
+}
+
+std::string with_boundaries(const std::string& boundaries) {
+  return with_object(R"({"type":"Building","geometry":[{"type":"Solid","lod":"1","boundaries":)" +
+                     boundaries + "}]}");
+}
+
+TEST_CASE("every truncation of a document is an error") {
+  for (std::size_t size = 0; size < kTwoBuildings.size(); ++size) {
+    CHECK_FALSE(read(kTwoBuildings.substr(0, size), Format::city_json));
+    CHECK_FALSE(read(kTwoBuildings.substr(0, size), Format::city_json_seq));
+  }
+}
+
+TEST_CASE("syntax errors name the byte") {
+  CHECK(error_of(R"({"type":"CityJSON",})").byte_offset == 19);
+  CHECK(error_of("{\"type\":\"City\xFFJSON\"}").byte_offset == 13);
+  CHECK(error_of(kTwoBuildings + "x").byte_offset == kTwoBuildings.size());
+  CHECK(error_of("").code == ErrorCode::malformed);
+}
+
+TEST_CASE("content errors name the place by JSON Pointer") {
+  CHECK(error_of(R"({"version":"2.0"})").pointer == "/type");
+  CHECK(error_of(R"({"type":"CityJSON"})").pointer == "/version");
+  CHECK(error_of(R"({"type":"CityJSON","version":"3.0"})").code == ErrorCode::unsupported);
+  CHECK(error_of(R"({"type":"CityJSON","version":"1.0"})").pointer == "/CityObjects");
+  CHECK(error_of(R"({"type":"CityJSON","version":"1.0","CityObjects":{}})").pointer == "/vertices");
+  CHECK(error_of(with_object("1")).pointer == "/CityObjects/a");
+  CHECK(error_of(with_object("{}")).pointer == "/CityObjects/a");
+  CHECK(error_of(with_object(R"({"type":"Road","geometry":{}})")).pointer ==
+        "/CityObjects/a/geometry");
+  CHECK(error_of(with_object(R"({"type":"Road","geometry":[{}]})")).pointer ==
+        "/CityObjects/a/geometry/0");
+  CHECK(error_of(with_object(R"({"type":"Road","geometry":[{"type":"Solid"}]})")).pointer ==
+        "/CityObjects/a/geometry/0");
+}
+
+TEST_CASE("boundaries that are not nested indices are errors") {
+  const std::string at = "/CityObjects/a/geometry/0/boundaries";
+  CHECK(error_of(with_boundaries("[[[[0,1,4]]]]")).pointer == at + "/0/0/0/2");
+  CHECK(error_of(with_boundaries("[[[[0,1,-1]]]]")).pointer == at + "/0/0/0/2");
+  CHECK(error_of(with_boundaries("[[[[0,1.5]]]]")).pointer == at + "/0/0/0/1");
+  CHECK(error_of(with_boundaries("[[[[0,null]]]]")).pointer == at + "/0/0/0/1");
+  CHECK(error_of(with_boundaries("[[[0,1,2]]]")).pointer == at + "/0/0/0");
+  CHECK(error_of(with_boundaries("[[[[[0,1,2]]]]]")).pointer == at + "/0/0/0/0");
+  CHECK(error_of(with_boundaries("[[[[4294967295]]]]")).pointer == at + "/0/0/0/0");
+  CHECK(error_of(with_boundaries("0")).pointer == "/CityObjects/a/geometry/0");
+  CHECK(error_of(with_boundaries(R"({"solid":0})")).pointer == "/CityObjects/a/geometry/0");
+}
+
+TEST_CASE("empty boundaries, facets and rings are left to the validator") {
+  for (const char* boundaries : {"[]", "[[]]", "[[[]]]", "[[[[]]]]", "[[[[0]]]]"}) {
+    const std::string text = with_boundaries(boundaries);
+    const auto document = read(text, Format::city_json, false);
+    REQUIRE(document);
+    CHECK(document->features[0].solids.size() == 1);
+    const auto again = write_document(*document, Format::city_json);
+    REQUIRE(again);
+    CHECK(as_text(*again) == text);
+  }
+}
+
+TEST_CASE("vertices that are not three numbers are errors") {
+  const auto with_vertices = [](const std::string& vertices) {
+    return R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],)"
+           R"("translate":[0,0,0]},"CityObjects":{},"vertices":)" +
+           vertices + "}";
+  };
+  CHECK(read(with_vertices("[[1,2,3],[1.0,2e2,-3]]"), Format::city_json));
+  CHECK(error_of(with_vertices("[[1,2]]")).pointer == "/vertices/0/2");
+  CHECK(error_of(with_vertices("[[1,2,3,4]]")).pointer == "/vertices/0/3");
+  CHECK(error_of(with_vertices("[1]")).pointer == "/vertices/0");
+  CHECK(error_of(with_vertices("[[[1]]]")).pointer == "/vertices/0/0");
+  CHECK(error_of(with_vertices("[[1,2,\"3\"]]")).pointer == "/vertices/0/2");
+  CHECK(error_of(with_vertices("[[0,0,0],[1,2,3.5]]")).pointer == "/vertices/1/2");
+  CHECK(error_of(with_vertices("[[18446744073709551616,0,0]]")).pointer == "/vertices/0/0");
+  CHECK(error_of(with_vertices("[[18446744073709551615,0,0]]")).code == ErrorCode::limit_exceeded);
+  CHECK(error_of(with_vertices("[[1e400,0,0]]")).code == ErrorCode::malformed);
+}
+
+TEST_CASE("a transform needs six numbers and positive scales") {
+  const auto with_transform = [](const std::string& transform) {
+    return R"({"type":"CityJSON","version":"2.0","transform":)" + transform +
+           R"(,"CityObjects":{},"vertices":[]})";
+  };
+  CHECK(error_of(with_transform(R"({"scale":[1,1,1]})")).pointer == "/transform/translate");
+  CHECK(error_of(with_transform(R"({"scale":[1,1],"translate":[0,0,0]})")).pointer ==
+        "/transform/scale");
+  CHECK(error_of(with_transform(R"({"scale":[1,0,1],"translate":[0,0,0]})")).pointer ==
+        "/transform/scale/1");
+  CHECK(error_of(with_transform(R"({"scale":[1,1,-1],"translate":[0,0,0]})")).pointer ==
+        "/transform/scale/2");
+  CHECK(error_of(with_transform(R"({"scale":[1,1,1],"translate":[0,"0",0]})")).pointer ==
+        "/transform/translate/1");
+}
+
+TEST_CASE("a key that occurs twice is an error") {
+  CHECK(error_of(with_object(R"({"type":"Road","type":"Road"})")).pointer == "/CityObjects/a/type");
+  CHECK(error_of(with_object(R"({"type":"Road","x":[{"y":{"z":1,"q":2,"z":1}}]})")).pointer ==
+        "/CityObjects/a/x/0/y/z");
+}
+
+TEST_CASE("nesting and size are limited") {
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) deep += '[';
+  CHECK(error_of(deep).code == ErrorCode::limit_exceeded);
+  CHECK(error_of(with_boundaries(deep)).code == ErrorCode::limit_exceeded);
+  ReadOptions options;
+  options.limits.bytes = 10;
+  const auto document = read_document(as_bytes(kTwoBuildings), Format::city_json, options);
+  REQUIRE_FALSE(document);
+  CHECK(document.error().code == ErrorCode::limit_exceeded);
+  options.limits = {};
+  options.limits.vertices = 3;
+  const auto small = read_document(as_bytes(kTwoBuildings), Format::city_json, options);
+  REQUIRE_FALSE(small);
+  CHECK(small.error().code == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("a city object that is its own ancestor is an error") {
+  const std::string text =
+      R"({"type":"CityJSON","version":"1.1","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
+      R"("CityObjects":{"a":{"type":"BuildingPart","parents":["b"]},)"
+      R"("b":{"type":"BuildingPart","parents":["a"]}},"vertices":[]})";
+  CHECK(error_of(text).pointer == "/CityObjects/a/parents");
+}
+
+TEST_CASE("errors in a sequence name line, byte and pointer") {
+  const auto document = read(kTwoBuildings, Format::city_json);
+  REQUIRE(document);
+  const auto bytes = write_document(*document, Format::city_json_seq);
+  REQUIRE(bytes);
+  const std::string text(as_text(*bytes));
+  const std::size_t second = text.find('\n') + 1;
+
+  const Error no_header = error_of(text.substr(second), Format::city_json_seq);
+  CHECK(no_header.pointer == "/type");
+  CHECK(no_header.message.starts_with("line 1: "));
+
+  std::string broken = text;
+  broken[second + 10] = '\x01';
+  const Error syntax = error_of(broken, Format::city_json_seq);
+  CHECK(syntax.message.starts_with("line 2: "));
+  CHECK(syntax.byte_offset == second + 10);
+
+  std::string renamed = text;
+  renamed.replace(renamed.find("\"id\":\"a\""), 8, "\"id\":\"z\"");
+  CHECK(error_of(renamed, Format::city_json_seq).pointer == "/id");
+  CHECK(error_of("", Format::city_json_seq).code == ErrorCode::malformed);
+  CHECK(error_of("\n \n", Format::city_json_seq).code == ErrorCode::malformed);
+}
+
+}  // namespace
+}  // namespace watertight

@@ -19,7 +19,8 @@ class AdaptiveBit {
  public:
   /// `ones_of_65536` is the first estimate, 32 to 65504; `confidence` counts the observations it is
   /// worth (0 to 30).
-  explicit constexpr AdaptiveBit(std::uint32_t ones_of_65536 = 32768, std::uint32_t confidence = 0)
+  constexpr AdaptiveBit() : AdaptiveBit(32768, 0) {}
+  constexpr AdaptiveBit(std::uint32_t ones_of_65536, std::uint32_t confidence)
       : ones_(ones_of_65536), count_(confidence) {}
   std::uint32_t ones_of_65536() const { return ones_; }
   void learn(bool bit);

@@ -124,7 +124,7 @@ class MarkModels {
   std::vector<bool> is_hull_;
   std::vector<Index> to_come_;  // faces around the edge whose mark is not coded yet
   std::vector<Index> marked_;   // marked faces around the edge so far
-  std::array<AdaptiveBit, 64> models_{};
+  std::array<AdaptiveBit, 64> models_;
 };
 
 Error malformed_marks() { return {ErrorCode::malformed, "truncated or malformed bitmap section"}; }

@@ -23,9 +23,9 @@ struct StoredBox {
 };
 
 struct StoredCollection {
-  std::string id;       // [A-Za-z0-9_.-]{1,64}
+  std::string id;  // [A-Za-z0-9_.-]{1,64}
   std::uint32_t srid = 0;
-  std::string header;   // shared document header (formats/document.h) of its first document
+  std::string header;  // shared document header (formats/document.h) of its first document
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t blob_bytes = 0;
@@ -46,19 +46,20 @@ struct StoredFeature {
   std::string collection;
   std::string id;
   std::string type;
-  std::string format;    // to_string(Format) of the document it came in
-  std::string header;    // document header it needs (may differ from the collection's)
+  std::uint32_t srid = 0;  // EPSG code, 0 when not stated; one for all features of a collection
+  std::string format;      // to_string(Format) of the document it came in
+  std::string header;      // document header it needs (may differ from the collection's)
   std::string skeleton;
   std::optional<StoredBox> box;  // world coordinates, over its solids
   std::vector<StoredSolid> solids;
-  std::uint64_t version = 0;     // set by the store; the ETag
+  std::uint64_t version = 0;  // set by the store, never used twice; the ETag
 };
 
 struct FeatureQuery {
   std::string collection;
   std::uint64_t limit = 10;
-  std::string after;               // id after which the page starts; "" = from the start
-  std::optional<StoredBox> box;    // closed boxes that share a point
+  std::string after;             // id after which the page starts; "" = from the start
+  std::optional<StoredBox> box;  // closed boxes that share a point
 };
 
 struct FeaturePage {
@@ -74,11 +75,14 @@ class SolidStore {
   virtual Status ping() = 0;
   virtual Result<std::vector<StoredCollection>> collections() = 0;
   virtual Result<StoredCollection> collection(const std::string& id) = 0;
-  /// Stores all features or none, durably, creating the collection when it does not exist; an id that
-  /// exists is replaced and its version raised. All in one round trip per table.
-  /// Returns the new versions in order.
+  /// Stores all features or none, durably, creating the collection when it does not exist; an id
+  /// that exists is replaced and its version raised. All in one round trip per table. Returns the
+  /// new versions in order. Errors: invalid_argument for what the database cannot keep as it is
+  /// (ids with NUL, not UTF-8 or above 1024 bytes, boxes that are not finite, a solid twice);
+  /// conflict when a feature is there twice or its CRS is not its collection's; unavailable.
   virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) = 0;
   virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;
+  /// At most 10,000 features a page. Errors: not_found when there is no such collection.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
   /// Errors: not_found.
   virtual Status remove(const std::string& collection, const std::string& id) = 0;
@@ -87,6 +91,7 @@ class SolidStore {
 /// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
 /// Reconnects after a lost connection; an operation that was in flight is retried only when it is
 /// known not to have been committed or is idempotent. Errors: unavailable with the server's words.
-Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection, std::size_t connections = 4);
+Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
+                                                        std::size_t connections = 4);
 
 }  // namespace watertight

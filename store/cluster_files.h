@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What lies in the data directory of a private cluster, and whose processes work there. For
+// private_cluster only.
+//
+//   DATA/cluster.lock    held exclusively while someone starts or stops the cluster
+//   DATA/cluster.users   held shared by every process that uses it
+//   DATA/server.log      PostgreSQL's messages
+//   DATA/socket/         the Unix socket (elsewhere when the path is too long for one)
+//   DATA/postgres/       PostgreSQL's own directory (PGDATA)
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace watertight {
+
+/// A lock on a file (flock), shared by processes and freed when its holder ends in any way.
+class FileLock {
+ public:
+  FileLock() = default;
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&& other) noexcept;
+  ~FileLock();
+
+  enum class Kind { shared, exclusive };
+  /// Opens (and creates) `path` and takes the lock. Errors: unavailable when others hold it for
+  /// longer than `patience`.
+  static Result<FileLock> take(const std::string& path, Kind kind, std::chrono::seconds patience);
+  /// From shared to exclusive, now or never: false when someone else holds it too.
+  bool try_exclusive();
+
+ private:
+  explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+  int descriptor_ = -1;
+};
+
+/// The first lines of postmaster.pid.
+struct PostmasterFile {
+  pid_t pid = 0;
+  std::string socket_folder;  // "" while it starts
+};
+std::optional<PostmasterFile> read_postmaster_file(const std::string& pgdata);
+
+/// Whether `pid` is a PostgreSQL process that works in `pgdata` (a real path): a process that took
+/// over the number of a dead postmaster is not.
+bool is_postgres_in(pid_t pid, const std::string& pgdata);
+/// All such processes: postmaster, backends, and backends that a killed postmaster left behind.
+std::vector<pid_t> postgres_processes_in(const std::string& pgdata);
+
+/// Creates `folder` with mode 0700, or accepts an existing one of ours that is empty or holds a
+/// cluster. Returns its real path. Errors: invalid_argument, unavailable.
+Result<std::string> prepare_data_directory(const std::string& folder);
+
+/// The folder for the socket: in `data` if the path fits a Unix socket address and a
+/// connection string, else a short one in
+/// /tmp, private to the user and named after `data`. Errors: unavailable.
+Result<std::string> prepare_socket_folder(const std::string& data);
+
+/// Replaces a file durably. Errors: unavailable.
+Status write_file(const std::string& path, const std::string& content);
+Status sync_folder(const std::string& path);
+
+/// "cannot <what>: <errno's words>"
+Error system_error(const std::string& what);
+
+}  // namespace watertight

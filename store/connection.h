@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One PostgreSQL session and a bounded pool of them, over libpq with binary parameters and results.
+// For postgres_store and private_cluster only. No retry policy lives here; libpq stays in the .cpp.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/result.h"
+
+struct pg_conn;
+struct pg_result;
+
+namespace watertight {
+
+/// The parameters $1, $2, ... of one statement, in binary form. Arrays are for `unnest`.
+class Parameters {
+ public:
+  Parameters& text(std::string_view value);
+  Parameters& bytea(ByteView value);
+  Parameters& int8(std::int64_t value);
+  Parameters& float8(std::optional<double> value);
+  Parameters& text_array(std::span<const std::string_view> values);
+  Parameters& bytea_array(std::span<const ByteView> values);
+  Parameters& int8_array(std::span<const std::int64_t> values);
+  Parameters& float8_array(std::span<const std::optional<double>> values);
+
+ private:
+  friend class Connection;
+  void add(std::uint32_t type, std::optional<std::string> value);
+  void begin_array(std::uint32_t array_type, std::uint32_t element_type, std::size_t count);
+  void element(std::string_view value);
+  void null_element();
+
+  std::vector<std::uint32_t> types_;
+  std::vector<std::optional<std::string>> values_;
+};
+
+/// The rows of a result. Views stay valid as long as the Rows object. Indices start at 0.
+class Rows {
+ public:
+  explicit Rows(pg_result* result) : result_(result) {}
+  int size() const;
+  bool is_null(int row, int column) const;
+  /// The bytes of a text or bytea column; "" for NULL.
+  std::string_view text(int row, int column) const;
+  /// Of an int8 column; 0 for NULL or another width.
+  std::int64_t int8(int row, int column) const;
+  double float8(int row, int column) const;
+
+ private:
+  struct Clear {
+    void operator()(pg_result* result) const;
+  };
+  std::unique_ptr<pg_result, Clear> result_;
+};
+
+/// A session with UTF-8 encoding and synchronous commit. Not thread-safe.
+class Connection {
+ public:
+  /// Errors: invalid_argument when the connection string cannot be parsed; unavailable with the
+  /// server's words. `may_come_back` in the failure tells whether waiting can help.
+  struct OpenFailure {
+    Error error;
+    bool may_come_back = false;
+  };
+  explicit Connection(pg_conn* connection) : connection_(connection) {}  // for open()
+  static std::variant<std::unique_ptr<Connection>, OpenFailure> open(const std::string& connection);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// Runs one statement. Errors: the server's words under a fitting code; state() and is_lost()
+  /// tell more.
+  Result<Rows> run(const std::string& statement, const Parameters& parameters = {});
+  /// Ends a transaction that failed. Nothing to do when none is open.
+  void roll_back();
+
+  /// SQLSTATE of the last failed statement; "" when the server did not answer.
+  const std::string& state() const { return state_; }
+  /// The session is gone: this object is of no more use.
+  bool is_lost() const;
+
+ private:
+  struct Finish {
+    void operator()(pg_conn* connection) const;
+  };
+  Error failure(const pg_result* result);
+
+  std::unique_ptr<pg_conn, Finish> connection_;
+  std::string state_;
+};
+
+/// Whether a server takes connections now; no password is needed to ask.
+enum class ServerState { accepting, starting, silent };
+ServerState server_state(const std::string& connection);
+
+/// `keyword='value'` for a connection string, quoted.
+std::string connection_option(std::string_view keyword, std::string_view value);
+
+/// At most `size` sessions, opened by who leases them. Thread-safe.
+class ConnectionPool {
+ public:
+  ConnectionPool(std::string connection, std::size_t size)
+      : connection_(std::move(connection)), free_slots_(size == 0 ? 1 : size) {}
+
+  /// The right to use one session until destruction. `session` may be empty: open() it.
+  class Lease {
+   public:
+    Lease(ConnectionPool* pool, std::unique_ptr<Connection> first)
+        : session(std::move(first)), pool_(pool) {}
+    Lease(Lease&& other) noexcept
+        : session(std::move(other.session)), pool_(std::exchange(other.pool_, nullptr)) {}
+    Lease& operator=(Lease&&) = delete;
+    ~Lease();
+    std::unique_ptr<Connection> session;
+
+   private:
+    ConnectionPool* pool_;
+  };
+
+  /// Errors: unavailable when every session stays busy for `seconds`.
+  Result<Lease> lease(double seconds);
+  const std::string& connection() const { return connection_; }
+
+ private:
+  void give_back(std::unique_ptr<Connection> session);
+
+  const std::string connection_;
+  std::mutex mutex_;
+  std::condition_variable freed_;
+  std::size_t free_slots_;
+  std::vector<std::unique_ptr<Connection>> idle_;
+};
+
+}  // namespace watertight

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "store/feature_rows.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::uint64_t kLargestPage = 10'000;
+
+std::string collections_where(const char* condition) {
+  return std::string(
+             "SELECT c.id, c.srid, h.content, count(f.id), coalesce(sum(f.solids), 0)::int8,"
+             " coalesce(sum(f.blob_bytes), 0)::int8, min(f.min_x), min(f.min_y), min(f.min_z),"
+             " max(f.max_x), max(f.max_y), max(f.max_z)"
+             " FROM watertight.collection c"
+             " JOIN watertight.document_header h ON h.digest = c.header"
+             " LEFT JOIN watertight.feature f ON f.collection = c.id WHERE ") +
+         condition + " GROUP BY c.id, h.digest ORDER BY c.id";
+}
+
+/// The condition of a query: $1 is the collection and, with a box, $2 ... $7 are its numbers. The
+/// index knows x and y only; the comparison of the six numbers decides (PostgreSQL's box operator
+/// is generous by 1e-6, so it never misses).
+std::string matching(const FeatureQuery& query) {
+  return std::string(" FROM watertight.feature WHERE collection = $1") +
+         (query.box ? " AND min_x IS NOT NULL AND box(point(max_x, max_y), point(min_x, min_y))"
+                      "   && box(point($5, $6), point($2, $3))"
+                      " AND min_x <= $5 AND min_y <= $6 AND min_z <= $7"
+                      " AND max_x >= $2 AND max_y >= $3 AND max_z >= $4"
+                    : "");
+}
+
+const char* const kFeatureColumns =
+    "SELECT id, version, type, format, srid, header, skeleton,"
+    " min_x, min_y, min_z, max_x, max_y, max_z";
+
+std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
+  if (rows.is_null(row, first_column)) return std::nullopt;
+  StoredBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[static_cast<std::size_t>(axis)] = rows.float8(row, first_column + axis);
+    box.max[static_cast<std::size_t>(axis)] = rows.float8(row, first_column + 3 + axis);
+  }
+  return box;
+}
+
+StoredCollection collection_of(const Rows& rows, int row) {
+  StoredCollection found;
+  found.id = rows.text(row, 0);
+  found.srid = static_cast<std::uint32_t>(rows.int8(row, 1));
+  found.header = rows.text(row, 2);
+  found.features = static_cast<std::uint64_t>(rows.int8(row, 3));
+  found.solids = static_cast<std::uint64_t>(rows.int8(row, 4));
+  found.blob_bytes = static_cast<std::uint64_t>(rows.int8(row, 5));
+  found.box = box_of(rows, row, 6);
+  return found;
+}
+
+Error no_collection(const std::string& id) {
+  return {ErrorCode::not_found, "there is no collection '" + id + "'"};
+}
+
+/// The features of `rows` (kFeatureColumns), still without header and solids.
+std::vector<StoredFeature> features_of(const Rows& rows, const std::string& collection) {
+  std::vector<StoredFeature> features(static_cast<std::size_t>(rows.size()));
+  for (int row = 0; row < rows.size(); ++row) {
+    StoredFeature& feature = features[static_cast<std::size_t>(row)];
+    feature.collection = collection;
+    feature.id = rows.text(row, 0);
+    feature.version = static_cast<std::uint64_t>(rows.int8(row, 1));
+    feature.type = rows.text(row, 2);
+    feature.format = rows.text(row, 3);
+    feature.srid = static_cast<std::uint32_t>(rows.int8(row, 4));
+    feature.header = rows.text(row, 5);  // its digest, until fill_headers()
+    feature.skeleton = rows.text(row, 6);
+    feature.box = box_of(rows, row, 7);
+  }
+  return features;
+}
+
+/// Replaces digests by headers: each distinct one travels once.
+Status fill_headers(Connection& connection, std::vector<StoredFeature>& features) {
+  std::map<std::string, std::string> contents;
+  for (const StoredFeature& feature : features) contents.try_emplace(feature.header);
+  std::vector<ByteView> digests;
+  for (const auto& [digest, content] : contents) digests.push_back(as_bytes(digest));
+  const Result<Rows> rows = connection.run(
+      "SELECT digest, content FROM watertight.document_header WHERE digest = ANY($1)",
+      Parameters().bytea_array(digests));
+  if (!rows) return rows.error();
+  for (int row = 0; row < rows->size(); ++row) {
+    contents[std::string(rows->text(row, 0))] = rows->text(row, 1);
+  }
+  for (StoredFeature& feature : features) feature.header = contents.at(feature.header);
+  return Done{};
+}
+
+Status fill_solids(Connection& connection, const std::string& collection,
+                   std::vector<StoredFeature>& features) {
+  std::map<std::string_view, StoredFeature*> by_id;
+  std::vector<std::string_view> ids;
+  for (StoredFeature& feature : features) {
+    by_id[feature.id] = &feature;
+    ids.push_back(feature.id);
+  }
+  const Result<Rows> rows = connection.run(
+      "SELECT feature, object_id, geometry, ordinal, lod, blob, measures::text, report::text"
+      " FROM watertight.solid WHERE collection = $1 AND feature = ANY($2)"
+      " ORDER BY feature, position",
+      Parameters().text(collection).text_array(ids));
+  if (!rows) return rows.error();
+  for (int row = 0; row < rows->size(); ++row) {
+    const auto owner = by_id.find(rows->text(row, 0));
+    if (owner == by_id.end()) continue;
+    StoredSolid solid;
+    solid.object_id = rows->text(row, 1);
+    solid.geometry = static_cast<std::uint32_t>(rows->int8(row, 2));
+    solid.ordinal = static_cast<std::uint32_t>(rows->int8(row, 3));
+    solid.lod = rows->text(row, 4);
+    const ByteView blob = as_bytes(rows->text(row, 5));
+    solid.blob.assign(blob.begin(), blob.end());
+    solid.measures = rows->text(row, 6);
+    solid.report = rows->text(row, 7);
+    owner->second->solids.push_back(std::move(solid));
+  }
+  return Done{};
+}
+
+Status fill(Connection& connection, const std::string& collection,
+            std::vector<StoredFeature>& features) {
+  if (features.empty()) return Done{};
+  if (Status done = fill_headers(connection, features); !done) return done;
+  return fill_solids(connection, collection, features);
+}
+
+/// $1 collection and, with a box, $2 ... $7.
+Parameters filter_parameters(const FeatureQuery& query) {
+  Parameters parameters;
+  parameters.text(query.collection);
+  if (query.box) {
+    for (const double value : query.box->min) parameters.float8(value);
+    for (const double value : query.box->max) parameters.float8(value);
+  }
+  return parameters;
+}
+
+Result<Rows> page_rows(Connection& connection, const FeatureQuery& query, std::int64_t limit) {
+  Parameters parameters = filter_parameters(query);
+  parameters.text(query.after).int8(limit);
+  const char* const rest =
+      query.box ? " AND id > $8 ORDER BY id LIMIT $9" : " AND id > $2 ORDER BY id LIMIT $3";
+  return connection.run(kFeatureColumns + matching(query) + rest, parameters);
+}
+
+Result<std::uint64_t> count_matched(Connection& connection, const FeatureQuery& query) {
+  const Result<Rows> rows =
+      connection.run("SELECT count(*)" + matching(query), filter_parameters(query));
+  if (!rows) return rows.error();
+  return static_cast<std::uint64_t>(rows->int8(0, 0));
+}
+
+}  // namespace
+
+Result<std::vector<StoredCollection>> read_collections(Connection& connection) {
+  const Result<Rows> rows = connection.run(collections_where("true"));
+  if (!rows) return rows.error();
+  std::vector<StoredCollection> found;
+  for (int row = 0; row < rows->size(); ++row) found.push_back(collection_of(*rows, row));
+  return found;
+}
+
+Result<StoredCollection> read_collection(Connection& connection, const std::string& id) {
+  const Result<Rows> rows = connection.run(collections_where("c.id = $1"), Parameters().text(id));
+  if (!rows) return rows.error();
+  if (rows->size() == 0) return no_collection(id);
+  return collection_of(*rows, 0);
+}
+
+Result<StoredFeature> read_feature(Connection& connection, const std::string& collection,
+                                   const std::string& id) {
+  const Result<Rows> rows = connection.run(
+      std::string(kFeatureColumns) + " FROM watertight.feature WHERE collection = $1 AND id = $2",
+      Parameters().text(collection).text(id));
+  if (!rows) return rows.error();
+  if (rows->size() == 0) {
+    return Error{ErrorCode::not_found,
+                 "collection '" + collection + "' has no feature '" + id + "'"};
+  }
+  std::vector<StoredFeature> found = features_of(*rows, collection);
+  if (Status done = fill(connection, collection, found); !done) return std::move(done).error();
+  return std::move(found.front());
+}
+
+Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query) {
+  const std::uint64_t limit = std::min(query.limit, kLargestPage);
+  FeaturePage page;
+  const Result<std::uint64_t> matched = count_matched(connection, query);
+  if (!matched) return matched.error();
+  page.matched = *matched;
+  if (page.matched == 0) {
+    const Result<Rows> exists = connection.run("SELECT id FROM watertight.collection WHERE id = $1",
+                                               Parameters().text(query.collection));
+    if (!exists) return exists.error();
+    if (exists->size() == 0) return no_collection(query.collection);
+    return page;
+  }
+  if (limit == 0) return page;
+  // One more than asked for tells whether there is a next page.
+  const Result<Rows> rows = page_rows(connection, query, static_cast<std::int64_t>(limit) + 1);
+  if (!rows) return rows.error();
+  page.features = features_of(*rows, query.collection);
+  if (page.features.size() > limit) {
+    page.features.resize(limit);
+    page.next = page.features.back().id;
+  }
+  if (Status done = fill(connection, query.collection, page.features); !done) {
+    return std::move(done).error();
+  }
+  return page;
+}
+
+}  // namespace watertight

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Features as rows: the SQL of postgres_store, each function a part of one transaction that the
+// caller begins and ends. For postgres_store.cpp only.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "store/connection.h"
+#include "store/solid_store.h"
+
+namespace watertight {
+
+/// Ok when every feature can be kept as it is: ids present, short enough for an index and UTF-8
+/// without NUL, boxes finite, no feature or solid twice. Errors: invalid_argument, conflict.
+Status check_features(std::span<const StoredFeature> features);
+Status check_collection_id(const std::string& id);
+Status check_box(const StoredBox& box);
+/// False for an id that no stored feature can have.
+bool is_possible_id(const std::string& id);
+
+/// Writes headers, collections, features and solids; returns the versions in order.
+/// Requires check_features(). Errors: conflict when a feature's CRS is not its collection's.
+Result<std::vector<std::uint64_t>> write_features(Connection& connection,
+                                                  std::span<const StoredFeature> features);
+
+/// Errors: not_found.
+Result<Done> delete_feature(Connection& connection, const std::string& collection,
+                            const std::string& id);
+
+Result<std::vector<StoredCollection>> read_collections(Connection& connection);
+Result<StoredCollection> read_collection(Connection& connection, const std::string& id);
+Result<StoredFeature> read_feature(Connection& connection, const std::string& collection,
+                                   const std::string& id);
+Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query);
+
+}  // namespace watertight

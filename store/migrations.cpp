@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "store/migrations.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace watertight {
+namespace {
+
+struct Migration {
+  const char* name;
+  const char* statements[16];
+};
+
+constexpr Migration kMigrations[] = {
+    {"collections, features, solids",
+     {
+         R"(CREATE TABLE watertight.document_header (
+              digest bytea PRIMARY KEY,
+              content bytea NOT NULL))",
+         R"(COMMENT ON TABLE watertight.document_header IS
+              'What features of one document share, once each; digest is SHA-256 of content')",
+         R"(CREATE TABLE watertight.collection (
+              id text COLLATE "C" PRIMARY KEY CHECK (id ~ '^[A-Za-z0-9_.-]{1,64}$'),
+              srid bigint NOT NULL,
+              header bytea NOT NULL REFERENCES watertight.document_header,
+              created timestamptz NOT NULL DEFAULT now()))",
+         // One sequence for all features: a version is never used twice, not even by a feature that
+         // was deleted and stored again, so an old ETag can never match a new feature.
+         R"(CREATE SEQUENCE watertight.feature_version)",
+         R"(CREATE TABLE watertight.feature (
+              collection text COLLATE "C" NOT NULL REFERENCES watertight.collection,
+              id text COLLATE "C" NOT NULL CHECK (id <> ''),
+              version bigint NOT NULL DEFAULT nextval('watertight.feature_version'),
+              type text NOT NULL,
+              format text NOT NULL,
+              srid bigint NOT NULL,
+              header bytea NOT NULL REFERENCES watertight.document_header,
+              skeleton bytea NOT NULL,
+              solids bigint NOT NULL,
+              blob_bytes bigint NOT NULL,
+              min_x double precision, min_y double precision, min_z double precision,
+              max_x double precision, max_y double precision, max_z double precision,
+              PRIMARY KEY (collection, id),
+              CHECK (num_nulls(min_x, min_y, min_z, max_x, max_y, max_z) IN (0, 6)),
+              CHECK (min_x <= max_x AND min_y <= max_y AND min_z <= max_z)))",
+         R"(COMMENT ON TABLE watertight.feature IS
+              'One city object (or geometry): its document without the solids, and their box')",
+         // Finds candidates in x and y; the query compares the six numbers exactly.
+         R"(CREATE INDEX feature_box ON watertight.feature
+              USING gist (box(point(max_x, max_y), point(min_x, min_y))) WHERE min_x IS NOT NULL)",
+         R"(CREATE INDEX feature_header ON watertight.feature (header))",
+         R"(CREATE TABLE watertight.solid (
+              collection text COLLATE "C" NOT NULL,
+              feature text COLLATE "C" NOT NULL,
+              object_id text COLLATE "C" NOT NULL,
+              geometry bigint NOT NULL,
+              ordinal bigint NOT NULL,
+              position bigint NOT NULL,
+              lod text NOT NULL,
+              blob bytea NOT NULL,
+              measures jsonb,
+              report jsonb,
+              PRIMARY KEY (collection, feature, object_id, geometry, ordinal),
+              FOREIGN KEY (collection, feature) REFERENCES watertight.feature ON DELETE CASCADE))",
+         R"(ALTER TABLE watertight.solid ALTER COLUMN blob SET STORAGE EXTERNAL)",
+         R"(COMMENT ON TABLE watertight.solid IS
+              'The valid solids of a feature as blobs (wt_decode), in the order of position')",
+         // A write leaves its token here, so that after a connection was lost during COMMIT the
+         // writer can find out whether it happened. Rows older than a day are removed.
+         R"(CREATE TABLE watertight.write_receipt (
+              token bytea PRIMARY KEY,
+              written timestamptz NOT NULL DEFAULT now()))",
+         R"(CREATE INDEX write_receipt_age ON watertight.write_receipt (written))",
+     }},
+};
+constexpr std::int64_t kNewest = std::size(kMigrations);
+
+// Any number will do that no other program locks; this one is "watertig" in ASCII.
+constexpr const char* kLock = "SELECT pg_advisory_xact_lock(x'7761746572746967'::bigint)";
+
+/// The highest migration that was applied; 0 when there is none.
+Result<std::int64_t> applied(Connection& connection) {
+  const Result<Rows> known =
+      connection.run("SELECT 1::int8 WHERE to_regclass('watertight.migration') IS NOT NULL");
+  if (!known) return known.error();
+  if (known->size() == 0) return std::int64_t{0};
+  const Result<Rows> rows =
+      connection.run("SELECT coalesce(max(number), 0)::int8 FROM watertight.migration");
+  if (!rows) return rows.error();
+  return rows->int8(0, 0);
+}
+
+Error newer(std::int64_t found) {
+  return {ErrorCode::unsupported, "the database has schema " + std::to_string(found) +
+                                      ", this program knows " + std::to_string(kNewest) +
+                                      ": use the program that made it, or a newer one"};
+}
+
+Status run_all(Connection& connection, const Migration& migration) {
+  for (const char* statement : migration.statements) {
+    if (statement == nullptr) break;
+    if (const Result<Rows> done = connection.run(statement); !done) return done.error();
+  }
+  return Done{};
+}
+
+Status record(Connection& connection, std::int64_t number, const char* name) {
+  const Result<Rows> done =
+      connection.run("INSERT INTO watertight.migration (number, name) VALUES ($1, $2)",
+                     Parameters().int8(number).text(name));
+  if (!done) return done.error();
+  return Done{};
+}
+
+Status migrate_locked(Connection& connection) {
+  for (const char* statement :
+       {"BEGIN", kLock, "CREATE SCHEMA IF NOT EXISTS watertight",
+        "CREATE TABLE IF NOT EXISTS watertight.migration (number bigint PRIMARY KEY,"
+        " name text NOT NULL, applied timestamptz NOT NULL DEFAULT now())"}) {
+    if (const Result<Rows> done = connection.run(statement); !done) return done.error();
+  }
+  const Result<std::int64_t> found = applied(connection);
+  if (!found) return found.error();
+  if (*found > kNewest) return newer(*found);
+  for (std::int64_t number = *found + 1; number <= kNewest; ++number) {
+    const Migration& migration = kMigrations[number - 1];
+    if (const Status done = run_all(connection, migration); !done) return done;
+    if (const Status done = record(connection, number, migration.name); !done) return done;
+  }
+  if (const Result<Rows> done = connection.run("COMMIT"); !done) return done.error();
+  return Done{};
+}
+
+}  // namespace
+
+Status migrate(Connection& connection) {
+  const Result<std::int64_t> found = applied(connection);
+  if (!found) return found.error();
+  if (*found == kNewest) return Done{};
+  if (*found > kNewest) return newer(*found);
+  const Status done = migrate_locked(connection);
+  if (!done) connection.roll_back();
+  return done;
+}
+
+Status check_schema(Connection& connection) {
+  const Result<std::int64_t> found = applied(connection);
+  if (!found) return found.error();
+  if (*found > kNewest) return newer(*found);
+  if (*found < kNewest) return Error{ErrorCode::unavailable, "the database schema is not current"};
+  return Done{};
+}
+
+}  // namespace watertight

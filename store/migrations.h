@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The numbered steps that bring a database to the schema this program works with. All objects live
+// in the schema `watertight`. A step that was released is never changed; the next one corrects it.
+#pragma once
+
+#include "base/result.h"
+#include "store/connection.h"
+
+namespace watertight {
+
+/// Applies the missing migrations in one transaction, under an advisory lock, so that any number of
+/// instances may start at the same time. Needs no right to create anything when none is missing.
+/// Errors: unsupported when the database was migrated by a newer program; unavailable.
+Status migrate(Connection& connection);
+
+/// Ok when the schema is the one of this program. Errors: unavailable, unsupported.
+Status check_schema(Connection& connection);
+
+}  // namespace watertight

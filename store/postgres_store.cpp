@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The store in PostgreSQL: pool, transactions and what happens when the connection breaks.
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+#include <utility>
+
+#include "store/connection.h"
+#include "store/feature_rows.h"
+#include "store/migrations.h"
+#include "store/solid_store.h"
+
+namespace watertight {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A restarted server replays its log and is back within seconds; after that the caller is told.
+constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::milliseconds kFirstPause{50};
+constexpr std::chrono::milliseconds kLongestPause{1000};
+constexpr double kLeaseSeconds = 30;
+constexpr double kPingLeaseSeconds = 2;
+// Receipts are swept at the start and after this many writes.
+constexpr std::uint64_t kWritesPerSweep = 1000;
+
+/// Waits longer each time, until the patience is used up.
+class Backoff {
+ public:
+  /// False when no time is left. Sleeps.
+  bool pause() {
+    const Clock::time_point now = Clock::now();
+    if (now + pause_ > deadline_) return false;
+    std::this_thread::sleep_for(pause_);
+    pause_ = std::min(pause_ * 2, kLongestPause);
+    return true;
+  }
+
+ private:
+  Clock::time_point deadline_ = Clock::now() + kPatience;
+  std::chrono::milliseconds pause_ = kFirstPause;
+};
+
+/// Concurrent transactions got into each other's way; the same one can succeed now. A foreign key
+/// fails (23503) only when a header was swept as unused while a writer was about to use it.
+bool is_collision(const std::string& state) {
+  return state == "40001" || state == "40P01" || state == "55P03" || state == "23503";
+}
+
+/// Names one write. Random, so that no two writes of any instance share one.
+using Token = std::array<std::uint8_t, 16>;
+
+Result<Token> new_token() {
+  Token token;
+  if (getrandom(token.data(), token.size(), 0) != static_cast<ssize_t>(token.size())) {
+    return Error{ErrorCode::unavailable, "the system gives no random numbers"};
+  }
+  return token;
+}
+
+class PostgresStore final : public SolidStore {
+ public:
+  PostgresStore(const std::string& connection, std::size_t connections)
+      : pool_(connection, connections) {}
+
+  Status open() {
+    return with_session<Done>([](Connection& session) { return migrate(session); });
+  }
+
+  Status ping() override {
+    Result<ConnectionPool::Lease> lease = pool_.lease(kPingLeaseSeconds);
+    if (!lease) return lease.error();
+    // A pooled session can be stale after a restart: one fresh attempt, and no waiting.
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      if (!lease->session) {
+        auto opened = Connection::open(pool_.connection());
+        if (const auto* failed = std::get_if<Connection::OpenFailure>(&opened)) {
+          return failed->error;
+        }
+        lease->session = std::move(std::get<std::unique_ptr<Connection>>(opened));
+      }
+      Status current = check_schema(*lease->session);
+      if (current || !lease->session->is_lost()) return current;
+      lease->session.reset();
+    }
+    return Error{ErrorCode::unavailable, "the database does not answer"};
+  }
+
+  Result<std::vector<StoredCollection>> collections() override {
+    return read<std::vector<StoredCollection>>(
+        [](Connection& session) { return read_collections(session); });
+  }
+
+  Result<StoredCollection> collection(const std::string& id) override {
+    if (!check_collection_id(id)) return no_such_collection();
+    return read<StoredCollection>(
+        [&](Connection& session) { return read_collection(session, id); });
+  }
+
+  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
+    if (features.empty()) return std::vector<std::uint64_t>{};
+    if (Status checked = check_features(features); !checked) return std::move(checked).error();
+    return write<std::vector<std::uint64_t>>(
+        [&](Connection& session) { return write_features(session, features); });
+  }
+
+  Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
+    if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
+    return read<StoredFeature>(
+        [&](Connection& session) { return read_feature(session, collection, id); });
+  }
+
+  Result<FeaturePage> list(const FeatureQuery& query) override {
+    if (query.box) {
+      if (Status checked = check_box(*query.box); !checked) return std::move(checked).error();
+    }
+    if (!check_collection_id(query.collection)) return no_such_collection();
+    if (!query.after.empty() && !is_possible_id(query.after)) {
+      return Error{ErrorCode::invalid_argument, "a page cannot start after an impossible id"};
+    }
+    return read<FeaturePage>([&](Connection& session) { return read_page(session, query); });
+  }
+
+  Status remove(const std::string& collection, const std::string& id) override {
+    if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
+    return write<Done>(
+        [&](Connection& session) { return delete_feature(session, collection, id); });
+  }
+
+ private:
+  template <class Value>
+  using Work = std::function<Result<Value>(Connection&)>;
+
+  static Error no_such_collection() {
+    return {ErrorCode::not_found, "there is no such collection"};
+  }
+
+  /// For ids that cannot be shown as text.
+  static Error no_such_feature(const std::string& collection) {
+    return {ErrorCode::not_found, check_collection_id(collection)
+                                      ? "collection '" + collection + "' has no such feature"
+                                      : "there is no such collection"};
+  }
+
+  /// Runs `work` with a session, again on a new one when the session was lost or transactions
+  /// collided. Requires work that may be run again.
+  template <class Value>
+  Result<Value> with_session(const Work<Value>& work) {
+    Result<ConnectionPool::Lease> lease = pool_.lease(kLeaseSeconds);
+    if (!lease) return lease.error();
+    for (Backoff backoff;;) {
+      if (!lease->session) {
+        auto opened = Connection::open(pool_.connection());
+        if (const auto* failed = std::get_if<Connection::OpenFailure>(&opened)) {
+          if (failed->may_come_back && backoff.pause()) continue;
+          return failed->error;
+        }
+        lease->session = std::move(std::get<std::unique_ptr<Connection>>(opened));
+      }
+      Result<Value> result = work(*lease->session);
+      if (result) return result;
+      const bool lost = lease->session->is_lost();
+      const bool collided = is_collision(lease->session->state());
+      if (lost) {
+        lease->session.reset();
+      } else {
+        lease->session->roll_back();
+      }
+      if ((!lost && !collided) || !backoff.pause()) return result;
+    }
+  }
+
+  /// One snapshot for all statements of `work`.
+  template <class Value>
+  Result<Value> read(const Work<Value>& work) {
+    return with_session<Value>([&](Connection& session) -> Result<Value> {
+      const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
+      if (!begun) return begun.error();
+      Result<Value> result = work(session);
+      if (!result) return result;
+      const Result<Rows> ended = session.run("COMMIT");
+      if (!ended) return ended.error();
+      return result;
+    });
+  }
+
+  /// One durable transaction, exactly once. Its token is written with it: if the connection breaks
+  /// during COMMIT, the next attempt's insert of the token waits for the first attempt's end and
+  /// then fails exactly when that one was committed.
+  template <class Value>
+  Result<Value> write(const Work<Value>& work) {
+    const Result<Token> token = new_token();
+    if (!token) return token.error();
+    std::optional<Value> in_doubt;  // the result of an attempt whose COMMIT was not answered
+    Result<Value> result = with_session<Value>([&](Connection& session) -> Result<Value> {
+      const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE");
+      if (!begun) return begun.error();
+      const Result<Rows> marked = session.run(
+          "INSERT INTO watertight.write_receipt (token) VALUES ($1)", Parameters().bytea(*token));
+      if (!marked) {
+        if (in_doubt && session.state() == "23505") {
+          session.roll_back();
+          return *in_doubt;
+        }
+        return marked.error();
+      }
+      Result<Value> value = work(session);
+      if (!value) return value;
+      const Result<Rows> ended = session.run("COMMIT");
+      if (ended) return value;
+      if (session.is_lost()) in_doubt = *value;
+      return ended.error();
+    });
+    if (!result && in_doubt && result.error().code == ErrorCode::unavailable) {
+      return Error{
+          ErrorCode::unavailable,
+          "the database went away while it committed; whether this was stored is not known (" +
+              result.error().message + ")"};
+    }
+    if (result && ++writes_ % kWritesPerSweep == 1) sweep();
+    return result;
+  }
+
+  /// Removes old receipts, and headers that no feature uses any more.
+  void sweep() {
+    const Result<Done> swept = with_session<Done>([](Connection& session) -> Status {
+      for (const char* statement :
+           {"DELETE FROM watertight.write_receipt WHERE written < now() - interval '1 day'",
+            "DELETE FROM watertight.document_header h WHERE NOT EXISTS"
+            " (SELECT FROM watertight.feature f WHERE f.header = h.digest) AND NOT EXISTS"
+            " (SELECT FROM watertight.collection c WHERE c.header = h.digest)"}) {
+        if (const Result<Rows> gone = session.run(statement); !gone) return gone.error();
+      }
+      return Done{};
+    });
+    static_cast<void>(swept);  // the next sweep takes what this one left
+  }
+
+  ConnectionPool pool_;
+  std::atomic<std::uint64_t> writes_{0};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
+                                                        std::size_t connections) {
+  auto store = std::make_unique<PostgresStore>(connection, connections);
+  if (Status opened = store->open(); !opened) return std::move(opened).error();
+  return std::unique_ptr<SolidStore>(std::move(store));
+}
+
+}  // namespace watertight

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fixture.h"
+
+#include <unistd.h>
+
+#include <catch2/catch_test_macros.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+namespace watertight::test {
+namespace {
+
+std::string new_folder() {
+  std::string name = "/tmp/watertight-test-XXXXXX";
+  return mkdtemp(name.data()) == nullptr ? std::string() : name;
+}
+
+/// Where the shared cluster lives: one for all test processes under ctest, else one per process.
+std::string shared_folder() {
+  if (const char* shared = std::getenv("WATERTIGHT_TEST_CLUSTER")) return shared;
+  static const TemporaryFolder own;
+  return own.path;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() : path(new_folder()) { REQUIRE(!path.empty()); }
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
+std::unique_ptr<Connection> session_in(const std::string& connection) {
+  auto opened = Connection::open(connection);
+  REQUIRE(std::holds_alternative<std::unique_ptr<Connection>>(opened));
+  return std::move(std::get<std::unique_ptr<Connection>>(opened));
+}
+
+std::string ask(const std::string& connection, const std::string& statement) {
+  const auto session = session_in(connection);
+  const Result<Rows> rows = session->run(statement);
+  INFO((rows ? std::string() : to_string(rows.error())));
+  REQUIRE(rows);
+  return rows->size() == 0 ? std::string() : std::string(rows->text(0, 0));
+}
+
+Database::Database() {
+  static int number = 0;
+  name_ = "t" + std::to_string(getpid()) + "_" + std::to_string(++number);
+  Result<std::unique_ptr<PrivateCluster>> started = PrivateCluster::start({shared_folder()});
+  INFO((started ? std::string() : to_string(started.error())));
+  REQUIRE(started);
+  cluster_ = std::move(*started);
+  test::ask(cluster_->connection(), "CREATE DATABASE " + name_ + " TEMPLATE template0");
+  connection_ = cluster_->connection() + " dbname=" + name_;
+}
+
+Database::~Database() {
+  const auto session = session_in(cluster_->connection());
+  const Result<Rows> gone = session->run("DROP DATABASE " + name_ + " WITH (FORCE)");
+  static_cast<void>(gone);
+}
+
+std::string Database::socket() const {
+  return ask("SELECT trim('\"' FROM current_setting('unix_socket_directories'))") +
+         "/.s.PGSQL.5432";
+}
+
+std::unique_ptr<SolidStore> Database::store(std::size_t connections) const {
+  Result<std::unique_ptr<SolidStore>> opened = open_postgres_store(connection_, connections);
+  INFO((opened ? std::string() : to_string(opened.error())));
+  REQUIRE(opened);
+  return std::move(*opened);
+}
+
+std::string Database::ask(const std::string& statement) const {
+  return test::ask(connection_, statement);
+}
+
+bool Database::end_sessions() const {
+  auto opened = Connection::open(cluster_->connection());
+  auto* session = std::get_if<std::unique_ptr<Connection>>(&opened);
+  if (session == nullptr) return false;
+  return (*session)
+      ->run("SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity WHERE datname = '" +
+            name_ + "'")
+      .has_value();
+}
+
+StoredFeature sample_feature(const std::string& id) {
+  StoredFeature feature;
+  feature.collection = "buildings";
+  feature.id = id;
+  feature.type = "Building";
+  feature.format = "city_json";
+  feature.srid = 7415;
+  feature.header = "{\"type\":\"CityJSON\"}";
+  feature.skeleton = std::string("{\"a\":\"\\u0000\"}\0\xFF\n", 17);
+  feature.box = StoredBox{{0, 0, 0}, {1, 1.5, 1e9}};
+  for (std::uint32_t ordinal = 0; ordinal < 2; ++ordinal) {
+    StoredSolid solid;
+    solid.object_id = id + "-part";
+    solid.geometry = 3;
+    solid.ordinal = 1 - ordinal;  // not sorted: the order of the vector must survive
+    solid.lod = "2.2";
+    solid.blob = {0, 1, 0xFF, static_cast<std::uint8_t>(ordinal)};
+    solid.measures = "{\"volume\": 12.25}";
+    solid.report = "{\"verdict\": \"valid\"}";
+    feature.solids.push_back(std::move(solid));
+  }
+  return feature;
+}
+
+}  // namespace watertight::test

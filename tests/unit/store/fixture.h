@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A private cluster and fresh databases in it for the store's tests.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "store/connection.h"
+#include "store/private_cluster.h"
+#include "store/solid_store.h"
+
+namespace watertight::test {
+
+/// An empty directory, removed with what is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::string path;
+};
+
+/// A fresh database in the cluster that the tests share.
+class Database {
+ public:
+  Database();
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  const std::string& connection() const { return connection_; }
+  /// Path of the server's socket.
+  std::string socket() const;
+  std::unique_ptr<SolidStore> store(std::size_t connections = 4) const;
+  /// The first column of the first row as text; fails the test on an error.
+  std::string ask(const std::string& statement) const;
+  /// Ends all sessions in the database but the asking one; false when the server is away.
+  bool end_sessions() const;
+
+ private:
+  std::unique_ptr<PrivateCluster> cluster_;
+  std::string name_;
+  std::string connection_;
+};
+
+std::unique_ptr<Connection> session_in(const std::string& connection);
+std::string ask(const std::string& connection, const std::string& statement);
+
+/// A feature with a box, two solids and bytes that no text encoding would survive.
+StoredFeature sample_feature(const std::string& id);
+
+}  // namespace watertight::test

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// PostgreSQL refuses root: as root the tests become an unprivileged user before anything else.
+#include <grp.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch_session.hpp>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+bool become_unprivileged() {
+  for (const char* name : {"postgres", "nobody"}) {
+    const passwd* user = getpwnam(name);
+    if (user == nullptr) continue;
+    const uid_t uid = user->pw_uid;
+    const gid_t gid = user->pw_gid;
+    const char* shared = std::getenv("WATERTIGHT_TEST_CLUSTER");
+    if (shared != nullptr && mkdir(shared, 0700) == 0 && chown(shared, uid, gid) != 0) return false;
+    return setgroups(0, nullptr) == 0 && setgid(gid) == 0 && setuid(uid) == 0 && chdir("/") == 0;
+  }
+  return false;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (geteuid() == 0 && !become_unprivileged()) {
+    std::fputs("the store's tests need a user that is not root\n", stderr);
+    return 1;
+  }
+  return Catch::Session().run(argc, argv);
+}

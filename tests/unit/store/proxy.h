@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A way to the server that breaks at a chosen moment: between client and server on Unix sockets.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+namespace watertight::test {
+
+class Proxy {
+ public:
+  enum class Cut {
+    none,
+    before_commit,  // the server never sees the next COMMIT
+    after_commit    // the server commits, its answer never arrives
+  };
+
+  /// Listens as `folder`/.s.PGSQL.5432 and passes on to `server` (a socket's path).
+  Proxy(const std::string& folder, const std::string& server);
+  ~Proxy();
+  Proxy(const Proxy&) = delete;
+  Proxy& operator=(const Proxy&) = delete;
+
+  /// Breaks the connection at the next COMMIT, once.
+  void cut_next(Cut cut) { cut_ = cut; }
+  bool has_cut() const { return cut_ == Cut::none; }
+
+ private:
+  void serve();
+  void pass(int client);
+
+  std::string server_;
+  int listener_ = -1;
+  std::atomic<Cut> cut_{Cut::none};
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace watertight::test

@@ -5,8 +5,10 @@
 // interval; a decoder that runs past the end says so.
 #include "codec/bit_coder.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 
 #include "base/assert.h"
 
@@ -35,6 +37,27 @@ constexpr std::size_t kLookahead = 4;
 std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones_of_65536) {
   const std::uint64_t range = std::uint64_t{high} - low;
   return low + static_cast<std::uint32_t>((range * ones_of_65536) >> 16);
+}
+
+/// The last bytes of an arithmetic stream: the decoder reads zeros past the end, so these are the
+/// shortest bytes b with low <= b000 <= high, and the smallest of them.
+struct Tail {
+  std::array<std::uint8_t, kLookahead> bytes{};
+  std::ptrdiff_t size = 0;
+};
+
+Tail shortest_tail(std::uint32_t low, std::uint32_t high) {
+  Tail tail;
+  std::uint64_t value = 0;
+  while (value < low || value > high) {
+    ++tail.size;
+    const std::uint64_t unit = std::uint64_t{1} << (32 - 8 * tail.size);
+    value = (std::uint64_t{low} + unit - 1) / unit * unit;
+  }
+  for (std::size_t i = 0; i < kLookahead; ++i) {
+    tail.bytes[i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
+  }
+  return tail;
 }
 
 }  // namespace
@@ -110,18 +133,8 @@ Bytes BitEncoder::finish() && {
     if (pending_count_ > 0) bytes_.push_back(static_cast<std::uint8_t>(pending_));
     return std::move(bytes_);
   }
-  // The decoder reads zeros past the end: find the shortest bytes b with low <= b000 <= high.
-  if (low_ == 0) return std::move(bytes_);
-  for (int count = 1; count <= 4; ++count) {
-    const int shift = 32 - 8 * count;
-    const std::uint64_t unit = std::uint64_t{1} << shift;
-    const std::uint64_t rounded = (std::uint64_t{low_} + unit - 1) / unit * unit;
-    if (rounded > high_) continue;
-    for (int i = 0; i < count; ++i) {
-      bytes_.push_back(static_cast<std::uint8_t>(rounded >> (24 - 8 * i)));
-    }
-    break;
-  }
+  const Tail tail = shortest_tail(low_, high_);
+  bytes_.insert(bytes_.end(), tail.bytes.begin(), tail.bytes.begin() + tail.size);
   return std::move(bytes_);
 }
 
@@ -195,7 +208,11 @@ std::uint64_t BitDecoder::unary(std::uint64_t limit, AdaptiveBit& model) {
 
 bool BitDecoder::is_finished() const {
   if (failed_) return false;
-  if (coding_ == BitCoding::arithmetic) return position_ >= bytes_.size();
+  if (coding_ == BitCoding::arithmetic) {
+    const Tail tail = shortest_tail(low_, high_);
+    const ByteView rest = bytes_.subspan(std::min(position_ - kLookahead, bytes_.size()));
+    return std::equal(rest.begin(), rest.end(), tail.bytes.begin(), tail.bytes.begin() + tail.size);
+  }
   if (bit_position_ == 0) return position_ == bytes_.size();
   const bool is_last = position_ + 1 == bytes_.size();
   return is_last && (bytes_[position_] >> bit_position_) == 0;

@@ -66,7 +66,7 @@ class BitDecoder {
   /// At most `limit`; fails beyond.
   std::uint64_t unary(std::uint64_t limit, AdaptiveBit& model);
   bool failed() const { return failed_; }
-  /// True if no read failed, all bytes were read and the padding bits are zero.
+  /// True if no read failed and the bytes end exactly as an encoder would have ended them.
   bool is_finished() const;
 
  private:

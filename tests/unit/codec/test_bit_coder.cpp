@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+
+#include "codec/bit_coder.h"
+#include "generated_solids.h"
+
+using namespace watertight;
+
+TEST_CASE("bits, numbers and runs read back in both codings") {
+  generated::Random random(11);
+  for (int round = 0; round < 300; ++round) {
+    const std::uint64_t skew = 1 + random.below(40);
+    std::vector<std::array<std::uint64_t, 3>> values;
+    for (std::uint64_t i = 0; i < random.below(200); ++i) {
+      const std::uint64_t size = 1 + random.below(1ULL << random.below(40));
+      values.push_back({random.below(skew) == 0 ? 1U : 0U, random.below(size), size});
+    }
+    for (const BitCoding coding : {BitCoding::plain, BitCoding::arithmetic}) {
+      BitEncoder encoder(coding);
+      AdaptiveBit written[2];
+      for (const auto& [bit, value, size] : values) {
+        encoder.bit(bit != 0, written[0]);
+        encoder.uniform(value, size);
+        encoder.unary(value % 5, written[1]);
+      }
+      const Bytes bytes = std::move(encoder).finish();
+      BitDecoder decoder(bytes, coding);
+      AdaptiveBit read[2];
+      for (const auto& [bit, value, size] : values) {
+        REQUIRE(decoder.bit(read[0]) == (bit != 0));
+        REQUIRE(decoder.uniform(size) == value);
+        REQUIRE(decoder.unary(4, read[1]) == value % 5);
+      }
+      CHECK(decoder.is_finished());
+    }
+  }
+}
+
+TEST_CASE("rare bits cost little") {
+  BitEncoder encoder(BitCoding::arithmetic);
+  AdaptiveBit model;
+  for (int i = 0; i < 10000; ++i) encoder.bit(i % 1000 == 999, model);
+  CHECK(std::move(encoder).finish().size() < 60);
+}
+
+TEST_CASE("a decoder past the end says so") {
+  for (const BitCoding coding : {BitCoding::plain, BitCoding::arithmetic}) {
+    const Bytes bytes{0x12, 0x34};
+    BitDecoder decoder(bytes, coding);
+    for (int i = 0; i < 100; ++i) static_cast<void>(decoder.uniform(256));
+    CHECK(decoder.failed());
+    CHECK_FALSE(decoder.is_finished());
+  }
+}
+
+TEST_CASE("a run beyond its limit fails") {
+  BitEncoder encoder(BitCoding::plain);
+  AdaptiveBit model;
+  encoder.unary(7, model);
+  const Bytes bytes = std::move(encoder).finish();
+  BitDecoder decoder(bytes, BitCoding::plain);
+  static_cast<void>(decoder.unary(6, model));
+  CHECK(decoder.failed());
+}

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The seven decomposition steps and the seven composition steps of Verbree & Si 2008, section 4.1,
+// one test each.
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <set>
+
+#include "codec/compose.h"
+#include "codec/coordinates.h"
+#include "codec/decompose.h"
+#include "codec/face_marks.h"
+#include "generated_solids.h"
+
+using namespace watertight;
+
+namespace {
+
+BoundaryComplex complex_of(const CanonicalSolid& solid, const Certificate* certificate = nullptr) {
+  auto complex = create_cdt(solid, certificate);
+  if (!complex) FAIL(to_string(complex.error()));
+  return *complex;
+}
+
+MarkedFaces marked_of(const BoundaryComplex& complex) {
+  auto marked = mark_cdt_faces(complex);
+  if (!marked) FAIL(to_string(marked.error()));
+  return *marked;
+}
+
+CanonicalDelaunay delaunay_of(const BoundaryComplex& complex) {
+  auto delaunay = create_delaunay(complex);
+  if (!delaunay) FAIL(to_string(delaunay.error()));
+  return *delaunay;
+}
+
+/// A decomposition and the sections a decoder finds in its blob.
+struct Stored {
+  Decomposition parts;
+  BitmapSections sections;
+  explicit Stored(Decomposition from) : parts(std::move(from)) {
+    sections.vertices = parts.vertices;
+    sections.steiner = parts.steiner;
+    sections.bitmap_coding = parts.bitmap_coding;
+    sections.bitmap = parts.bitmap;
+    sections.unrecovered = parts.unrecovered;
+    if (parts.facets) {
+      sections.facet_coding = parts.facets->coding;
+      sections.facets = parts.facets->bytes;
+    }
+  }
+};
+
+Stored stored_schoenhardt(const Certificate* certificate) {
+  auto parts = decompose(canonical_form(generated::schoenhardt()), certificate);
+  if (!parts) FAIL(to_string(parts.error()));
+  return Stored(std::move(parts).value());
+}
+
+}  // namespace
+
+TEST_CASE("decomposition step 1: a CDT covers the boundary with triangles of its nodes") {
+  const CanonicalSolid box = canonical_form(generated::box());
+  const BoundaryComplex complex = complex_of(box);
+  CHECK(complex.points.size() == 8);
+  CHECK(complex.vertex_count == 8);
+  CHECK(complex.triangles.size() == 12);
+  std::vector<int> triangles_of(6, 0);
+  for (const Index facet : complex.facet_of) ++triangles_of[facet];
+  CHECK(triangles_of == std::vector<int>{2, 2, 2, 2, 2, 2});
+}
+
+TEST_CASE("decomposition step 1: with a certificate the nodes are its nodes, Steiner points last") {
+  const Certificate certificate = generated::schoenhardt_certificate();
+  const CanonicalSolid solid = canonical_form(generated::schoenhardt());
+  const BoundaryComplex complex = complex_of(solid, &certificate);
+  REQUIRE(complex.points.size() == 7);
+  CHECK(complex.vertex_count == 6);
+  CHECK(complex.points[6] == Point{10000.5, 10000.125, 4500});
+  CHECK(std::is_sorted(complex.points.begin(), complex.points.begin() + 6));
+  // The certificate speaks of source vertices, the complex of canonical ones.
+  for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
+    const auto ring = solid.boundary.solid().ring(complex.facet_of[i]);
+    Triangle sorted{ring[0], ring[1], ring[2]};
+    std::sort(sorted.begin(), sorted.end());
+    CHECK(complex.triangles[i] == sorted);
+  }
+}
+
+TEST_CASE("decomposition step 2: the nodes are stored apart, integers and doubles exactly") {
+  const Certificate certificate = generated::schoenhardt_certificate();
+  const BoundaryComplex complex =
+      complex_of(canonical_form(generated::schoenhardt()), &certificate);
+  Decomposition result;
+  store_nodes(complex, result);
+  const auto vertices = read_vertices(result.vertices, {});
+  const auto steiner = read_steiner_vertices(result.steiner, {});
+  REQUIRE(vertices);
+  REQUIRE(steiner);
+  CHECK(std::equal(vertices->begin(), vertices->end(), complex.points.begin()));
+  CHECK(vertices->size() == 6);
+  CHECK(*steiner == std::vector<Point>{complex.points[6]});
+  // z is an integer: a flag byte, two doubles and two bytes.
+  CHECK(result.steiner.size() == 1 + 1 + 8 + 8 + 2);
+}
+
+TEST_CASE("decomposition step 3: the CDT faces on the boundary are marked once each, in order") {
+  BoundaryComplex complex = complex_of(canonical_form(generated::box()));
+  const MarkedFaces marked = marked_of(complex);
+  CHECK(marked.triangles.size() == 12);
+  CHECK(std::is_sorted(marked.triangles.begin(), marked.triangles.end()));
+  complex.triangles.push_back(complex.triangles.front());
+  complex.facet_of.push_back(complex.facet_of.front());
+  const auto doubled = mark_cdt_faces(complex);
+  REQUIRE_FALSE(doubled);
+  CHECK(doubled.error().code == ErrorCode::not_encodable);
+}
+
+TEST_CASE("decomposition step 4: the Delaunay tetrahedralization of the nodes has ordered faces") {
+  const CanonicalDelaunay delaunay = delaunay_of(complex_of(canonical_form(generated::box())));
+  CHECK(delaunay.faces.size() == 18);
+  CHECK(std::is_sorted(delaunay.faces.begin(), delaunay.faces.end()));
+  for (const Triangle& face : delaunay.faces) CHECK((face[0] < face[1] && face[1] < face[2]));
+}
+
+TEST_CASE("decomposition step 5: a Delaunay face is marked if it is a marked CDT face") {
+  const BoundaryComplex complex = complex_of(canonical_form(generated::schoenhardt()));
+  const MarkedFaces marked = marked_of(complex);
+  const CanonicalDelaunay delaunay = delaunay_of(complex);
+  const std::vector<bool> marks = mark_delaunay_faces(marked, delaunay);
+  const std::set<Triangle> wanted(marked.triangles.begin(), marked.triangles.end());
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    CHECK(marks[i] == wanted.contains(delaunay.faces[i]));
+  }
+  CHECK(std::count(marks.begin(), marks.end(), true) == 4);
+}
+
+TEST_CASE("decomposition step 6: the bitmap is one bit per Delaunay face in either coding") {
+  for (const auto& [name, boundary] : generated::all(5)) {
+    INFO(name);
+    const BoundaryComplex complex = complex_of(canonical_form(boundary));
+    const CanonicalDelaunay delaunay = delaunay_of(complex);
+    const std::vector<bool> marks = mark_delaunay_faces(marked_of(complex), delaunay);
+    const Bytes plain = write_marks(BitCoding::plain, delaunay, marks);
+    CHECK(plain.size() == (delaunay.faces.size() + 7) / 8);
+    for (const BitCoding coding : {BitCoding::plain, BitCoding::arithmetic}) {
+      const auto back = read_marks(write_marks(coding, delaunay, marks), coding, delaunay);
+      REQUIRE(back);
+      CHECK(*back == marks);
+    }
+    Decomposition result;
+    store_bitmap(delaunay, marks, result);
+    CHECK(result.bitmap.size() <= plain.size());
+  }
+}
+
+TEST_CASE("decomposition step 7: marked CDT faces without a Delaunay face are listed") {
+  const BoundaryComplex complex = complex_of(canonical_form(generated::schoenhardt()));
+  const MarkedFaces marked = marked_of(complex);
+  const CanonicalDelaunay delaunay = delaunay_of(complex);
+  Decomposition result;
+  store_unrecovered_faces(marked, delaunay, result);
+  const auto unrecovered = read_face_list(result.unrecovered, complex.points.size());
+  REQUIRE(unrecovered);
+  CHECK(unrecovered->size() == 4);
+  for (const Triangle& face : *unrecovered) {
+    CHECK(std::binary_search(marked.triangles.begin(), marked.triangles.end(), face));
+    CHECK_FALSE(std::binary_search(delaunay.faces.begin(), delaunay.faces.end(), face));
+  }
+  Decomposition none;
+  const BoundaryComplex box = complex_of(canonical_form(generated::box()));
+  store_unrecovered_faces(marked_of(box), delaunay_of(box), none);
+  CHECK(none.unrecovered.empty());
+}
+
+TEST_CASE("composition step 1: the nodes are read, Steiner vertices after the vertices") {
+  const Certificate certificate = generated::schoenhardt_certificate();
+  const Stored stored = stored_schoenhardt(&certificate);
+  const auto nodes = read_nodes(stored.sections, {});
+  REQUIRE(nodes);
+  CHECK(nodes->vertex_count == 6);
+  CHECK(nodes->points == complex_of(canonical_form(generated::schoenhardt()), &certificate).points);
+  const auto refused = read_nodes(stored.sections, Limits{.vertices = 5});
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("composition step 2: the same nodes give the same Delaunay tetrahedralization") {
+  const Certificate certificate = generated::schoenhardt_certificate();
+  const auto nodes = read_nodes(stored_schoenhardt(&certificate).sections, {});
+  REQUIRE(nodes);
+  const auto delaunay = create_delaunay(*nodes);
+  REQUIRE(delaunay);
+  const CanonicalDelaunay encoder =
+      delaunay_of(complex_of(canonical_form(generated::schoenhardt()), &certificate));
+  CHECK(delaunay->faces == encoder.faces);
+  CHECK(delaunay->tetrahedra == encoder.tetrahedra);
+  Nodes flat = *nodes;
+  for (Point& p : flat.points) p.z = 0;
+  CHECK_FALSE(create_delaunay(flat));
+  Nodes huge = *nodes;
+  huge.points[0].x = -0x1p40;
+  CHECK(create_delaunay(huge).has_value());  // doubles with a Steiner point between the integers
+  huge.points.resize(6);
+  CHECK_FALSE(create_delaunay(huge));  // integers from 2^30
+}
+
+TEST_CASE("composition step 3: the bitmap read is the bitmap stored") {
+  const Stored stored = stored_schoenhardt(nullptr);
+  const BoundaryComplex complex = complex_of(canonical_form(generated::schoenhardt()));
+  const CanonicalDelaunay delaunay = delaunay_of(complex);
+  const auto marks = read_bitmap(stored.sections, delaunay);
+  REQUIRE(marks);
+  CHECK(*marks == mark_delaunay_faces(marked_of(complex), delaunay));
+  BitmapSections longer = stored.sections;
+  Bytes bytes(stored.parts.bitmap);
+  bytes.insert(bytes.end(), 5, 0);
+  longer.bitmap = bytes;
+  CHECK_FALSE(read_bitmap(longer, delaunay));
+}
+
+TEST_CASE("composition steps 4 and 5: the marked Delaunay faces in order are the surface") {
+  CanonicalDelaunay delaunay;
+  delaunay.faces = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  CHECK(create_surface(delaunay, {true, false, true, true}) ==
+        std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 2, 3}});
+}
+
+TEST_CASE("composition step 6: the unrecovered faces read are those stored") {
+  const Stored stored = stored_schoenhardt(nullptr);
+  const auto faces = read_unrecovered_faces(stored.sections, 6);
+  REQUIRE(faces);
+  CHECK(write_face_list(*faces) == stored.parts.unrecovered);
+  CHECK_FALSE(read_unrecovered_faces(stored.sections, 5));
+  const auto none = read_unrecovered_faces(BitmapSections{}, 6);
+  REQUIRE(none);
+  CHECK(none->empty());
+}
+
+TEST_CASE("composition step 7: surface and unrecovered faces close to the polyhedron") {
+  const Certificate certificate = generated::schoenhardt_certificate();
+  const Solid canonical = canonical_form(generated::schoenhardt()).boundary.solid();
+  for (const Certificate* used : {static_cast<const Certificate*>(nullptr), &certificate}) {
+    const Stored stored = stored_schoenhardt(used);
+    const auto composition = compose(stored.sections, {});
+    REQUIRE(composition);
+    CHECK(composition->marked_faces + composition->unrecovered_faces == 8);
+    auto solid = Solid::make(composition->arrays, canonical.lattice(), canonical.srid());
+    REQUIRE(solid);
+    auto boundary = OrientedBoundary::make(*solid);
+    REQUIRE(boundary);
+    CHECK(canonical_form(*boundary).boundary.solid() == canonical);
+  }
+  // A face that is marked and listed as unrecovered is no polyhedron.
+  const Stored stored = stored_schoenhardt(nullptr);
+  const auto nodes = read_nodes(stored.sections, {});
+  REQUIRE(nodes);
+  CHECK_FALSE(complete_boundary(stored.sections, *nodes, {{0, 1, 2}}, {{0, 1, 2}}, {}));
+}

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the decoder does with bytes that no encoder wrote. Every blob that decodes must be a
+// well-formed boundary that encodes again.
+#include <catch2/catch_test_macros.hpp>
+
+#include "codec/blob.h"
+#include "codec/blob_header.h"
+#include "codec/encode_boundary.h"
+#include "codec/facet_listing.h"
+#include "mutated_blobs.h"
+
+using namespace watertight;
+
+namespace {
+
+Bytes blob_of(const BlobHeader& header, const std::vector<Bytes>& sections) {
+  ByteWriter writer;
+  write_header(writer, header);
+  for (const Bytes& section : sections) {
+    writer.varint(section.size());
+    writer.append(section);
+  }
+  writer.u32(0);
+  return std::move(writer).bytes();
+}
+
+}  // namespace
+
+TEST_CASE("decode rejects every truncated prefix") {
+  for (const Bytes& blob : generated::seed_blobs(1)) {
+    for (std::size_t size = 0; size < blob.size(); ++size) {
+      const auto decoded = decode(ByteView(blob).first(size));
+      REQUIRE_FALSE(decoded);
+    }
+  }
+}
+
+TEST_CASE("decode rejects bytes after the blob") {
+  for (Bytes blob : generated::seed_blobs(1)) {
+    blob.push_back(0);
+    CHECK_FALSE(decode(blob));
+  }
+}
+
+TEST_CASE("a mutated blob is rejected or still a boundary that encodes again") {
+  generated::Random random(20261121);
+  const auto blobs = generated::seed_blobs(2);
+  int accepted = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Bytes blob = generated::mutated(blobs, random);
+    const auto decoded = decode(blob);
+    if (!decoded) continue;
+    ++accepted;
+    const auto boundary = OrientedBoundary::make(decoded->solid);
+    REQUIRE(boundary);
+    REQUIRE(encode_boundary(*boundary, decoded->info.acceptance, {.mode = Mode::raw}));
+  }
+  // Mutations that cancel out leave the blob as it was; nothing else passes the checksum.
+  CHECK(accepted < 1000);
+}
+
+TEST_CASE("limits are checked before anything is decoded") {
+  const auto blob = encode_boundary(generated::pierced_block(1), {}, {.mode = Mode::raw});
+  REQUIRE(blob);
+  for (const Limits& limits : {Limits{.bytes = 100}, Limits{.vertices = 15}, Limits{.facets = 9},
+                               Limits{.rings = 11}, Limits{.shells = 0}}) {
+    const auto decoded = decode(*blob, limits);
+    REQUIRE_FALSE(decoded);
+    CHECK(decoded.error().code == ErrorCode::limit_exceeded);
+  }
+  CHECK(decode(
+      *blob,
+      Limits{.bytes = blob->size(), .vertices = 16, .facets = 10, .rings = 12, .shells = 1}));
+}
+
+TEST_CASE("a count that its bytes cannot hold is refused without allocation") {
+  ByteWriter vertices;
+  vertices.u8(0);
+  vertices.varint(9'000'000);
+  vertices.u32(0);
+  ByteWriter facets;
+  facets.varint(9'000'000);
+  for (const Mode mode : {Mode::raw, Mode::bitmap}) {
+    BlobHeader header;
+    header.mode = mode;
+    const auto decoded = decode(blob_of(header, {vertices.bytes(), facets.bytes()}));
+    REQUIRE_FALSE(decoded);
+    CHECK(decoded.error().code == ErrorCode::malformed);
+  }
+}
+
+TEST_CASE("other versions, modes and flags are unsupported") {
+  const auto blob = encode_boundary(generated::box(), {}, {.mode = Mode::raw});
+  REQUIRE(blob);
+  const auto code_with = [&](std::size_t place, std::uint8_t value) {
+    Bytes changed = *blob;
+    changed[place] = value;
+    const auto decoded = decode(changed);
+    return decoded ? std::string("decoded") : std::string(to_string(decoded.error().code));
+  };
+  CHECK(code_with(0, 'X') == "malformed");
+  CHECK(code_with(2, 1) == "unsupported");
+  CHECK(code_with(3, 0x02) == "unsupported");
+  CHECK(code_with(4, 0x80) == "unsupported");
+  CHECK(code_with(4, kHasSteiner) == "unsupported");
+}
+
+TEST_CASE("a changed acceptance, lattice or order does not pass the checksum") {
+  const auto blob = encode_boundary(generated::box(), {}, {.mode = Mode::raw});
+  REQUIRE(blob);
+  const auto info = describe(*blob);
+  REQUIRE(info);
+  std::size_t decoded_changed = 0;
+  for (std::size_t i = 0; i < blob->size(); ++i) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      Bytes changed = *blob;
+      changed[i] = static_cast<std::uint8_t>(changed[i] ^ (1U << bit));
+      if (decode(changed)) ++decoded_changed;
+    }
+  }
+  CHECK(decoded_changed == 0);
+}
+
+TEST_CASE("listed facets must be canonical: one solid, one blob") {
+  SolidArrays arrays = generated::box().solid().arrays();
+  const auto canonical = canonical_form(generated::box());
+  const auto blob =
+      encode_boundary(canonical.boundary, {}, {.mode = Mode::raw, .keep_order = false});
+  REQUIRE(blob);
+  const auto info = describe(*blob);
+  REQUIRE(info);
+  // Swap two facets of the listing: all bytes but the order are right.
+  Bytes changed = *blob;
+  const auto listing = write_facet_listing(canonical.boundary.solid().arrays());
+  const std::size_t begin = blob->size() - 4 - listing.size();
+  REQUIRE(std::equal(listing.begin(), listing.end(), changed.begin() + static_cast<long>(begin)));
+  std::swap_ranges(changed.begin() + static_cast<long>(begin) + 2,
+                   changed.begin() + static_cast<long>(begin) + 7,
+                   changed.begin() + static_cast<long>(begin) + 7);
+  const auto decoded = decode(changed);
+  REQUIRE_FALSE(decoded);
+  CHECK(decoded.error().message.find("canonical order") != std::string::npos);
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// All pairs of triangles of a boundary that meet otherwise than in a common vertex or edge: the
+// self-intersection test of the paper, section 3.2. For the validator and the certificate.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "geometry/point.h"
+#include "geometry/triangle_triangle.h"
+
+namespace watertight {
+
+/// Two triangles that intersect, first < second.
+struct IntersectingPair {
+  Index first = 0;
+  Index second = 0;
+  ContactClass contact = ContactClass::crossing;
+  friend bool operator==(const IntersectingPair&, const IntersectingPair&) = default;
+};
+
+struct IntersectionOptions {
+  /// The search ends when this many pairs are found; 1 answers whether there is any.
+  std::uint64_t limit = 10'000;
+  /// Asked about every 2^16 box comparisons; true ends the search with ErrorCode::cancelled.
+  std::function<bool()> cancel = {};
+};
+
+/// All pairs whose contact is an intersection (is_intersection), sorted by first, then second. If
+/// the result has `limit` pairs, there may be more; which ones are found does not depend on
+/// anything but the input. Degenerate triangles (a repeated index, or points on one line) belong to
+/// no pair: callers report them by themselves. Witnesses: contact_witness().
+/// Requires indices in range; equal indices mean equal vertices.
+/// Errors: cancelled. Cost: O(n log n) for surfaces whose triangles are small beside the whole,
+/// O(n^2) box comparisons at worst.
+/// Source: the paper, section 3.2. Departures: boxes are split in two along an axis; a pair is
+/// reported only in the box that owns the low corner of the overlap of the triangles' boxes.
+Result<std::vector<IntersectingPair>> intersecting_pairs(std::span<const Point> points,
+                                                         std::span<const Triangle> triangles,
+                                                         const IntersectionOptions& options = {});
+
+}  // namespace watertight

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Integers and quotients of any length, rounded once to a double. Private to geometry/.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <cstdint>
+
+namespace watertight {
+
+/// numerator / denominator * 2^exponent as the nearest double (ties to even), infinity beyond the
+/// range. Requires denominator > 0 and |exponent| below 2^40.
+double nearest_quotient(mpz_class numerator, const mpz_class& denominator, std::int64_t exponent);
+
+}  // namespace watertight

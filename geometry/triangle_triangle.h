@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How two triangles meet, decided by orientation predicates alone: exact for any finite doubles.
+// For the self-intersection rule and the certificate.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "geometry/point.h"
+
+namespace watertight {
+
+/// What two triangles have in common. The first three are how the triangles of a boundary may
+/// meet; each of the others is an intersection in the sense of the paper, section 3.2: the common
+/// part is not a face of both. Ordered by severity.
+enum class ContactClass : std::uint8_t {
+  disjoint = 0,
+  shared_vertex,     // exactly one vertex of both (one index)
+  shared_edge,       // exactly one edge of both (two indices)
+  vertex_vertex,     // touching: two vertices of different index at one place
+  vertex_edge,       // touching: a vertex inside an edge
+  vertex_face,       // touching: a vertex inside the other triangle
+  edge_edge,         // touching: two edges cross at one point inside both
+  edge_overlap,      // touching: edges overlap along a segment
+  edge_face,         // touching: an edge, or a part, lies inside the other triangle
+  crossing,          // the insides cross along a segment
+  coplanar_overlap,  // the insides share an area
+  duplicate          // the same three points
+};
+
+/// The class as lower-case words, e.g. "vertex-edge".
+std::string_view to_string(ContactClass contact);
+
+/// True for what the triangles of a boundary must not do.
+inline bool is_intersection(ContactClass contact) { return contact > ContactClass::shared_edge; }
+
+/// Classifies two triangles. Vertices with one index are one vertex; equal points under different
+/// indices touch. Symmetric in the triangles, and independent of the order of their vertices.
+/// Requires indices in range and two triangles that are not degenerate (three different indices
+/// of points that are not on one line).
+/// Cost: at most 10 orientation tests; 1 for triangles with a common edge.
+/// Source: the paper, section 3.2, after Guigue and Devillers 2003.
+ContactClass classify_contact(std::span<const Point> points, const Triangle& first,
+                              const Triangle& second);
+
+/// A point that both triangles contain: the middle of what they have in common, computed in exact
+/// rationals and rounded once to the nearest doubles. For reports only, never for decisions.
+/// Requires two triangles that are not degenerate and not disjoint. Cost: some 50 microseconds.
+Point contact_witness(std::span<const Point> points, const Triangle& first, const Triangle& second);
+
+}  // namespace watertight

@@ -15,24 +15,25 @@ namespace watertight {
 /// The exact projection of a facet: the axis dropped is the one with the largest component of the
 /// exact doubled area vector (in world scale; ties x, y, z).
 struct Projection {
-  int axis = 2;             // 0 x, 1 y, 2 z: the dropped axis
-  bool is_mirrored = false; // the exterior ring turns clockwise in the projection of orient2d(axis)
+  int axis = 2;  // 0 x, 1 y, 2 z: the dropped axis
+  bool is_mirrored =
+      false;  // the exterior ring turns clockwise in the projection of orient2d(axis)
   bool is_degenerate = false;  // the area vector is exactly zero
 };
 Projection facet_projection(const Solid& solid, Index facet);
 
 enum class FacetState : std::uint8_t {
   triangulated,
-  degenerate,      // no area: nothing to triangulate
-  not_simple,      // rings cross, touch or nest wrongly in the projection: no triangulation
+  degenerate,  // no area: nothing to triangulate
+  not_simple,  // rings cross, touch or nest wrongly in the projection: no triangulation
 };
 
 /// Triangles of all facets, grouped by facet. Vertex order keeps the facet's orientation.
 struct FacetTriangles {
   std::vector<Triangle> triangles;
-  std::vector<Index> facet_of;       // triangle -> facet
-  std::vector<Index> first{0};       // facet -> first triangle; facet_count + 1 entries
-  std::vector<FacetState> state;     // per facet
+  std::vector<Index> facet_of;    // triangle -> facet
+  std::vector<Index> first{0};    // facet -> first triangle; facet_count + 1 entries
+  std::vector<FacetState> state;  // per facet
 };
 
 /// Requires merged vertices. Facets whose rings are not simple in projection get no triangles.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "delaunay/ladder.h"
 #include "geometry/valid_solid.h"
@@ -17,6 +18,8 @@ struct CertifyOptions {
   Proof proof = Proof::tetrahedralization;
   Limits limits;
   LadderOptions ladder;
+  /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
+  std::span<const Index> rounded = {};
 };
 
 /// A solid that passed, with what proves it.

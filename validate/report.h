@@ -37,8 +37,8 @@ struct Finding {
   std::optional<std::array<double, 3>> witness;  // world coordinates, correctly rounded
   std::optional<double> measured;
   std::optional<double> limit;
-  std::string unit;      // of measured and limit: "m", "degree", "facets", ...
-  std::string detail;    // one clause, lower case, for a person
+  std::string unit;        // of measured and limit: "m", "degree", "facets", ...
+  std::string detail;      // one clause, lower case, for a person
   bool uncertain = false;  // a finding of a lower level makes this one unreliable
 };
 
@@ -50,17 +50,17 @@ struct SkippedRule {
 
 struct Report {
   Verdict verdict = Verdict::undecided;
-  std::string undecided_reason;         // when undecided
-  std::vector<Finding> findings;        // ordered by level, then place
-  std::uint64_t findings_omitted = 0;   // beyond Limits::findings
+  std::string undecided_reason;        // when undecided
+  std::vector<Finding> findings;       // ordered by level, then place
+  std::uint64_t findings_omitted = 0;  // beyond Limits::findings
   std::vector<SkippedRule> not_run;
-  std::vector<int> first_level;         // the codes val3dity's cascade would give, sorted
+  std::vector<int> first_level;  // the codes val3dity's cascade would give, sorted
   Acceptance acceptance;
-  std::vector<std::string> notes;       // e.g. unit assumptions
-  std::vector<RungAttempt> attempts;    // of the CDT ladder
+  std::vector<std::string> notes;     // e.g. unit assumptions
+  std::vector<RungAttempt> attempts;  // of the CDT ladder
   Rung rung = Rung::none;
-  std::optional<Measures> measures;     // when the boundary is closed and triangulated
-  double seconds = 0;                   // wall; not part of the deterministic content
+  std::optional<Measures> measures;  // when the boundary is closed and triangulated
+  double seconds = 0;                // wall; not part of the deterministic content
 };
 
 /// The name of a code, e.g. 302 -> "SHELL_NOT_CLOSED"; "" for an unknown one.

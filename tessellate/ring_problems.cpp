@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tessellate/ring_problems.h"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+
+#include <CGAL/Exact_rational.h>
+
+#include "geometry/predicates.h"
+
+namespace watertight {
+namespace {
+
+/// Pairs of edges looked at per facet; beyond it the list of problems is not complete. About one
+/// second of work.
+constexpr std::uint64_t kMostPairs = 20'000'000;
+
+struct Edge {
+  Index ring = 0;      // within the facet
+  Index position = 0;  // of its first vertex in the ring
+  Index from = 0;
+  Index to = 0;
+  std::array<double, 2> min{};
+  std::array<double, 2> max{};
+};
+
+struct Contact {
+  Point witness;
+  bool is_at_shared_vertex = false;  // nothing but one vertex that both edges end in
+};
+
+class RingExaminer {
+ public:
+  RingExaminer(const Solid& solid, Index facet, std::size_t most)
+      : solid_(solid), vertices_(solid.vertices()), rings_(solid.rings_of(facet)), most_(most) {}
+
+  RingProblems examine(Index facet);
+
+ private:
+  std::span<const Index> ring(Index number) const { return solid_.ring(rings_.begin + number); }
+  bool choose_axis(Index facet);
+  void find_collapsed();
+  void find_same();
+  void collect_edges();
+  void find_contacts();
+  void examine_pair(const Edge& a, const Edge& b);
+  std::optional<Contact> neighbour_contact(const Edge& a, const Edge& b) const;
+  std::optional<Contact> contact(const Edge& a, const Edge& b) const;
+  Point crossing(const Edge& a, const Edge& b) const;
+  void find_nesting();
+  std::optional<bool> is_within(Index inner, Index outer, bool& is_mixed) const;
+  int side_of_ring(const Point& p, std::span<const Index> around) const;
+  void add(RingProblem problem);
+
+  double u(Index vertex) const { return vertices_[vertex][(axis_ + 1) % 3]; }
+  double v(Index vertex) const { return vertices_[vertex][(axis_ + 2) % 3]; }
+  bool is_same_in_plane(Index a, Index b) const { return u(a) == u(b) && v(a) == v(b); }
+  /// Never asks the predicate about a repeated point.
+  int turn(Index a, Index b, Index c) const {
+    if (is_same_in_plane(a, b) || is_same_in_plane(b, c) || is_same_in_plane(a, c)) return 0;
+    return orient2d(vertices_[a], vertices_[b], vertices_[c], axis_);
+  }
+  /// Requires q on the line of the edge.
+  bool is_between(Index q, const Edge& e) const {
+    return e.min[0] <= u(q) && u(q) <= e.max[0] && e.min[1] <= v(q) && v(q) <= e.max[1];
+  }
+
+  const Solid& solid_;
+  std::span<const Point> vertices_;
+  IndexRange rings_;
+  std::size_t most_;
+  int axis_ = 2;
+  std::vector<Edge> edges_;
+  std::vector<bool> is_left_out_;  // rings that are short, collapsed or a duplicate
+  RingProblems result_;
+};
+
+/// The axis of the facet's projection or, without an area, one along which a ring has a turn.
+bool RingExaminer::choose_axis(Index facet) {
+  const Projection projection = facet_projection(solid_, facet);
+  axis_ = projection.axis;
+  if (!projection.is_degenerate) return true;
+  for (Index r = 0; r < rings_.size(); ++r) {
+    if (is_left_out_[r]) continue;
+    const std::span<const Index> corners = ring(r);
+    for (axis_ = 0; axis_ < 3; ++axis_) {
+      for (std::size_t i = 2; i < corners.size(); ++i) {
+        if (turn(corners[i - 2], corners[i - 1], corners[i]) != 0) return true;
+      }
+    }
+  }
+  axis_ = 2;
+  return false;
+}
+
+void RingExaminer::add(RingProblem problem) {
+  if (result_.problems.size() < most_) {
+    result_.problems.push_back(problem);
+  } else {
+    result_.is_complete = false;
+  }
+}
+
+void RingExaminer::find_collapsed() {
+  is_left_out_.assign(rings_.size(), false);
+  for (Index r = 0; r < rings_.size(); ++r) {
+    const std::span<const Index> corners = ring(r);
+    if (corners.size() < 3) {
+      is_left_out_[r] = true;
+      continue;
+    }
+    const Index first = corners[0];
+    const auto second =
+        std::find_if(corners.begin(), corners.end(), [&](Index vertex) { return vertex != first; });
+    const bool is_line = std::all_of(second, corners.end(), [&](Index vertex) {
+      return vertex == first || vertex == *second ||
+             are_collinear(vertices_[first], vertices_[*second], vertices_[vertex]);
+    });
+    if (!is_line) continue;
+    is_left_out_[r] = true;
+    add({RingProblemKind::collapsed, r, kNone, kNone, kNone, vertices_[first]});
+  }
+}
+
+void RingExaminer::find_same() {
+  std::vector<std::pair<std::vector<Index>, Index>> sorted;
+  for (Index r = 0; r < rings_.size(); ++r) {
+    if (is_left_out_[r]) continue;
+    std::vector<Index> corners(ring(r).begin(), ring(r).end());
+    std::sort(corners.begin(), corners.end());
+    sorted.emplace_back(std::move(corners), r);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i].first != sorted[i - 1].first) continue;
+    const Index r = sorted[i].second;
+    is_left_out_[r] = true;
+    add({RingProblemKind::same_ring, r, kNone, sorted[i - 1].second, kNone,
+         vertices_[ring(r).front()]});
+  }
+}
+
+void RingExaminer::collect_edges() {
+  for (Index r = 0; r < rings_.size(); ++r) {
+    if (is_left_out_[r]) continue;
+    const std::span<const Index> corners = ring(r);
+    for (Index i = 0; i < corners.size(); ++i) {
+      Edge edge;
+      edge.ring = r;
+      edge.position = i;
+      edge.from = corners[i];
+      edge.to = corners[(i + 1) % corners.size()];
+      if (edge.from == edge.to) continue;
+      std::tie(edge.min[0], edge.max[0]) = std::minmax({u(edge.from), u(edge.to)});
+      std::tie(edge.min[1], edge.max[1]) = std::minmax({v(edge.from), v(edge.to)});
+      edges_.push_back(edge);
+    }
+  }
+}
+
+void RingExaminer::find_contacts() {
+  std::vector<std::size_t> order(edges_.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tie(edges_[a].min[0], a) < std::tie(edges_[b].min[0], b);
+  });
+  std::vector<std::size_t> active;
+  std::uint64_t pairs = 0;
+  for (const std::size_t number : order) {
+    const Edge& edge = edges_[number];
+    std::erase_if(active, [&](std::size_t a) { return edges_[a].max[0] < edge.min[0]; });
+    pairs += active.size();
+    if (pairs > kMostPairs || result_.problems.size() > most_) {
+      result_.is_complete = false;
+      return;
+    }
+    for (const std::size_t a : active) {
+      const Edge& other = edges_[a];
+      if (other.max[1] < edge.min[1] || edge.max[1] < other.min[1]) continue;
+      if (a < number) {
+        examine_pair(other, edge);
+      } else {
+        examine_pair(edge, other);
+      }
+    }
+    active.push_back(number);
+  }
+}
+
+/// Requires a before b in facet order.
+void RingExaminer::examine_pair(const Edge& a, const Edge& b) {
+  const bool is_same_ring = a.ring == b.ring;
+  const bool are_neighbours =
+      is_same_ring && (a.to == b.from || b.to == a.from) &&
+      (a.position + 1 == b.position || (a.position == 0 && b.position + 1 == ring(b.ring).size()));
+  const std::optional<Contact> found = are_neighbours ? neighbour_contact(a, b) : contact(a, b);
+  if (!found || (!is_same_ring && found->is_at_shared_vertex)) return;
+  add({is_same_ring ? RingProblemKind::self_contact : RingProblemKind::rings_meet, a.ring,
+       a.position, b.ring, b.position, found->witness});
+}
+
+/// Neighbours meet beyond their common vertex when they run over each other.
+std::optional<Contact> RingExaminer::neighbour_contact(const Edge& a, const Edge& b) const {
+  const Index joint = a.to == b.from ? a.to : a.from;
+  const Index end_of_a = a.to == joint ? a.from : a.to;
+  const Index end_of_b = b.to == joint ? b.from : b.to;
+  if (turn(end_of_a, joint, end_of_b) != 0) return std::nullopt;
+  if (is_between(end_of_a, b)) return Contact{vertices_[end_of_a], false};
+  if (is_between(end_of_b, a)) return Contact{vertices_[end_of_b], false};
+  return std::nullopt;
+}
+
+std::optional<Contact> RingExaminer::contact(const Edge& a, const Edge& b) const {
+  const int from_a = turn(b.from, b.to, a.from);
+  const int to_a = turn(b.from, b.to, a.to);
+  if (from_a * to_a > 0) return std::nullopt;
+  const int from_b = turn(a.from, a.to, b.from);
+  const int to_b = turn(a.from, a.to, b.to);
+  if (from_b * to_b > 0) return std::nullopt;
+  if (from_a * to_a < 0 && from_b * to_b < 0) return Contact{crossing(a, b), false};
+
+  // Some end lies on the other edge or at least on its line.
+  std::vector<Index> ends;
+  if (from_a == 0 && is_between(a.from, b)) ends.push_back(a.from);
+  if (to_a == 0 && is_between(a.to, b)) ends.push_back(a.to);
+  if (from_b == 0 && is_between(b.from, a)) ends.push_back(b.from);
+  if (to_b == 0 && is_between(b.to, a)) ends.push_back(b.to);
+  if (ends.empty()) return std::nullopt;
+  const auto is_end_of = [](Index vertex, const Edge& e) {
+    return vertex == e.from || vertex == e.to;
+  };
+  const bool is_one_vertex =
+      std::all_of(ends.begin(), ends.end(), [&](Index end) { return end == ends.front(); });
+  const Index end = *std::min_element(
+      ends.begin(), ends.end(), [&](Index x, Index y) { return vertices_[x] < vertices_[y]; });
+  return Contact{vertices_[end], is_one_vertex && is_end_of(end, a) && is_end_of(end, b)};
+}
+
+/// Requires edges that cross properly. The exact point on edge a, rounded once per coordinate.
+Point RingExaminer::crossing(const Edge& a, const Edge& b) const {
+  using Number = CGAL::Exact_rational;
+  const auto area = [&](Index p) {
+    return (Number(u(b.to)) - Number(u(b.from))) * (Number(v(p)) - Number(v(b.from))) -
+           (Number(v(b.to)) - Number(v(b.from))) * (Number(u(p)) - Number(u(b.from)));
+  };
+  const Number from = area(a.from);
+  const Number parameter = from / (from - area(a.to));
+  Point witness;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Number start(vertices_[a.from][axis]);
+    const Number way = Number(vertices_[a.to][axis]) - start;
+    witness[axis] = CGAL::to_double(Number(start + parameter * way)) + 0.0;
+  }
+  return witness;
+}
+
+/// +1 inside, -1 outside, 0 on the ring: the parity of the crossings of a ray along +u.
+int RingExaminer::side_of_ring(const Point& p, std::span<const Index> around) const {
+  const double pu = p[(axis_ + 1) % 3];
+  const double pv = p[(axis_ + 2) % 3];
+  bool is_inside = false;
+  Index from = around.back();
+  for (const Index to : around) {
+    if (u(to) == pu && v(to) == pv) return 0;
+    const bool is_level = v(from) == pv && v(to) == pv;
+    if (is_level && std::min(u(from), u(to)) < pu && pu < std::max(u(from), u(to))) return 0;
+    if ((v(from) > pv) != (v(to) > pv)) {
+      const int side =
+          u(from) == pu && v(from) == pv ? 0 : orient2d(vertices_[from], vertices_[to], p, axis_);
+      if (side == 0) return 0;
+      if ((side > 0) == (v(to) > v(from))) is_inside = !is_inside;
+    }
+    from = to;
+  }
+  return is_inside ? 1 : -1;
+}
+
+/// Whether ring `inner` lies within ring `outer`; `is_mixed` when parts lie on both sides.
+std::optional<bool> RingExaminer::is_within(Index inner, Index outer, bool& is_mixed) const {
+  const std::span<const Index> corners = ring(inner);
+  std::optional<bool> result;
+  is_mixed = false;
+  const auto note = [&](int side) {
+    if (side == 0) return;
+    if (result && *result != (side > 0)) is_mixed = true;
+    result = side > 0;
+  };
+  for (const Index vertex : corners) note(side_of_ring(vertices_[vertex], ring(outer)));
+  Index from = corners.back();
+  for (const Index to : corners) {
+    Point middle;
+    bool is_exact = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = vertices_[from][axis];
+      const double b = vertices_[to][axis];
+      middle[axis] = a + (b - a) / 2;
+      is_exact = is_exact && middle[axis] - a == b - middle[axis] && (b - a) + a == b;
+    }
+    if (is_exact) note(side_of_ring(middle, ring(outer)));
+    from = to;
+  }
+  return result;
+}
+
+/// Requires rings that share at most vertices.
+void RingExaminer::find_nesting() {
+  for (Index inner = 1; inner < rings_.size(); ++inner) {
+    if (is_left_out_[inner]) continue;
+    const Point& witness = vertices_[ring(inner).front()];
+    for (Index outer = 0; outer < rings_.size(); ++outer) {
+      if (outer == inner || is_left_out_[outer]) continue;
+      bool is_mixed = false;
+      const std::optional<bool> within = is_within(inner, outer, is_mixed);
+      if (is_mixed) {
+        if (outer < inner) add({RingProblemKind::rings_meet, inner, kNone, outer, kNone, witness});
+      } else if (within && outer == 0 && !*within) {
+        add({RingProblemKind::outside_exterior, inner, kNone, outer, kNone, witness});
+      } else if (within && outer != 0 && *within) {
+        add({RingProblemKind::nested, inner, kNone, outer, kNone, witness});
+      }
+    }
+  }
+}
+
+RingProblems RingExaminer::examine(Index facet) {
+  if (rings_.size() == 0) return result_;
+  find_collapsed();
+  find_same();
+  if (choose_axis(facet)) {
+    collect_edges();
+    find_contacts();
+    if (result_.is_complete && result_.problems.empty() && !is_left_out_[0]) find_nesting();
+  }
+  auto& problems = result_.problems;
+  const auto key = [](const RingProblem& p) {
+    return std::tie(p.ring, p.kind, p.edge, p.other_ring, p.other_edge);
+  };
+  std::sort(problems.begin(), problems.end(),
+            [&](const RingProblem& a, const RingProblem& b) { return key(a) < key(b); });
+  // One point of contact is found once by each pair of edges that end there: keep the first.
+  std::vector<RingProblem> kept;
+  std::vector<std::tuple<RingProblemKind, Index, Index, Point>> seen;
+  for (const RingProblem& p : problems) seen.emplace_back(p.kind, p.ring, p.other_ring, p.witness);
+  std::sort(seen.begin(), seen.end());
+  std::vector<bool> is_taken(seen.size(), false);
+  for (const RingProblem& p : problems) {
+    const auto place = std::lower_bound(seen.begin(), seen.end(),
+                                        std::tuple(p.kind, p.ring, p.other_ring, p.witness));
+    const auto number = static_cast<std::size_t>(place - seen.begin());
+    if (p.kind == RingProblemKind::self_contact || p.kind == RingProblemKind::rings_meet) {
+      if (is_taken[number]) continue;
+      is_taken[number] = true;
+    }
+    kept.push_back(p);
+  }
+  problems = std::move(kept);
+  return result_;
+}
+
+}  // namespace
+
+RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most) {
+  return RingExaminer(solid, facet, most).examine(facet);
+}
+
+int ring_turn(const Solid& solid, Index ring, int axis) {
+  const std::span<const Index> corners = solid.ring(ring);
+  const std::span<const Point> vertices = solid.vertices();
+  const auto key = [&](std::size_t i) {
+    const Point& p = vertices[corners[i]];
+    return std::pair(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+  };
+  std::size_t smallest = 0;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (key(i) < key(smallest)) smallest = i;
+  }
+  const std::size_t count = corners.size();
+  return orient2d(vertices[corners[(smallest + count - 1) % count]], vertices[corners[smallest]],
+                  vertices[corners[(smallest + 1) % count]], axis);
+}
+
+}  // namespace watertight

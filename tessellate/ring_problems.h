@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Why a facet's rings bound no region: where rings meet themselves or each other, and which
+// interior rings lie outside the exterior ring or inside another. Decided exactly in the facet's
+// projection. For validate, on facets that triangulate_facets() did not triangulate.
+#pragma once
+
+#include <vector>
+
+#include "geometry/solid.h"
+#include "tessellate/facets.h"
+
+namespace watertight {
+
+enum class RingProblemKind : std::uint8_t {
+  collapsed,         // all points of the ring lie on one line
+  self_contact,      // a ring meets itself other than where neighbouring edges join
+  rings_meet,        // two rings share more than vertices, or cross in one
+  same_ring,         // two rings have the same vertices
+  outside_exterior,  // an interior ring lies outside the exterior ring
+  nested             // an interior ring lies inside another interior ring
+};
+
+struct RingProblem {
+  RingProblemKind kind = RingProblemKind::collapsed;
+  Index ring = 0;            // within the facet
+  Index edge = kNone;        // from this position of the ring to the next
+  Index other_ring = kNone;  // the other ring, or the same one
+  Index other_edge = kNone;
+  Point witness;  // lattice coordinates, each the nearest double to the exact point
+};
+
+struct RingProblems {
+  std::vector<RingProblem> problems;  // ordered by ring, edge, other ring, other edge
+  bool is_complete = true;            // false: more than `most`, or too many pairs to look at
+};
+
+/// Requires merged vertices. Rings below 3 vertices are left out and edges of no length ignored.
+/// Cost: O(n log n + pairs of edges that overlap in one axis), bounded; nesting O(rings x n).
+RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most);
+
+/// +1 if a simple ring turns left in the projection along `axis`, -1 right, 0 if it has a spike at
+/// its smallest vertex. Requires at least 3 vertices. Exact.
+int ring_turn(const Solid& solid, Index ring, int axis);
+
+}  // namespace watertight

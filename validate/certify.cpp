@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Based on: E. Verbree and H. Si, Validation and Storage of Polyhedra through Constrained Delaunay
+// Tetrahedralization, 2008, section 3.
+// Departures: exact tests first, all of them, and the tetrahedralization only for solids that pass
+// them (engines crash, hang or succeed on others); what an engine returns is proof only after our
+// own check (delaunay/certificate.h).
+#include "validate/certify.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "validate/rules.h"
+#include "validate/snap.h"
+
+namespace watertight {
+
+/// One run of all rules. The only maker of a ValidSolid.
+class Certifier {
+ public:
+  Certifier(const Solid& solid, const CertifyOptions& options)
+      : options_(options), examined_(solid, options.tolerances, options.limits) {}
+
+  Inspection run(EngineWorkers* workers) {
+    apply_exact_rules();
+    if (examined_.findings.has_errors()) {
+      examined_.findings.skip({kSolidInteriorDisconnected},
+                              "the tetrahedralization is built only for solids that pass the "
+                              "exact tests");
+      verdict_ = Verdict::invalid;
+    } else {
+      prove(workers);
+    }
+    return finish();
+  }
+
+  void add_note(std::string note) { inspection_.report.notes.push_back(std::move(note)); }
+
+ private:
+  void apply_exact_rules();
+  void measure_solid();
+  void prove(EngineWorkers* workers);
+  void climb(EngineWorkers* workers);
+  void report_property(const LadderResult& result);
+  void accept(std::optional<Certificate> certificate);
+  Inspection finish();
+
+  const CertifyOptions& options_;
+  ExaminedSolid examined_;
+  std::vector<ShellTopology> shells_;
+  Verdict verdict_ = Verdict::undecided;
+  Inspection inspection_;
+};
+
+void Certifier::apply_exact_rules() {
+  check_not_empty(examined_);
+  check_rings(examined_);
+  check_facets(examined_);
+  shells_ = check_shells(examined_);
+  const std::vector<Index> duplicate_of = check_duplicate_shells(examined_);
+  const ShellContacts contacts = check_intersections(examined_, duplicate_of);
+  check_solid(examined_, shells_, duplicate_of, contacts);
+  check_vertices(examined_);
+  check_rounded(examined_, options_.rounded);
+  measure_solid();
+}
+
+void Certifier::measure_solid() {
+  const auto& states = examined_.triangles().state;
+  const bool has_measures =
+      !shells_.empty() &&
+      std::all_of(shells_.begin(), shells_.end(),
+                  [](const ShellTopology& shell) { return shell.is_closed; }) &&
+      std::all_of(states.begin(), states.end(),
+                  [](FacetState state) { return state == FacetState::triangulated; });
+  if (!has_measures) return;
+  inspection_.report.measures = measure(examined_.solid(), examined_.triangles().triangles);
+}
+
+void Certifier::prove(EngineWorkers* workers) {
+  if (options_.proof == Proof::tetrahedralization) {
+    climb(workers);
+  } else if (examined_.solid().shell_count() == 1) {
+    examined_.findings.skip({kSolidInteriorDisconnected},
+                            "one closed 2-manifold shell that does not meet itself bounds one "
+                            "interior (Jordan-Brouwer); proof by boundary was asked for");
+    accept(std::nullopt);
+  } else {
+    inspection_.report.undecided_reason =
+        "several shells need a tetrahedralization; proof by boundary is for one shell only";
+  }
+}
+
+void Certifier::climb(EngineWorkers* workers) {
+  LadderResult result =
+      climb_ladder(examined_.solid(), examined_.triangles(), workers, options_.ladder);
+  Report& report = inspection_.report;
+  report.attempts = std::move(result.attempts);
+  if (result.certificate) {
+    report.rung = result.certificate->rung;
+    accept(std::move(result.certificate));
+  } else if (result.property != CertificateRefusal::none) {
+    report_property(result);
+  } else {
+    report.undecided_reason = "no rung of the tetrahedralization ladder finished";
+    if (!report.attempts.empty()) {
+      report.undecided_reason += "; the last attempt: " + report.attempts.back().outcome;
+    }
+  }
+}
+
+void Certifier::report_property(const LadderResult& result) {
+  Finding finding;
+  switch (result.property) {
+    case CertificateRefusal::interior_disconnected:
+      finding.code = kSolidInteriorDisconnected;
+      break;
+    case CertificateRefusal::cavity_mismatch:
+      finding.code = kInnerShellOutside;
+      break;
+    case CertificateRefusal::wrong_orientation:
+      finding.code = kWrongOrientationShell;
+      break;
+    default:
+      inspection_.report.undecided_reason =
+          "the tetrahedralization was refused: " + std::string(to_string(result.property));
+      return;
+  }
+  if (result.facet != kNone && result.facet < examined_.solid().facet_count()) {
+    finding.place = examined_.at_facet(result.facet);
+  }
+  finding.detail = result.detail;
+  examined_.findings.add(std::move(finding));
+  verdict_ = Verdict::invalid;
+}
+
+void Certifier::accept(std::optional<Certificate> certificate) {
+  auto boundary = OrientedBoundary::make(examined_.solid());
+  if (!boundary) {
+    inspection_.report.undecided_reason = to_string(boundary.error());
+    return;
+  }
+  const Acceptance acceptance{options_.tolerances, options_.proof, kRuleSet};
+  inspection_.certified =
+      Certified{ValidSolid(*std::move(boundary), acceptance), std::move(certificate)};
+  verdict_ = Verdict::valid;
+}
+
+Inspection Certifier::finish() {
+  Report& report = inspection_.report;
+  report.verdict = verdict_;
+  report.acceptance = {options_.tolerances, options_.proof, kRuleSet};
+  if (!examined_.unit_note().empty()) report.notes.push_back(examined_.unit_note());
+  report.first_level = first_level_codes(examined_.findings.all());
+  std::move(examined_.findings).move_to(report);
+  return std::move(inspection_);
+}
+
+Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Inspection inspection;
+  const double snap = options.tolerances.snap_metres;
+  if (!(snap > 0)) {
+    inspection = Certifier(solid, options).run(workers);
+  } else if (auto snapped = snap_vertices(solid, snap); snapped) {
+    Certifier certifier(snapped->solid, options);
+    certifier.add_note("the snap tolerance moved " + std::to_string(snapped->moved) +
+                       " vertices; the verdict is about the snapped solid");
+    inspection = certifier.run(workers);
+  } else {
+    inspection.report.undecided_reason = to_string(snapped.error());
+    inspection.report.acceptance = {options.tolerances, options.proof, kRuleSet};
+  }
+  inspection.report.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return inspection;
+}
+
+}  // namespace watertight

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validate/examined_solid.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace watertight {
+
+void FindingCollector::add(Finding finding) {
+  const FindingKind* kind = find_kind(finding.code);
+  if (kind != nullptr) finding.severity = kind->severity;
+  if (finding.severity == Severity::error) has_errors_ = true;
+  if (count_[finding.code]++ >= most_) {
+    ++omitted_;
+    return;
+  }
+  findings_.push_back(std::move(finding));
+}
+
+bool FindingCollector::has_errors_up_to_level(int level) const {
+  return std::any_of(count_.begin(), count_.end(), [&](const auto& entry) {
+    const FindingKind* kind = find_kind(entry.first);
+    return entry.second > 0 && kind != nullptr && kind->severity == Severity::error &&
+           finding_level(entry.first) <= level;
+  });
+}
+
+void FindingCollector::move_to(Report& report) && {
+  // kNone is the largest index, so a place without a facet would come last: order it first.
+  const auto whole_first = [&](const Finding& a, const Finding& b) {
+    const auto shift = [](Place p) {
+      return Place{p.shell + 1, p.facet + 1, p.ring + 1, p.vertex + 1};
+    };
+    return std::tuple(finding_level(a.code), shift(a.place), a.code,
+                      shift(a.other.value_or(Place{}))) <
+           std::tuple(finding_level(b.code), shift(b.place), b.code,
+                      shift(b.other.value_or(Place{})));
+  };
+  std::stable_sort(findings_.begin(), findings_.end(), whole_first);
+  if (findings_.size() > most_) {
+    omitted_ += findings_.size() - most_;
+    findings_.resize(most_);
+  }
+  report.findings = std::move(findings_);
+  report.findings_omitted = omitted_;
+  report.not_run = std::move(skipped_);
+}
+
+ExaminedSolid::ExaminedSolid(const Solid& submitted, const Tolerances& tolerances,
+                             const Limits& limits)
+    : findings(limits.findings),
+      submitted_(submitted),
+      merged_(merge_equal_vertices(submitted)),
+      triangles_(triangulate_facets(merged_.solid)),
+      tolerances_(tolerances),
+      limits_(limits),
+      shell_of_(submitted.facet_count(), 0),
+      first_submitted_(merged_.solid.vertex_count(), kNone),
+      is_faulty_(submitted.facet_count(), false) {
+  for (Index shell = 0; shell < submitted.shell_count(); ++shell) {
+    const IndexRange facets = submitted.facets_of(shell);
+    for (Index facet = facets.begin; facet < facets.end; ++facet) shell_of_[facet] = shell;
+  }
+  for (Index vertex = 0; vertex < submitted.vertex_count(); ++vertex) {
+    const Index merged = merged_.vertex_of[vertex];
+    if (merged != kNone && first_submitted_[merged] == kNone) first_submitted_[merged] = vertex;
+  }
+  const Lattice& lattice = solid().lattice();
+  std::array<double, 3> centre{};
+  if (solid().vertex_count() > 0) {
+    const Box box = solid().box();
+    const std::array<double, 3> low = lattice.world(box.min);
+    const std::array<double, 3> high = lattice.world(box.max);
+    for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = low[axis] / 2 + high[axis] / 2;
+  }
+  const AxisUnits units = axis_units(submitted.srid(), centre);
+  unit_note_ = units.note;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    metres_per_step_[a] = lattice.scale(axis) * units.metres_per_unit[a];
+  }
+}
+
+std::array<double, 3> ExaminedSolid::metres(const Point& from, const Point& to) const {
+  std::array<double, 3> result{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    result[a] = (to[axis] - from[axis]) * metres_per_step_[a];
+  }
+  return result;
+}
+
+std::array<double, 3> ExaminedSolid::metres(Index from, Index to) const {
+  return metres(solid().vertices()[from], solid().vertices()[to]);
+}
+
+Place ExaminedSolid::at_shell(Index shell) const {
+  Place place;
+  place.shell = shell;
+  return place;
+}
+
+Place ExaminedSolid::at_facet(Index facet) const {
+  Place place;
+  place.shell = shell_of_[facet];
+  place.facet = facet;
+  return place;
+}
+
+Place ExaminedSolid::at_ring(Index facet, Index ring_in_facet) const {
+  Place place = at_facet(facet);
+  place.ring = ring_in_facet;
+  return place;
+}
+
+Place ExaminedSolid::at_corner(Index facet, Index ring_in_facet, std::size_t position) const {
+  Place place = at_ring(facet, ring_in_facet);
+  const auto ring = submitted_.ring(submitted_.rings_of(facet).begin + ring_in_facet);
+  place.vertex = ring[position % ring.size()];
+  return place;
+}
+
+bool ExaminedSolid::is_shell_faulty(Index shell) const {
+  const IndexRange facets = solid().facets_of(shell);
+  for (Index facet = facets.begin; facet < facets.end; ++facet) {
+    if (is_faulty_[facet]) return true;
+  }
+  return false;
+}
+
+}  // namespace watertight

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the rules look at: the submitted solid with equal vertices merged, its canonical
+// triangulation, its units, and the findings so far. Internal to validate/.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "geometry/crs.h"
+#include "tessellate/facets.h"
+#include "validate/finding_kinds.h"
+#include "validate/report.h"
+
+namespace watertight {
+
+/// Gathers findings in the order in which rules make them; keeps at most a given number per code.
+class FindingCollector {
+ public:
+  explicit FindingCollector(std::uint64_t most) : most_(most) {}
+
+  /// Sets code's severity.
+  void add(Finding finding);
+  /// Counts findings that were not even built.
+  void omit(std::uint64_t count) { omitted_ += count; }
+  void skip(std::vector<int> codes, std::string reason) {
+    skipped_.push_back({std::move(codes), std::move(reason)});
+  }
+  const std::vector<Finding>& all() const { return findings_; }
+  bool has_errors() const { return has_errors_; }
+  bool has_errors_up_to_level(int level) const;
+
+  /// Findings ordered by level, code and place; at most `most`.
+  void move_to(Report& report) &&;
+
+ private:
+  std::uint64_t most_ = 0;
+  std::uint64_t omitted_ = 0;
+  bool has_errors_ = false;
+  std::map<int, std::uint64_t> count_;
+  std::vector<Finding> findings_;
+  std::vector<SkippedRule> skipped_;
+};
+
+class ExaminedSolid {
+ public:
+  /// Keeps a reference to `submitted`.
+  ExaminedSolid(const Solid& submitted, const Tolerances& tolerances, const Limits& limits);
+
+  const Solid& submitted() const { return submitted_; }
+  const Solid& solid() const { return merged_.solid; }
+  const std::vector<Index>& merged_of() const { return merged_.vertex_of; }
+  const FacetTriangles& triangles() const { return triangles_; }
+  const Tolerances& tolerances() const { return tolerances_; }
+  const Limits& limits() const { return limits_; }
+  const std::string& unit_note() const { return unit_note_; }
+  Index shell_of(Index facet) const { return shell_of_[facet]; }
+
+  /// Vector in metres from one merged vertex to another.
+  std::array<double, 3> metres(Index from, Index to) const;
+  std::array<double, 3> metres(const Point& from, const Point& to) const;
+
+  // Places, in the numbering of the submitted solid.
+  Place at_shell(Index shell) const;
+  Place at_facet(Index facet) const;
+  Place at_ring(Index facet, Index ring_in_facet) const;
+  /// The vertex at a position of a ring.
+  Place at_corner(Index facet, Index ring_in_facet, std::size_t position) const;
+  /// The first submitted vertex that became this merged one.
+  Index submitted_vertex(Index merged) const { return first_submitted_[merged]; }
+  std::array<double, 3> world(Index merged) const { return solid().world(merged); }
+  std::array<double, 3> world(const Point& p) const { return solid().lattice().world(p); }
+
+  /// Marks a facet as having an error at ring or facet level.
+  void mark_faulty(Index facet) { is_faulty_[facet] = true; }
+  bool is_faulty(Index facet) const { return is_faulty_[facet]; }
+  bool is_shell_faulty(Index shell) const;
+
+  FindingCollector findings;
+
+ private:
+  const Solid& submitted_;
+  MergedSolid merged_;
+  FacetTriangles triangles_;
+  Tolerances tolerances_;
+  Limits limits_;
+  std::array<double, 3> metres_per_step_{1, 1, 1};
+  std::string unit_note_;
+  std::vector<Index> shell_of_;
+  std::vector<Index> first_submitted_;
+  std::vector<bool> is_faulty_;
+};
+
+}  // namespace watertight

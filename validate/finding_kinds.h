@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The table of findings: number, name, severity, and what the number means. Each is described in
+// docs/findings.md. Numbers and names up to 799 are val3dity's; a number is never reused.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "validate/report.h"
+
+namespace watertight {
+
+enum FindingCode : int {
+  kTooFewPoints = 101,
+  kConsecutivePointsSame = 102,
+  kRingSelfIntersection = 104,
+  kIntersectionRings = 201,
+  kDuplicatedRings = 202,
+  kNonPlanarDistance = 203,
+  kNonPlanarNormals = 204,
+  kInteriorDisconnected = 205,
+  kInnerRingOutside = 206,
+  kInnerRingsNested = 207,
+  kOrientationRingsSame = 208,
+  kTooFewPolygons = 301,
+  kShellNotClosed = 302,
+  kNonManifold = 303,
+  kMultipleComponents = 305,
+  kShellSelfIntersection = 306,
+  kPolygonWrongOrientation = 307,
+  kIntersectionShells = 401,
+  kDuplicatedShells = 402,
+  kInnerShellOutside = 403,
+  kSolidInteriorDisconnected = 404,
+  kWrongOrientationShell = 405,
+  kNearDuplicateVertices = 801,
+  kUnusedVertices = 802,
+  kSliverFacet = 803,
+  kCoordinatesRounded = 805,
+  kEmptyPrimitive = 902
+};
+
+struct FindingKind {
+  int code = 0;
+  std::string_view name;
+  Severity severity = Severity::error;
+  std::string_view summary;  // one clause, lower case
+};
+
+/// All kinds this program reports, ascending by code.
+std::span<const FindingKind> finding_kinds();
+
+/// The kind of a code, or null.
+const FindingKind* find_kind(int code);
+
+/// The order in which findings are listed: 0 input, 1 ring, 2 facet, 3 shell, 4 solid, 9 warnings.
+int finding_level(int code);
+
+}  // namespace watertight

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Facets that intersect: within a shell (306) and between shells (401). Exact. Facets of one shell
+// may meet in common vertices and edges only; facets of different shells may also touch, in points
+// and along edges, but not cross or share an area.
+#include <algorithm>
+
+#include "geometry/box_partition.h"
+#include "validate/rules.h"
+
+namespace watertight {
+namespace {
+
+/// The first search stops at this many pairs: enough for any report. When all of them are allowed
+/// contacts of shells, the search is repeated with more.
+constexpr std::uint64_t kFirstLimit = 20'000;
+constexpr std::uint64_t kLastLimit = 200'000'000;
+
+struct FacetPair {
+  Index first = 0;
+  Index second = 0;
+  IntersectingPair worst;  // the most severe of their triangle pairs
+};
+
+class IntersectionExaminer {
+ public:
+  IntersectionExaminer(ExaminedSolid& examined, const std::vector<Index>& duplicate_of)
+      : examined_(examined),
+        duplicate_of_(duplicate_of),
+        vertices_(examined.solid().vertices()),
+        triangles_(examined.triangles().triangles) {
+    contacts_.is_touching.assign(examined.solid().shell_count(), false);
+  }
+
+  ShellContacts examine() {
+    mark_common_vertices();
+    std::uint64_t limit = kFirstLimit;
+    while (!search(limit) && limit < kLastLimit) limit *= 100;
+    std::sort(contacts_.intersecting.begin(), contacts_.intersecting.end());
+    auto& list = contacts_.intersecting;
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return std::move(contacts_);
+  }
+
+ private:
+  void mark_common_vertices();
+  bool search(std::uint64_t limit);
+  bool is_wrong(const FacetPair& pair);
+  void report(const FacetPair& pair);
+  Index facet_of(Index triangle) const { return examined_.triangles().facet_of[triangle]; }
+
+  ExaminedSolid& examined_;
+  const std::vector<Index>& duplicate_of_;
+  std::span<const Point> vertices_;
+  std::span<const Triangle> triangles_;
+  ShellContacts contacts_;
+};
+
+void IntersectionExaminer::mark_common_vertices() {
+  if (contacts_.is_touching.size() < 2) return;
+  std::vector<Index> owner(vertices_.size(), kNone);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Index shell = examined_.shell_of(facet_of(static_cast<Index>(t)));
+    for (const Index vertex : triangles_[t]) {
+      if (owner[vertex] == kNone) owner[vertex] = shell;
+      if (owner[vertex] == shell) continue;
+      contacts_.is_touching[shell] = contacts_.is_touching[owner[vertex]] = true;
+    }
+  }
+}
+
+/// True if the pair is a finding; notes contacts of shells.
+bool IntersectionExaminer::is_wrong(const FacetPair& pair) {
+  const Index a = examined_.shell_of(pair.first);
+  const Index b = examined_.shell_of(pair.second);
+  if (a == b) return true;
+  if (duplicate_of_[a] == b || duplicate_of_[b] == a ||
+      (duplicate_of_[a] != kNone && duplicate_of_[a] == duplicate_of_[b])) {
+    return false;
+  }
+  contacts_.is_touching[a] = contacts_.is_touching[b] = true;
+  if (pair.worst.contact < ContactClass::crossing) return false;
+  contacts_.intersecting.emplace_back(std::min(a, b), std::max(a, b));
+  return true;
+}
+
+void IntersectionExaminer::report(const FacetPair& pair) {
+  const Index a = examined_.shell_of(pair.first);
+  const Index b = examined_.shell_of(pair.second);
+  Finding finding;
+  finding.code = a == b ? kShellSelfIntersection : kIntersectionShells;
+  finding.place = examined_.at_facet(pair.first);
+  finding.other = examined_.at_facet(pair.second);
+  finding.witness = examined_.world(
+      contact_witness(vertices_, triangles_[pair.worst.first], triangles_[pair.worst.second]));
+  finding.detail = "the facets intersect (" + std::string(to_string(pair.worst.contact)) + ")";
+  finding.uncertain = examined_.is_faulty(pair.first) || examined_.is_faulty(pair.second);
+  examined_.findings.add(std::move(finding));
+}
+
+/// False if the search must be repeated with a higher limit.
+bool IntersectionExaminer::search(std::uint64_t limit) {
+  IntersectionOptions options;
+  options.limit = limit;
+  const auto found = intersecting_pairs(vertices_, triangles_, options);
+  if (!found) {
+    examined_.findings.skip({kShellSelfIntersection, kIntersectionShells},
+                            to_string(found.error()));
+    return true;
+  }
+  std::vector<FacetPair> pairs;
+  for (const IntersectingPair& pair : *found) {
+    const auto [first, second] = std::minmax(facet_of(pair.first), facet_of(pair.second));
+    // Triangles of one facet meet in common vertices and edges only, by construction.
+    if (first != second) pairs.push_back({first, second, pair});
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const FacetPair& a, const FacetPair& b) {
+    return std::tuple(a.first, a.second, -static_cast<int>(a.worst.contact), a.worst.first,
+                      a.worst.second) < std::tuple(b.first, b.second,
+                                                   -static_cast<int>(b.worst.contact),
+                                                   b.worst.first, b.worst.second);
+  });
+  pairs.erase(std::unique(pairs.begin(), pairs.end(),
+                          [](const FacetPair& a, const FacetPair& b) {
+                            return a.first == b.first && a.second == b.second;
+                          }),
+              pairs.end());
+  std::erase_if(pairs, [&](const FacetPair& pair) { return !is_wrong(pair); });
+  const bool is_cut_off = found->size() >= limit;
+  if (pairs.empty() && is_cut_off && limit < kLastLimit) return false;
+  for (const FacetPair& pair : pairs) report(pair);
+  if (is_cut_off) {
+    examined_.findings.skip({kShellSelfIntersection, kIntersectionShells},
+                            "the search stopped after " + std::to_string(limit) +
+                                " pairs of triangles; there may be more");
+  }
+  return true;
+}
+
+}  // namespace
+
+ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of) {
+  const auto& states = examined.triangles().state;
+  const auto place = std::find_if(states.begin(), states.end(), [](FacetState state) {
+    return state != FacetState::triangulated;
+  });
+  if (place != states.end()) {
+    examined.findings.skip({kShellSelfIntersection, kIntersectionShells},
+                           "not for facets whose rings bound no region (first: facet " +
+                               std::to_string(place - states.begin()) + ")");
+  }
+  return IntersectionExaminer(examined, duplicate_of).examine();
+}
+
+}  // namespace watertight

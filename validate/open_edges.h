@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Edges that only one facet meets: T-junctions among them, and the borders they form. Internal to
+// validate/.
+#pragma once
+
+#include <vector>
+
+#include "validate/edge_table.h"
+
+namespace watertight {
+
+/// A vertex inside an edge of another facet.
+struct TJunction {
+  EdgeUse edge;
+  EdgeUse across;  // an open edge that ends in the vertex
+  Index vertex = 0;
+};
+
+/// A connected group of open edges.
+struct Border {
+  std::vector<EdgeUse> edges;
+};
+
+struct OpenEdges {
+  std::vector<TJunction> junctions;  // in edge order, along each edge
+  std::vector<Border> borders;       // of the edges that T-junctions do not explain
+  bool is_complete = true;           // false: too many pairs to look for all T-junctions
+};
+
+/// Requires edges that are each used once. Exact. Cost: O(n log n + pairs that overlap along the
+/// longest axis), bounded.
+OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open);
+
+}  // namespace watertight

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The rules, one function per group. Each looks at an examined solid and adds findings; none
+// depends on another having passed, but for what it says. Order of calls: as listed. Internal to
+// validate/.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "validate/examined_solid.h"
+
+namespace watertight {
+
+/// 902.
+void check_not_empty(ExaminedSolid& examined);
+/// 101, 102, 104 and, because they come out of the same search, 201, 202, 206, 207.
+void check_rings(ExaminedSolid& examined);
+/// 203, 204, 205, 208.
+void check_facets(ExaminedSolid& examined);
+
+/// What is known of a shell's topology after check_shells.
+struct ShellTopology {
+  bool is_closed = false;    // every edge is met exactly twice
+  bool is_manifold = false;  // edges and vertices
+  bool is_oriented = false;  // neighbouring facets turn the same way
+  bool is_connected = false;
+  bool is_sound() const { return is_closed && is_manifold && is_oriented && is_connected; }
+};
+
+/// 301, 302, 303, 305, 307.
+std::vector<ShellTopology> check_shells(ExaminedSolid& examined);
+/// 402. Returns for each shell the earlier shell that equals it, or kNone.
+std::vector<Index> check_duplicate_shells(ExaminedSolid& examined);
+
+/// Two shells, the smaller first.
+using ShellPair = std::pair<Index, Index>;
+
+struct ShellContacts {
+  std::vector<ShellPair> intersecting;  // facets cross or overlap; sorted
+  std::vector<bool> is_touching;        // per shell: has a point in common with another
+};
+
+/// 306 and 401: facets that intersect. Facets of different shells may touch in points and edges;
+/// duplicate shells are not compared with each other.
+ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of);
+/// 401 (shells that cross in vertices and edges, nested cavities), 403, 405.
+void check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
+                 const std::vector<Index>& duplicate_of, const ShellContacts& contacts);
+/// Warnings: 801, 802, 803.
+void check_vertices(ExaminedSolid& examined);
+/// Warning 805: vertices that the reader rounded.
+void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded);
+
+/// The codes that val3dity, which stops at the first level that fails, would give.
+std::vector<int> first_level_codes(const std::vector<Finding>& findings);
+
+}  // namespace watertight

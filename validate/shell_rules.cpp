@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Shells by their edges and vertices alone: enough facets (301), closed (302), 2-manifold (303),
+// one component (305), facets turned alike (307). Exact: vertices are equal or they are not.
+#include <map>
+
+#include "geometry/measures.h"
+#include "validate/edge_table.h"
+#include "validate/open_edges.h"
+#include "validate/rules.h"
+
+namespace watertight {
+namespace {
+
+class ShellExaminer {
+ public:
+  ShellExaminer(ExaminedSolid& examined, Index shell)
+      : examined_(examined),
+        solid_(examined.solid()),
+        shell_(shell),
+        facets_(examined.solid().facets_of(shell)),
+        uses_(edge_uses(examined.solid(), shell)),
+        is_shell_faulty_(examined.is_shell_faulty(shell)) {
+    for (const EdgeUse& use : uses_) {
+      vertices_.push_back(use.low);
+      vertices_.push_back(use.high);
+    }
+    keep_distinct(vertices_);
+  }
+
+  ShellTopology examine();
+
+ private:
+  using EdgeSpan = std::span<const EdgeUse>;
+
+  void sort_edges();
+  void check_facet_count();
+  void report_crowded_edge(EdgeSpan edge);
+  void check_open();
+  void report_junction(const TJunction& junction);
+  void report_border(const Border& border);
+  void check_umbrellas();
+  void report_pinch(Index vertex, Index facet, std::size_t umbrellas);
+  std::string_view interior_connected();
+  void check_components();
+  void check_orientation();
+  void report_turned(const std::vector<Index>& members, const std::vector<char>& turn);
+
+  static void keep_distinct(std::vector<Index>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  /// Position of a vertex among the shell's.
+  Index number_of(Index vertex) const {
+    return static_cast<Index>(std::lower_bound(vertices_.begin(), vertices_.end(), vertex) -
+                              vertices_.begin());
+  }
+  Index local(Index facet) const { return facet - facets_.begin; }
+  bool is_faulty(EdgeSpan edge) const {
+    return std::any_of(edge.begin(), edge.end(),
+                       [&](const EdgeUse& use) { return examined_.is_faulty(use.facet); });
+  }
+  Place place_of(const EdgeUse& use) const {
+    return examined_.at_corner(use.facet, use.ring_in_facet, use.position);
+  }
+
+  ExaminedSolid& examined_;
+  const Solid& solid_;
+  Index shell_;
+  IndexRange facets_;
+  std::vector<EdgeUse> uses_;
+  std::vector<EdgeUse> open_;    // used once
+  std::vector<EdgeUse> pairs_;   // used twice: two entries each
+  std::vector<Index> vertices_;  // of the shell's edges, ascending
+  std::vector<Index> crowded_;   // vertices of edges used more than twice, ascending
+  bool is_shell_faulty_ = false;
+  std::string interior_connected_;
+  ShellTopology topology_;
+};
+
+void ShellExaminer::check_facet_count() {
+  if (facets_.size() >= 4) return;
+  Finding finding;
+  finding.code = kTooFewPolygons;
+  finding.place = examined_.at_shell(shell_);
+  finding.measured = static_cast<double>(facets_.size());
+  finding.limit = 4;
+  finding.unit = "facets";
+  finding.detail = "the shell has " + std::to_string(facets_.size()) + " facets";
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::sort_edges() {
+  topology_.is_manifold = true;
+  for_each_edge(uses_, [&](EdgeSpan edge) {
+    if (edge.size() == 1) {
+      open_.push_back(edge[0]);
+    } else if (edge.size() == 2) {
+      pairs_.insert(pairs_.end(), edge.begin(), edge.end());
+    } else {
+      topology_.is_manifold = false;
+      crowded_.push_back(edge[0].low);
+      crowded_.push_back(edge[0].high);
+      report_crowded_edge(edge);
+    }
+  });
+  keep_distinct(crowded_);
+  topology_.is_closed = open_.empty() && topology_.is_manifold && !uses_.empty();
+}
+
+void ShellExaminer::report_crowded_edge(EdgeSpan edge) {
+  Finding finding;
+  finding.code = kNonManifold;
+  finding.place = place_of(edge[0]);
+  finding.other = place_of(edge[edge.size() - 1]);
+  finding.witness = examined_.world(edge[0].low);
+  finding.measured = static_cast<double>(edge.size());
+  finding.limit = 2;
+  finding.unit = "facets";
+  finding.detail = "an edge is used by " + std::to_string(edge.size()) + " facets";
+  finding.uncertain = is_faulty(edge);
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::report_junction(const TJunction& junction) {
+  Finding finding;
+  finding.code = kShellNotClosed;
+  finding.place = place_of(junction.edge);
+  finding.place.vertex = examined_.submitted_vertex(junction.vertex);
+  finding.other = place_of(junction.across);
+  finding.witness = examined_.world(junction.vertex);
+  finding.detail = "T-junction: vertex " + std::to_string(finding.place.vertex) +
+                   " lies inside an edge of facet " + std::to_string(junction.edge.facet) +
+                   ", which does not have it";
+  finding.uncertain =
+      examined_.is_faulty(junction.edge.facet) || examined_.is_faulty(junction.across.facet);
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::report_border(const Border& border) {
+  const EdgeUse& first = border.edges.front();
+  Finding finding;
+  finding.code = kShellNotClosed;
+  finding.place = place_of(first);
+  finding.witness = examined_.world(first.low);
+  finding.measured = static_cast<double>(border.edges.size());
+  finding.limit = 0;
+  finding.unit = "edges";
+  finding.detail =
+      "a border of " + std::to_string(border.edges.size()) + " edges that only one facet uses";
+  finding.uncertain = is_faulty(border.edges);
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::check_open() {
+  if (open_.empty()) return;
+  const OpenEdges result = examine_open_edges(solid_, open_);
+  for (const TJunction& junction : result.junctions) report_junction(junction);
+  for (const Border& border : result.borders) report_border(border);
+  if (!result.is_complete) {
+    examined_.findings.skip({kShellNotClosed},
+                            "T-junctions were not all looked for: too many "
+                            "open edges in shell " +
+                                std::to_string(shell_));
+  }
+}
+
+/// Corners of the rings around a vertex, linked over edges, form one fan or umbrella or several.
+void ShellExaminer::check_umbrellas() {
+  const auto& offsets = solid_.arrays().ring_offsets;
+  const Index first_corner = offsets[solid_.arrays().facet_offsets[facets_.begin]];
+  const Index last_corner = offsets[solid_.arrays().facet_offsets[facets_.end]];
+  DisjointSets fans(last_corner - first_corner);
+  for (std::size_t i = 0; i < pairs_.size(); i += 2) {
+    const EdgeUse& a = pairs_[i];
+    const EdgeUse& b = pairs_[i + 1];
+    fans.join(a.corner_at_low() - first_corner, b.corner_at_low() - first_corner);
+    fans.join(a.corner_at_high() - first_corner, b.corner_at_high() - first_corner);
+  }
+  struct Fan {
+    Index vertex, root, facet;
+  };
+  std::vector<Fan> list;
+  for (const EdgeUse& use : uses_) {
+    const Index vertex = use.is_forward ? use.low : use.high;
+    list.push_back({vertex, fans.root(use.corner - first_corner), use.facet});
+  }
+  std::sort(list.begin(), list.end(), [](const Fan& a, const Fan& b) {
+    return std::tie(a.vertex, a.root, a.facet) < std::tie(b.vertex, b.root, b.facet);
+  });
+  for (std::size_t i = 0; i < list.size();) {
+    std::size_t umbrellas = 1;
+    std::size_t next = i + 1;
+    for (; next < list.size() && list[next].vertex == list[i].vertex; ++next) {
+      if (list[next].root != list[next - 1].root) ++umbrellas;
+    }
+    const bool is_crowded = std::binary_search(crowded_.begin(), crowded_.end(), list[i].vertex);
+    if (umbrellas > 1 && !is_crowded) report_pinch(list[i].vertex, list[i].facet, umbrellas);
+    i = next;
+  }
+}
+
+void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t umbrellas) {
+  topology_.is_manifold = false;
+  Finding finding;
+  finding.code = kNonManifold;
+  finding.place = examined_.at_facet(facet);
+  finding.place.vertex = examined_.submitted_vertex(vertex);
+  finding.witness = examined_.world(vertex);
+  finding.measured = static_cast<double>(umbrellas);
+  finding.limit = 1;
+  finding.unit = "umbrellas";
+  finding.detail = std::to_string(umbrellas) + " umbrellas of facets touch in a vertex";
+  if (topology_.is_closed) {
+    finding.detail += "; interior_connected: " + std::string(interior_connected());
+  }
+  finding.uncertain = is_shell_faulty_;
+  examined_.findings.add(std::move(finding));
+}
+
+/// For a closed shell that touches itself in vertices: parts that hang together over edges each
+/// bound a region. One part leaves the interior connected; several do when all but one are turned
+/// inward (cavities that touch the outside in a vertex).
+std::string_view ShellExaminer::interior_connected() {
+  if (!interior_connected_.empty()) return interior_connected_;
+  DisjointSets parts(facets_.size());
+  for (std::size_t i = 0; i < pairs_.size(); i += 2) {
+    parts.join(local(pairs_[i].facet), local(pairs_[i + 1].facet));
+  }
+  std::map<Index, std::vector<Triangle>> triangles;
+  const FacetTriangles& all = examined_.triangles();
+  for (Index facet = facets_.begin; facet < facets_.end; ++facet) {
+    auto& list = triangles[parts.root(local(facet))];
+    list.insert(list.end(), all.triangles.begin() + all.first[facet],
+                all.triangles.begin() + all.first[facet + 1]);
+  }
+  std::size_t outward = 0;
+  for (const auto& [root, list] : triangles) {
+    if (volume_sign(solid_.vertices(), list) > 0) ++outward;
+  }
+  interior_connected_ = triangles.size() == 1 || outward == 1 ? "yes" : "no";
+  return interior_connected_;
+}
+
+void ShellExaminer::check_components() {
+  DisjointSets vertices(vertices_.size());
+  for (const EdgeUse& use : uses_) vertices.join(number_of(use.low), number_of(use.high));
+  // A ring of a facet may hang together with the exterior ring by the facet alone.
+  std::vector<Index> anchor(facets_.size(), kNone);
+  for (const EdgeUse& use : uses_) {
+    Index& first = anchor[local(use.facet)];
+    if (first == kNone) first = number_of(use.low);
+    vertices.join(first, number_of(use.low));
+  }
+  std::map<Index, std::vector<Index>> components;  // root vertex -> facets
+  for (Index i = 0; i < anchor.size(); ++i) {
+    if (anchor[i] != kNone) components[vertices.root(anchor[i])].push_back(facets_.begin + i);
+  }
+  topology_.is_connected = components.size() == 1;
+  if (components.size() < 2) return;
+  const auto largest = std::max_element(
+      components.begin(), components.end(),
+      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  for (auto part = components.begin(); part != components.end(); ++part) {
+    if (part == largest) continue;
+    Finding finding;
+    finding.code = kMultipleComponents;
+    finding.place = examined_.at_corner(part->second.front(), 0, 0);
+    finding.witness = examined_.submitted().world(finding.place.vertex);
+    finding.measured = static_cast<double>(part->second.size());
+    finding.unit = "facets";
+    finding.detail = "a part of " + std::to_string(part->second.size()) +
+                     " facets shares no vertex with the rest of the shell";
+    finding.uncertain = is_shell_faulty_;
+    examined_.findings.add(std::move(finding));
+  }
+}
+
+void ShellExaminer::check_orientation() {
+  // Neighbours over each facet, in edge order.
+  struct Link {
+    Index from, to;
+    bool is_conflict;
+  };
+  std::vector<Link> links;
+  bool has_conflict = false;
+  for (std::size_t i = 0; i < pairs_.size(); i += 2) {
+    const EdgeUse& a = pairs_[i];
+    const EdgeUse& b = pairs_[i + 1];
+    const bool is_conflict = a.is_forward == b.is_forward;
+    has_conflict = has_conflict || is_conflict;
+    links.push_back({local(a.facet), local(b.facet), is_conflict});
+    links.push_back({local(b.facet), local(a.facet), is_conflict});
+  }
+  topology_.is_oriented = !has_conflict;
+  if (!has_conflict) return;
+  std::stable_sort(links.begin(), links.end(),
+                   [](const Link& a, const Link& b) { return a.from < b.from; });
+  std::vector<std::size_t> first(facets_.size() + 1, 0);
+  for (const Link& link : links) ++first[link.from + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+
+  std::vector<char> turn(facets_.size(), 0);  // +1 as the first facet of its part, -1 opposite
+  for (Index start = 0; start < facets_.size(); ++start) {
+    if (turn[start] != 0) continue;
+    turn[start] = 1;
+    std::vector<Index> members{start};
+    bool is_orientable = true;
+    for (std::size_t next = 0; next < members.size(); ++next) {
+      const Index facet = members[next];
+      for (std::size_t l = first[facet]; l < first[facet + 1]; ++l) {
+        const auto wanted = static_cast<char>(links[l].is_conflict ? -turn[facet] : turn[facet]);
+        if (turn[links[l].to] == 0) {
+          turn[links[l].to] = wanted;
+          members.push_back(links[l].to);
+        } else if (turn[links[l].to] != wanted) {
+          is_orientable = false;
+        }
+      }
+    }
+    if (is_orientable) {
+      report_turned(members, turn);
+      continue;
+    }
+    Finding finding;
+    finding.code = kNonManifold;
+    finding.place = examined_.at_facet(facets_.begin + start);
+    finding.detail = "the facets cannot be turned alike: the surface is not orientable";
+    finding.uncertain = is_shell_faulty_;
+    examined_.findings.add(std::move(finding));
+    topology_.is_manifold = false;
+  }
+}
+
+/// The smaller group of facets is the one that is turned over.
+void ShellExaminer::report_turned(const std::vector<Index>& members,
+                                  const std::vector<char>& turn) {
+  const auto opposite = static_cast<std::size_t>(
+      std::count_if(members.begin(), members.end(), [&](Index facet) { return turn[facet] < 0; }));
+  if (opposite == 0) return;
+  const char turned = opposite * 2 <= members.size() ? -1 : 1;
+  std::vector<Index> sorted = members;
+  std::sort(sorted.begin(), sorted.end());
+  for (const Index facet : sorted) {
+    if (turn[facet] != turned) continue;
+    Finding finding;
+    finding.code = kPolygonWrongOrientation;
+    finding.place = examined_.at_facet(facets_.begin + facet);
+    finding.detail = "the facet is turned over against most of its neighbours";
+    finding.uncertain = is_shell_faulty_;
+    examined_.findings.add(std::move(finding));
+  }
+}
+
+ShellTopology ShellExaminer::examine() {
+  check_facet_count();
+  if (uses_.empty()) return topology_;
+  sort_edges();
+  check_open();
+  check_umbrellas();
+  check_components();
+  check_orientation();
+  return topology_;
+}
+
+}  // namespace
+
+std::vector<ShellTopology> check_shells(ExaminedSolid& examined) {
+  std::vector<ShellTopology> result;
+  for (Index shell = 0; shell < examined.solid().shell_count(); ++shell) {
+    result.push_back(ShellExaminer(examined, shell).examine());
+  }
+  return result;
+}
+
+}  // namespace watertight

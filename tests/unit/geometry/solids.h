@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Solids and random sources for the tests of this folder.
+// Solids for the tests of this folder.
 #pragma once
 
 #include <catch2/catch_test_macros.hpp>
@@ -10,34 +10,9 @@
 #include <vector>
 
 #include "geometry/valid_solid.h"
+#include "tests/unit/geometry/random.h"
 
 namespace watertight::test {
-
-/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    state_ += 0x9e3779b97f4a7c15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31U);
-  }
-  /// Uniform enough in [0, end).
-  std::uint64_t below(std::uint64_t end) { return next() % end; }
-  std::int64_t between(std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(below(static_cast<std::uint64_t>(high - low + 1)));
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-template <class Value>
-void shuffle(std::vector<Value>& values, Random& random) {
-  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.below(i)]);
-}
 
 using Ring = std::vector<Index>;
 using Facet = std::vector<Ring>;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// An oracle for the triangle-triangle classification that shares nothing with it: the common part
+// is constructed in exact rationals (CGAL::intersection), and the class is read off its dimension
+// and off the barycentric coordinates of its middle. And a source of pairs, most of them
+// degenerate.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "geometry/triangle_triangle.h"
+#include "tests/unit/geometry/random.h"
+
+namespace watertight::test {
+
+struct TrianglePair {
+  std::array<Point, 6> points;
+  Triangle first;
+  Triangle second;
+};
+
+/// A pair of triangles on integers below 2^31 that are not degenerate: general, on tiny grids, in
+/// one plane, with common vertices, with equal vertices of different index, with vertices placed on
+/// vertices, edges, planes and insides of the other.
+TrianglePair random_pair(Random& random);
+
+/// The class by construction.
+ContactClass constructed_class(const TrianglePair& pair);
+
+/// Nothing if the classification agrees with the construction for both orders of the triangles and
+/// for shuffled vertices, and if the witness lies where it should; else what differs.
+std::optional<std::string> disagreement(const TrianglePair& pair, Random& random);
+
+}  // namespace watertight::test

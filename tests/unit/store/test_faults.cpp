@@ -7,6 +7,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
 #include <fstream>
+#include <random>
 #include <thread>
 
 #include "fixture.h"
@@ -22,16 +23,40 @@ pid_t postmaster_of(const std::string& data) {
   return pid;
 }
 
-/// Puts single features until `stop`; returns the ids that were acknowledged.
-std::vector<std::string> write_until(SolidStore& store, const std::string& prefix,
-                                     const std::atomic<bool>& stop) {
-  std::vector<std::string> acknowledged;
-  for (int i = 0; !stop; ++i) {
-    const StoredFeature feature = sample_feature(prefix + std::to_string(i));
-    if (store.put(std::span(&feature, 1))) acknowledged.push_back(feature.id);
+/// Puts single features in a thread of its own, as fast as the store takes them.
+class Writer {
+ public:
+  Writer(SolidStore& store, const std::string& prefix)
+      : thread_([this, &store, prefix] {
+          for (int i = 0; !stop_; ++i) {
+            const StoredFeature feature = sample_feature(prefix + std::to_string(i));
+            if (!store.put(std::span(&feature, 1))) continue;
+            acknowledged_.push_back(feature.id);
+            ++count_;
+          }
+        }) {}
+  std::size_t count() const { return count_; }
+  /// Waits for `more` acknowledged puts; false when they take more than a minute.
+  bool writes(std::size_t more) const {
+    const std::size_t goal = count_ + more;
+    for (int i = 0; i < 6000 && count_ < goal; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return count_ >= goal;
   }
-  return acknowledged;
-}
+  /// Ends; the ids that were acknowledged.
+  const std::vector<std::string>& stop() {
+    stop_ = true;
+    thread_.join();
+    return acknowledged_;
+  }
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::atomic<std::size_t> count_{0};
+  std::vector<std::string> acknowledged_;
+  std::thread thread_;
+};
 
 /// From now on each change of a feature leaves one row in `audit`, in the same transaction.
 void watch_features(const Database& database) {
@@ -65,19 +90,16 @@ TEST_CASE("a put whose session is cut at any moment happens exactly once") {
   const Database database;
   const auto store = database.store(2);
   watch_features(database);
-  std::atomic<bool> stop{false};
-  std::vector<std::string> acknowledged;
-  std::thread writer([&] { acknowledged = write_until(*store, "f", stop); });
-  int cuts = 0;
-  for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
-       std::chrono::steady_clock::now() < end;) {
+  Writer writer(*store, "f");
+  std::mt19937 random(5);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  for (int cuts = 0;
+       (cuts < 25 || writer.count() < 25) && std::chrono::steady_clock::now() < end;) {
     cuts += database.end_sessions() ? 1 : 0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20 + cuts % 17));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5 + random() % 100));
   }
-  stop = true;
-  writer.join();
-  CHECK(cuts > 20);
-  CHECK(acknowledged.size() > 20);
+  const std::vector<std::string>& acknowledged = writer.stop();
+  CHECK(acknowledged.size() >= 25);
   CHECK(database.ask("SELECT count(*)::text FROM audit") == std::to_string(acknowledged.size()));
   CHECK(database.ask("SELECT count(DISTINCT id)::text FROM audit") ==
         std::to_string(acknowledged.size()));
@@ -115,15 +137,10 @@ TEST_CASE("every acknowledged put survives kill -9 of the server, and the store 
   REQUIRE(cluster);
   const auto store = open_postgres_store((*cluster)->connection(), 3);
   REQUIRE(store);
-  std::atomic<bool> stop{false};
-  std::vector<std::string> acknowledged[2];
-  std::thread writers[2];
-  for (int w = 0; w < 2; ++w) {
-    writers[w] = std::thread(
-        [&, w] { acknowledged[w] = write_until(**store, "w" + std::to_string(w) + "-", stop); });
-  }
+  Writer first(**store, "first-");
+  Writer second(**store, "second-");
   for (int round = 0; round < 3; ++round) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    REQUIRE(first.writes(20));
     const pid_t before = postmaster_of(folder.path);
     REQUIRE(before > 0);
     REQUIRE(kill(before, SIGKILL) == 0);
@@ -133,12 +150,9 @@ TEST_CASE("every acknowledged put survives kill -9 of the server, and the store 
     }
     REQUIRE(postmaster_of(folder.path) != before);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  stop = true;
-  for (std::thread& writer : writers) writer.join();
-  for (const auto& ids : acknowledged) {
-    CHECK(ids.size() > 30);
-    for (const std::string& id : ids) {
+  CHECK(second.writes(5));
+  for (Writer* writer : {&first, &second}) {
+    for (const std::string& id : writer->stop()) {
       const auto got = (*store)->get("buildings", id);
       REQUIRE(got);
       CHECK(got->solids.size() == 2);

@@ -93,4 +93,8 @@ Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& op
 Result<std::string> write_city_json(const Document& document);
 Result<std::string> write_city_json_seq(const Document& document);
 
+/// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the
+/// finest decimal grid among them. Errors: unsupported for coordinates on no decimal grid.
+Result<Document> as_city_model(const Document& document);
+
 }  // namespace watertight

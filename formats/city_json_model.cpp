@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/city_json.h"
+#include "formats/numbers.h"
 
 namespace watertight {
 namespace {
@@ -44,7 +45,7 @@ Status read_axes(const Json& transform, std::string_view name, std::array<GridNu
     if (!is_number_value(value)) return wrong("not a number", pointer + pointer_token(axis));
     auto exact = exact_number(json_text(value));
     if (!exact) return wrong(exact.error().message, pointer + pointer_token(axis));
-    axes[axis] = *exact;
+    axes[axis] = exact->value;
   }
   return Done{};
 }

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "formats/numbers.h"
+
 namespace watertight {
 namespace {
 
@@ -255,7 +257,8 @@ class CitySax {
     } else {
       auto exact = exact_number(std::to_string(value));
       if (!exact) return fail(exact.error().code, exact.error().message);
-      decimal_[axis_] = *exact;
+      decimal_[axis_] = exact->value;
+      is_rounded_ = is_rounded_ || exact->is_rounded;
     }
     ++axis_;
     ++counters_.back();
@@ -267,7 +270,8 @@ class CitySax {
     auto exact = exact_number(text);
     if (!exact) return fail(exact.error().code, exact.error().message);
     if (model_.vertices.are_integers && !change_to_decimals()) return false;
-    decimal_[axis_++] = *exact;
+    decimal_[axis_++] = exact->value;
+    is_rounded_ = is_rounded_ || exact->is_rounded;
     ++counters_.back();
     return true;
   }
@@ -279,7 +283,7 @@ class CitySax {
       for (std::size_t axis = 0; axis < axes; ++axis) {
         auto exact = exact_number(std::to_string(from[axis]));
         if (!exact) return false;
-        to[axis] = *exact;
+        to[axis] = exact->value;
       }
       return true;
     };
@@ -294,6 +298,8 @@ class CitySax {
   }
 
   void add_vertex() {
+    if (is_rounded_) model_.vertices.rounded.push_back(static_cast<Index>(model_.vertices.size()));
+    is_rounded_ = false;
     if (model_.vertices.are_integers) {
       model_.vertices.integers.push_back(integer_);
     } else {
@@ -328,6 +334,7 @@ class CitySax {
   std::size_t axis_ = 0;
   std::array<std::int64_t, 3> integer_{};
   std::array<GridNumber, 3> decimal_{};
+  bool is_rounded_ = false;  // a number of the vertex that is open
 };
 
 Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, const Limits& limits) {
@@ -350,17 +357,6 @@ Result<Json> parse_json(std::string_view text, const Limits& limits) {
   auto model = parse(text, false, CityText::document, limits);
   if (!model) return std::move(model).error();
   return std::move(model->root);
-}
-
-Result<GridNumber> exact_number(std::string_view text) {
-  auto exact = parse_decimal(text);
-  if (exact || exact.error().code != ErrorCode::limit_exceeded) return exact;
-  double value = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    return exact;
-  }
-  return shortest_decimal(value);
 }
 
 }  // namespace watertight

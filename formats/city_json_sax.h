@@ -16,6 +16,7 @@
 #include "base/result.h"
 #include "formats/json.h"
 #include "geometry/lattice.h"
+#include "geometry/point.h"
 
 namespace watertight {
 
@@ -30,6 +31,7 @@ struct VertexList {
   bool is_present = false;
   std::vector<std::array<std::int64_t, 3>> integers;
   std::vector<std::array<GridNumber, 3>> decimals;
+  std::vector<Index> rounded;  // vertices with a number of more than 18 digits
   std::size_t size() const { return are_integers ? integers.size() : decimals.size(); }
 };
 
@@ -54,9 +56,5 @@ enum class CityText : std::uint8_t { document, skeleton };
 /// Errors: malformed with byte offset (syntax, UTF-8) or JSON Pointer (content); limit_exceeded.
 /// Cost: linear.
 Result<CityModel> parse_city_model(std::string_view text, CityText kind, const Limits& limits);
-
-/// A number of a JSON text as an exact decimal; one of more than 18 significant digits counts as
-/// the shortest decimal of its nearest double. Errors: malformed, limit_exceeded.
-Result<GridNumber> exact_number(std::string_view text);
 
 }  // namespace watertight

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "formats/city_json.h"
+#include "formats/surface.h"
 
 namespace watertight {
 namespace {
@@ -79,21 +80,6 @@ struct CutSolid {
   std::uint32_t object = 0;
   std::size_t boundary = 0;
 };
-
-// Renumbers the ring vertices in order of first use. `number_of` is kNone everywhere, before and
-// after.
-std::vector<Index> number_by_first_use(SolidArrays& arrays, std::vector<Index>& number_of) {
-  std::vector<Index> vertex_of;
-  for (Index& vertex : arrays.ring_vertices) {
-    if (number_of[vertex] == kNone) {
-      number_of[vertex] = static_cast<Index>(vertex_of.size());
-      vertex_of.push_back(vertex);
-    }
-    vertex = number_of[vertex];
-  }
-  for (const Index vertex : vertex_of) number_of[vertex] = kNone;
-  return vertex_of;
-}
 
 Status check_range(std::span<const BoundaryToken> tokens, std::size_t vertex_count) {
   for (std::size_t i = 0; i < tokens.size(); ++i) {
@@ -202,6 +188,9 @@ class FeatureLattice {
     if (!lattice) return located(lattice.error(), pointer);
     std::vector<bool> is_rounded(used.size(), false);
     for (const Index slot : lattice->rounded) is_rounded[slot] = true;
+    for (const Index vertex : model_.vertices.rounded) {
+      if (slot_of_[vertex] != kNone) is_rounded[slot_of_[vertex]] = true;
+    }
     for (const std::size_t i : members) {
       auto solid = make(cut[i], *lattice, is_rounded);
       if (!solid) return located(solid.error(), cut[i].source.pointer);

@@ -5,6 +5,7 @@
 
 #include "formats/appearance.h"
 #include "formats/city_json.h"
+#include "formats/numbers.h"
 
 namespace watertight {
 namespace {
@@ -74,20 +75,12 @@ Result<std::vector<std::string>> solid_vertex_texts(const Solid& solid,
   return texts;
 }
 
-// "123e-3" of a skeleton as "0.123".
+// "123e-3" of a skeleton as "0.123", "5" as "5.0".
 std::string plain_decimal(const Json& value) {
-  const std::string text = json_text(value);
-  const auto exact = exact_number(text);
-  if (!exact || exact->exponent >= 0 || exact->exponent < -300) {
-    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-  }
-  std::string digits = std::to_string(exact->mantissa);
-  const bool is_negative = digits.front() == '-';
-  if (is_negative) digits.erase(0, 1);
-  const auto places = static_cast<std::size_t>(-exact->exponent);
-  if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
-  digits.insert(digits.size() - places, 1, '.');
-  return is_negative ? '-' + digits : digits;
+  std::string text = json_text(value);
+  if (const auto exact = exact_number(text); exact) text = plain_text(exact->value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
 }
 
 Status place_others(const Json& others, bool are_integers, std::vector<std::string>& vertices) {

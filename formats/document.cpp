@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "formats/city_json.h"
+#include "formats/ewkb.h"
+#include "formats/mesh_text.h"
 
 namespace watertight {
 namespace {
@@ -14,6 +16,24 @@ Bytes bytes_of(const std::string& text) { return Bytes(text.begin(), text.end())
 
 bool is_city(Format format) {
   return format == Format::city_json || format == Format::city_json_seq;
+}
+
+// The solids of all features, one after the other.
+Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
+  if (format == Format::obj || format == Format::off) {
+    auto text = format == Format::obj ? write_obj(features) : write_off(features);
+    if (!text) return std::move(text).error();
+    return bytes_of(*text);
+  }
+  Bytes out;
+  for (const Feature& feature : features) {
+    for (const SubmittedSolid& solid : feature.solids) {
+      const Bytes bytes =
+          format == Format::wkt ? bytes_of(write_wkt(solid.solid) + '\n') : write_ewkb(solid.solid);
+      out.insert(out.end(), bytes.begin(), bytes.end());
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -43,7 +63,10 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
   }
   if (format == Format::city_json) return read_city_json(as_text(bytes), options);
   if (format == Format::city_json_seq) return read_city_json_seq(as_text(bytes), options);
-  return Error{ErrorCode::unsupported, "cannot read " + std::string(to_string(format))};
+  if (format == Format::obj) return read_obj(as_text(bytes), options.limits);
+  if (format == Format::off) return read_off(as_text(bytes), options.limits);
+  if (format == Format::wkt) return read_wkt_document(as_text(bytes), options.limits);
+  return read_ewkb_document(bytes, options.limits);
 }
 
 Result<std::string> write_feature(const Document& document, const Feature& feature) {
@@ -52,12 +75,17 @@ Result<std::string> write_feature(const Document& document, const Feature& featu
     if (!header) return std::move(header).error();
     return write_city_json_feature(*header, feature);
   }
-  return Error{ErrorCode::unsupported, "cannot write"};
+  auto bytes = write_solids({&feature, 1}, document.format);
+  if (!bytes) return std::move(bytes).error();
+  return std::string(as_text(*bytes));
 }
 
 Result<Bytes> write_document(const Document& document, Format format) {
-  if (!is_city(format) || !is_city(document.format)) {
-    return Error{ErrorCode::unsupported, "cannot write " + std::string(to_string(format))};
+  if (!is_city(format)) return write_solids(document.features, format);
+  if (!is_city(document.format)) {
+    auto model = as_city_model(document);
+    if (!model) return std::move(model).error();
+    return write_document(*model, format);
   }
   auto text =
       format == Format::city_json ? write_city_json(document) : write_city_json_seq(document);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/mesh_text.h"
+
+#include <array>
+#include <utility>
+
+#include "formats/numbers.h"
+#include "formats/surface.h"
+
+namespace watertight {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+}  // namespace
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; at < line.size();) {
+    if (is_blank(line[at])) {
+      ++at;
+      continue;
+    }
+    std::size_t end = at;
+    while (end < line.size() && !is_blank(line[end])) ++end;
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+Error error_at(const TextLine& line, std::string_view word, std::string message) {
+  const auto column = static_cast<std::size_t>(word.data() - line.text.data());
+  return Error{ErrorCode::malformed,
+               "line " + std::to_string(line.number) + ": " + std::move(message),
+               line.offset + column,
+               {}};
+}
+
+Status append_vertex(const TextLine& line, std::span<const std::string_view> words,
+                     DecimalVertices& vertices) {
+  if (words.size() < 3) return error_at(line, line.text, "a vertex needs three coordinates");
+  std::array<GridNumber, 3> position;
+  bool is_rounded = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto exact = exact_number(words[axis]);
+    if (!exact) return error_at(line, words[axis], exact.error().message);
+    position[axis] = exact->value;
+    is_rounded = is_rounded || exact->is_rounded;
+  }
+  vertices.positions.push_back(position);
+  vertices.is_rounded.push_back(is_rounded);
+  return Done{};
+}
+
+}  // namespace watertight

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Numbers of text formats as exact decimals. Internal to formats/.
+#pragma once
+
+#include <string_view>
+
+#include "base/result.h"
+#include "geometry/lattice.h"
+
+namespace watertight {
+
+struct ExactNumber {
+  GridNumber value;
+  bool is_rounded = false;  // more than 18 significant digits: the value of the nearest double
+};
+
+/// Errors: malformed (not a number), limit_exceeded (beyond the range of doubles).
+Result<ExactNumber> exact_number(std::string_view text);
+
+/// A number with its digits, without exponent where that is short: "-0.125".
+std::string plain_text(const GridNumber& number);
+
+}  // namespace watertight

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include "formats/mesh_text.h"
+#include "formats/surface.h"
+
+namespace watertight {
+namespace {
+
+class OffReader {
+ public:
+  OffReader(std::string_view text, const Limits& limits) : text_(text), limits_(limits) {}
+
+  Result<Document> read() {
+    if (auto status = head(); !status) return status.error();
+    for (std::uint64_t i = 0; i < vertex_count_; ++i) {
+      if (!next_line()) return ended("vertex " + std::to_string(i));
+      if (auto status = append_vertex(line_, words_, vertices_); !status) return status.error();
+    }
+    for (std::uint64_t i = 0; i < facet_count_; ++i) {
+      if (!next_line()) return ended("face " + std::to_string(i));
+      if (auto status = facet(); !status) return status.error();
+    }
+    if (next_line()) document_.notes.push_back("text after the last face skipped");
+    return finish();
+  }
+
+ private:
+  // The next line that has words besides its comment.
+  bool next_line() {
+    while (at_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+      const std::string_view text = text_.substr(at_, end - at_);
+      line_ = {text.substr(0, text.find('#')), at_, line_.number + 1};
+      at_ = end + 1;
+      words_ = words_of(line_.text);
+      if (!words_.empty()) return true;
+    }
+    return false;
+  }
+
+  Error ended(const std::string& what) const {
+    return Error{ErrorCode::malformed, "the file ends before " + what, text_.size(), {}};
+  }
+
+  std::optional<std::uint64_t> count_of(std::string_view word) const {
+    std::uint64_t value = 0;
+    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
+    return value;
+  }
+
+  // "OFF" with prefixes for texture, colour and normal, then the counts, on the same line or not.
+  Status head() {
+    if (!next_line()) return ended("its first word");
+    const std::string_view word = words_.front();
+    if (word == "4OFF" || word == "nOFF" || word == "4nOFF") {
+      return Error{
+          ErrorCode::unsupported, "only OFF of three dimensions is read", line_.offset, {}};
+    }
+    for (const std::string_view known :
+         {"OFF", "COFF", "NOFF", "CNOFF", "NCOFF", "STOFF", "STCOFF", "STNOFF", "STCNOFF"}) {
+      if (word == known) return counts();
+    }
+    return error_at(line_, word, "the first word is not OFF");
+  }
+
+  Status counts() {
+    words_.erase(words_.begin());
+    if (!words_.empty() && words_.front() == "BINARY") {
+      return Error{ErrorCode::unsupported, "binary OFF is not read", line_.offset, {}};
+    }
+    if (words_.empty() && !next_line()) return ended("the counts");
+    const auto vertices = count_of(words_[0]);
+    const auto facets = words_.size() > 1 ? count_of(words_[1]) : std::nullopt;
+    if (!vertices || !facets) {
+      return error_at(line_, words_[0], "the numbers of vertices and faces are missing");
+    }
+    // Every vertex and every face has a line of its own.
+    if (*vertices > text_.size() || *facets > text_.size()) {
+      return error_at(line_, words_[0], "more vertices or faces than the file has bytes");
+    }
+    if (*vertices > limits_.vertices || *facets > limits_.facets) {
+      return Error{
+          ErrorCode::limit_exceeded, "more vertices or faces than the limit", line_.offset, {}};
+    }
+    vertex_count_ = *vertices;
+    facet_count_ = *facets;
+    return Done{};
+  }
+
+  // The number of corners, their vertices, and perhaps a colour.
+  Status facet() {
+    const auto corners = count_of(words_[0]);
+    if (!corners || *corners > words_.size() - 1) {
+      return error_at(line_, words_[0], "the face has fewer vertices than it says");
+    }
+    for (std::uint64_t i = 1; i <= *corners; ++i) {
+      const auto vertex = count_of(words_[i]);
+      if (!vertex || *vertex >= vertex_count_) {
+        return error_at(
+            line_, words_[i],
+            "vertex index is out of range (" + std::to_string(vertex_count_) + " vertices)");
+      }
+      arrays_.ring_vertices.push_back(static_cast<Index>(*vertex));
+    }
+    arrays_.end_ring();
+    arrays_.end_facet();
+    return Done{};
+  }
+
+  Result<Document> finish() {
+    arrays_.end_shell();
+    auto solid = indexed_solid(std::move(arrays_), vertices_, SolidSource{"", "Mesh", "", 0, 0, ""},
+                               limits_);
+    if (!solid) return std::move(solid).error();
+    document_.format = Format::off;
+    if (facet_count_ == 0) document_.notes.push_back("the file has no faces");
+    document_.features.emplace_back();
+    document_.features.back().solids.push_back(std::move(*solid));
+    return std::move(document_);
+  }
+
+  std::string_view text_;
+  const Limits& limits_;
+  std::size_t at_ = 0;
+  TextLine line_;
+  std::vector<std::string_view> words_;
+  std::uint64_t vertex_count_ = 0;
+  std::uint64_t facet_count_ = 0;
+  DecimalVertices vertices_;
+  SolidArrays arrays_;
+  Document document_;
+};
+
+}  // namespace
+
+Result<Document> read_off(std::string_view text, const Limits& limits) {
+  return OffReader(text, limits).read();
+}
+
+Result<std::string> write_off(std::span<const Feature> features) {
+  const Solid* solid = nullptr;
+  for (const Feature& feature : features) {
+    for (const SubmittedSolid& submitted : feature.solids) {
+      if (solid != nullptr) {
+        return Error{ErrorCode::unsupported, "an OFF file holds one solid and there are several"};
+      }
+      solid = &submitted.solid;
+    }
+  }
+  if (solid == nullptr) return Error{ErrorCode::unsupported, "there is no solid to write"};
+  if (solid->shell_count() > 1) {
+    return Error{ErrorCode::unsupported, "OFF has no cavities: the solid has inner shells"};
+  }
+  std::string out = "OFF\n" + std::to_string(solid->vertex_count()) + ' ' +
+                    std::to_string(solid->facet_count()) + " 0\n";
+  for (const Point& p : solid->vertices()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) out += ' ';
+      out += solid->lattice().world_text(p[axis], axis);
+    }
+    out += '\n';
+  }
+  for (Index facet = 0; facet < solid->facet_count(); ++facet) {
+    const IndexRange rings = solid->rings_of(facet);
+    if (rings.size() != 1) {
+      return Error{ErrorCode::unsupported, "OFF has no facets with holes: facet " +
+                                               std::to_string(facet) + " has " +
+                                               std::to_string(rings.size()) + " rings"};
+    }
+    const auto ring = solid->ring(rings.begin);
+    out += std::to_string(ring.size());
+    for (const Index vertex : ring) out += ' ' + std::to_string(vertex);
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace watertight

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/surface.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace watertight {
+namespace {
+
+Result<SubmittedSolid> submitted(SolidArrays arrays, std::span<const Index> vertex_of,
+                                 const LatticePoints& points, SolidSource source,
+                                 std::uint32_t srid, const Limits& limits) {
+  arrays.vertices.reserve(vertex_of.size());
+  for (const Index vertex : vertex_of) arrays.vertices.push_back(points.points[vertex]);
+  auto solid = Solid::make(std::move(arrays), points.lattice, srid, limits);
+  if (!solid) return std::move(solid).error();
+  return SubmittedSolid{std::move(*solid), std::move(source), {}};
+}
+
+}  // namespace
+
+std::vector<Index> number_by_first_use(SolidArrays& arrays, std::vector<Index>& number_of) {
+  std::vector<Index> vertex_of;
+  for (Index& vertex : arrays.ring_vertices) {
+    if (number_of[vertex] == kNone) {
+      number_of[vertex] = static_cast<Index>(vertex_of.size());
+      vertex_of.push_back(vertex);
+    }
+    vertex = number_of[vertex];
+  }
+  for (const Index vertex : vertex_of) number_of[vertex] = kNone;
+  return vertex_of;
+}
+
+Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertices,
+                                     SolidSource source, const Limits& limits) {
+  vertices.number_of.resize(vertices.positions.size(), kNone);
+  const std::vector<Index> used = number_by_first_use(arrays, vertices.number_of);
+  std::vector<std::array<GridNumber, 3>> positions;
+  positions.reserve(used.size());
+  for (const Index vertex : used) positions.push_back(vertices.positions[vertex]);
+  auto points = lattice_of_decimals(positions);
+  if (!points) return std::move(points).error();
+
+  std::vector<bool> is_rounded(used.size(), false);
+  for (const Index vertex : points->rounded) is_rounded[vertex] = true;
+  std::vector<Index> all(used.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  auto solid = submitted(std::move(arrays), all, *points, std::move(source), 0, limits);
+  if (!solid) return solid;
+  for (Index i = 0; i < used.size(); ++i) {
+    if (is_rounded[i] || vertices.is_rounded[used[i]]) solid->rounded.push_back(i);
+  }
+  return solid;
+}
+
+Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const LatticePoints& points,
+                                       SolidSource source, std::uint32_t srid,
+                                       const Limits& limits) {
+  std::vector<Index> by_point(points.points.size());
+  std::iota(by_point.begin(), by_point.end(), Index{0});
+  std::sort(by_point.begin(), by_point.end(), [&](Index a, Index b) {
+    const auto order = points.points[a] <=> points.points[b];
+    return order != 0 ? order < 0 : a < b;
+  });
+  std::vector<Index> first(points.points.size());
+  for (std::size_t i = 0; i < by_point.size(); ++i) {
+    const bool is_same =
+        i > 0 && (points.points[by_point[i]] <=> points.points[by_point[i - 1]]) == 0;
+    first[by_point[i]] = is_same ? first[by_point[i - 1]] : by_point[i];
+  }
+  for (Index& vertex : arrays.ring_vertices) vertex = first[vertex];
+  std::vector<Index> number_of(points.points.size(), kNone);
+  const std::vector<Index> used = number_by_first_use(arrays, number_of);
+
+  std::vector<bool> is_rounded(points.points.size(), false);
+  for (const Index vertex : points.rounded) is_rounded[first[vertex]] = true;
+  auto solid = submitted(std::move(arrays), used, points, std::move(source), srid, limits);
+  if (!solid) return solid;
+  for (Index i = 0; i < used.size(); ++i) {
+    if (is_rounded[used[i]]) solid->rounded.push_back(i);
+  }
+  return solid;
+}
+
+}  // namespace watertight

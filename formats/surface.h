@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Solids from what readers collect: rings of indices into a file's vertices, or rings of points.
+// Internal to formats/.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/limits.h"
+#include "formats/document.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// Renumbers the ring vertices in order of first use; returns what each new one was. `number_of`
+/// has an entry per vertex of the file and is kNone everywhere, before and after.
+std::vector<Index> number_by_first_use(SolidArrays& arrays, std::vector<Index>& number_of);
+
+/// Vertices of a text file.
+struct DecimalVertices {
+  std::vector<std::array<GridNumber, 3>> positions;
+  std::vector<bool> is_rounded;
+  std::vector<Index> number_of;  // for number_by_first_use
+};
+
+/// A solid whose ring vertices are indices into `vertices`; vertices of one index stay one.
+Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertices,
+                                     SolidSource source, const Limits& limits);
+
+/// A solid whose ring vertices are positions in `points`, one per vertex of a ring. Formats of this
+/// kind say that two vertices are the same only by equal coordinates: equal points become one.
+Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const LatticePoints& points,
+                                       SolidSource source, std::uint32_t srid,
+                                       const Limits& limits);
+
+}  // namespace watertight

@@ -8,7 +8,8 @@
 
 Rules, one function each:
   layers       a folder includes only itself, base, and the folders its CMakeLists.txt DEPENDS on
-  existence    a quoted include names a file of the repository, from the repository's root
+  existence    a quoted include of the product names a file from the repository's root (tests and
+               benches may also name a header beside them)
   homes        third-party headers stay in their folders
   cgal         a header that (transitively) includes CGAL is included by its own folder only
   licence      every source file states its SPDX licence in its first two lines
@@ -41,7 +42,7 @@ HOMES = [
     (r"CLI/", "CLI11", [r"cli/", r"bench/"]),
     (r"(zstd|zstd_errors|zdict)\.h", "zstd", [r"codec/", r"formats/", r"bench/"]),
     (r"draco/", "Draco", [r"bench/"]),
-    (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|storage|parser|"
+    (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|mb|port|storage|parser|"
      r"nodes|commands|common|tcop)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/[^/]+\.c$"]),
 ]
 
@@ -131,6 +132,8 @@ def check_layers(tree):
 
 def check_existence(tree):
     for name, includes in tree.includes.items():
+        if folder_of(name) is None:
+            continue
         for quote, path in includes:
             if quote != '"' or path in tree.text or path.endswith((".inc", ".ipp")):
                 continue

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "golden_blobs.h"
+
+#include "codec/encode_boundary.h"
+#include "generated_solids.h"
+
+namespace watertight::generated {
+
+std::vector<Golden> goldens() {
+  Random random(1);
+  const Acceptance stated{{0.001, 5, 0.0005}, Proof::boundary, 1};
+  const OrientedBoundary terrain = random_terrain(random, 4);
+  const OrientedBoundary doubles = random_doubles(random, 2);
+  return {{"box-raw", 105, box(), {}, Mode::raw},
+          {"box-bitmap", 76, box(), {}, Mode::bitmap},
+          {"box-canonical", 70, box(), {}, Mode::bitmap, false},
+          {"holes-in-facets", 492, pierced_block(3), {}, Mode::bitmap},
+          {"hole-touches-ring", 99, block_with_touching_hole(), {}, Mode::bitmap},
+          {"cavity", 168, box_with_cavities(2), {}, Mode::bitmap},
+          {"shells-touch-at-edge", 101, boxes_touching_at_edge(), {}, Mode::bitmap},
+          {"schoenhardt-steiner", 124, schoenhardt(), {}, Mode::bitmap, true, true},
+          {"schoenhardt-unrecovered", 96, schoenhardt(), {}, Mode::bitmap},
+          {"terrain-unrecovered", 358, terrain, {}, Mode::bitmap, false},
+          {"terrain-shuffled", 419, shuffled(terrain, random), {}, Mode::automatic},
+          {"doubles-raw", 530, doubles, {}, Mode::raw},
+          {"doubles-bitmap", 471, doubles, {}, Mode::bitmap},
+          {"stated-tolerances", 329, torus(8, 4), stated, Mode::bitmap, false}};
+}
+
+Result<Bytes> encode_golden(const Golden& golden) {
+  const Certificate certificate = schoenhardt_certificate();
+  EncodeOptions options{.mode = golden.mode, .keep_order = golden.keep_order};
+  if (golden.with_steiner) options.certificate = &certificate;
+  return encode_boundary(golden.boundary, golden.acceptance, options);
+}
+
+}  // namespace watertight::generated

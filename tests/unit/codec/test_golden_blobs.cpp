@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Files of format version 0. A change of theirs is a change of the format: see CONTRIBUTING.
+#include <catch2/catch_test_macros.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "geometry/canonical_form.h"
+#include "golden_blobs.h"
+
+using namespace watertight;
+
+namespace {
+
+std::string path_of(const std::string& name) {
+  return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + name + ".blob";
+}
+
+Bytes file_of(const std::string& name) {
+  std::ifstream file(path_of(name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+TEST_CASE("golden blobs keep their sizes and decode to their solids") {
+  for (const auto& golden : generated::goldens()) {
+    INFO(golden.name);
+    const Bytes bytes = file_of(golden.name);
+    CHECK(bytes.size() == golden.size);
+    const auto decoded = decode(bytes);
+    REQUIRE(decoded);
+    const Solid& source = golden.boundary.solid();
+    CHECK(decoded->solid ==
+          (golden.keep_order ? source : canonical_form(golden.boundary).boundary.solid()));
+    CHECK(decoded->info.acceptance == golden.acceptance);
+    CHECK((decoded->info.steiner_vertices > 0) == golden.with_steiner);
+  }
+}
+
+TEST_CASE("encoding a golden solid again gives the golden bytes") {
+  for (const auto& golden : generated::goldens()) {
+    INFO(golden.name);
+    const auto blob = generated::encode_golden(golden);
+    REQUIRE(blob);
+    CHECK(*blob == file_of(golden.name));
+  }
+}
+
+TEST_CASE("write golden blobs", "[.][write]") {
+  for (const auto& golden : generated::goldens()) {
+    const auto blob = generated::encode_golden(golden);
+    REQUIRE(blob);
+    std::ofstream file(path_of(golden.name), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(blob->data()),
+               static_cast<std::streamsize>(blob->size()));
+    WARN(golden.name << ": " << blob->size());
+  }
+}

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sql/bridge.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include "base/bytes.h"
+#include "base/result.h"
+#include "codec/blob.h"
+#include "formats/ewkb.h"
+#include "sql/info_json.h"
+#include "validate/certify.h"
+#include "validate/report_json.h"
+
+struct wt_engine {
+  watertight::EngineWorkers workers;
+};
+
+namespace watertight {
+namespace {
+
+// A detail names this many findings; the whole report is wt_validate's.
+constexpr std::size_t kFindingsShown = 20;
+// A varlena of PostgreSQL holds less than 1 GiB.
+constexpr std::size_t kLargestValue = (1ULL << 30) - 1024;
+
+char* copy_of(std::string_view text) noexcept {
+  char* const copy = static_cast<char*>(std::malloc(text.size() + 1));  // NOLINT: freed by C
+  if (copy == nullptr) return nullptr;
+  std::memcpy(copy, text.data(), text.size());
+  copy[text.size()] = '\0';
+  return copy;
+}
+
+void fail(wt_reply* reply, std::string_view state, std::string_view message,
+          std::string_view detail = {}) noexcept {
+  wt_failure& failure = reply->failure;
+  std::memcpy(failure.sqlstate, state.data(), 5);
+  const std::size_t length = std::min(message.size(), sizeof(failure.message) - 1);
+  std::memcpy(failure.message, message.data(), length);
+  failure.message[length] = '\0';
+  // Never end within a UTF-8 character.
+  for (std::size_t end = length; end < message.size() && end > 0; --end) {
+    if ((static_cast<unsigned char>(message[end]) & 0xC0) != 0x80) {
+      failure.message[end] = '\0';
+      break;
+    }
+  }
+  if (!detail.empty()) failure.detail = copy_of(detail);
+}
+
+void fail(wt_reply* reply, const Error& error) {
+  std::string_view state = "XX000";
+  switch (error.code) {
+    case ErrorCode::malformed:
+      state = "22P03";  // invalid_binary_representation
+      break;
+    case ErrorCode::unsupported:
+      state = "0A000";  // feature_not_supported
+      break;
+    case ErrorCode::limit_exceeded:
+      state = "54000";  // program_limit_exceeded
+      break;
+    case ErrorCode::cancelled:
+      state = "57014";  // query_canceled
+      break;
+    case ErrorCode::unavailable:
+      state = "58000";  // system_error
+      break;
+    case ErrorCode::not_encodable:
+    case ErrorCode::not_found:
+    case ErrorCode::conflict:
+    case ErrorCode::invalid_argument:
+      state = "22023";  // invalid_parameter_value
+      break;
+  }
+  const std::string detail =
+      error.byte_offset ? "At byte " + std::to_string(*error.byte_offset) + "." : std::string();
+  fail(reply, state, error.message, detail);
+}
+
+void answer(wt_reply* reply, ByteView bytes) {
+  if (bytes.size() > kLargestValue) {
+    fail(reply, "54000", "the result is larger than a value can be (1 GiB)");
+    return;
+  }
+  reply->bytes = static_cast<std::uint8_t*>(std::malloc(bytes.size() + 1));  // NOLINT: freed by C
+  if (reply->bytes == nullptr) {
+    fail(reply, "53200", "out of memory");
+    return;
+  }
+  std::copy(bytes.begin(), bytes.end(), reply->bytes);
+  reply->bytes[bytes.size()] = 0;
+  reply->size = bytes.size();
+}
+
+/// Runs `work`; whatever it throws becomes a failure of the reply.
+template <class Work>
+void guarded(wt_reply* reply, const Work& work) noexcept {
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    fail(reply, "53200", "out of memory");
+  } catch (const std::exception& exception) {
+    fail(reply, "XX000", exception.what());
+  } catch (...) {
+    fail(reply, "XX000", "an unknown exception");
+  }
+}
+
+ByteView bytes_of(const wt_job& job) { return {job.bytes, job.size}; }
+
+struct Examined {
+  SubmittedSolid submitted;
+  Inspection inspection;
+};
+
+/// Reads and certifies at the default tolerances. A failure unless the verdict is valid or invalid.
+Result<Examined> examine(const wt_job& job) {
+  Result<SubmittedSolid> submitted = read_ewkb(bytes_of(job));
+  if (!submitted) return std::move(submitted).error();
+  CertifyOptions options;
+  options.rounded = submitted->rounded;
+  if (job.poll != nullptr) options.ladder.cancel = [poll = job.poll] { return poll(); };
+  Inspection inspection =
+      certify(submitted->solid, job.engine == nullptr ? nullptr : &job.engine->workers, options);
+  if (job.poll != nullptr && job.poll()) return Error{ErrorCode::cancelled, "cancelled"};
+  if (inspection.report.verdict == Verdict::undecided) {
+    return Error{ErrorCode::cancelled,
+                 "the solid is undecided: " + inspection.report.undecided_reason};
+  }
+  return Examined{std::move(*submitted), std::move(inspection)};
+}
+
+/// The errors of a report, one a line, the first ones only.
+std::string errors_of(const Report& report) {
+  std::string lines;
+  std::size_t count = 0;
+  for (const Finding& finding : report.findings) {
+    if (finding.severity != Severity::error || ++count > kFindingsShown) continue;
+    if (!lines.empty()) lines += '\n';
+    lines += finding_text(finding);
+  }
+  const std::uint64_t omitted =
+      report.findings_omitted + (count > kFindingsShown ? count - kFindingsShown : 0);
+  if (omitted > 0) lines += "\nand " + std::to_string(omitted) + " more";
+  return lines;
+}
+
+void validate_into(const wt_job& job, wt_reply* reply) {
+  const Result<Examined> examined = examine(job);
+  if (!examined) return fail(reply, examined.error());
+  ReportJsonOptions options;
+  options.include_times = false;
+  answer(reply,
+         as_bytes(report_json(examined->inspection.report, examined->submitted.solid, options)));
+}
+
+void is_valid_into(const wt_job& job, wt_reply* reply) {
+  const Result<Examined> examined = examine(job);
+  if (!examined) return fail(reply, examined.error());
+  reply->truth = examined->inspection.report.verdict == Verdict::valid;
+}
+
+void encode_into(const wt_job& job, wt_reply* reply) {
+  const Result<Examined> examined = examine(job);
+  if (!examined) return fail(reply, examined.error());
+  const Inspection& inspection = examined->inspection;
+  if (!inspection.certified) {
+    return fail(reply, "22023", "the solid is invalid", errors_of(inspection.report));
+  }
+  const Result<Bytes> blob = encode(inspection.certified->solid);
+  if (!blob) return fail(reply, blob.error());
+  answer(reply, *blob);
+}
+
+void decode_into(const wt_job& job, wt_reply* reply) {
+  const Result<Decoded> decoded = decode(bytes_of(job));
+  if (!decoded) return fail(reply, decoded.error());
+  answer(reply, write_ewkb(decoded->solid));
+}
+
+void info_into(const wt_job& job, wt_reply* reply) {
+  const Result<BlobInfo> info = describe(bytes_of(job));
+  if (!info) return fail(reply, info.error());
+  answer(reply, as_bytes(info_json(*info, job.size)));
+}
+
+}  // namespace
+}  // namespace watertight
+
+using watertight::guarded;
+
+void wt_reply_clear(wt_reply* reply) noexcept {
+  std::free(reply->bytes);           // NOLINT: memory that C owns
+  std::free(reply->failure.detail);  // NOLINT
+  *reply = wt_reply{};
+}
+
+wt_engine* wt_engine_make(const char* libexec) noexcept {
+  wt_reply ignored{};
+  wt_engine* engine = nullptr;
+  guarded(&ignored, [&] {
+    watertight::EngineWorkers::Options options;
+    options.processes = 1;
+    if (libexec != nullptr && *libexec != '\0') {
+      options.cgal_executable = std::string(libexec) + "/watertight-worker";
+      options.tetgen_executable = std::string(libexec) + "/watertight-tetgen";
+    }
+    // A plain pointer, because the owner is C: wt_engine_end().
+    engine = std::make_unique<wt_engine>(wt_engine{watertight::EngineWorkers(options)}).release();
+  });
+  wt_reply_clear(&ignored);
+  return engine;
+}
+
+void wt_engine_end(wt_engine* engine) noexcept { const std::unique_ptr<wt_engine> owned(engine); }
+
+void wt_bridge_validate(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::validate_into(*job, reply); });
+}
+
+void wt_bridge_is_valid(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::is_valid_into(*job, reply); });
+}
+
+void wt_bridge_encode(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::encode_into(*job, reply); });
+}
+
+void wt_bridge_decode(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::decode_into(*job, reply); });
+}
+
+void wt_bridge_info(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::info_into(*job, reply); });
+}
+
+const char* wt_bridge_version() noexcept { return WATERTIGHT_VERSION; }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What is known of a blob without decoding its solid, as JSON for wt_info.
+#pragma once
+
+#include <string>
+
+#include "codec/blob.h"
+
+namespace watertight {
+
+/// UTF-8 JSON: format, mode, acceptance, SRID, lattice, counts, and the bytes of each part.
+/// Deterministic.
+std::string info_json(const BlobInfo& info, std::size_t bytes);
+
+}  // namespace watertight

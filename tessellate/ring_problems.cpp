@@ -240,7 +240,7 @@ std::optional<Contact> RingExaminer::contact(const Edge& a, const Edge& b) const
 /// Requires edges that cross properly. The exact point on edge a, rounded once per coordinate.
 Point RingExaminer::crossing(const Edge& a, const Edge& b) const {
   using Number = CGAL::Exact_rational;
-  const auto area = [&](Index p) {
+  const auto area = [&](Index p) -> Number {  // a value: gmpxx would return references
     return (Number(u(b.to)) - Number(u(b.from))) * (Number(v(p)) - Number(v(b.from))) -
            (Number(v(b.to)) - Number(v(b.from))) * (Number(u(p)) - Number(u(b.from)));
   };

@@ -172,7 +172,7 @@ std::size_t count_parts(std::span<const Triangle> triangles) {
   std::vector<Side> sides;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(triangles[t][i], triangles[t][(i + 1) % 3]);
+      const auto [low, high] = std::minmax({triangles[t][i], triangles[t][(i + 1) % 3]});
       sides.push_back({low, high, t});
     }
   }

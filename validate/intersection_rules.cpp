@@ -110,7 +110,7 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   }
   std::vector<FacetPair> pairs;
   for (const IntersectingPair& pair : *found) {
-    const auto [first, second] = std::minmax(facet_of(pair.first), facet_of(pair.second));
+    const auto [first, second] = std::minmax({facet_of(pair.first), facet_of(pair.second)});
     // Triangles of one facet meet in common vertices and edges only, by construction.
     if (first != second) pairs.push_back({first, second, pair});
   }

@@ -77,7 +77,7 @@ bool OpenEdgeExaminer::is_inside(const EdgeUse& edge, Index vertex) const {
 
 void OpenEdgeExaminer::find_junctions(std::size_t number) {
   const EdgeUse& edge = open_[number];
-  const auto [from, to] = std::minmax(vertices_[edge.low][axis_], vertices_[edge.high][axis_]);
+  const auto [from, to] = std::minmax({vertices_[edge.low][axis_], vertices_[edge.high][axis_]});
   auto end = std::lower_bound(ends_.begin(), ends_.end(), from, [&](const End& e, double value) {
     return vertices_[e.vertex][axis_] < value;
   });

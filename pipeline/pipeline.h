@@ -4,6 +4,9 @@
 // stored, decoded, document out.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +29,11 @@ struct InspectedFeature {
   Verdict verdict() const;             // the worst of its solids; valid when it has none
 };
 
-/// Validates every solid of a feature.
+/// The worse of two verdicts: invalid, then undecided, then valid.
+Verdict worse(Verdict a, Verdict b);
+
+/// Validates every solid of a feature. Guarantees one InspectedSolid per solid. A solid with
+/// vertices that the reader rounded gets the finding for it.
 InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options);
 
 /// Encodes a feature whose verdict is valid into what the store keeps.
@@ -35,6 +42,64 @@ Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document&
                                 const std::string& collection, const EncodeOptions& options = {});
 
 /// Decodes a stored feature: the document (with one feature) that came in.
+/// Errors: malformed when what is stored is not what to_stored() made; those of decode().
 Result<Document> from_stored(const StoredFeature& stored, const Limits& limits = {});
+
+/// What became of one solid of a document.
+struct SolidOutcome {
+  SolidSource source;
+  Report report;
+  std::string report_json;       // of the report, without times
+  std::size_t blob_bytes = 0;    // when encoded
+  std::size_t source_bytes = 0;  // 24 a vertex and 4 a ring vertex: what the solid takes plainly
+};
+
+/// What became of one feature of a document.
+struct FeatureOutcome {
+  std::string id;
+  Verdict verdict = Verdict::undecided;
+  std::vector<SolidOutcome> solids;
+  bool is_stored = false;
+  std::uint64_t version = 0;  // when stored
+};
+
+/// What happens to a document in which not all features are valid.
+enum class InvalidFeatures : std::uint8_t { refuse_document, skip };
+
+/// Called with features done and features in all; from one thread at a time.
+using Progress = std::function<void(std::size_t, std::size_t)>;
+
+struct IngestOptions {
+  std::string collection;
+  CertifyOptions certify;
+  EncodeOptions encode;
+  InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
+  std::size_t threads = 1;
+  std::function<bool()> is_cancelled = {};
+  Progress progress = {};
+};
+
+struct IngestOutcome {
+  std::vector<FeatureOutcome> features;  // in document order
+  Verdict verdict = Verdict::valid;      // the worst of all features
+  std::size_t stored = 0;                // features
+};
+
+/// Validates all features without storing anything.
+/// Errors: cancelled. Cost: features are spread over `threads`.
+Result<IngestOutcome> validate_document(Document document, EngineWorkers* workers,
+                                        const IngestOptions& options);
+
+/// Validates, encodes and stores a document in one transaction: all features if all are valid,
+/// else none (refuse_document) or the valid ones (skip). Nothing is stored when it fails.
+/// Errors: malformed (two features of one id, an empty id); conflict (another CRS than the
+/// collection's); cancelled; those of SolidStore::put() and encode().
+Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers* workers,
+                             const IngestOptions& options);
+
+/// The same document in another format; facets with holes become triangles where the format has no
+/// holes (OBJ, OFF). Errors: those of write_document(); not_encodable naming a facet that has no
+/// triangulation.
+Result<Bytes> convert_document(const Document& document, Format format);
 
 }  // namespace watertight

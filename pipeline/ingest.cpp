@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include "pipeline/parallel.h"
+#include "pipeline/pipeline.h"
+#include "validate/report_json.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::size_t kVertexBytes = 24;  // three doubles
+constexpr std::size_t kCornerBytes = 4;   // one index
+
+std::size_t plain_bytes(const Solid& solid) {
+  return solid.vertex_count() * kVertexBytes + solid.arrays().ring_vertices.size() * kCornerBytes;
+}
+
+bool is_cancelled(const IngestOptions& options) {
+  return options.is_cancelled && options.is_cancelled();
+}
+
+Error cancelled() {
+  return Error{ErrorCode::cancelled, "stopped before all features were validated"};
+}
+
+/// A feature validated, and encoded if it is valid and will be stored.
+struct Processed {
+  FeatureOutcome outcome;
+  std::optional<StoredFeature> stored;
+  std::optional<Error> error;
+};
+
+Processed process(Feature feature, const Document& document, EngineWorkers* workers,
+                  const IngestOptions& options, bool stores) {
+  Processed processed;
+  InspectedFeature inspected = inspect(std::move(feature), workers, options.certify);
+  processed.outcome.id = inspected.feature.id;
+  processed.outcome.verdict = inspected.verdict();
+  if (stores && processed.outcome.verdict == Verdict::valid) {
+    auto stored = to_stored(inspected, document, options.collection, options.encode);
+    if (stored) {
+      processed.stored = *std::move(stored);
+    } else {
+      processed.error = std::move(stored).error();
+    }
+  }
+  for (std::size_t i = 0; i < inspected.solids.size(); ++i) {
+    SolidOutcome outcome;
+    outcome.source = std::move(inspected.solids[i].source);
+    outcome.report = std::move(inspected.solids[i].inspection.report);
+    ReportJsonOptions json;
+    json.pointer_prefix = outcome.source.pointer;
+    json.include_times = false;
+    outcome.report_json = report_json(outcome.report, inspected.feature.solids[i].solid, json);
+    outcome.source_bytes = plain_bytes(inspected.feature.solids[i].solid);
+    if (processed.stored) outcome.blob_bytes = processed.stored->solids[i].blob.size();
+    processed.outcome.solids.push_back(std::move(outcome));
+  }
+  return processed;
+}
+
+Result<std::vector<Processed>> process_all(Document& document, EngineWorkers* workers,
+                                           const IngestOptions& options, bool stores) {
+  std::vector<Feature> features = std::move(document.features);
+  std::vector<Processed> processed(features.size());
+  std::size_t done = 0;
+  std::mutex mutex;
+  parallel_for(features.size(), options.threads, [&](std::size_t i) {
+    if (is_cancelled(options)) return;
+    processed[i] = process(std::move(features[i]), document, workers, options, stores);
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (options.progress) options.progress(done, features.size());
+  });
+  if (done < features.size()) return cancelled();
+  return processed;
+}
+
+IngestOutcome summarize(std::vector<Processed>& processed) {
+  IngestOutcome outcome;
+  for (Processed& feature : processed) {
+    outcome.verdict = worse(outcome.verdict, feature.outcome.verdict);
+    outcome.features.push_back(std::move(feature.outcome));
+  }
+  return outcome;
+}
+
+Status check_ids(const Document& document) {
+  std::set<std::string_view> ids;
+  for (const Feature& feature : document.features) {
+    if (feature.id.empty()) return Error{ErrorCode::malformed, "a feature has no id"};
+    if (!ids.insert(feature.id).second) {
+      return Error{ErrorCode::malformed, "two features have the id '" + feature.id + "'"};
+    }
+  }
+  return Done{};
+}
+
+/// All features of a collection share one CRS.
+Status check_crs(const Document& document, SolidStore& store, const std::string& collection) {
+  if (document.features.empty()) return Done{};
+  auto existing = store.collection(collection);
+  if (!existing && existing.error().code != ErrorCode::not_found) return existing.error();
+  const std::uint32_t srid = existing ? existing->srid : document.features.front().srid;
+  for (const Feature& feature : document.features) {
+    if (feature.srid == srid) continue;
+    return Error{ErrorCode::conflict, "feature '" + feature.id + "' is in CRS " +
+                                          std::to_string(feature.srid) + ", the collection in " +
+                                          std::to_string(srid)};
+  }
+  return Done{};
+}
+
+/// Stores what was encoded. `outcome` has a feature per entry of `processed`.
+Status store_all(std::vector<Processed>& processed, SolidStore& store, IngestOutcome& outcome) {
+  std::vector<StoredFeature> features;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < processed.size(); ++i) {
+    if (!processed[i].stored) continue;
+    features.push_back(*std::move(processed[i].stored));
+    places.push_back(i);
+  }
+  if (features.empty()) return Done{};
+  auto versions = store.put(features);
+  if (!versions) return std::move(versions).error();
+  for (std::size_t i = 0; i < places.size() && i < versions->size(); ++i) {
+    outcome.features[places[i]].is_stored = true;
+    outcome.features[places[i]].version = (*versions)[i];
+  }
+  outcome.stored = places.size();
+  return Done{};
+}
+
+}  // namespace
+
+Verdict worse(Verdict a, Verdict b) {
+  if (a == Verdict::invalid || b == Verdict::invalid) return Verdict::invalid;
+  if (a == Verdict::undecided || b == Verdict::undecided) return Verdict::undecided;
+  return Verdict::valid;
+}
+
+Verdict InspectedFeature::verdict() const {
+  Verdict verdict = Verdict::valid;
+  for (const InspectedSolid& solid : solids) {
+    verdict = worse(verdict, solid.inspection.report.verdict);
+  }
+  return verdict;
+}
+
+InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options) {
+  InspectedFeature inspected;
+  inspected.solids.reserve(feature.solids.size());
+  for (const SubmittedSolid& submitted : feature.solids) {
+    CertifyOptions with_rounding = options;
+    with_rounding.rounded = submitted.rounded;
+    inspected.solids.push_back(
+        {submitted.source, certify(submitted.solid, workers, with_rounding)});
+  }
+  inspected.feature = std::move(feature);
+  return inspected;
+}
+
+Result<IngestOutcome> validate_document(Document document, EngineWorkers* workers,
+                                        const IngestOptions& options) {
+  auto processed = process_all(document, workers, options, false);
+  if (!processed) return std::move(processed).error();
+  return summarize(*processed);
+}
+
+Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers* workers,
+                             const IngestOptions& options) {
+  Status status = check_ids(document);
+  if (status) status = check_crs(document, store, options.collection);
+  if (!status) return std::move(status).error();
+  auto processed = process_all(document, workers, options, true);
+  if (!processed) return std::move(processed).error();
+  for (Processed& feature : *processed) {
+    if (feature.error) return *std::move(feature.error);
+  }
+  IngestOutcome outcome = summarize(*processed);
+  const bool stores =
+      outcome.verdict == Verdict::valid || options.invalid_features == InvalidFeatures::skip;
+  if (!stores || is_cancelled(options)) {
+    if (stores) return cancelled();
+    return outcome;
+  }
+  status = store_all(*processed, store, outcome);
+  if (!status) return std::move(status).error();
+  return outcome;
+}
+
+}  // namespace watertight

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Outcomes and measures as JSON text, for the store, the service and the command line. Reports of
+// single solids are validate/report_json.h's.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "pipeline/pipeline.h"
+
+namespace watertight {
+
+/// {"volume", "area", "boxMin", "boxMax", "genus", "vertices", "facets", "rings", "shells"}
+std::string measures_json(const Measures& measures);
+
+/// {"verdict", "stored", "features": [{"id", "verdict", "stored", "solids": [{"object",
+/// "geometryType", "lod", "geometry", "ordinal", "pointer", "blobBytes", "report"}]}]}
+std::string outcome_json(const IngestOutcome& outcome);
+
+/// `text` as a JSON string with quotes; bytes that are no UTF-8 become U+FFFD.
+std::string json_string(std::string_view text);
+
+}  // namespace watertight

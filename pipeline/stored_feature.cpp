@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Features to stored features and back. What the store keeps as skeleton is the feature's, preceded
+// by one line "merged <solid> <line of describe_merge>" for each solid with equal vertices.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string_view>
+
+#include "pipeline/merged_vertices.h"
+#include "pipeline/outcome_json.h"
+#include "pipeline/pipeline.h"
+#include "validate/report_json.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::string_view kMergedLine = "merged ";
+
+void include(std::optional<StoredBox>& box, const Solid& solid) {
+  const Box lattice_box = solid.box();
+  if (lattice_box.is_empty()) return;
+  const std::array<double, 3> low = solid.lattice().world(lattice_box.min);
+  const std::array<double, 3> high = solid.lattice().world(lattice_box.max);
+  if (!box) box = StoredBox{low, high};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box->min[axis] = std::min(box->min[axis], low[axis]);
+    box->max[axis] = std::max(box->max[axis], high[axis]);
+  }
+}
+
+Result<StoredSolid> store_solid(const InspectedSolid& solid, const Solid& submitted,
+                                const EncodeOptions& options) {
+  const Inspection& inspection = solid.inspection;
+  if (inspection.report.verdict != Verdict::valid || !inspection.certified) {
+    return Error{ErrorCode::invalid_argument, "only valid solids are stored"};
+  }
+  auto blob = encode(inspection.certified->solid, options);
+  if (!blob) return std::move(blob).error();
+  StoredSolid stored;
+  stored.object_id = solid.source.object_id;
+  stored.geometry = solid.source.geometry;
+  stored.ordinal = solid.source.ordinal;
+  stored.lod = solid.source.lod;
+  stored.blob = *std::move(blob);
+  if (inspection.report.measures) stored.measures = measures_json(*inspection.report.measures);
+  ReportJsonOptions json;
+  json.pointer_prefix = solid.source.pointer;
+  json.include_times = false;
+  stored.report = report_json(inspection.report, submitted, json);
+  return stored;
+}
+
+Result<Format> format_named(std::string_view name) {
+  for (const Format format : {Format::city_json, Format::city_json_seq, Format::obj, Format::off,
+                              Format::wkt, Format::ewkb}) {
+    if (to_string(format) == name) return format;
+  }
+  return Error{ErrorCode::malformed, "stored in an unknown format '" + std::string(name) + "'"};
+}
+
+/// Takes the merge lines off the front of a stored skeleton: one per solid, "" for most.
+Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleton,
+                                                       std::size_t solids) {
+  std::vector<std::string_view> lines(solids);
+  while (skeleton.starts_with(kMergedLine)) {
+    const std::size_t end = skeleton.find('\n');
+    std::string_view line = skeleton.substr(kMergedLine.size(), end - kMergedLine.size());
+    std::size_t solid = 0;
+    const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), solid);
+    if (end == std::string_view::npos || error != std::errc{} || solid >= solids ||
+        rest == line.data() + line.size()) {
+      return Error{ErrorCode::malformed, "stored vertex merge: it names no solid"};
+    }
+    lines[solid] = line.substr(static_cast<std::size_t>(rest - line.data()) + 1);
+    skeleton.remove_prefix(end + 1);
+  }
+  return lines;
+}
+
+}  // namespace
+
+Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
+                                const std::string& collection, const EncodeOptions& options) {
+  StoredFeature stored;
+  stored.collection = collection;
+  stored.id = feature.feature.id;
+  stored.type = feature.feature.type;
+  stored.srid = feature.feature.srid;
+  stored.format = std::string(to_string(document.format));
+  stored.header = document.header;
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const InspectedSolid& inspected = feature.solids[i];
+    auto solid = store_solid(inspected, feature.feature.solids[i].solid, options);
+    if (!solid) {
+      Error error = std::move(solid).error();
+      if (error.pointer.empty()) error.pointer = inspected.source.pointer;
+      return error;
+    }
+    stored.solids.push_back(*std::move(solid));
+    const Solid& certified = inspected.inspection.certified->solid.solid();
+    include(stored.box, certified);
+    auto merge = describe_merge(feature.feature.solids[i].solid, certified);
+    if (!merge) return std::move(merge).error();
+    if (merge->empty()) continue;
+    stored.skeleton += std::string(kMergedLine) + std::to_string(i) + ' ' + *merge + '\n';
+  }
+  stored.skeleton += feature.feature.skeleton;
+  return stored;
+}
+
+Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) {
+  auto format = format_named(stored.format);
+  if (!format) return std::move(format).error();
+  std::string_view skeleton = stored.skeleton;
+  auto merges = take_merge_lines(skeleton, stored.solids.size());
+  if (!merges) return std::move(merges).error();
+  Feature feature;
+  feature.id = stored.id;
+  feature.type = stored.type;
+  feature.srid = stored.srid;
+  feature.skeleton = std::string(skeleton);
+  for (std::size_t i = 0; i < stored.solids.size(); ++i) {
+    const StoredSolid& solid = stored.solids[i];
+    auto decoded = decode(solid.blob, limits);
+    if (!decoded) return std::move(decoded).error();
+    SolidSource source;
+    source.object_id = solid.object_id;
+    source.lod = solid.lod;
+    source.geometry = solid.geometry;
+    source.ordinal = solid.ordinal;
+    const std::string_view merge = (*merges)[i];
+    auto whole = merge.empty() ? Result<Solid>(std::move(decoded->solid))
+                               : unmerge(decoded->solid, merge, limits);
+    if (!whole) return std::move(whole).error();
+    feature.solids.push_back(SubmittedSolid{*std::move(whole), std::move(source), {}});
+  }
+  Document document;
+  document.format = *format;
+  document.header = stored.header;
+  document.features.push_back(std::move(feature));
+  return document;
+}
+
+}  // namespace watertight

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/http.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace watertight {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+int hex_value(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  c = lower(c);
+  return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+/// Cuts the part before `separator` off the front of `text`.
+std::string_view cut(std::string_view& text, char separator) {
+  const std::size_t end = text.find(separator);
+  const std::string_view part = text.substr(0, end);
+  text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+  return part;
+}
+
+Error malformed_target(std::string message) {
+  return Error{ErrorCode::malformed, std::move(message), {}, {}};
+}
+
+/// Length of the UTF-8 sequence at the front of `text`, 0 if it is none (RFC 3629, section 4).
+std::size_t utf8_sequence(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  std::size_t length = 0;
+  unsigned char low = 0x80;
+  unsigned char high = 0xBF;
+  if (first >= 0xC2 && first <= 0xDF) length = 2;
+  if (first >= 0xE0 && first <= 0xEF) length = 3;
+  if (first >= 0xF0 && first <= 0xF4) length = 4;
+  if (length == 0 || text.size() < length) return 0;
+  if (first == 0xE0) low = 0xA0;
+  if (first == 0xED) high = 0x9F;
+  if (first == 0xF0) low = 0x90;
+  if (first == 0xF4) high = 0x8F;
+  if (byte(1) < low || byte(1) > high) return 0;
+  for (std::size_t i = 2; i < length; ++i) {
+    if (byte(i) < 0x80 || byte(i) > 0xBF) return 0;
+  }
+  return length;
+}
+
+struct MediaRange {
+  std::string type;  // "application/json", "application/*" or "*/*"
+  double quality = 1;
+};
+
+double parse_quality(std::string_view text) {
+  double value = 1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0)) return 0;
+  return std::min(value, 1.0);
+}
+
+std::vector<MediaRange> parse_accept(std::string_view accept) {
+  std::vector<MediaRange> ranges;
+  while (!accept.empty()) {
+    std::string_view item = cut(accept, ',');
+    MediaRange range{media_type(cut(item, ';')), 1};
+    while (!item.empty()) {
+      const std::string_view parameter = trim(cut(item, ';'));
+      if (parameter.starts_with("q=") || parameter.starts_with("Q=")) {
+        range.quality = parse_quality(parameter.substr(2));
+      }
+    }
+    if (!range.type.empty()) ranges.push_back(std::move(range));
+  }
+  return ranges;
+}
+
+/// How closely a range names an offer: 3 exactly, 2 by "type/*", 1 by "*/*", 0 not at all.
+int specificity(const MediaRange& range, std::string_view offer) {
+  if (range.type == offer) return 3;
+  if (range.type == "*/*") return 1;
+  const std::size_t slash = range.type.find('/');
+  const bool is_subtype_range =
+      slash != std::string::npos && std::string_view(range.type).substr(slash) == "/*";
+  return is_subtype_range && offer.starts_with(std::string_view(range.type).substr(0, slash + 1))
+             ? 2
+             : 0;
+}
+
+}  // namespace
+
+const std::string* Request::header(std::string_view name) const {
+  for (const HeaderField& field : headers) {
+    if (field.name == name) return &field.value;
+  }
+  return nullptr;
+}
+
+std::string_view reason_phrase(unsigned status) {
+  switch (status) {
+    case 200:
+      return "OK";
+    case 201:
+      return "Created";
+    case 204:
+      return "No Content";
+    case 207:
+      return "Multi-Status";
+    case 304:
+      return "Not Modified";
+    case 400:
+      return "Bad Request";
+    case 404:
+      return "Not Found";
+    case 405:
+      return "Method Not Allowed";
+    case 406:
+      return "Not Acceptable";
+    case 408:
+      return "Request Timeout";
+    case 409:
+      return "Conflict";
+    case 411:
+      return "Length Required";
+    case 412:
+      return "Precondition Failed";
+    case 413:
+      return "Content Too Large";
+    case 415:
+      return "Unsupported Media Type";
+    case 422:
+      return "Unprocessable Content";
+    case 431:
+      return "Request Header Fields Too Large";
+    case 500:
+      return "Internal Server Error";
+    case 501:
+      return "Not Implemented";
+    case 503:
+      return "Service Unavailable";
+    case 505:
+      return "HTTP Version Not Supported";
+    default:
+      return "Unknown";
+  }
+}
+
+Result<std::string> percent_decode(std::string_view text) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (c == '%') {
+      const int high = i + 2 < text.size() ? hex_value(text[i + 1]) : -1;
+      const int low = i + 2 < text.size() ? hex_value(text[i + 2]) : -1;
+      if (high < 0 || low < 0) {
+        return malformed_target("'%' in the URL is not followed by two hexadecimal digits");
+      }
+      c = static_cast<char>(high * 16 + low);
+      i += 2;
+    }
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      return malformed_target("the URL contains a control character");
+    }
+    decoded.push_back(c);
+  }
+  if (!is_utf8(decoded)) return malformed_target("the URL is not UTF-8");
+  return decoded;
+}
+
+std::string percent_encode(std::string_view text) {
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string encoded;
+  for (const char c : text) {
+    const bool is_unreserved = (lower(c) >= 'a' && lower(c) <= 'z') || (c >= '0' && c <= '9') ||
+                               c == '-' || c == '.' || c == '_' || c == '~';
+    if (is_unreserved) {
+      encoded.push_back(c);
+      continue;
+    }
+    const auto byte = static_cast<unsigned char>(c);
+    encoded.push_back('%');
+    encoded.push_back(kHex[byte / 16U]);
+    encoded.push_back(kHex[byte % 16U]);
+  }
+  return encoded;
+}
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_sequence(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
+const std::string* Target::parameter(std::string_view name) const {
+  for (const auto& [key, value] : parameters) {
+    if (key == name) return &value;
+  }
+  return nullptr;
+}
+
+Result<Target> parse_target(std::string_view target) {
+  if (target.empty() || target.front() != '/') {
+    return malformed_target("the request target must be an absolute path");
+  }
+  Target parsed;
+  std::string_view query = target.substr(0, target.find('#'));
+  std::string_view path = cut(query, '?').substr(1);
+  // One slash at the end is the same resource.
+  if (path.ends_with('/')) path.remove_suffix(1);
+  while (!path.empty()) {
+    const bool is_last = path.find('/') == std::string_view::npos;
+    auto segment = percent_decode(cut(path, '/'));
+    if (!segment) return std::move(segment).error();
+    if (segment->empty() || (path.empty() && !is_last)) {
+      return malformed_target("the path contains an empty segment");
+    }
+    parsed.segments.push_back(*std::move(segment));
+  }
+  while (!query.empty()) {
+    std::string text(cut(query, '&'));
+    if (text.empty()) continue;
+    std::replace(text.begin(), text.end(), '+', ' ');
+    std::string_view value = text;
+    auto name = percent_decode(cut(value, '='));
+    if (!name) return std::move(name).error();
+    auto decoded = percent_decode(value);
+    if (!decoded) return std::move(decoded).error();
+    if (parsed.parameter(*name) != nullptr) {
+      return Error{
+          ErrorCode::invalid_argument, "the parameter '" + *name + "' is given twice", {}, {}};
+    }
+    parsed.parameters.emplace_back(*std::move(name), *std::move(decoded));
+  }
+  return parsed;
+}
+
+std::string media_type(std::string_view content_type) {
+  std::string type(trim(cut(content_type, ';')));
+  std::transform(type.begin(), type.end(), type.begin(), lower);
+  return type;
+}
+
+std::optional<std::size_t> negotiate(const std::string* accept,
+                                     const std::vector<std::string_view>& offers) {
+  if (offers.empty()) return std::nullopt;
+  if (accept == nullptr || trim(*accept).empty()) return 0;
+  const std::vector<MediaRange> ranges = parse_accept(*accept);
+  std::optional<std::size_t> best;
+  double best_quality = 0;
+  for (std::size_t i = 0; i < offers.size(); ++i) {
+    int closest = 0;
+    double quality = 0;
+    for (const MediaRange& range : ranges) {
+      const int fit = specificity(range, offers[i]);
+      if (fit > closest) {
+        closest = fit;
+        quality = range.quality;
+      }
+    }
+    if (quality > best_quality) {
+      best = i;
+      best_quality = quality;
+    }
+  }
+  return best;
+}
+
+}  // namespace watertight

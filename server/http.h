@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Requests and responses as plain values, so that routes are functions that need no socket. What
+// of HTTP the routes use: percent-decoding, query parameters, content types, Accept.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+
+namespace watertight {
+
+struct HeaderField {
+  std::string name;  // lower case in requests
+  std::string value;
+};
+
+struct Request {
+  std::string method;  // "GET", ...
+  std::string target;  // as received: path and query, percent-encoded
+  std::vector<HeaderField> headers;
+  std::string body;
+
+  /// The first field of that (lower-case) name.
+  const std::string* header(std::string_view name) const;
+};
+
+struct Response {
+  unsigned status = 200;
+  std::string content_type;  // "" for a response without body
+  std::string body;
+  std::vector<HeaderField> headers = {};
+};
+
+/// The standard phrase of a status, e.g. "Not Found".
+std::string_view reason_phrase(unsigned status);
+
+/// Decodes %XX. Errors: malformed on a broken escape, a control character or text that is not
+/// UTF-8.
+Result<std::string> percent_decode(std::string_view text);
+
+/// Encodes everything but unreserved characters (RFC 3986, section 2.3).
+std::string percent_encode(std::string_view text);
+
+/// True if the bytes are UTF-8 (no overlong forms, no surrogates).
+bool is_utf8(std::string_view text);
+
+/// A request target taken apart. Segments are decoded one by one, so an encoded slash stays inside
+/// its segment; there is no file system behind them and "." and ".." mean nothing.
+struct Target {
+  std::vector<std::string> segments;  // of "/collections/a" : "collections", "a"; of "/": none
+  std::vector<std::pair<std::string, std::string>> parameters;
+
+  const std::string* parameter(std::string_view name) const;
+};
+
+/// Errors: malformed (not an absolute path, an empty segment, a broken escape); invalid_argument
+/// for a parameter given twice.
+Result<Target> parse_target(std::string_view target);
+
+/// A media type without its parameters, lower case: "application/json" of
+/// "Application/JSON; charset=utf-8".
+std::string media_type(std::string_view content_type);
+
+/// Chooses among `offers` (media types, best first) by an Accept header (RFC 9110, section 12.5.1):
+/// index of the offer with the highest quality, the earlier one on ties. No header accepts all.
+/// Returns nothing when none is acceptable.
+std::optional<std::size_t> negotiate(const std::string* accept,
+                                     const std::vector<std::string_view>& offers);
+
+}  // namespace watertight

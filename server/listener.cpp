@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/listener.h"
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "server/session.h"
+
+namespace watertight {
+namespace {
+
+namespace asio = boost::asio;
+using asio::awaitable;
+using asio::redirect_error;
+using asio::use_awaitable;
+using asio::ip::tcp;
+using boost::system::error_code;
+using std::chrono::milliseconds;
+
+constexpr std::size_t kRefusedAtOnce = 64;  // connections beyond the limit that still get a word
+constexpr milliseconds kPause{20};
+
+class AsioServer final : public HttpServer {
+ public:
+  AsioServer(const ServerOptions& options, Application application, LogLine log)
+      : environment_(options, std::move(application), std::move(log)),
+        guard_(asio::make_work_guard(context_)),
+        acceptor_(context_) {}
+  ~AsioServer() override { stop(); }
+  AsioServer(const AsioServer&) = delete;
+  AsioServer& operator=(const AsioServer&) = delete;
+
+  Status listen();
+  std::uint16_t port() const override { return port_; }
+  void stop() override;
+
+ private:
+  awaitable<void> accept();
+  void begin_session(tcp::socket socket);
+  void close_idle_connections();
+  bool wait_for_sessions(double seconds);
+
+  asio::io_context context_{1};
+  SessionEnvironment environment_;
+  asio::executor_work_guard<asio::io_context::executor_type> guard_;
+  tcp::acceptor acceptor_;
+  std::uint16_t port_ = 0;
+  std::atomic<std::size_t> refused_ = 0;
+  std::thread thread_;
+};
+
+Status AsioServer::listen() {
+  const ServerOptions& options = environment_.options;
+  const std::string place = options.address + ":" + std::to_string(options.port);
+  error_code error;
+  const auto address = asio::ip::make_address(options.address, error);
+  if (error) {
+    return Error{ErrorCode::invalid_argument,
+                 "'" + options.address + "' is not an IP address (example: 127.0.0.1)",
+                 {},
+                 {}};
+  }
+  const tcp::endpoint endpoint(address, options.port);
+  acceptor_.open(endpoint.protocol(), error);
+  if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+  if (!error) acceptor_.bind(endpoint, error);
+  if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  if (error) {
+    return Error{
+        ErrorCode::unavailable, "cannot listen on " + place + ": " + error.message(), {}, {}};
+  }
+  port_ = acceptor_.local_endpoint(error).port();
+  asio::co_spawn(context_, accept(), asio::detached);
+  thread_ = std::thread([this] { context_.run(); });
+  return Done{};
+}
+
+awaitable<void> AsioServer::accept() {
+  asio::steady_timer timer(context_);
+  while (!environment_.is_draining) {
+    error_code error;
+    tcp::socket socket = co_await acceptor_.async_accept(redirect_error(use_awaitable, error));
+    if (environment_.is_draining) break;
+    if (!error) {
+      begin_session(std::move(socket));
+      continue;
+    }
+    // Out of descriptors or memory: those that are open may end; try again soon.
+    timer.expires_after(kPause);
+    co_await timer.async_wait(redirect_error(use_awaitable, error));
+  }
+}
+
+void AsioServer::begin_session(tcp::socket socket) {
+  error_code error;
+  socket.set_option(tcp::no_delay(true), error);
+  const auto peer = socket.remote_endpoint(error);
+  auto connection = std::make_shared<Connection>(std::move(socket));
+  if (!error) connection->peer = peer.address().to_string();
+  if (environment_.sessions >= environment_.options.connections) {
+    if (refused_ >= kRefusedAtOnce) return;
+    ++refused_;
+    asio::co_spawn(context_, refuse_session(std::move(connection)),
+                   [this](std::exception_ptr) { --refused_; });
+    return;
+  }
+  ++environment_.sessions;
+  {
+    const std::lock_guard lock(environment_.mutex);
+    environment_.connections.remove_if([](const auto& entry) { return entry.expired(); });
+    environment_.connections.push_back(connection);
+  }
+  asio::co_spawn(context_, run_session(std::move(connection), environment_),
+                 [this](std::exception_ptr) { --environment_.sessions; });
+}
+
+void AsioServer::close_idle_connections() {
+  const std::lock_guard lock(environment_.mutex);
+  for (const auto& entry : environment_.connections) {
+    const auto connection = entry.lock();
+    if (connection && connection->is_idle) connection->stream.close();
+  }
+}
+
+bool AsioServer::wait_for_sessions(double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (environment_.sessions > 0) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(kPause);
+  }
+  return true;
+}
+
+void AsioServer::stop() {
+  if (!thread_.joinable()) return;
+  environment_.is_draining = true;
+  asio::post(context_, [this] {
+    error_code ignored;
+    acceptor_.close(ignored);
+    close_idle_connections();
+  });
+  if (!wait_for_sessions(environment_.options.drain_seconds)) {
+    environment_.log("event=drain-timeout sessions=" + std::to_string(environment_.sessions));
+  }
+  environment_.is_cancelled = true;
+  // Engines notice the cancellation within moments; no thread may outlive what it refers to.
+  environment_.computing.join();
+  environment_.reading.join();
+  wait_for_sessions(1);
+  guard_.reset();
+  context_.stop();
+  thread_.join();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<HttpServer>> HttpServer::start(const ServerOptions& options,
+                                                      Application application, LogLine log) {
+  auto server = std::make_unique<AsioServer>(options, std::move(application), std::move(log));
+  const Status status = server->listen();
+  if (!status) return status.error();
+  return std::unique_ptr<HttpServer>(std::move(server));
+}
+
+}  // namespace watertight

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The HTTP/1.1 server under the routes: listens, limits, hands requests to worker threads and
+// drains. Knows nothing of solids; what is answered is an Application's business.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "server/http.h"
+
+namespace watertight {
+
+/// Where a request is answered. Quick ones on the I/O thread, so that they are answered whatever
+/// the others do; those that wait for the database and those that compute each have threads of
+/// their own.
+enum class Lane : std::uint8_t { quick, reading, computing };
+
+/// True when the request's answer is no longer wanted (time is up, the server is stopping).
+using IsCancelled = std::function<bool()>;
+
+/// What answers requests. Both functions are called from several threads at once.
+struct Application {
+  std::function<Lane(const Request&)> lane;
+  std::function<Response(const Request&, const IsCancelled&)> respond;
+};
+
+/// One line about an answered request or an event, already formatted as key=value pairs.
+using LogLine = std::function<void(const std::string& line)>;
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8080;  // 0: any free one
+  std::uint32_t header_bytes = 16 * 1024;
+  std::uint64_t body_bytes = 256ULL << 20;            // of one request
+  std::uint64_t body_bytes_together = 1024ULL << 20;  // of all requests that are being received
+  double idle_seconds = 60;                           // between requests of one connection
+  double header_seconds = 10;                         // from the first byte of a header to its last
+  double body_seconds = 120;                          // for the whole body
+  double answer_seconds = 300;  // of computing, after which engines are cancelled
+  double write_seconds = 60;    // for the answer, plus one for each 100 kB
+  double drain_seconds = 30;    // for requests in flight when stopping
+  std::size_t connections = 512;
+  std::size_t computing_threads = 2;
+  std::size_t reading_threads = 4;
+  std::size_t computing_queue = 64;  // requests waiting for a computing thread; more get 503
+  std::size_t reading_queue = 256;
+};
+
+/// A listening server with its threads.
+class HttpServer {
+ public:
+  /// Errors: invalid_argument (address), unavailable (address in use, no permission).
+  static Result<std::unique_ptr<HttpServer>> start(const ServerOptions& options,
+                                                   Application application, LogLine log);
+  virtual ~HttpServer() = default;
+  virtual std::uint16_t port() const = 0;
+  /// Graceful: stops accepting, closes idle connections, lets requests in flight finish within
+  /// drain_seconds, then cancels and closes. Blocks until done; later calls do nothing.
+  virtual void stop() = 0;
+};
+
+}  // namespace watertight

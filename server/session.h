@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One connection: reads requests within limits, has them answered in their lane, writes answers.
+// Includes Asio: for session.cpp and listener.cpp only.
+#pragma once
+
+#include <utility>  // before Asio: Boost 1.74 uses std::exchange without including it
+
+#include <atomic>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "server/listener.h"
+
+namespace watertight {
+
+/// A limited quantity that several threads take from and give back to.
+class Budget {
+ public:
+  explicit Budget(std::uint64_t amount) : left_(amount) {}
+  bool take(std::uint64_t amount);
+  void give_back(std::uint64_t amount) { left_ += amount; }
+
+ private:
+  std::atomic<std::uint64_t> left_;
+};
+
+/// What a session takes from a Budget while it lives.
+class BudgetShare {
+ public:
+  BudgetShare(Budget& budget, std::uint64_t amount)
+      : budget_(budget),
+        amount_(budget.take(amount) ? amount : 0),
+        is_granted_(amount_ == amount) {}
+  ~BudgetShare() { budget_.give_back(amount_); }
+  BudgetShare(const BudgetShare&) = delete;
+  BudgetShare& operator=(const BudgetShare&) = delete;
+  bool is_granted() const { return is_granted_; }
+
+ private:
+  Budget& budget_;
+  std::uint64_t amount_;
+  bool is_granted_;
+};
+
+/// The stream of one connection, shared with the listener so that stopping can close idle ones.
+struct Connection {
+  explicit Connection(boost::asio::ip::tcp::socket socket) : stream(std::move(socket)) {}
+  boost::beast::tcp_stream stream;
+  bool is_idle = true;  // waits for the first byte of a request; only on the stream's executor
+  std::string peer;
+};
+
+/// What all sessions of a server share. Outlives them.
+struct SessionEnvironment {
+  SessionEnvironment(const ServerOptions& server_options, Application server_application,
+                     LogLine server_log);
+
+  ServerOptions options;
+  Application application;
+  LogLine log;
+  boost::asio::thread_pool computing;
+  boost::asio::thread_pool reading;
+  Budget bodies;
+  Budget computing_places;
+  Budget reading_places;
+  std::atomic<bool> is_draining = false;
+  std::atomic<bool> is_cancelled = false;
+
+  std::mutex mutex;
+  std::list<std::weak_ptr<Connection>> connections;  // guarded by mutex
+  std::atomic<std::size_t> sessions = 0;
+};
+
+/// Serves one connection until it closes.
+boost::asio::awaitable<void> run_session(std::shared_ptr<Connection> connection,
+                                         SessionEnvironment& environment);
+
+/// Tells a connection that is one too many to come back later, and closes it.
+boost::asio::awaitable<void> refuse_session(std::shared_ptr<Connection> connection);
+
+}  // namespace watertight

@@ -17,9 +17,12 @@ struct AxisUnits {
   std::string note;  // non-empty when something was assumed, e.g. "no CRS stated: metres assumed"
 };
 
-/// Units of the axes of EPSG code `srid` at the centre of `box` (world coordinates). Unknown and
-/// unstated systems count as metres, with a note. A geographic code over coordinates that cannot
-/// be degrees (|value| above 360 in an axis that should be an angle) counts as metres, with a note.
+/// Units of the axes of EPSG code `srid` at the centre of a box (world coordinates), from a table
+/// of all codes of the EPSG data set (crs_table.cpp). Unknown and unstated systems count as metres,
+/// with a note. Geographic systems: metres per degree on the WGS 84 ellipsoid at the centre; x is
+/// longitude, as in most files whatever the authority's order, unless y is beyond 90 degrees and x
+/// is not. A geographic code over coordinates that cannot be degrees (|value| above 360) counts as
+/// metres, with a note. Cost: logarithmic.
 AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre);
 
 }  // namespace watertight

@@ -51,7 +51,7 @@ class Service:
 
     def get(self, collection, name):
         return self.request("GET", f"/collections/{collection}/items/"
-                            f"{urllib.parse.quote(name, safe='')}?f=cityjson")
+                            f"{urllib.parse.quote(name, safe='')}?f=cityjsonseq")
 
     def wait_until_ready(self, seconds):
         deadline = time.monotonic() + seconds

@@ -9,6 +9,8 @@ set -eu
 
 source_directory=$1
 work_directory=$2
+given_name=${3-}
+given_hashes=${4-}
 
 if ! command -v clang++ >/dev/null 2>&1; then
   echo "clang++ is not installed: nothing to compare with"
@@ -16,8 +18,12 @@ if ! command -v clang++ >/dev/null 2>&1; then
 fi
 mkdir -p "$work_directory"
 
-# hash_build NAME CXX BUILD_TYPE: leaves the hashes in WORK_DIRECTORY/NAME.txt
+# hash_build NAME CXX CC BUILD_TYPE: leaves the hashes in WORK_DIRECTORY/NAME.txt
 hash_build() {
+  if [ "$1" = "$given_name" ]; then
+    "$given_hashes" >"$work_directory/$1.txt"
+    return
+  fi
   directory="$work_directory/$1"
   if ! {
     cmake -S "$source_directory" -B "$directory" -G Ninja -DCMAKE_CXX_COMPILER="$2" \

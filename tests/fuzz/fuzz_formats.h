@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What every reader promises on any bytes: an Error that says something, or a document that can be
+// written and then reads as the same solids.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "formats/document.h"
+
+namespace watertight::fuzz {
+
+inline Limits small_limits() {
+  return {.bytes = 1U << 20U,
+          .vertices = 10'000,
+          .facets = 10'000,
+          .rings = 10'000,
+          .shells = 1000,
+          .nesting = 64};
+}
+
+inline void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+inline void require_same_solids(const Document& a, const Document& b) {
+  require(a.features.size() == b.features.size());
+  for (std::size_t i = 0; i < a.features.size(); ++i) {
+    require(a.features[i].solids.size() == b.features[i].solids.size());
+    for (std::size_t j = 0; j < a.features[i].solids.size(); ++j) {
+      require(a.features[i].solids[j].solid == b.features[i].solids[j].solid);
+    }
+  }
+}
+
+/// Reads, writes in the same format, reads again. Writing may be refused only as unsupported.
+inline void check_reader(ByteView bytes, Format format, bool is_split) {
+  ReadOptions options;
+  options.limits = small_limits();
+  options.split_features = is_split;
+  const auto document = read_document(bytes, format, options);
+  if (!document) {
+    require(!document.error().message.empty());
+    return;
+  }
+  const auto written = write_document(*document, format);
+  if (!written) {
+    require(written.error().code == ErrorCode::unsupported);
+    return;
+  }
+  options.limits.bytes = 1U << 26U;  // decimals of large exponents print long
+  options.limits.vertices = 1'000'000;
+  const auto again = read_document(*written, format, options);
+  require(again.has_value());
+  require_same_solids(*document, *again);
+}
+
+}  // namespace watertight::fuzz

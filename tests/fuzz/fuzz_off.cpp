@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// libFuzzer harness of the OFF reader and writer.
+#include "fuzz_formats.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace watertight;
+  fuzz::check_reader(ByteView(data, size), Format::off, true);
+  return 0;
+}

@@ -10,8 +10,9 @@ namespace watertight {
 }
 
 #ifdef WATERTIGHT_CHECKED
-#define WATERTIGHT_ASSERT(condition) \
-  ((condition) ? static_cast<void>(0) : ::watertight::assertion_failed(#condition, __FILE__, __LINE__))
+#define WATERTIGHT_ASSERT(condition)  \
+  ((condition) ? static_cast<void>(0) \
+               : ::watertight::assertion_failed(#condition, __FILE__, __LINE__))
 #else
 #define WATERTIGHT_ASSERT(condition) static_cast<void>(sizeof(!(condition)))
 #endif

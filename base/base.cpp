@@ -9,15 +9,24 @@ namespace watertight {
 
 std::string_view to_string(ErrorCode code) {
   switch (code) {
-    case ErrorCode::malformed: return "malformed";
-    case ErrorCode::unsupported: return "unsupported";
-    case ErrorCode::limit_exceeded: return "limit-exceeded";
-    case ErrorCode::not_encodable: return "not-encodable";
-    case ErrorCode::cancelled: return "cancelled";
-    case ErrorCode::not_found: return "not-found";
-    case ErrorCode::conflict: return "conflict";
-    case ErrorCode::unavailable: return "unavailable";
-    case ErrorCode::invalid_argument: return "invalid-argument";
+    case ErrorCode::malformed:
+      return "malformed";
+    case ErrorCode::unsupported:
+      return "unsupported";
+    case ErrorCode::limit_exceeded:
+      return "limit-exceeded";
+    case ErrorCode::not_encodable:
+      return "not-encodable";
+    case ErrorCode::cancelled:
+      return "cancelled";
+    case ErrorCode::not_found:
+      return "not-found";
+    case ErrorCode::conflict:
+      return "conflict";
+    case ErrorCode::unavailable:
+      return "unavailable";
+    case ErrorCode::invalid_argument:
+      return "invalid-argument";
   }
   return "unknown";
 }

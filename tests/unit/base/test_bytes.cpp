@@ -10,9 +10,16 @@ using namespace watertight;
 
 TEST_CASE("integers and doubles read back as written") {
   ByteWriter writer;
-  const std::int64_t signed_values[] = {0, -1, 1, 63, -64, 64, std::numeric_limits<std::int64_t>::min(),
+  const std::int64_t signed_values[] = {0,
+                                        -1,
+                                        1,
+                                        63,
+                                        -64,
+                                        64,
+                                        std::numeric_limits<std::int64_t>::min(),
                                         std::numeric_limits<std::int64_t>::max()};
-  const std::uint64_t values[] = {0, 127, 128, 16383, 16384, std::numeric_limits<std::uint64_t>::max()};
+  const std::uint64_t values[] = {0,     127,   128,
+                                  16383, 16384, std::numeric_limits<std::uint64_t>::max()};
   for (const auto value : signed_values) writer.zigzag(value);
   for (const auto value : values) writer.varint(value);
   writer.u16(0xBEEF);
@@ -36,7 +43,8 @@ TEST_CASE("a read past the end fails once and for all") {
 }
 
 TEST_CASE("a varint has one encoding only") {
-  for (const Bytes& bytes : {Bytes{0x80, 0x00}, Bytes(11, 0xFF), Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x02}}) {
+  for (const Bytes& bytes : {Bytes{0x80, 0x00}, Bytes(11, 0xFF),
+                             Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x02}}) {
     ByteReader reader(bytes);
     static_cast<void>(reader.varint());
     CHECK(reader.failed());

@@ -8,8 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <optional>
 
 #include "geometry/contact_classifier.h"
 #include "geometry/inline_predicates.h"
@@ -17,7 +15,7 @@
 namespace watertight {
 namespace {
 
-constexpr std::size_t kLeafSize = 16;
+constexpr std::size_t kLeafSize = 8;
 constexpr std::uint64_t kCancelInterval = std::uint64_t{1} << 16U;
 /// A split is worth its copies if it saves at least this share of the pairs of its box. It also
 /// bounds the work: the sum of squared leaf sizes never exceeds the square of the root's.
@@ -95,10 +93,17 @@ class Search {
   }
 
  private:
+  struct Spread {
+    std::array<float, 3> low{kLargestFloat, kLargestFloat, kLargestFloat};
+    std::array<float, 3> high{-kLargestFloat, -kLargestFloat, -kLargestFloat};
+    std::array<float, 3> first_centre = low;
+    std::array<float, 3> last_centre = high;
+  };
+
   void collect_members();
   bool is_degenerate(const Triangle& triangle) const;
   bool split(const Part& part);
-  std::optional<float> plane_across(const Part& part, std::size_t axis) const;
+  Spread spread(const Part& part) const;
   bool is_worthwhile(const Part& part, std::size_t axis, float plane) const;
   void divide(const Part& part, std::size_t axis, float plane);
   void compare_all(const Part& part);
@@ -146,18 +151,22 @@ void Search::collect_members() {
   }
 }
 
-/// The middle of the members' centres along an axis, if they differ there.
-std::optional<float> Search::plane_across(const Part& part, std::size_t axis) const {
-  float least = kLargestFloat;
-  float most = -kLargestFloat;
+/// Where the members' boxes and their centres lie, as far as they are inside the part.
+Search::Spread Search::spread(const Part& part) const {
+  Spread spread;
   for (std::size_t i = part.begin; i < part.end; ++i) {
-    const float centre = 0.5F * members_[i].box.low[axis] + 0.5F * members_[i].box.high[axis];
-    least = std::min(least, std::clamp(centre, part.low[axis], part.high[axis]));
-    most = std::max(most, std::clamp(centre, part.low[axis], part.high[axis]));
+    const FloatBox& box = members_[i].box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float low = std::max(box.low[axis], part.low[axis]);
+      const float high = std::min(box.high[axis], part.high[axis]);
+      const float centre = 0.5F * low + 0.5F * high;
+      spread.low[axis] = std::min(spread.low[axis], low);
+      spread.high[axis] = std::max(spread.high[axis], high);
+      spread.first_centre[axis] = std::min(spread.first_centre[axis], centre);
+      spread.last_centre[axis] = std::max(spread.last_centre[axis], centre);
+    }
   }
-  const float plane = 0.5F * least + 0.5F * most;
-  if (!(least < most) || plane <= part.low[axis] || plane >= part.high[axis]) return std::nullopt;
-  return plane;
+  return spread;
 }
 
 bool Search::is_worthwhile(const Part& part, std::size_t axis, float plane) const {
@@ -171,25 +180,21 @@ bool Search::is_worthwhile(const Part& part, std::size_t axis, float plane) cons
   return square(lower) + square(upper) <= kLargestShareOfPairs * square(part.end - part.begin);
 }
 
-/// Replaces the part by its two halves if that saves work. The longest axis is tried first.
+/// Replaces the part by its two halves, cut midway between the outermost centres, if that saves
+/// work. The longest axis is tried first.
 bool Search::split(const Part& part) {
   if (part.end - part.begin <= kLeafSize) return false;
-  std::array<float, 3> low{kLargestFloat, kLargestFloat, kLargestFloat};
-  std::array<float, 3> high{-kLargestFloat, -kLargestFloat, -kLargestFloat};
-  for (std::size_t i = part.begin; i < part.end; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], std::max(members_[i].box.low[axis], part.low[axis]));
-      high[axis] = std::max(high[axis], std::min(members_[i].box.high[axis], part.high[axis]));
-    }
-  }
+  const Spread extent = spread(part);
+  const auto length = [&](std::size_t axis) { return extent.high[axis] - extent.low[axis]; };
   std::array<std::size_t, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) {
-    return high[a] - low[a] > high[b] - low[b];
-  });
+  if (length(axes[0]) < length(axes[1])) std::swap(axes[0], axes[1]);
+  if (length(axes[1]) < length(axes[2])) std::swap(axes[1], axes[2]);
+  if (length(axes[0]) < length(axes[1])) std::swap(axes[0], axes[1]);
   for (const std::size_t axis : axes) {
-    const auto plane = plane_across(part, axis);
-    if (!plane || !is_worthwhile(part, axis, *plane)) continue;
-    divide(part, axis, *plane);
+    const float plane = 0.5F * extent.first_centre[axis] + 0.5F * extent.last_centre[axis];
+    const bool is_inside = plane > part.low[axis] && plane < part.high[axis];
+    if (!is_inside || !is_worthwhile(part, axis, plane)) continue;
+    divide(part, axis, plane);
     return true;
   }
   return false;

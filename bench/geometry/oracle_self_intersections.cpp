@@ -130,7 +130,17 @@ auto timed(Function function, double& seconds) {
   return result;
 }
 
-void print_classes(const std::vector<IntersectingPair>& pairs) {
+void print_classes(const Mesh& mesh, const std::vector<IntersectingPair>& pairs) {
+  const auto with_common_vertex = std::count_if(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    const Triangle& second = mesh.triangles[pair.second];
+    return std::find_first_of(second.begin(), second.end(), mesh.triangles[pair.first].begin(),
+                              mesh.triangles[pair.first].end()) != second.end();
+  });
+  if (!pairs.empty()) {
+    std::printf("    %zu without a common vertex, %zu with one\n",
+                pairs.size() - static_cast<std::size_t>(with_common_vertex),
+                static_cast<std::size_t>(with_common_vertex));
+  }
   std::array<std::size_t, 12> counts{};
   for (const auto& pair : pairs) ++counts[static_cast<std::size_t>(pair.contact)];
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -175,7 +185,7 @@ bool compare(const std::string& file, int repeat) {
       equals_boxes ? "equal" : "DIFFERENT", equals_pmp ? "equal" : "DIFFERENT", from_pmp.size());
   std::printf("    seconds: box partition %.4f, box_self_intersection_d %.4f, PMP %.4f\n", own,
               boxes, pmp);
-  print_classes(pairs);
+  print_classes(mesh, pairs);
   return equals_all && equals_boxes && equals_pmp;
 }
 

@@ -19,8 +19,8 @@
 namespace watertight {
 namespace {
 
-constexpr double kIntegerBound = 1073741824.0;  // 2^30: insphere determinants stay below 2^155
-constexpr double kLeastMagnitude = 0x1p-100;    // and of doubles inside the exponent range
+// An insphere determinant is of degree 5: inside these bounds no product leaves the exponent range.
+constexpr double kLeastMagnitude = 0x1p-100;
 constexpr double kLargestMagnitude = 0x1p100;
 
 Error not_encodable(std::string message) { return {ErrorCode::not_encodable, std::move(message)}; }
@@ -36,7 +36,8 @@ Result<BoundaryComplex> follow(const CanonicalSolid& canonical) {
   complex.points.assign(solid.vertices().begin(), solid.vertices().end());
   complex.vertex_count = solid.vertex_count();
   if (!has_storable_delaunay(complex.points)) {
-    return not_encodable("mode bitmap holds integers below 2^30 or doubles of moderate size");
+    return not_encodable(
+        "mode bitmap holds coordinates that are 0 or of magnitude 2^-100 to 2^100");
   }
   auto delaunay = create_delaunay(complex);
   if (!delaunay) return delaunay.error();
@@ -89,7 +90,8 @@ Result<BoundaryComplex> conform(const CanonicalSolid& canonical, const Certifica
     complex.points.push_back(p);
   }
   if (!has_storable_delaunay(complex.points)) {
-    return not_encodable("mode bitmap holds integers below 2^30 or doubles of moderate size");
+    return not_encodable(
+        "mode bitmap holds coordinates that are 0 or of magnitude 2^-100 to 2^100");
   }
   const std::vector<Index> facet_place = inverse_of(canonical.order.facet);
   for (const ConstrainedFace& face : mesh.constrained) {
@@ -108,11 +110,10 @@ Result<BoundaryComplex> conform(const CanonicalSolid& canonical, const Certifica
 }  // namespace
 
 bool has_storable_delaunay(std::span<const Point> points) {
-  const bool integers = are_integers(points);
   for (const Point& p : points) {
     for (int axis = 0; axis < 3; ++axis) {
       const double magnitude = std::fabs(p[axis]);
-      if (integers ? magnitude >= kIntegerBound : magnitude > kLargestMagnitude) return false;
+      if (magnitude > kLargestMagnitude) return false;
       if (magnitude != 0 && magnitude < kLeastMagnitude) return false;
     }
   }

@@ -33,8 +33,8 @@ struct Decomposition {
   std::optional<CodedFacets> facets;  // nothing: the caller lists them
 };
 
-/// True if the canonical Delaunay tetrahedralization of these points may be part of a blob:
-/// integers below 2^30 in magnitude, or doubles whose magnitudes lie in [2^-100, 2^100].
+/// True if the canonical Delaunay tetrahedralization of these points may be part of a blob: each
+/// coordinate is 0 or of a magnitude in [2^-100, 2^100], integers or not.
 bool has_storable_delaunay(std::span<const Point> points);
 
 /// At most this many tetrahedra: the decoder's time stays in proportion to the blob.

@@ -165,11 +165,26 @@ TEST_CASE("a certificate of another solid is refused") {
   CHECK(blob.error().code == ErrorCode::not_encodable);
 }
 
-TEST_CASE("coordinates too large for a Delaunay tetrahedralization fall back to raw") {
+TEST_CASE("integers of more than 30 bits are encoded in every mode") {
   for (const double size : {0x1p30, 0x1p53}) {
     SolidArrays arrays;
     generated::add_box(arrays, {0, 0, 0}, {size, 1, 5});
     const OrientedBoundary boundary = generated::boundary_of(std::move(arrays));
+    for (const Mode mode : {Mode::raw, Mode::bitmap}) {
+      const auto decoded = decode(encoded(boundary, {.mode = mode}));
+      REQUIRE(decoded);
+      CHECK(decoded->solid == boundary.solid());
+    }
+  }
+}
+
+TEST_CASE("coordinates beyond a safe Delaunay tetrahedralization fall back to raw") {
+  Lattice doubles;
+  doubles.kind = LatticeKind::float64;
+  for (const double size : {0x1p101, 0x1p1000, 0x1p-101, 0x1p-1074}) {
+    SolidArrays arrays;
+    generated::add_box(arrays, {0, 0, 0}, {size, 1, 5});
+    const OrientedBoundary boundary = generated::boundary_of(std::move(arrays), doubles, 0);
     const auto bitmap = encode_boundary(boundary, {}, {.mode = Mode::bitmap});
     REQUIRE_FALSE(bitmap);
     CHECK(bitmap.error().code == ErrorCode::not_encodable);

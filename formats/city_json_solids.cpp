@@ -156,7 +156,13 @@ Result<LatticePoints> lattice_of(const CityModel& model, std::span<const Index> 
 class FeatureLattice {
  public:
   FeatureLattice(const CityModel& model, const CityHeader& header, const Limits& limits)
-      : model_(model), header_(header), limits_(limits), slot_of_(model.vertices.size(), kNone) {}
+      : model_(model),
+        header_(header),
+        limits_(limits),
+        slot_of_(model.vertices.size(), kNone),
+        was_rounded_(model.vertices.size(), false) {
+    for (const Index vertex : model.vertices.rounded) was_rounded_[vertex] = true;
+  }
 
   Status place(std::vector<CutSolid>& cut, std::span<const std::size_t> members,
                std::vector<CitySolid>& solids) {
@@ -188,8 +194,8 @@ class FeatureLattice {
     if (!lattice) return located(lattice.error(), pointer);
     std::vector<bool> is_rounded(used.size(), false);
     for (const Index slot : lattice->rounded) is_rounded[slot] = true;
-    for (const Index vertex : model_.vertices.rounded) {
-      if (slot_of_[vertex] != kNone) is_rounded[slot_of_[vertex]] = true;
+    for (std::size_t slot = 0; slot < used.size(); ++slot) {
+      if (was_rounded_[used[slot]]) is_rounded[slot] = true;
     }
     for (const std::size_t i : members) {
       auto solid = make(cut[i], *lattice, is_rounded);
@@ -222,7 +228,8 @@ class FeatureLattice {
   const CityModel& model_;
   const CityHeader& header_;
   const Limits& limits_;
-  std::vector<Index> slot_of_;  // document vertex -> point; kNone between features
+  std::vector<Index> slot_of_;     // document vertex -> point; kNone between features
+  std::vector<bool> was_rounded_;  // document vertex -> by reading its numbers
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 // formats/document.h and formats/ewkb.h.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "formats/document.h"
 
 namespace watertight {
+
+struct DecimalVertices;
 
 Result<Document> read_obj(std::string_view text, const Limits& limits);
 Result<Document> read_off(std::string_view text, const Limits& limits);
@@ -37,7 +40,6 @@ std::vector<std::string_view> words_of(std::string_view line);
 Error error_at(const TextLine& line, std::string_view word, std::string message);
 
 /// Three words as exact coordinates, appended with whether they were rounded.
-struct DecimalVertices;
 Status append_vertex(const TextLine& line, std::span<const std::string_view> words,
                      DecimalVertices& vertices);
 

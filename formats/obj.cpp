@@ -87,7 +87,7 @@ class ObjReader {
     if (content.empty() || content.front() == '#') return Done{};
     const std::string_view keyword = content.substr(0, content.find_first_of(" \t"));
     if (keyword == "o") {
-      objects_.push_back({std::string(trimmed(content.substr(1))), {}});
+      begin_object(std::string(trimmed(content.substr(1))));
       return Done{};
     }
     if (keyword == "v" || keyword == "f") {
@@ -100,6 +100,17 @@ class ObjReader {
     }
     if (std::find(kIgnored.begin(), kIgnored.end(), keyword) != kIgnored.end()) return Done{};
     return error_at(line, keyword, "not a statement of an OBJ file");
+  }
+
+  // An object without faces gives way to the next one.
+  void begin_object(std::string name) {
+    ObjObject& last = objects_.back();
+    if (!last.arrays.ring_vertices.empty()) {
+      objects_.push_back({std::move(name), {}});
+      return;
+    }
+    if (!last.name.empty()) ++left_out_;
+    last.name = std::move(name);
   }
 
   // x y z, optionally with a weight or a colour.
@@ -169,20 +180,16 @@ class ObjReader {
   Result<Document> document() {
     Document document;
     document.format = Format::obj;
-    const bool has_facets =
-        std::any_of(objects_.begin(), objects_.end(),
-                    [](const ObjObject& object) { return !object.arrays.ring_vertices.empty(); });
-    if (!has_facets) {
-      // One empty solid, so that there is something to report about.
-      objects_.resize(1);
-      document.notes.push_back("the file has no faces");
-    }
-    std::size_t left_out = 0;
-    for (ObjObject& object : objects_) {
-      if (has_facets && object.arrays.ring_vertices.empty()) {
-        left_out += object.name.empty() ? 0 : 1;
-        continue;
+    if (objects_.back().arrays.ring_vertices.empty()) {
+      if (objects_.size() == 1) {
+        // One empty solid, so that there is something to report about.
+        document.notes.push_back("the file has no faces");
+      } else {
+        objects_.pop_back();
+        ++left_out_;
       }
+    }
+    for (ObjObject& object : objects_) {
       object.arrays.end_shell();
       auto solid = indexed_solid(std::move(object.arrays), vertices_,
                                  SolidSource{object.name, "Mesh", "", 0, 0, ""}, limits_);
@@ -192,8 +199,8 @@ class ObjReader {
       feature.solids.push_back(std::move(*solid));
       document.features.push_back(std::move(feature));
     }
-    if (left_out > 0) {
-      document.notes.push_back(std::to_string(left_out) + " objects without faces left out");
+    if (left_out_ > 0) {
+      document.notes.push_back(std::to_string(left_out_) + " objects without faces left out");
     }
     return document;
   }
@@ -203,6 +210,7 @@ class ObjReader {
   DecimalVertices vertices_;
   std::vector<ObjObject> objects_;
   std::string joined_;
+  std::size_t left_out_ = 0;        // objects without faces
   std::uint64_t last_missing_ = 0;  // the largest index beyond the vertices so far, from 1
   std::size_t missing_line_ = 0;
   std::size_t missing_offset_ = 0;

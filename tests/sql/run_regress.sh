@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs the extension in a private server: run_regress.sh SOURCE BUILD [COMMAND-LINE-PROGRAM]
+# With the third argument it also compares the blobs of SQL and command line.
+set -euo pipefail
+source=$(cd "$1" && pwd)
+build=$(cd "$2" && pwd)
+program=${3:-}
+tests=(functions encode hostile helpers)
+
+folder=$(mktemp -d /tmp/watertight-sql-XXXXXX)
+started=no
+run() { "$@"; }
+cleanup() {
+  status=$?
+  if [ $started = yes ]; then
+    run "$bin/pg_ctl" -D "$folder/data" -m immediate -s stop >/dev/null 2>&1 || true
+  fi
+  rm -rf "$folder"
+  exit $status
+}
+trap cleanup EXIT
+
+# As root everything that PostgreSQL does is done by another user.
+if [ "$(id -u)" -eq 0 ]; then
+  for user in postgres nobody; do
+    if id "$user" >/dev/null 2>&1; then break; fi
+  done
+  uid=$(id -u "$user")
+  gid=$(id -g "$user")
+  run() { setpriv --reuid="$uid" --regid="$gid" --clear-groups env HOME="$folder" "$@"; }
+fi
+
+bin=$("$source/scripts/relocated-postgres" "$build" "$folder/prefix")
+regress=$(dirname "$(pg_config --pgxs)")/../test/regress/pg_regress
+cp -r "$source/tests/sql/sql" "$source/tests/sql/expected" "$folder/"
+mkdir "$folder/socket" "$folder/crashing" "$folder/hanging"
+printf '#!/bin/sh\nkill -SEGV $$\n' >"$folder/crashing/watertight-worker"
+cp "$(command -v sleep)" "$folder/hanging/sleep"
+printf '#!/bin/sh\nexec %s 600\n' "$folder/hanging/sleep" >"$folder/hanging/watertight-worker"
+for fake in crashing hanging; do
+  chmod +x "$folder/$fake/watertight-worker"
+  cp "$folder/$fake/watertight-worker" "$folder/$fake/watertight-tetgen"
+done
+if [ "$(id -u)" -eq 0 ]; then chown -R "$uid:$gid" "$folder"; fi
+chmod 0700 "$folder"
+
+cd "$folder"
+run "$bin/initdb" -D "$folder/data" -N --username=watertight --encoding=UTF8 --no-locale \
+  --auth=trust >"$folder/initdb.log" || { cat "$folder/initdb.log"; exit 1; }
+run "$bin/pg_ctl" -D "$folder/data" -w -s -l "$folder/server.log" \
+  -o "-c listen_addresses= -c unix_socket_directories=$folder/socket -c fsync=off" start ||
+  { cat "$folder/server.log"; exit 1; }
+started=yes
+connect=(-h "$folder/socket" -U watertight)
+
+if ! run env LD_LIBRARY_PATH= PGTZ=UTC "$regress" --inputdir="$folder" --outputdir="$folder" \
+  --bindir="$bin" --host="$folder/socket" --user=watertight --load-extension=watertight \
+  "${tests[@]}"; then
+  cat "$folder/regression.diffs" || true
+  tail -20 "$folder/server.log"
+  exit 1
+fi
+
+if [ -n "$program" ]; then
+  query() { run "$bin/psql" -X -q -At "${connect[@]}" -d regression -c "$1"; }
+  for name in cube pierced hollow; do
+    query "SELECT encode(ewkb, 'base64') FROM solids WHERE name = '$name'" |
+      base64 -d >"$folder/$name.ewkb"
+    query "SELECT encode(wt_encode(ewkb), 'base64') FROM solids WHERE name = '$name'" |
+      base64 -d >"$folder/$name.sql"
+    "$program" encode "$folder/$name.ewkb" -o "$folder/$name.blob"
+    cmp "$folder/$name.blob" "$folder/$name.sql" || {
+      echo "SQL and command line encode '$name' differently"
+      exit 1
+    }
+  done
+  echo "3 blobs of SQL and command line are equal"
+fi
+
+# Helpers end with their backends: all connections are closed now.
+helpers() {
+  for link in /proc/[0-9]*/exe; do
+    case $(readlink "$link" 2>/dev/null) in
+      "$folder"/*/watertight-worker | "$folder"/*/watertight-tetgen | "$folder"/hanging/sleep)
+        echo "$link" ;;
+    esac
+  done
+}
+for _ in $(seq 50); do
+  left=$(helpers)
+  if [ -z "$left" ]; then break; fi
+  sleep 0.1
+done
+[ -z "$left" ] || { echo "helpers outlived their backends: $left"; exit 1; }

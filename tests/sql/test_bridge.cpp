@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "base/bytes.h"
+#include "formats/ewkb.h"
+#include "sql/bridge.h"
+
+namespace watertight {
+namespace {
+
+using Function = void (*)(const wt_job*, wt_reply*) noexcept;
+
+/// A reply that frees itself.
+struct Reply {
+  wt_reply value{};
+  Reply() = default;
+  Reply(const Reply&) = delete;
+  Reply& operator=(const Reply&) = delete;
+  Reply(Reply&& other) noexcept : value(std::exchange(other.value, wt_reply{})) {}
+  Reply& operator=(Reply&&) = delete;
+  ~Reply() { wt_reply_clear(&value); }
+  std::string state() const { return value.failure.sqlstate; }
+  std::string text() const {
+    return std::string(reinterpret_cast<const char*>(value.bytes), value.size);
+  }
+  Bytes bytes() const { return Bytes(value.bytes, value.bytes + value.size); }
+};
+
+Reply call(Function function, ByteView bytes, wt_poll poll = nullptr) {
+  Reply reply;
+  const wt_job job{bytes.data(), bytes.size(), nullptr, poll};
+  function(&job, &reply.value);
+  return reply;
+}
+
+/// A unit cube at (84000.5, 447000.25, 0) without its first `missing` facets.
+Bytes cube(int missing = 0) {
+  const char* const facets[6] = {
+      "((0 0 0,0 1 0,1 1 0,1 0 0,0 0 0))", "((0 0 1,1 0 1,1 1 1,0 1 1,0 0 1))",
+      "((0 0 0,1 0 0,1 0 1,0 0 1,0 0 0))", "((0 1 0,0 1 1,1 1 1,1 1 0,0 1 0))",
+      "((0 0 0,0 0 1,0 1 1,0 1 0,0 0 0))", "((1 0 0,1 1 0,1 1 1,1 0 1,1 0 0))"};
+  std::string wkt = "POLYHEDRALSURFACE Z (";
+  for (int i = missing; i < 6; ++i) {
+    if (i > missing) wkt += ',';
+    wkt += facets[i];
+  }
+  wkt += ')';
+  const auto submitted = read_wkt(wkt);
+  REQUIRE(submitted);
+  return write_ewkb(submitted->solid);
+}
+
+}  // namespace
+
+TEST_CASE("the bridge encodes a valid solid and decodes it to the same bytes") {
+  const Bytes ewkb = cube();
+  const Reply blob = call(wt_bridge_encode, ewkb);
+  INFO(blob.value.failure.message);
+  REQUIRE(blob.state().empty());
+  CHECK(blob.value.size < ewkb.size());
+  const Reply back = call(wt_bridge_decode, blob.bytes());
+  REQUIRE(back.state().empty());
+  CHECK(back.bytes() == ewkb);
+  const Reply info = call(wt_bridge_info, blob.bytes());
+  REQUIRE(info.state().empty());
+  CHECK(info.text().find("\"facets\":6") != std::string::npos);
+  CHECK(info.text().find("\"vertices\":8") != std::string::npos);
+  CHECK(info.text().find("\"bytes\":" + std::to_string(blob.value.size)) != std::string::npos);
+}
+
+TEST_CASE("the bridge tells valid from invalid and names the findings") {
+  CHECK(call(wt_bridge_is_valid, cube()).value.truth);
+  const Reply open = call(wt_bridge_is_valid, cube(1));
+  CHECK(open.state().empty());
+  CHECK(!open.value.truth);
+  const Reply refused = call(wt_bridge_encode, cube(1));
+  CHECK(refused.state() == "22023");
+  CHECK(refused.value.bytes == nullptr);
+  REQUIRE(refused.value.failure.detail != nullptr);
+  CHECK(std::string(refused.value.failure.detail).find("302") != std::string::npos);
+  const Reply report = call(wt_bridge_validate, cube(1));
+  CHECK(report.state().empty());
+  CHECK(report.text().find("302") != std::string::npos);
+  CHECK(report.text() == call(wt_bridge_validate, cube(1)).text());
+}
+
+TEST_CASE("the bridge fails on bytes that are no solid, with the offset") {
+  for (const Function function : {wt_bridge_validate, wt_bridge_is_valid, wt_bridge_encode,
+                                  wt_bridge_decode, wt_bridge_info}) {
+    CHECK(!call(function, {}).state().empty());
+    CHECK(!call(function, as_bytes("garbage")).state().empty());
+    const Reply truncated = call(function, ByteView(cube()).first(20));
+    CHECK(!truncated.state().empty());
+    CHECK(std::strlen(truncated.value.failure.message) > 0);
+    CHECK(truncated.value.bytes == nullptr);
+  }
+  const Reply truncated = call(wt_bridge_encode, ByteView(cube()).first(100));
+  CHECK(truncated.state() == "22P03");
+  REQUIRE(truncated.value.failure.detail != nullptr);
+  CHECK(std::string(truncated.value.failure.detail).starts_with("At byte "));
+}
+
+TEST_CASE("the bridge gives no value once it is asked to stop") {
+  const Reply stopped = call(wt_bridge_is_valid, cube(), [] { return true; });
+  CHECK(stopped.state() == "57014");
+}
+
+TEST_CASE("an engine that finds no helpers is made and ended") {
+  wt_engine* const engine = wt_engine_make("/no/such/folder");
+  REQUIRE(engine != nullptr);
+  const Bytes ewkb = cube();
+  const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr};
+  Reply reply;
+  wt_bridge_is_valid(&job, &reply.value);
+  CHECK(reply.value.truth);  // a cube needs none
+  wt_engine_end(engine);
+  wt_engine_end(nullptr);
+}
+
+}  // namespace watertight

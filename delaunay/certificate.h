@@ -17,9 +17,9 @@ namespace watertight {
 /// Which rung of the ladder produced the tetrahedralization.
 enum class Rung : std::uint8_t {
   none = 255,
-  delaunay = 0,        // the canonical DT itself
-  patch = 1,           // CGAL, facets as patches
-  patch_scaled = 2,    // the same after power-of-two scaling per axis
+  delaunay = 0,      // the canonical DT itself
+  patch = 1,         // CGAL, facets as patches
+  patch_scaled = 2,  // the same after power-of-two scaling per axis
   triangles_scaled = 3,
   tetgen = 4
 };
@@ -29,8 +29,8 @@ std::string_view to_string(Rung rung);
 struct Certificate {
   Rung rung = Rung::none;
   Tetrahedralization tetrahedralization;
-  std::vector<bool> is_interior;        // per tetrahedron
-  double largest_deviation = 0;         // of a Steiner point from its facet, world units
+  std::vector<bool> is_interior;  // per tetrahedron
+  double largest_deviation = 0;   // of a Steiner point from its facet, world units
   /// Facets that are not exactly planar and that the faces fill otherwise than the canonical
   /// triangulation: "valid within tolerance".
   std::vector<Index> refilled_facets;
@@ -39,15 +39,15 @@ struct Certificate {
 /// Outcome of the check. Not accepted = `refusal` names the first failed item and the place.
 enum class CertificateRefusal : std::uint8_t {
   none,
-  not_a_complex,           // tetrahedra do not pair into a manifold, or one is not positive
-  not_convex,              // the outer surface is not the convex hull
-  vertex_missing,          // an input vertex is absent, moved or doubled
-  not_a_boundary,          // a constrained face has one region on both sides, or parity conflicts
-  interior_disconnected,   // more than one interior region (a property of the solid)
-  cavity_mismatch,         // cavities and declared inner shells differ (a property of the solid)
-  facet_not_conforming,    // a facet's faces are no disc with its rings as boundary
-  foreign_face,            // a constrained face that belongs to no facet
-  wrong_orientation,       // a declared normal points inward (a property of the solid)
+  not_a_complex,          // tetrahedra do not pair into a manifold, or one is not positive
+  not_convex,             // the outer surface is not the convex hull
+  vertex_missing,         // an input vertex is absent, moved or doubled
+  not_a_boundary,         // a constrained face has one region on both sides, or parity conflicts
+  interior_disconnected,  // more than one interior region (a property of the solid)
+  cavity_mismatch,        // cavities and declared inner shells differ (a property of the solid)
+  facet_not_conforming,   // a facet's faces are no disc with its rings as boundary
+  foreign_face,           // a constrained face that belongs to no facet
+  wrong_orientation,      // a declared normal points inward (a property of the solid)
   volume_mismatch
 };
 std::string_view to_string(CertificateRefusal refusal);

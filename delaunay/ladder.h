@@ -35,7 +35,7 @@ class EngineWorkers {
 
 struct LadderOptions {
   Engine engine = Engine::automatic;
-  bool strict = false;         // triangle mode only: the CDT must hold the canonical triangles
+  bool strict = false;  // triangle mode only: the CDT must hold the canonical triangles
   Rung first_rung = Rung::delaunay;  // the paper's table and tests leave out the rungs before it
   Rung last_rung = Rung::tetgen;
   double seconds_per_rung = 0;  // 0: by size (2 s and more)

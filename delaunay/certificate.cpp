@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Based on: Verbree & Si 2008, section 3.1 (validation by a constrained Delaunay
+// tetrahedralization and its regions).
+// Departures: nothing an engine says is believed. The complex is proved to be embedded and convex,
+// facets are proved to be unions of faces, and only then regions are flooded.
+//
+// Order matters: what a wrong engine can cause is checked before what only a wrong solid can.
+#include "delaunay/certificate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "delaunay/complex.h"
+#include "delaunay/facet_surface.h"
+#include "geometry/measures.h"
+#include "geometry/predicates.h"
+
+namespace watertight {
+namespace {
+
+/// Relative rounding of one term of the sums of volumes: at most 32 operations.
+constexpr double kArithmetic = 32 * 0x1p-53;
+
+struct Refusal {
+  CertificateRefusal refusal = CertificateRefusal::none;
+  std::string detail;
+  Index facet = kNone;
+};
+using Checked = std::optional<Refusal>;
+
+/// A face of the complex that belongs to a facet, turned as the facet declares it.
+struct OrientedFace {
+  Index face = kNone;  // in Complex::faces
+  Index facet = kNone;
+  Index outer = kNone;  // the tetrahedron to which the declared normal points; kNone: the outside
+  Index inner = kNone;
+};
+
+class Examination {
+ public:
+  Examination(const Solid& solid, const FacetTriangles& canonical, Certificate& certificate)
+      : solid_(solid),
+        canonical_(canonical),
+        certificate_(certificate),
+        data_(certificate.tetrahedralization) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double largest = 0;
+      for (const Point& p : solid.vertices()) {
+        largest = std::max(largest, std::fabs(p[static_cast<int>(axis)]));
+      }
+      unit_[axis] = largest > 0 ? std::ldexp(1.0, std::ilogb(largest)) : 1;
+    }
+  }
+
+  Checked run() {
+    using Step = Checked (Examination::*)();
+    for (const Step step :
+         {&Examination::check_indices, &Examination::check_points, &Examination::check_complex,
+          &Examination::check_facets, &Examination::check_regions, &Examination::check_orientation,
+          &Examination::check_interior, &Examination::check_cavities, &Examination::check_volume}) {
+      if (Checked refused = (this->*step)()) return refused;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static Checked refuse(CertificateRefusal refusal, std::string detail, Index facet = kNone) {
+    return Refusal{refusal, std::move(detail), facet};
+  }
+
+  Checked check_indices() {
+    const std::size_t points = data_.points.size();
+    if (data_.input_count != solid_.vertex_count() || points < data_.input_count ||
+        canonical_.first.size() != std::size_t{solid_.facet_count()} + 1) {
+      return refuse(CertificateRefusal::vertex_missing, "the number of input vertices differs");
+    }
+    for (const Tetrahedron& t : data_.tetrahedra) {
+      for (const Index v : t) {
+        if (v >= points) {
+          return refuse(CertificateRefusal::not_a_complex, "a tetrahedron names no vertex");
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  Checked check_complex() {
+    std::optional<ComplexFault> fault = build_complex(data_, complex_);
+    if (!fault) fault = check_convex(data_, complex_);
+    if (!fault) return std::nullopt;
+    return refuse(fault->kind == ComplexFault::Kind::not_convex ? CertificateRefusal::not_convex
+                                                                : CertificateRefusal::not_a_complex,
+                  fault->detail);
+  }
+
+  /// Every input vertex unmoved, every point used, no point twice.
+  Checked check_points() {
+    for (Index v = 0; v < data_.input_count; ++v) {
+      if (data_.points[v] != solid_.vertices()[v]) {
+        return refuse(CertificateRefusal::vertex_missing,
+                      "vertex " + std::to_string(v) + " was moved");
+      }
+    }
+    std::vector<char> is_used(data_.points.size(), 0);
+    for (const Tetrahedron& t : data_.tetrahedra) {
+      for (const Index v : t) is_used[v] = 1;
+    }
+    for (Index v = 0; v < is_used.size(); ++v) {
+      if (is_used[v] == 0) {
+        return refuse(CertificateRefusal::vertex_missing,
+                      "vertex " + std::to_string(v) + " is in no tetrahedron");
+      }
+    }
+    std::vector<Point> sorted = data_.points;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+      return refuse(CertificateRefusal::vertex_missing, "two vertices are equal");
+    }
+    return std::nullopt;
+  }
+
+  /// Each facet is a union of faces, and no face belongs to two facets or to none.
+  Checked check_facets() {
+    std::vector<ConstrainedFace> faces = data_.constrained;
+    std::sort(faces.begin(), faces.end(), [](const ConstrainedFace& a, const ConstrainedFace& b) {
+      return std::pair(a.facet, a.vertices) < std::pair(b.facet, b.vertices);
+    });
+    if (!faces.empty() && faces.back().facet >= solid_.facet_count()) {
+      return refuse(CertificateRefusal::foreign_face, "a constrained face belongs to no facet");
+    }
+    for (const ConstrainedFace& face : faces) {
+      if (complex_.find(face.vertices) == kNone) {
+        return refuse(CertificateRefusal::facet_not_conforming,
+                      "a constrained face is no face of the tetrahedralization", face.facet);
+      }
+    }
+    constraint_of_.assign(complex_.faces.size(), kNone);
+    FacetSurfaces surfaces(solid_, canonical_, data_, unit_);
+    FacetSurface surface;
+    auto begin = faces.begin();
+    for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
+      auto end = begin;
+      while (end != faces.end() && end->facet == facet) ++end;
+      if (auto wrong = surfaces.check(facet, {begin, end}, surface)) {
+        return refuse(CertificateRefusal::facet_not_conforming,
+                      "facet " + std::to_string(facet) + ": " + *wrong, facet);
+      }
+      if (Checked refused = take(facet, surface)) return refused;
+      begin = end;
+    }
+    return std::nullopt;
+  }
+
+  Checked take(Index facet, const FacetSurface& surface) {
+    for (const Triangle& t : surface.faces) {
+      const Index place = complex_.find(t);
+      const ComplexFace& face = complex_.faces[place];
+      if (constraint_of_[place] != kNone) {
+        return refuse(CertificateRefusal::not_a_boundary, "a face belongs to two facets", facet);
+      }
+      constraint_of_[place] = static_cast<Index>(oriented_.size());
+      // The declared normal of (a, b, c) points to `above` if that is the sorted order.
+      const bool is_sorted =
+          t[0] < t[1] ? (t[1] < t[2] || t[2] < t[0]) : (t[1] < t[2] && t[2] < t[0]);
+      oriented_.push_back(
+          {place, facet, is_sorted ? face.above : face.below, is_sorted ? face.below : face.above});
+    }
+    certificate_.largest_deviation =
+        std::max(certificate_.largest_deviation, surface.largest_deviation);
+    volume_slack_ += surface.volume_slack;
+    if (!surface.follows_canonical && !is_planar(facet))
+      certificate_.refilled_facets.push_back(facet);
+    return std::nullopt;
+  }
+
+  /// Exactly: every ring vertex lies in the plane of the facet's first canonical triangle.
+  bool is_planar(Index facet) const {
+    const Triangle& t = canonical_.triangles[canonical_.first[facet]];
+    const auto& p = data_.points;
+    const IndexRange rings = solid_.rings_of(facet);
+    for (Index ring = rings.begin; ring < rings.end; ++ring) {
+      for (const Index v : solid_.ring(ring)) {
+        if (std::find(t.begin(), t.end(), v) != t.end()) continue;
+        if (orient3d(p[t[0]], p[t[1]], p[t[2]], p[v]) != 0) return false;
+      }
+    }
+    return true;
+  }
+
+  /// The region of a tetrahedron; kNone stands for the outside.
+  Index region(Index tetrahedron) const {
+    return region_of_[tetrahedron == kNone ? data_.tetrahedra.size() : tetrahedron];
+  }
+
+  /// Regions are what unconstrained faces connect; region 0 is the outside. Each constrained face
+  /// must separate an odd region from an even one.
+  Checked check_regions() {
+    std::vector<std::vector<Index>> neighbours(data_.tetrahedra.size() + 1);
+    const auto outside = static_cast<Index>(data_.tetrahedra.size());
+    for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
+      if (constraint_of_[f] != kNone) continue;
+      const ComplexFace& face = complex_.faces[f];
+      const Index above = face.above == kNone ? outside : face.above;
+      const Index below = face.below == kNone ? outside : face.below;
+      neighbours[above].push_back(below);
+      neighbours[below].push_back(above);
+    }
+    region_of_.assign(neighbours.size(), kNone);
+    region_count_ = 0;
+    flood(outside, neighbours);
+    for (Index t = 0; t < outside; ++t) {
+      if (region_of_[t] == kNone) flood(t, neighbours);
+    }
+    return check_parity();
+  }
+
+  void flood(Index start, const std::vector<std::vector<Index>>& neighbours) {
+    std::vector<Index> pending{start};
+    region_of_[start] = region_count_;
+    while (!pending.empty()) {
+      const Index current = pending.back();
+      pending.pop_back();
+      for (const Index next : neighbours[current]) {
+        if (region_of_[next] != kNone) continue;
+        region_of_[next] = region_count_;
+        pending.push_back(next);
+      }
+    }
+    ++region_count_;
+  }
+
+  Checked check_parity() {
+    std::vector<std::vector<Index>> crossings(region_count_);  // region -> oriented faces
+    for (Index i = 0; i < oriented_.size(); ++i) {
+      const Index outer = region(oriented_[i].outer);
+      const Index inner = region(oriented_[i].inner);
+      if (outer == inner) {
+        return refuse(CertificateRefusal::not_a_boundary,
+                      "a face has the same region on both sides", oriented_[i].facet);
+      }
+      crossings[outer].push_back(i);
+      crossings[inner].push_back(i);
+    }
+    parity_.assign(region_count_, kNone);
+    parity_[0] = 0;
+    std::vector<Index> pending{0};
+    while (!pending.empty()) {
+      const Index current = pending.back();
+      pending.pop_back();
+      for (const Index i : crossings[current]) {
+        const Index outer = region(oriented_[i].outer);
+        const Index next = outer == current ? region(oriented_[i].inner) : outer;
+        if (parity_[next] == kNone) {
+          parity_[next] = 1 - parity_[current];
+          pending.push_back(next);
+        } else if (parity_[next] == parity_[current]) {
+          return refuse(CertificateRefusal::not_a_boundary,
+                        "inside and outside cannot be told apart", oriented_[i].facet);
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  Checked check_orientation() {
+    for (const OrientedFace& face : oriented_) {
+      if (parity_[region(face.outer)] != 0) {
+        return refuse(CertificateRefusal::wrong_orientation,
+                      "the normal of facet " + std::to_string(face.facet) + " points inward",
+                      face.facet);
+      }
+    }
+    return std::nullopt;
+  }
+
+  Checked check_interior() {
+    const auto interior = std::count(parity_.begin(), parity_.end(), Index{1});
+    if (interior == 0) return refuse(CertificateRefusal::not_a_boundary, "there is no interior");
+    if (interior > 1) {
+      return refuse(CertificateRefusal::interior_disconnected,
+                    "the interior has " + std::to_string(interior) + " parts");
+    }
+    certificate_.is_interior.resize(data_.tetrahedra.size());
+    for (Index t = 0; t < data_.tetrahedra.size(); ++t) {
+      certificate_.is_interior[t] = parity_[region_of_[t]] == 1;
+    }
+    return std::nullopt;
+  }
+
+  /// The exterior shell bounds the outside, each inner shell one cavity of its own.
+  Checked check_cavities() {
+    std::vector<Index> shell_of_region(region_count_, kNone);
+    std::vector<Index> region_of_shell(solid_.shell_count(), kNone);
+    for (const OrientedFace& face : oriented_) {
+      const Index outer = region(face.outer);
+      const Index shell = solid_.shell_of(face.facet);
+      if (shell_of_region[outer] == kNone && region_of_shell[shell] == kNone) {
+        shell_of_region[outer] = shell;
+        region_of_shell[shell] = outer;
+      } else if (shell_of_region[outer] != shell || region_of_shell[shell] != outer) {
+        return refuse(CertificateRefusal::cavity_mismatch,
+                      "shell " + std::to_string(shell) + " does not bound one region of its own",
+                      face.facet);
+      }
+    }
+    for (Index shell = 0; shell < solid_.shell_count(); ++shell) {
+      if (region_of_shell[shell] == kNone || (shell == 0) != (region_of_shell[shell] == 0)) {
+        return refuse(CertificateRefusal::cavity_mismatch,
+                      shell == 0 ? "the exterior shell does not bound the outside"
+                                 : "inner shell " + std::to_string(shell) + " bounds no cavity");
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Six times the volume, in coordinates divided by the unit: of the canonical triangles, exactly,
+  /// against the sum over interior tetrahedra. They may differ by the rounding of Steiner points,
+  /// by how facets that are not planar are filled, and by the arithmetic of the sum.
+  Checked check_volume() {
+    std::vector<Point> scaled = data_.points;
+    for (Point& p : scaled) p = {p.x / unit_[0], p.y / unit_[1], p.z / unit_[2]};
+    const double expected = expected_volume(scaled);
+    double sum = 0;
+    double terms = 0;
+    for (Index i = 0; i < data_.tetrahedra.size(); ++i) {
+      if (!certificate_.is_interior[i]) continue;
+      const Tetrahedron& t = data_.tetrahedra[i];
+      std::array<std::array<double, 3>, 3> m{};
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (int axis = 0; axis < 3; ++axis) {
+          m[row][static_cast<std::size_t>(axis)] = scaled[t[row + 1]][axis] - scaled[t[0]][axis];
+        }
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double first = m[0][k] * m[1][(k + 1) % 3] * m[2][(k + 2) % 3];
+        const double second = m[0][k] * m[1][(k + 2) % 3] * m[2][(k + 1) % 3];
+        sum += first - second;
+        terms += std::fabs(first) + std::fabs(second);
+      }
+    }
+    // Each term has its own rounding, and each addition that of the sum so far.
+    const double additions = 6 * (static_cast<double>(data_.tetrahedra.size()) + 1) * 0x1p-53;
+    const double slack =
+        volume_slack_ + terms * (kArithmetic + additions) + std::fabs(expected) * 0x1p-52;
+    // Not ">": volumes that are no numbers must fail.
+    if (!(std::fabs(sum - expected) <= slack)) {
+      return refuse(CertificateRefusal::volume_mismatch,
+                    "the tetrahedra's volume differs from the boundary's");
+    }
+    return std::nullopt;
+  }
+
+  double expected_volume(std::span<const Point> scaled) const {
+    // Doubles of any size could overflow; integers cannot, and are quicker as they are.
+    if (solid_.lattice().kind == LatticeKind::float64) {
+      return six_volume(scaled.first(data_.input_count), canonical_.triangles);
+    }
+    return six_volume(solid_.vertices(), canonical_.triangles) / unit_[0] / unit_[1] / unit_[2];
+  }
+
+  const Solid& solid_;
+  const FacetTriangles& canonical_;
+  Certificate& certificate_;
+  const Tetrahedralization& data_;
+  std::array<double, 3> unit_{1, 1, 1};
+  Complex complex_;
+  std::vector<OrientedFace> oriented_;
+  std::vector<Index> constraint_of_;  // face of the complex -> place in oriented_
+  std::vector<Index> region_of_;      // tetrahedron (and at the end the outside) -> region
+  std::vector<Index> parity_;         // region -> 0 outside or cavity, 1 interior
+  Index region_count_ = 0;
+  double volume_slack_ = 0;
+};
+
+}  // namespace
+
+std::string_view to_string(Rung rung) {
+  switch (rung) {
+    case Rung::none:
+      return "none";
+    case Rung::delaunay:
+      return "delaunay";
+    case Rung::patch:
+      return "patch";
+    case Rung::patch_scaled:
+      return "patch-scaled";
+    case Rung::triangles_scaled:
+      return "triangles-scaled";
+    case Rung::tetgen:
+      return "tetgen";
+  }
+  return "";
+}
+
+std::string_view to_string(CertificateRefusal refusal) {
+  switch (refusal) {
+    case CertificateRefusal::none:
+      return "none";
+    case CertificateRefusal::not_a_complex:
+      return "not-a-complex";
+    case CertificateRefusal::not_convex:
+      return "not-convex";
+    case CertificateRefusal::vertex_missing:
+      return "vertex-missing";
+    case CertificateRefusal::not_a_boundary:
+      return "not-a-boundary";
+    case CertificateRefusal::interior_disconnected:
+      return "interior-disconnected";
+    case CertificateRefusal::cavity_mismatch:
+      return "cavity-mismatch";
+    case CertificateRefusal::facet_not_conforming:
+      return "facet-not-conforming";
+    case CertificateRefusal::foreign_face:
+      return "foreign-face";
+    case CertificateRefusal::wrong_orientation:
+      return "wrong-orientation";
+    case CertificateRefusal::volume_mismatch:
+      return "volume-mismatch";
+  }
+  return "";
+}
+
+CertificateResult check_certificate(const Solid& solid, const FacetTriangles& facets,
+                                    Tetrahedralization tetrahedralization, Rung rung) {
+  CertificateResult result;
+  result.certificate.rung = rung;
+  result.certificate.tetrahedralization = std::move(tetrahedralization);
+  if (const Checked refused = Examination(solid, facets, result.certificate).run()) {
+    result.refusal = refused->refusal;
+    result.detail = refused->detail;
+    result.facet = refused->facet;
+    result.certificate = Certificate{};
+  }
+  return result;
+}
+
+}  // namespace watertight

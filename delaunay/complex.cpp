@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "delaunay/complex.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "geometry/predicates.h"
+
+namespace watertight {
+namespace {
+
+/// Hull faces tried as targets of the ray before giving up on degenerate hits.
+constexpr std::size_t kRayTargets = 64;
+
+ComplexFault fault(ComplexFault::Kind kind, std::string detail) {
+  return {kind, std::move(detail)};
+}
+
+/// A face of a tetrahedron and whether the fourth vertex is above it.
+struct Side {
+  Triangle vertices{};
+  Index tetrahedron = kNone;
+  bool is_above = false;
+};
+
+/// True if sorting takes an even number of exchanges.
+bool sort_counting(Triangle& t) {
+  bool is_even = true;
+  const auto exchange = [&](std::size_t i, std::size_t j) {
+    if (t[i] <= t[j]) return;
+    std::swap(t[i], t[j]);
+    is_even = !is_even;
+  };
+  exchange(0, 1);
+  exchange(1, 2);
+  exchange(0, 1);
+  return is_even;
+}
+
+/// The four faces of a positive tetrahedron (a, b, c, d): d is above (a, b, c), c above (a, d, b),
+/// b above (a, c, d), a above (b, d, c).
+std::array<Side, 4> sides_of(const Tetrahedron& t, Index number) {
+  std::array<Side, 4> sides{Side{{t[0], t[1], t[2]}, number}, Side{{t[0], t[3], t[1]}, number},
+                            Side{{t[0], t[2], t[3]}, number}, Side{{t[1], t[3], t[2]}, number}};
+  for (Side& side : sides) side.is_above = sort_counting(side.vertices);
+  return sides;
+}
+
+bool has_repeated_vertex(const Tetrahedron& t) {
+  return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] ||
+         t[2] == t[3];
+}
+
+std::string name(const Triangle& t) {
+  std::string text = "(";
+  text += std::to_string(t[0]);
+  text += ", ";
+  text += std::to_string(t[1]);
+  text += ", ";
+  text += std::to_string(t[2]);
+  text += ")";
+  return text;
+}
+
+/// Hull faces oriented outward.
+std::vector<Triangle> hull_of(const Complex& complex) {
+  std::vector<Triangle> hull;
+  for (const ComplexFace& face : complex.faces) {
+    const auto& [a, b, c] = face.vertices;
+    if (face.above == kNone) hull.push_back({a, b, c});
+    if (face.below == kNone) hull.push_back({a, c, b});
+  }
+  return hull;
+}
+
+Point mean(std::span<const Point> points, std::span<const Index> which) {
+  Point sum{};
+  const double weight = 1.0 / static_cast<double>(which.size());
+  for (const Index i : which) {
+    for (int axis = 0; axis < 3; ++axis) sum[axis] += points[i][axis] * weight;
+  }
+  return sum;
+}
+
+/// Roughly six times the volume; only ever compared.
+double rough_volume(std::span<const Point> points, const Tetrahedron& t) {
+  std::array<std::array<double, 3>, 3> m{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      m[row][static_cast<std::size_t>(axis)] = points[t[row + 1]][axis] - points[t[0]][axis];
+    }
+  }
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+bool is_inside_all(std::span<const Point> points, std::span<const Triangle> hull, const Point& o) {
+  return std::all_of(hull.begin(), hull.end(), [&](const Triangle& t) {
+    return orient3d(points[t[0]], points[t[1]], points[t[2]], o) < 0;
+  });
+}
+
+/// A point strictly inside every hull face, or nothing.
+std::optional<Point> inner_point(const Tetrahedralization& data, std::span<const Triangle> hull) {
+  const Tetrahedron* largest = &data.tetrahedra.front();
+  double volume = -1;
+  for (const Tetrahedron& t : data.tetrahedra) {
+    const double own = rough_volume(data.points, t);
+    if (own > volume) {
+      volume = own;
+      largest = &t;
+    }
+  }
+  const Point o = mean(data.points, *largest);
+  if (is_inside_all(data.points, hull, o)) return o;
+  return std::nullopt;
+}
+
+/// Number of hull faces that the ray from o through q meets; nothing if it meets an edge.
+std::optional<std::size_t> faces_met(std::span<const Point> points, std::span<const Triangle> hull,
+                                     const Point& o, const Point& q) {
+  std::size_t met = 0;
+  for (const auto& [a, b, c] : hull) {
+    const int first = orient3d(o, points[a], points[b], q);
+    if (first < 0) continue;
+    const int second = orient3d(o, points[b], points[c], q);
+    if (second < 0) continue;
+    const int third = orient3d(o, points[c], points[a], q);
+    if (third < 0) continue;
+    if (first == 0 || second == 0 || third == 0) return std::nullopt;
+    ++met;
+  }
+  return met;
+}
+
+/// True if a ray from o meets the hull exactly once.
+bool is_met_once(std::span<const Point> points, std::span<const Triangle> hull, const Point& o) {
+  const std::size_t step = std::max<std::size_t>(1, hull.size() / kRayTargets);
+  for (std::size_t i = 0; i < hull.size(); i += step) {
+    const Point q = mean(points, hull[i]);
+    if (q == o) continue;
+    if (const auto met = faces_met(points, hull, o, q)) return *met == 1;
+  }
+  return false;
+}
+
+struct HullEdge {
+  Index low = 0;
+  Index high = 0;
+  Index face = 0;
+  Index opposite = 0;
+  friend auto operator<=>(const HullEdge&, const HullEdge&) = default;
+};
+
+std::optional<ComplexFault> check_edges(std::span<const Point> points,
+                                        std::span<const Triangle> hull) {
+  std::vector<HullEdge> edges;
+  edges.reserve(3 * hull.size());
+  for (Index f = 0; f < hull.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(hull[f][k], hull[f][(k + 1) % 3]);
+      edges.push_back({low, high, f, hull[f][(k + 2) % 3]});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  using Kind = ComplexFault::Kind;
+  for (std::size_t i = 0; i < edges.size(); i += 2) {
+    const bool is_pair = i + 1 < edges.size() && edges[i].low == edges[i + 1].low &&
+                         edges[i].high == edges[i + 1].high &&
+                         (i + 2 == edges.size() || edges[i + 2].low != edges[i].low ||
+                          edges[i + 2].high != edges[i].high);
+    if (!is_pair) return fault(Kind::not_convex, "a hull edge has not two hull faces");
+    const Triangle& t = hull[edges[i].face];
+    const Index other = edges[i + 1].opposite;
+    if (std::find(t.begin(), t.end(), other) != t.end() ||
+        orient3d(points[t[0]], points[t[1]], points[t[2]], points[other]) > 0) {
+      return fault(Kind::not_convex, "the outer surface is not convex at face " + name(t));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Index Complex::find(Triangle vertices) const {
+  sort_counting(vertices);
+  const auto at = std::lower_bound(
+      faces.begin(), faces.end(), vertices,
+      [](const ComplexFace& face, const Triangle& t) { return face.vertices < t; });
+  if (at == faces.end() || at->vertices != vertices) return kNone;
+  return static_cast<Index>(at - faces.begin());
+}
+
+std::optional<ComplexFault> build_complex(const Tetrahedralization& data, Complex& complex) {
+  using Kind = ComplexFault::Kind;
+  if (data.tetrahedra.empty()) return fault(Kind::not_a_complex, "there are no tetrahedra");
+  std::vector<Side> sides;
+  sides.reserve(4 * data.tetrahedra.size());
+  for (Index number = 0; number < data.tetrahedra.size(); ++number) {
+    const Tetrahedron& t = data.tetrahedra[number];
+    if (has_repeated_vertex(t) ||
+        orient3d(data.points[t[0]], data.points[t[1]], data.points[t[2]], data.points[t[3]]) <= 0) {
+      return fault(Kind::not_a_complex,
+                   "tetrahedron " + std::to_string(number) + " is not positively oriented");
+    }
+    for (const Side& side : sides_of(t, number)) sides.push_back(side);
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::pair(a.vertices, a.tetrahedron) < std::pair(b.vertices, b.tetrahedron);
+  });
+  for (const Side& side : sides) {
+    if (complex.faces.empty() || complex.faces.back().vertices != side.vertices) {
+      complex.faces.push_back({side.vertices, kNone, kNone});
+    }
+    ComplexFace& face = complex.faces.back();
+    Index& place = side.is_above ? face.above : face.below;
+    if (place != kNone) {
+      return fault(Kind::not_a_complex,
+                   "face " + name(side.vertices) + " has two tetrahedra on one side");
+    }
+    place = side.tetrahedron;
+  }
+  return std::nullopt;
+}
+
+std::optional<ComplexFault> check_convex(const Tetrahedralization& data, const Complex& complex) {
+  using Kind = ComplexFault::Kind;
+  const std::vector<Triangle> hull = hull_of(complex);
+  if (hull.empty()) return fault(Kind::not_convex, "there is no outer surface");
+  const std::optional<Point> o = inner_point(data, hull);
+  if (!o) return fault(Kind::not_convex, "no point is inside every outer face");
+  if (!is_met_once(data.points, hull, *o)) {
+    return fault(Kind::not_convex, "the outer surface winds around the inside more than once");
+  }
+  return check_edges(data.points, hull);
+}
+
+}  // namespace watertight

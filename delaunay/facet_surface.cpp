@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Steps for one facet:
+//   1. every edge of its faces has two of them on opposite sides, or one (the boundary);
+//   2. the faces are connected by edges and have the Euler characteristic of a disc with as many
+//      boundary components as there are rings, so there is no handle, bubble or pinch;
+//   3. turned consistently, the boundary runs along the rings: each ring edge is a chain of edges
+//      through Steiner points that lie on it, in order, but for rounding;
+//   4. vertices are the rings' or Steiner points in the facet's slab (the space between the two
+//      parallels of its fitted plane that hold the rings) but for rounding;
+//   5. in projection the faces cover no more area than the canonical triangles: with 3, no fold.
+#include "delaunay/facet_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/predicates.h"
+
+namespace watertight {
+namespace {
+
+/// Rounding of the double arithmetic below, in relative terms: at most 32 operations each.
+constexpr double kArithmetic = 32 * 0x1p-53;
+
+struct FaceEdge {
+  Index low = 0;
+  Index high = 0;
+  Index face = 0;
+  bool is_forward = false;  // the face, as given, runs from low to high
+  friend auto operator<=>(const FaceEdge&, const FaceEdge&) = default;
+};
+
+}  // namespace
+
+std::array<double, 3> steiner_rounding(std::span<const Point> vertices) {
+  std::array<double, 3> rounding{};
+  for (const Point& p : vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rounding[axis] = std::max(rounding[axis], std::fabs(p[static_cast<int>(axis)]));
+    }
+  }
+  for (double& value : rounding) value *= kSteinerUnits * 0x1p-53;
+  return rounding;
+}
+
+/// Normal and centre in coordinates divided by the unit; `half_width` is the largest
+/// |normal . (ring vertex - centre)|.
+struct FacetSurfaces::Plane {
+  std::array<double, 3> normal{};
+  std::array<double, 3> centre{};
+  double half_width = 0;
+  double arithmetic = 0;    // rounding of a height, at most
+  double world_length = 0;  // of the normal that measures in world units
+};
+
+/// The faces of a facet with their edges.
+class FacetSurfaces::Mesh {
+ public:
+  explicit Mesh(std::span<const ConstrainedFace> faces) {
+    for (const ConstrainedFace& face : faces) {
+      faces_.push_back(face.vertices);
+      vertices_.insert(vertices_.end(), face.vertices.begin(), face.vertices.end());
+    }
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    for (Index f = 0; f < faces_.size(); ++f) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = faces_[f][k];
+        const Index b = faces_[f][(k + 1) % 3];
+        edges_.push_back({std::min(a, b), std::max(a, b), f, a < b});
+      }
+    }
+    std::sort(edges_.begin(), edges_.end());
+  }
+
+  const std::vector<Triangle>& faces() const { return faces_; }
+  const std::vector<Index>& vertices() const { return vertices_; }
+  /// Directed boundary edges, sorted; from turn() on.
+  const std::vector<std::pair<Index, Index>>& boundary() const { return boundary_; }
+
+  /// Turns the faces consistently. Returns what is wrong, or nothing.
+  const char* turn() {
+    if (!link()) return "an edge of its faces has more than two of them";
+    std::vector<char> is_seen(faces_.size(), 0);
+    std::vector<Index> pending{0};
+    is_seen[0] = 1;
+    std::size_t seen = 1;
+    while (!pending.empty()) {
+      const Index f = pending.back();
+      pending.pop_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index g = neighbour_[f][k];
+        if (g == kNone) continue;
+        const bool agrees = runs(g, faces_[f][(k + 1) % 3], faces_[f][k]);
+        if (is_seen[g] != 0 && !agrees) return "its faces cannot be turned consistently";
+        if (is_seen[g] != 0) continue;
+        if (!agrees) flip(g);
+        is_seen[g] = 1;
+        ++seen;
+        pending.push_back(g);
+      }
+    }
+    if (seen != faces_.size()) return "its faces are not connected";
+    collect_boundary();
+    return nullptr;
+  }
+
+  void reverse() {
+    for (Triangle& t : faces_) std::swap(t[1], t[2]);
+    for (auto& [from, to] : boundary_) std::swap(from, to);
+    std::sort(boundary_.begin(), boundary_.end());
+  }
+
+  /// Vertices - edges + faces.
+  long euler_characteristic() const {
+    return static_cast<long>(vertices_.size()) - static_cast<long>(edge_count_) +
+           static_cast<long>(faces_.size());
+  }
+
+  /// The vertices from `lowest` on that are joined to `vertex` by an edge of a face.
+  std::span<const std::pair<Index, Index>> neighbours(Index vertex, Index lowest) const {
+    const auto begin =
+        std::lower_bound(by_vertex_.begin(), by_vertex_.end(), std::pair(vertex, lowest));
+    const auto end = std::upper_bound(begin, by_vertex_.end(), std::pair(vertex, kNone));
+    return {begin, end};
+  }
+  bool has_edge(Index a, Index b) const {
+    return std::binary_search(by_vertex_.begin(), by_vertex_.end(), std::pair(a, b));
+  }
+
+ private:
+  /// Finds each face's neighbours. False if an edge has three faces.
+  bool link() {
+    neighbour_.assign(faces_.size(), {kNone, kNone, kNone});
+    for (std::size_t i = 0; i < edges_.size();) {
+      std::size_t end = i + 1;
+      while (end < edges_.size() && edges_[end].low == edges_[i].low &&
+             edges_[end].high == edges_[i].high) {
+        ++end;
+      }
+      if (end - i > 2) return false;
+      if (end - i == 2) {
+        neighbour_[edges_[i].face][slot(edges_[i])] = edges_[i + 1].face;
+        neighbour_[edges_[i + 1].face][slot(edges_[i + 1])] = edges_[i].face;
+      }
+      ++edge_count_;
+      by_vertex_.emplace_back(edges_[i].low, edges_[i].high);
+      by_vertex_.emplace_back(edges_[i].high, edges_[i].low);
+      i = end;
+    }
+    std::sort(by_vertex_.begin(), by_vertex_.end());
+    return true;
+  }
+
+  /// Position of an edge in its face, as the face was given.
+  std::size_t slot(const FaceEdge& edge) const {
+    const Index from = edge.is_forward ? edge.low : edge.high;
+    std::size_t k = 0;
+    while (faces_[edge.face][k] != from) ++k;
+    return k;
+  }
+
+  bool runs(Index face, Index from, Index to) const {
+    const Triangle& t = faces_[face];
+    return (t[0] == from && t[1] == to) || (t[1] == from && t[2] == to) ||
+           (t[2] == from && t[0] == to);
+  }
+
+  /// (a, b, c) becomes (a, c, b): its edges ab, bc, ca become ac, cb, ba.
+  void flip(Index face) {
+    std::swap(faces_[face][1], faces_[face][2]);
+    std::swap(neighbour_[face][0], neighbour_[face][2]);
+  }
+
+  void collect_boundary() {
+    for (Index f = 0; f < faces_.size(); ++f) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (neighbour_[f][k] == kNone) boundary_.emplace_back(faces_[f][k], faces_[f][(k + 1) % 3]);
+      }
+    }
+    std::sort(boundary_.begin(), boundary_.end());
+  }
+
+  std::vector<Triangle> faces_;
+  std::vector<Index> vertices_;
+  std::vector<FaceEdge> edges_;
+  std::vector<std::array<Index, 3>> neighbour_;
+  std::vector<std::pair<Index, Index>> by_vertex_;
+  std::vector<std::pair<Index, Index>> boundary_;
+  std::size_t edge_count_ = 0;
+};
+
+FacetSurfaces::FacetSurfaces(const Solid& solid, const FacetTriangles& canonical,
+                             const Tetrahedralization& tetrahedralization,
+                             const std::array<double, 3>& unit)
+    : solid_(solid),
+      canonical_(canonical),
+      data_(tetrahedralization),
+      unit_(unit),
+      rounding_(steiner_rounding(solid.vertices())),
+      facet_stamp_(solid.vertex_count(), kNone) {}
+
+std::span<const Triangle> FacetSurfaces::canonical_of(Index facet) const {
+  return std::span(canonical_.triangles)
+      .subspan(canonical_.first[facet], canonical_.first[facet + 1] - canonical_.first[facet]);
+}
+
+FacetSurfaces::Plane FacetSurfaces::plane_of(Index facet) const {
+  const auto at = [&](Index vertex, std::size_t axis) {
+    return data_.points[vertex][static_cast<int>(axis)] / unit_[axis];
+  };
+  Plane plane;
+  std::array<double, 3> terms{};  // sums of what is added up, for the rounding
+  std::array<double, 3> reach{};
+  for (const auto& [a, b, c] : canonical_of(facet)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t u = (axis + 1) % 3;
+      const std::size_t v = (axis + 2) % 3;
+      const double first = (at(b, u) - at(a, u)) * (at(c, v) - at(a, v));
+      const double second = (at(b, v) - at(a, v)) * (at(c, u) - at(a, u));
+      plane.normal[axis] += first - second;
+      terms[axis] += std::fabs(first) + std::fabs(second);
+    }
+  }
+  const IndexRange rings = solid_.rings_of(facet);
+  const std::span<const Index> exterior = solid_.ring(rings.begin);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const Index v : exterior) {
+      plane.centre[axis] += at(v, axis) / static_cast<double>(exterior.size());
+    }
+  }
+  for (Index ring = rings.begin; ring < rings.end; ++ring) {
+    for (const Index v : solid_.ring(ring)) {
+      double height = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        height += plane.normal[axis] * (at(v, axis) - plane.centre[axis]);
+        reach[axis] = std::max(reach[axis], std::fabs(at(v, axis) - plane.centre[axis]));
+      }
+      plane.half_width = std::max(plane.half_width, std::fabs(height));
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    plane.arithmetic += kArithmetic * terms[axis] * reach[axis];
+    const double scale = unit_[axis] * solid_.lattice().scale(static_cast<int>(axis));
+    plane.world_length += (plane.normal[axis] / scale) * (plane.normal[axis] / scale);
+  }
+  plane.world_length = std::sqrt(plane.world_length);
+  return plane;
+}
+
+std::optional<std::string> FacetSurfaces::check_vertices(Index facet, const Plane& plane,
+                                                         const Mesh& mesh, FacetSurface& surface) {
+  const IndexRange rings = solid_.rings_of(facet);
+  for (Index ring = rings.begin; ring < rings.end; ++ring) {
+    for (const Index v : solid_.ring(ring)) facet_stamp_[v] = facet;
+  }
+  double slack = plane.arithmetic;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    slack += std::fabs(plane.normal[axis]) * (rounding_[axis] / unit_[axis] + kArithmetic);
+  }
+  surface.volume_slack = 6 * (plane.half_width + slack);
+  for (const Index v : mesh.vertices()) {
+    if (!is_steiner(v)) {
+      if (facet_stamp_[v] != facet) {
+        return "its faces use vertex " + std::to_string(v) + ", which is not on its rings";
+      }
+      continue;
+    }
+    double height = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      height += plane.normal[axis] *
+                (data_.points[v][static_cast<int>(axis)] / unit_[axis] - plane.centre[axis]);
+    }
+    // Not "<=": a height that is not a number must fail.
+    if (!(std::fabs(height) <= plane.half_width + slack)) {
+      return "Steiner point " + std::to_string(v) + " is off its plane";
+    }
+    if (plane.world_length > 0) {
+      surface.largest_deviation =
+          std::max(surface.largest_deviation, std::fabs(height) / plane.world_length);
+    }
+  }
+  return std::nullopt;
+}
+
+/// `place` is how far along the segment the point is, 0 to 1. Measured along the axis in which the
+/// segment is longest in terms of the rounding, so that the rounding of `place` moves the foot
+/// point by no more than one rounding in any axis.
+bool FacetSurfaces::is_near_segment(Index vertex, Index from, Index to, double& place) const {
+  const Point& p = data_.points[vertex];
+  const Point& a = data_.points[from];
+  const Point& b = data_.points[to];
+  int along = 0;
+  double longest = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double unit = rounding_[static_cast<std::size_t>(axis)];
+    const double length = unit > 0 ? std::fabs(b[axis] - a[axis]) / unit : 0;
+    if (length > longest) {
+      longest = length;
+      along = axis;
+    }
+  }
+  if (!(longest > 0)) return false;
+  place = (p[along] - a[along]) / (b[along] - a[along]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double off = std::fabs(p[axis] - a[axis] - place * (b[axis] - a[axis]));
+    if (!(off <= 2 * rounding_[static_cast<std::size_t>(axis)])) return false;
+  }
+  return place > 0 && place < 1;
+}
+
+std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& mesh) const {
+  const auto& boundary = mesh.boundary();
+  for (std::size_t i = 0; i + 1 < boundary.size(); ++i) {
+    if (boundary[i].first == boundary[i + 1].first) return "its boundary touches itself";
+  }
+  std::size_t used = 0;
+  const IndexRange rings = solid_.rings_of(facet);
+  for (Index r = rings.begin; r < rings.end; ++r) {
+    const std::span<const Index> ring = solid_.ring(r);
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Index to = ring[(i + 1) % ring.size()];
+      double last = 0;
+      Index current = ring[i];
+      while (current != to) {
+        const auto step =
+            std::lower_bound(boundary.begin(), boundary.end(), std::pair(current, Index{0}));
+        if (step == boundary.end() || step->first != current || used == boundary.size()) {
+          return "ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
+                 ") is missing";
+        }
+        ++used;
+        current = step->second;
+        double place = 1;
+        if (current != to && (!is_steiner(current) ||
+                              !is_near_segment(current, ring[i], to, place) || place <= last)) {
+          return "ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
+                 ") is not straight";
+        }
+        last = place;
+      }
+    }
+  }
+  if (used != boundary.size()) return "its faces have a boundary beside its rings";
+  return std::nullopt;
+}
+
+std::optional<std::string> FacetSurfaces::check_area(Index facet,
+                                                     const FacetSurface& surface) const {
+  const auto axis = static_cast<std::size_t>(facet_projection(solid_, facet).axis);
+  const std::size_t u = (axis + 1) % 3;
+  const std::size_t v = (axis + 2) % 3;
+  const std::array<double, 2> moved{rounding_[u] / unit_[u], rounding_[v] / unit_[v]};
+  double slack = 0;
+  const auto area = [&](const Triangle& t) {
+    std::array<std::array<double, 2>, 3> p{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = {data_.points[t[k]][static_cast<int>(u)] / unit_[u],
+              data_.points[t[k]][static_cast<int>(v)] / unit_[v]};
+    }
+    const std::array<double, 2> b{p[1][0] - p[0][0], p[1][1] - p[0][1]};
+    const std::array<double, 2> c{p[2][0] - p[0][0], p[2][1] - p[0][1]};
+    // Each corner may be off by `moved`, which changes the doubled area by at most four times the
+    // extents of the triangle times that; the arithmetic by less.
+    slack +=
+        4 * ((std::fabs(b[0]) + std::fabs(c[0])) * (moved[1] + kArithmetic) +
+             (std::fabs(b[1]) + std::fabs(c[1])) * (moved[0] + kArithmetic) + moved[0] * moved[1]);
+    return std::fabs(b[0] * c[1] - b[1] * c[0]);
+  };
+  double expected = 0;
+  double covered = 0;
+  for (const Triangle& t : canonical_of(facet)) expected += area(t);
+  for (const Triangle& t : surface.faces) covered += area(t);
+  // Not ">": areas that are no numbers must fail.
+  if (!(covered <= expected + slack)) return "its faces fold over each other";
+  return std::nullopt;
+}
+
+/// True if edges of the faces lead from `from` to `to` along the straight segment.
+bool FacetSurfaces::has_chain(const Mesh& mesh, Index from, Index to) const {
+  double reached = 0;
+  Index current = from;
+  for (std::size_t step = 0; step < mesh.vertices().size(); ++step) {
+    if (mesh.has_edge(current, to)) return true;
+    Index next = kNone;
+    double nearest = 1;
+    for (const auto& [own, candidate] : mesh.neighbours(current, data_.input_count)) {
+      double place = 0;
+      if (is_near_segment(candidate, from, to, place) && place > reached && place < nearest) {
+        nearest = place;
+        next = candidate;
+      }
+    }
+    if (next == kNone) return false;
+    reached = nearest;
+    current = next;
+  }
+  return false;
+}
+
+std::optional<std::string> FacetSurfaces::check(Index facet, std::span<const ConstrainedFace> faces,
+                                                FacetSurface& surface) {
+  surface = FacetSurface{};
+  if (canonical_of(facet).empty()) return "it has no canonical triangulation";
+  if (faces.empty()) return "it has no faces";
+  Mesh mesh(faces);
+  if (const char* wrong = mesh.turn()) return wrong;
+  const long rings = static_cast<long>(solid_.rings_of(facet).size());
+  if (mesh.euler_characteristic() != 2 - rings) return "its faces are no disc";
+  const Plane plane = plane_of(facet);
+  if (auto wrong = check_vertices(facet, plane, mesh, surface)) return wrong;
+  if (auto wrong = check_rings(facet, mesh)) {
+    mesh.reverse();
+    if (check_rings(facet, mesh)) return wrong;
+  }
+  surface.faces = mesh.faces();
+  if (auto wrong = check_area(facet, surface)) return wrong;
+  for (const Triangle& t : canonical_of(facet)) {
+    for (std::size_t k = 0; k < 3 && surface.follows_canonical; ++k) {
+      surface.follows_canonical = has_chain(mesh, t[k], t[(k + 1) % 3]);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace watertight

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "delaunay/ladder.h"
+#include "unit/delaunay/sample_solids.h"
+
+namespace watertight {
+namespace {
+
+using samples::Shape;
+
+EngineWorkers& engines() {
+  static EngineWorkers workers;
+  return workers;
+}
+
+LadderResult climb(const Shape& shape, const LadderOptions& options = {}) {
+  const Solid solid = samples::make_solid(shape);
+  return climb_ladder(solid, triangulate_facets(solid), &engines(), options);
+}
+
+LadderOptions only(Engine engine, Rung last = Rung::tetgen) {
+  LadderOptions options;
+  options.engine = engine;
+  options.last_rung = last;
+  return options;
+}
+
+std::string attempts(const LadderResult& result) {
+  std::string text = "attempts:";
+  for (const RungAttempt& attempt : result.attempts) {
+    text += " [" + std::string(to_string(attempt.rung)) + ": " + attempt.outcome + "]";
+  }
+  return text;
+}
+
+/// An executable that ends at once, and one that never answers.
+EngineWorkers broken_engines(const std::string& executable) {
+  EngineWorkers::Options options;
+  options.cgal_executable = executable;
+  options.tetgen_executable = executable;
+  return EngineWorkers(options);
+}
+
+Shape torus(int around, int across) {
+  Shape shape;
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const double u = 2 * 3.14159265358979 * i / around;
+      const double v = 2 * 3.14159265358979 * j / across;
+      const double radius = 3000 + 1000 * std::cos(v);
+      shape.vertices.push_back({std::round(radius * std::cos(u)), std::round(radius * std::sin(u)),
+                                std::round(1000 * std::sin(v))});
+    }
+  }
+  shape.shells.emplace_back();
+  const auto at = [&](int i, int j) { return Index((i % around) * across + j % across); };
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      shape.shells[0].push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1)}});
+      shape.shells[0].push_back({{at(i, j), at(i + 1, j + 1), at(i, j + 1)}});
+    }
+  }
+  return shape;
+}
+
+/// A house whose x and y are like degrees and z like metres on one lattice of 1e-9.
+Shape degrees_house() {
+  Shape shape = samples::prism(
+      {{0, 0}, {150'000, 9'000}, {140'000, 88'000}, {70'000, 60'000}, {-9'000, 91'000}}, 12.5e9);
+  // A wall that leans a little, so that the Delaunay tetrahedralization alone does not do.
+  shape.vertices[8].x += 7;
+  return shape;
+}
+
+TEST_CASE("rung 0 accepts boxes, cavities, tunnels and facets with holes without an engine") {
+  Shape cavity = samples::box({0, 0, 0}, {90, 90, 90});
+  samples::add_box(cavity, {30, 30, 30}, {60, 60, 60}, true);
+  for (const Shape& shape : {samples::box({0, 0, 0}, {5, 6, 7}), cavity, samples::tunnelled_box(),
+                             samples::warped_box(2)}) {
+    const Solid solid = samples::make_solid(shape);
+    const LadderResult result = climb_ladder(solid, triangulate_facets(solid), nullptr, {});
+    INFO(attempts(result));
+    REQUIRE(result.certificate.has_value());
+    CHECK(result.certificate->rung == Rung::delaunay);
+    CHECK(result.certificate->tetrahedralization.points.size() == solid.vertex_count());
+    CHECK(result.attempts.size() == 1);
+  }
+}
+
+TEST_CASE("without engines a solid that needs Steiner points is undecided") {
+  const Solid solid = samples::make_solid(samples::schoenhardt());
+  const LadderResult result = climb_ladder(solid, triangulate_facets(solid), nullptr, {});
+  CHECK_FALSE(result.certificate.has_value());
+  CHECK(result.property == CertificateRefusal::none);
+  REQUIRE(result.attempts.size() == 5);
+  CHECK(result.attempts[0].outcome.starts_with("refused: 4 of 8"));
+  CHECK(result.attempts[1].outcome == "not-started: no engine executable");
+}
+
+TEST_CASE("Schoenhardt's prism needs Steiner points and gets them on every rung") {
+  REQUIRE(engines().cgal() != nullptr);
+  const LadderResult automatic = climb(samples::schoenhardt());
+  INFO(attempts(automatic));
+  REQUIRE(automatic.certificate.has_value());
+  CHECK(automatic.certificate->rung == Rung::patch);
+  CHECK(automatic.certificate->tetrahedralization.points.size() > 6);
+  CHECK(automatic.certificate->largest_deviation < 1e-6);
+
+  LadderOptions strict;
+  strict.strict = true;
+  const LadderResult triangles = climb(samples::schoenhardt(), strict);
+  INFO(attempts(triangles));
+  REQUIRE(triangles.certificate.has_value());
+  CHECK(triangles.certificate->rung == Rung::triangles_scaled);
+}
+
+TEST_CASE("TetGen's result passes the same certificate") {
+  if (engines().tetgen() == nullptr) SKIP("watertight-tetgen is not built");
+  for (const Shape& shape : {samples::schoenhardt(), samples::box({0, 0, 0}, {5, 6, 7}),
+                             samples::tunnelled_box(), samples::stairs(4)}) {
+    const LadderResult result = climb(shape, only(Engine::tetgen));
+    INFO(attempts(result));
+    REQUIRE(result.certificate.has_value());
+    CHECK(result.certificate->rung == Rung::tetgen);
+    CHECK(result.attempts.size() == 1);
+  }
+}
+
+TEST_CASE("CGAL's result passes the certificate for every sample") {
+  for (const Shape& shape :
+       {samples::box({0, 0, 0}, {5, 6, 7}), samples::tunnelled_box(), samples::stairs(5),
+        samples::warped_box(2), torus(12, 8), samples::schoenhardt()}) {
+    const LadderResult result = climb(shape, only(Engine::cgal));
+    INFO(attempts(result));
+    REQUIRE(result.certificate.has_value());
+    CHECK(result.certificate->rung == Rung::patch);
+  }
+}
+
+TEST_CASE("a torus is one connected interior") {
+  const LadderResult result = climb(torus(16, 10));
+  INFO(attempts(result));
+  CHECK(result.certificate.has_value());
+}
+
+TEST_CASE("two bodies are invalid on every rung") {
+  Shape beside = samples::schoenhardt();
+  samples::add_box_facets(beside, {3000, 0, 0}, {4000, 700, 800}, false);
+  for (const Engine engine : {Engine::automatic, Engine::cgal, Engine::tetgen}) {
+    if (engine == Engine::tetgen && engines().tetgen() == nullptr) continue;
+    const LadderResult result = climb(beside, only(engine));
+    INFO(attempts(result));
+    CHECK_FALSE(result.certificate.has_value());
+    CHECK(to_string(result.property) == "interior-disconnected");
+  }
+}
+
+TEST_CASE("a lattice of degrees and metres is decided on the scaled rung") {
+  LadderOptions options = only(Engine::cgal);
+  const LadderResult result = climb(degrees_house(), options);
+  INFO(attempts(result));
+  REQUIRE(result.certificate.has_value());
+  CHECK(result.certificate->rung == Rung::patch_scaled);
+  CHECK(result.attempts.size() == 1);
+}
+
+TEST_CASE("a strict ladder keeps the canonical triangles of a facet that is not planar") {
+  const Solid solid = samples::make_solid(samples::warped_box(9));
+  const FacetTriangles canonical = triangulate_facets(solid);
+  LadderOptions strict;
+  strict.strict = true;
+  const LadderResult result = climb_ladder(solid, canonical, &engines(), strict);
+  INFO(attempts(result));
+  REQUIRE(result.certificate.has_value());
+  CHECK(result.certificate->refilled_facets.empty());
+}
+
+TEST_CASE("the ladder's answer does not depend on the numbering of the solid") {
+  const auto sorted_points = [](const LadderResult& result) {
+    REQUIRE(result.certificate.has_value());
+    std::vector<Point> points = result.certificate->tetrahedralization.points;
+    std::sort(points.begin(), points.end());
+    return points;
+  };
+  const auto expected = sorted_points(climb(samples::schoenhardt()));
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    CHECK(sorted_points(climb(samples::shuffled(samples::schoenhardt(), seed))) == expected);
+  }
+}
+
+TEST_CASE("an engine that crashes, answers nonsense or is missing leaves a solid undecided") {
+  for (const std::string executable : {"/bin/false", "/bin/true", "/nonexistent/engine"}) {
+    EngineWorkers workers = broken_engines(executable);
+    const Solid solid = samples::make_solid(samples::schoenhardt());
+    const LadderResult result = climb_ladder(solid, triangulate_facets(solid), &workers, {});
+    INFO(executable << " " << attempts(result));
+    CHECK_FALSE(result.certificate.has_value());
+    CHECK(result.property == CertificateRefusal::none);
+    CHECK(result.attempts.size() == 5);
+  }
+}
+
+TEST_CASE("an engine that takes too long is stopped") {
+  // /bin/sleep without an operand ends at once; /bin/cat waits for its input, which is /dev/null.
+  EngineWorkers workers = broken_engines("/usr/bin/yes");
+  LadderOptions options;
+  options.seconds_per_rung = 0.2;
+  options.last_rung = Rung::patch;
+  const Solid solid = samples::make_solid(samples::schoenhardt());
+  const LadderResult result = climb_ladder(solid, triangulate_facets(solid), &workers, options);
+  INFO(attempts(result));
+  REQUIRE(result.attempts.size() == 2);
+  CHECK(result.attempts[1].outcome.starts_with("timed-out"));
+  CHECK(result.attempts[1].seconds < 5);
+}
+
+TEST_CASE("a cancelled climb stops") {
+  LadderOptions options;
+  options.cancel = [] { return true; };
+  const LadderResult result = climb(samples::schoenhardt(), options);
+  CHECK_FALSE(result.certificate.has_value());
+  CHECK(result.attempts.size() <= 1);
+}
+
+TEST_CASE("the last rung is respected") {
+  LadderOptions options;
+  options.last_rung = Rung::delaunay;
+  const LadderResult result = climb(samples::schoenhardt(), options);
+  CHECK_FALSE(result.certificate.has_value());
+  CHECK(result.attempts.size() == 1);
+}
+
+}  // namespace
+}  // namespace watertight

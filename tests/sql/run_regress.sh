@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs the extension in a private server: run_regress.sh SOURCE BUILD [COMMAND-LINE-PROGRAM]
-# With the third argument it also compares the blobs of SQL and command line.
+# Runs the extension in a private server: run_regress.sh SOURCE BUILD [PROGRAM]
+# With PROGRAM (watertight) it also compares the blobs of SQL and command line. The store's own tests
+# then see whether a private cluster of such a server has the extension.
 set -euo pipefail
 source=$(cd "$1" && pwd)
 build=$(cd "$2" && pwd)
@@ -76,6 +77,10 @@ if [ -n "$program" ]; then
     }
   done
   echo "3 blobs of SQL and command line are equal"
+fi
+
+if [ -x "$build/bin/test_store" ]; then
+  WATERTIGHT_POSTGRES_BIN=$bin "$build/bin/test_store" "the database has the extension*"
 fi
 
 # Helpers end with their backends: all connections are closed now.

@@ -6,6 +6,7 @@
 
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -206,6 +207,21 @@ TEST_CASE("a server that cannot start is reported with its own words") {
   REQUIRE(!cluster);
   CHECK(cluster.error().code == ErrorCode::unavailable);
   CHECK(cluster.error().message.find("no_such_setting") != std::string::npos);
+}
+
+TEST_CASE("the database has the extension exactly where the server offers it") {
+  const TemporaryFolder folder;
+  const auto cluster = started({folder.path});
+  CHECK(ask(cluster->connection(),
+            "SELECT (SELECT count(*) FROM pg_available_extensions WHERE name = 'watertight') ="
+            " (SELECT count(*) FROM pg_extension WHERE extname = 'watertight') AND"
+            " (SELECT count(*) FROM pg_proc WHERE proname = 'wt_encode') ="
+            " (SELECT count(*) FROM pg_extension WHERE extname = 'watertight')") ==
+        std::string("\1", 1));
+  // tests/sql sets this and gives a server that has it.
+  if (std::getenv("WATERTIGHT_POSTGRES_BIN") != nullptr) {
+    CHECK(ask(cluster->connection(), "SELECT wt_version()") == "0.1.0");
+  }
 }
 
 TEST_CASE("who is not root keeps its user") {

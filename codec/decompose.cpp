@@ -53,6 +53,7 @@ Result<BoundaryComplex> follow(const CanonicalSolid& canonical) {
     complex.triangles.push_back(sorted(triangle));
   }
   complex.facet_of = following.facet_of;
+  complex.delaunay = std::move(delaunay).value();
   return complex;
 }
 
@@ -156,6 +157,7 @@ Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex) {
 }
 
 Result<CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex) {
+  if (complex.delaunay) return *complex.delaunay;
   auto delaunay = canonical_delaunay(complex.points, storable_tetrahedra(complex.points.size()));
   if (!delaunay) return not_encodable(delaunay.error().message);
   if (delaunay->tetrahedra.empty()) return not_encodable("the vertices span no volume");

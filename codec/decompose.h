@@ -5,6 +5,7 @@
 // Source: Verbree & Si 2008, section 4.1, decomposition steps 1-7.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "codec/bit_coder.h"
@@ -21,6 +22,8 @@ struct BoundaryComplex {
   Index vertex_count = 0;
   std::vector<Triangle> triangles;  // vertices of each increasing; in no particular order
   std::vector<Index> facet_of;      // canonical facet of each triangle
+  /// Where step 1 had to make it already, for step 4.
+  std::optional<CanonicalDelaunay> delaunay;
 };
 
 /// What the decomposition stores.

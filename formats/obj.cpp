@@ -265,9 +265,9 @@ Result<std::string> write_obj(std::span<const Feature> features) {
   std::uint64_t first_vertex = 1;
   for (const Feature& feature : features) {
     for (const SubmittedSolid& solid : feature.solids) {
-      if (const std::string name = object_name(feature, solid); !name.empty()) {
-        out += "o " + name + '\n';
-      }
+      // Without its line, an object would be part of the one before it.
+      const std::string name = object_name(feature, solid);
+      if (!name.empty() || !out.empty()) out += "o " + name + '\n';
       auto status = append_obj(out, solid.solid, first_vertex);
       if (!status) return status.error();
       first_vertex += solid.solid.vertex_count();

@@ -99,6 +99,16 @@ TEST_CASE("OBJ and OFF print the digits of the source") {
   CHECK(again->features[0].solids[0].solid == document->features[0].solids[0].solid);
 }
 
+// Found by fuzzing: objects without a name were written without their line, and became one.
+TEST_CASE("OBJ keeps objects without a name apart") {
+  const auto document = read("v 0 0 0\nf 1 1 1\no\nf 1 1 1\n", Format::obj);
+  REQUIRE(document);
+  REQUIRE(document->features.size() == 2);
+  const auto again = read(written(*document, Format::obj), Format::obj);
+  REQUIRE(again);
+  CHECK(again->features.size() == 2);
+}
+
 TEST_CASE("OFF reads comments, colours and normals") {
   const auto plain = read("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", Format::off);
   REQUIRE(plain);

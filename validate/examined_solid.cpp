@@ -128,4 +128,17 @@ bool ExaminedSolid::is_shell_faulty(Index shell) const {
   return false;
 }
 
+bool ExaminedSolid::is_junction(Index without, Index with) const {
+  const auto place = junctions_.find(without);
+  if (place == junctions_.end()) return false;
+  const IndexRange rings = solid().rings_of(with);
+  for (Index r = rings.begin; r < rings.end; ++r) {
+    for (const Index vertex : solid().ring(r)) {
+      const auto& lacking = place->second;
+      if (std::find(lacking.begin(), lacking.end(), vertex) != lacking.end()) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace watertight

@@ -76,6 +76,11 @@ class ExaminedSolid {
   bool is_faulty(Index facet) const { return is_faulty_[facet]; }
   bool is_shell_faulty(Index shell) const;
 
+  /// Notes that a vertex lies inside an edge of a facet that lacks it (reported as 302).
+  void note_junction(Index facet, Index vertex) { junctions_[facet].push_back(vertex); }
+  /// True if `with` has a vertex that `without` lacks.
+  bool is_junction(Index without, Index with) const;
+
   FindingCollector findings;
 
  private:
@@ -89,6 +94,7 @@ class ExaminedSolid {
   std::vector<Index> shell_of_;
   std::vector<Index> first_submitted_;
   std::vector<bool> is_faulty_;
+  std::map<Index, std::vector<Index>> junctions_;  // facet -> vertices it lacks
 };
 
 }  // namespace watertight

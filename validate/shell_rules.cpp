@@ -60,6 +60,9 @@ class ShellExaminer {
     return std::any_of(edge.begin(), edge.end(),
                        [&](const EdgeUse& use) { return examined_.is_faulty(use.facet); });
   }
+  bool bounds_region(Index facet) const {
+    return examined_.triangles().state[facet] == FacetState::triangulated;
+  }
   Place place_of(const EdgeUse& use) const {
     return examined_.at_corner(use.facet, use.ring_in_facet, use.position);
   }
@@ -79,7 +82,7 @@ class ShellExaminer {
 };
 
 void ShellExaminer::check_facet_count() {
-  if (facets_.size() >= 4) return;
+  if (facets_.size() >= 4 || solid_.facet_count() == 0) return;
   Finding finding;
   finding.code = kTooFewPolygons;
   finding.place = examined_.at_shell(shell_);
@@ -123,6 +126,7 @@ void ShellExaminer::report_crowded_edge(EdgeSpan edge) {
 }
 
 void ShellExaminer::report_junction(const TJunction& junction) {
+  examined_.note_junction(junction.edge.facet, junction.vertex);
   Finding finding;
   finding.code = kShellNotClosed;
   finding.place = place_of(junction.edge);
@@ -146,8 +150,8 @@ void ShellExaminer::report_border(const Border& border) {
   finding.measured = static_cast<double>(border.edges.size());
   finding.limit = 0;
   finding.unit = "edges";
-  finding.detail =
-      "a border of " + std::to_string(border.edges.size()) + " edges that only one facet uses";
+  finding.detail = "a border of " + std::to_string(border.edges.size()) +
+                   (border.edges.size() == 1 ? " edge" : " edges") + " that only one facet uses";
   finding.uncertain = is_faulty(border.edges);
   examined_.findings.add(std::move(finding));
 }
@@ -289,6 +293,7 @@ void ShellExaminer::check_orientation() {
     const EdgeUse& b = pairs_[i + 1];
     const bool is_conflict = a.is_forward == b.is_forward;
     has_conflict = has_conflict || is_conflict;
+    if (!bounds_region(a.facet) || !bounds_region(b.facet)) continue;  // has no side to compare
     links.push_back({local(a.facet), local(b.facet), is_conflict});
     links.push_back({local(b.facet), local(a.facet), is_conflict});
   }

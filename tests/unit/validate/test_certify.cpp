@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/unit/validate/solids.h"
+
+using namespace watertight;
+using namespace watertight::test;
+
+using Codes = std::set<int>;
+
+TEST_CASE("a cube is valid, with certificate and measures") {
+  const Inspection inspection = certify(solid_of({cube(4)}), nullptr);
+  CHECK(inspection.report.verdict == Verdict::valid);
+  CHECK(inspection.report.findings.empty());
+  CHECK(inspection.report.first_level.empty());
+  REQUIRE(inspection.certified);
+  CHECK(inspection.certified->certificate);
+  CHECK(inspection.certified->solid.solid().vertex_count() == 8);
+  REQUIRE(inspection.report.measures);
+  CHECK(inspection.report.measures->volume == 64);
+}
+
+TEST_CASE("the boundary proof needs no tetrahedralization, but one shell") {
+  CertifyOptions options;
+  options.proof = Proof::boundary;
+  const Inspection one = certify(solid_of({cube(4)}), nullptr, options);
+  CHECK(one.report.verdict == Verdict::valid);
+  REQUIRE(one.certified);
+  CHECK_FALSE(one.certified->certificate);
+  CHECK(one.certified->solid.acceptance().proof == Proof::boundary);
+  const Inspection two =
+      certify(solid_of({cube(9), inside_out(box({1, 1, 1}, {3, 3, 3}))}), nullptr, options);
+  CHECK(two.report.verdict == Verdict::undecided);
+  CHECK_FALSE(two.report.undecided_reason.empty());
+}
+
+TEST_CASE("an invalid solid is never certified") {
+  const Inspection inspection = certify(solid_of({inside_out(cube(4))}), nullptr);
+  CHECK(inspection.report.verdict == Verdict::invalid);
+  CHECK_FALSE(inspection.certified);
+}
+
+TEST_CASE("findings of all levels are reported, not those of the first failing level only") {
+  Shell shell = cube(8);
+  shell[1] = {Ring{{0, 0, 8}, {8, 0, 8}, {8, 8, 9}, {0, 8, 8}}};  // off its plane, and open
+  shell = join(shell, corner({3, 3, 7}, 4));                      // crosses the top
+  const Report report = report_of({shell});
+  CHECK(error_codes(report) == Codes{203, 302, 305, 306});
+  CHECK(report.first_level == std::vector<int>{203});
+  const Finding* crossing = first_finding(report, 306);
+  REQUIRE(crossing);
+  CHECK(crossing->uncertain);
+}
+
+TEST_CASE("a T-junction is 302 and names the vertex and the edge") {
+  Shell shell = cube(4);
+  shell[1] = {Ring{{0, 0, 4}, {2, 0, 4}, {4, 0, 4}, {4, 4, 4}, {0, 4, 4}}};
+  const Report report = report_of({shell});
+  CHECK(error_codes(report) == Codes{302});
+  REQUIRE(report.findings.size() == 1);
+  const Finding& finding = report.findings[0];
+  CHECK(finding.detail.find("T-junction") == 0);
+  CHECK(finding.witness == std::array<double, 3>{2, 0, 4});
+  CHECK(finding.place.facet == 2);
+  REQUIRE(finding.other);
+  CHECK(finding.other->facet == 1);
+}
+
+TEST_CASE("a missing facet is one border, two missing facets apart are two") {
+  Shell shell = cube(4);
+  shell.pop_back();
+  CHECK(report_of({shell}).findings.size() == 1);
+  shell.erase(shell.begin() + 3);  // the opposite wall
+  const Report report = report_of({shell});
+  CHECK(report.findings.size() == 2);
+  CHECK(error_codes(report) == Codes{302});
+}
+
+TEST_CASE("solids that touch in a vertex or an edge are not 2-manifold") {
+  const Report vertex = report_of({join(cube(2), box({2, 2, 2}, {4, 4, 4}))});
+  CHECK(error_codes(vertex) == Codes{303});
+  CHECK(vertex.findings[0].detail.find("interior_connected: no") != std::string::npos);
+  const Report edge = report_of({join(cube(2), box({2, 2, 0}, {4, 4, 2}))});
+  CHECK(error_codes(edge) == Codes{303});
+  CHECK(edge.findings[0].measured == 4.0);
+}
+
+TEST_CASE("a pinch that leaves the interior connected says so") {
+  // A cavity that touches the outside in a vertex, written as one shell.
+  const Point apex{0, 0, 0};
+  const Point a{4, 2, 2};
+  const Point b{2, 4, 2};
+  const Point c{2, 2, 4};
+  const Shell inner{{{apex, b, a}}, {{apex, a, c}}, {{a, b, c}}, {{b, apex, c}}};
+  const Report report = report_of({join(cube(8), inside_out(inner))});
+  CHECK(error_codes(report) == Codes{303});
+  CHECK(report.findings[0].detail.find("interior_connected: yes") != std::string::npos);
+}
+
+TEST_CASE("facets turned over are found by their neighbours") {
+  Shell shell = cube(4);
+  std::reverse(shell[3][0].begin(), shell[3][0].end());
+  const Report report = report_of({shell});
+  CHECK(error_codes(report) == Codes{307});
+  REQUIRE(report.findings.size() == 1);
+  CHECK(report.findings[0].place.facet == 3);
+}
+
+TEST_CASE("cavities are valid inside, and may touch the exterior in a vertex or along an edge") {
+  CHECK(report_of({cube(9), inside_out(box({3, 3, 3}, {6, 6, 6}))}).verdict == Verdict::valid);
+  const Point apex{0, 0, 0};
+  const Shell inner{{{apex, {2, 4, 2}, {4, 2, 2}}},
+                    {{apex, {4, 2, 2}, {2, 2, 4}}},
+                    {{{4, 2, 2}, {2, 4, 2}, {2, 2, 4}}},
+                    {{{2, 4, 2}, apex, {2, 2, 4}}}};
+  CHECK(error_codes(report_of({cube(8), inside_out(inner)})).empty());
+  const Shell along{{{{0, 0, 0}, {0, 0, 8}, {4, 3, 4}}},
+                    {{{0, 0, 8}, {0, 0, 0}, {3, 4, 4}}},
+                    {{{0, 0, 0}, {4, 3, 4}, {3, 4, 4}}},
+                    {{{0, 0, 8}, {3, 4, 4}, {4, 3, 4}}}};
+  CHECK(error_codes(report_of({cube(8), along})).empty());
+}
+
+TEST_CASE("cavities that cross, share a face, lie outside or in each other are found") {
+  const Shell outer = cube(9);
+  const auto cavity = [](const Point& low, const Point& high) {
+    return inside_out(box(low, high));
+  };
+  CHECK(error_codes(report_of({outer, cavity({7, 3, 3}, {12, 6, 6})})) == Codes{401});
+  CHECK(error_codes(report_of({outer, cavity({6, 3, 3}, {9, 6, 6})})) == Codes{401});
+  CHECK(error_codes(report_of({outer, cavity({12, 3, 3}, {15, 6, 6})})) == Codes{403});
+  CHECK(error_codes(report_of(
+            {outer, cavity({1, 1, 1}, {8, 8, 8}), cavity({3, 3, 3}, {5, 5, 5})})) == Codes{401});
+  CHECK(error_codes(report_of(
+            {outer, cavity({1, 1, 1}, {3, 3, 3}), cavity({3, 1, 1}, {5, 3, 3})})) == Codes{401});
+  CHECK(error_codes(report_of(
+            {outer, cavity({1, 1, 1}, {3, 3, 3}), cavity({1, 1, 1}, {3, 3, 3})})) == Codes{402});
+  CHECK(error_codes(report_of({outer, inside_out(cube(9))})) == Codes{402});
+}
+
+TEST_CASE("a cavity that crosses the wall only along edges is found") {
+  // An octahedron whose four middle edges lie in the wall x = 9: one half is outside.
+  const std::vector<Point> ring{{9, 3, 3}, {9, 6, 3}, {9, 6, 6}, {9, 3, 6}};
+  Shell octahedron;
+  for (std::size_t i = 0; i < 4; ++i) {
+    octahedron.push_back({{ring[i], ring[(i + 1) % 4], {12, 4, 4}}});
+    octahedron.push_back({{ring[(i + 1) % 4], ring[i], {6, 4, 4}}});
+  }
+  CHECK(error_codes(report_of({cube(9), inside_out(octahedron)})) == Codes{401});
+}
+
+TEST_CASE("shells turned the wrong way are found, each by itself") {
+  CHECK(error_codes(report_of({inside_out(cube(4))})) == Codes{405});
+  const Report report = report_of({cube(9), box({3, 3, 3}, {6, 6, 6})});
+  CHECK(error_codes(report) == Codes{405});
+  CHECK(report.findings[0].place.shell == 1);
+}
+
+TEST_CASE("a part of a shell that floats inside is a component, not a cavity") {
+  CHECK(error_codes(report_of({join(cube(9), inside_out(box({3, 3, 3}, {6, 6, 6})))})) ==
+        Codes{305});
+}
+
+TEST_CASE("equal vertices are one vertex, whatever their numbers") {
+  // solid_of() gives every corner a vertex of its own: 24 for a cube.
+  const Solid solid = solid_of({cube(4)});
+  CHECK(solid.vertex_count() == 24);
+  CHECK(certify(solid, nullptr).report.verdict == Verdict::valid);
+}
+
+TEST_CASE("planarity is measured in metres through the lattice and the tolerances") {
+  Shell shell = cube(1000);
+  for (Facet& facet : shell) {
+    for (Point& p : facet[0]) {
+      if (p == Point{1000, 1000, 1000}) p.z = 1030;
+    }
+  }
+  Lattice millimetres;
+  millimetres.step.fill(GridNumber{1, -3});
+  const auto codes = [&](double metres) {
+    CertifyOptions options;
+    options.tolerances.planarity_metres = metres;
+    return error_codes(certify(solid_of({shell}, millimetres), nullptr, options).report);
+  };
+  CHECK(codes(0.01).empty());  // 30 mm up: 7.5 mm off the fitted plane
+  CHECK(codes(0.005) == Codes{203});
+  CHECK(error_codes(report_of({shell})) == Codes{203});  // the same numbers as metres
+}
+
+TEST_CASE("exactly planar facets have no planarity finding, however long and thin") {
+  // A prism of 1 x 1 x 4e9 along a direction that no double plane fits well.
+  const Point d{3999999999.0, 2999999999.0, 1999999999.0};
+  const auto along = [&](const Point& p) { return Point{p.x + d.x, p.y + d.y, p.z + d.z}; };
+  const Point a{0, 0, 0};
+  const Point b{1, 0, 0};
+  const Point c{0, 1, 0};
+  const Shell prism{{{a, c, b}},
+                    {{along(a), along(b), along(c)}},
+                    {{a, b, along(b), along(a)}},
+                    {{b, c, along(c), along(b)}},
+                    {{c, a, along(a), along(c)}}};
+  CertifyOptions options;
+  options.tolerances.planarity_metres = 1e-12;
+  options.tolerances.planarity_degrees = 1e-9;
+  options.proof = Proof::boundary;
+  CHECK(error_codes(report_of({prism}, options)).empty());
+}
+
+TEST_CASE("a snap tolerance closes a gap and says that the solid is another one") {
+  Shell shell = cube(1000);
+  shell[1][0][2].x = 1001;  // one corner of the top is 1 mm off
+  Lattice millimetres;
+  millimetres.step.fill(GridNumber{1, -3});
+  const Solid solid = solid_of({shell}, millimetres);
+  CHECK(error_codes(certify(solid, nullptr).report).count(302) == 1);
+  CertifyOptions options;
+  options.tolerances.snap_metres = 0.0015;
+  const Inspection snapped = certify(solid, nullptr, options);
+  CHECK(snapped.report.verdict == Verdict::valid);
+  REQUIRE_FALSE(snapped.report.notes.empty());
+  CHECK(snapped.report.notes[0].find("snap") != std::string::npos);
+}
+
+TEST_CASE("more findings than the limit are counted, and the verdict stays") {
+  CertifyOptions options;
+  options.limits.findings = 2;
+  Shell shell = join(cube(9), join(box({-3, 3, 3}, {12, 4, 4}), box({3, -3, 3}, {4, 12, 4})));
+  const Report report = report_of({shell}, options);
+  CHECK(report.verdict == Verdict::invalid);
+  CHECK(report.findings.size() == 2);
+  CHECK(report.findings_omitted > 0);
+}
+
+TEST_CASE("nothing crashes on empty and degenerate solids") {
+  for (const std::vector<Shell>& shells :
+       std::vector<std::vector<Shell>>{{},
+                                       {{}},
+                                       {{}, {}},
+                                       {{{}}},
+                                       {{{{}}}},
+                                       {{{{{0, 0, 0}}}}},
+                                       {{{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}}},
+                                       {{{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}}}},
+                                       {cube(0)},
+                                       {cube(1), {}},
+                                       {{}, cube(1)}}) {
+    const Inspection inspection = certify(solid_of(shells), nullptr);
+    CHECK(inspection.report.verdict == Verdict::invalid);
+    CHECK_FALSE(inspection.report.first_level.empty());
+  }
+}

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// tests/golden/findings holds one small file per finding with its expected report. The table of
+// findings, docs/findings.md and the samples must agree. With WATERTIGHT_UPDATE_GOLDEN set in the
+// environment the expected reports are written instead of compared.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "formats/document.h"
+#include "tests/unit/validate/solids.h"
+#include "validate/finding_kinds.h"
+#include "validate/report_json.h"
+
+using namespace watertight;
+using namespace watertight::test;
+
+namespace {
+
+const std::filesystem::path kRoot = std::filesystem::path(WATERTIGHT_TEST_DATA) / ".." / "..";
+const std::filesystem::path kSamples = kRoot / "tests" / "golden" / "findings";
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  REQUIRE(file);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+struct Sample {
+  Solid solid;
+  std::vector<Index> rounded;
+  std::string pointer;
+};
+
+/// Reads as the program does.
+Sample read_sample(const std::filesystem::path& path) {
+  const std::string text = text_of(path);
+  const auto format = detect_format(path.filename().string(), as_bytes(text));
+  REQUIRE(format);
+  auto document = read_document(as_bytes(text), *format);
+  REQUIRE(document);
+  REQUIRE(document->features.size() == 1);
+  REQUIRE(document->features[0].solids.size() == 1);
+  SubmittedSolid& submitted = document->features[0].solids[0];
+  return {submitted.solid, submitted.rounded, submitted.source.pointer};
+}
+
+/// Documents never hold unused vertices once read: this sample keeps those of its OFF file.
+Sample read_all_vertices(const std::filesystem::path& path) {
+  std::istringstream in(text_of(path));
+  std::string off;
+  std::size_t vertices = 0;
+  std::size_t facets = 0;
+  std::size_t edges = 0;
+  in >> off >> vertices >> facets >> edges;
+  SolidArrays arrays;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    Point p;
+    in >> p.x >> p.y >> p.z;
+    arrays.vertices.push_back(p);
+  }
+  for (std::size_t i = 0; i < facets; ++i) {
+    std::size_t corners = 0;
+    in >> corners;
+    for (std::size_t c = 0; c < corners; ++c) {
+      Index vertex = 0;
+      in >> vertex;
+      arrays.ring_vertices.push_back(vertex);
+    }
+    arrays.end_ring();
+    arrays.end_facet();
+  }
+  arrays.end_shell();
+  auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
+  REQUIRE(solid);
+  return {*solid, {}, ""};
+}
+
+std::filesystem::path sample_path(int code) {
+  const std::string number = std::to_string(code);
+  for (const char* suffix : {".city.json", ".off"}) {
+    const std::filesystem::path path = kSamples / (number + suffix);
+    if (std::filesystem::exists(path)) return path;
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("every finding has a sample that shows it and an expected report") {
+  for (const FindingKind& kind : finding_kinds()) {
+    INFO("finding " << kind.code);
+    const std::filesystem::path path = sample_path(kind.code);
+    REQUIRE_FALSE(path.empty());
+    const Sample sample =
+        kind.code == kUnusedVertices ? read_all_vertices(path) : read_sample(path);
+    CertifyOptions options;
+    options.rounded = sample.rounded;
+    const Report report = certify(sample.solid, nullptr, options).report;
+    const Finding* finding = first_finding(report, kind.code);
+    REQUIRE(finding);
+    CHECK(finding->severity == kind.severity);
+    CHECK((report.verdict == Verdict::invalid) == (kind.severity == Severity::error));
+
+    ReportJsonOptions json;
+    json.pointer_prefix = sample.pointer;
+    json.include_times = false;
+    json.style = JsonStyle::indented;
+    const std::string text = report_json(report, sample.solid, json) + "\n";
+    const std::filesystem::path expected = kSamples / (std::to_string(kind.code) + ".report.json");
+    if (std::getenv("WATERTIGHT_UPDATE_GOLDEN") != nullptr) {
+      std::ofstream(expected, std::ios::binary) << text;
+    }
+    CHECK(text == text_of(expected));
+  }
+}
+
+TEST_CASE("every sample belongs to a finding") {
+  for (const auto& entry : std::filesystem::directory_iterator(kSamples)) {
+    INFO(entry.path());
+    CHECK(find_kind(std::atoi(entry.path().filename().string().c_str())) != nullptr);
+  }
+}
+
+TEST_CASE("docs/findings.md describes every finding and no other") {
+  const std::string text = text_of(kRoot / "docs" / "findings.md");
+  std::istringstream lines(text);
+  std::string line;
+  std::vector<std::string> sections;
+  while (std::getline(lines, line)) {
+    if (line.rfind("## ", 0) == 0 && line.size() > 3 && std::isdigit(line[3]) != 0) {
+      sections.push_back(line.substr(3));
+    }
+  }
+  std::vector<std::string> expected;
+  for (const FindingKind& kind : finding_kinds()) {
+    expected.push_back(std::to_string(kind.code) + " " + std::string(kind.name));
+    CHECK(text.find("tests/golden/findings/" + sample_path(kind.code).filename().string()) !=
+          std::string::npos);
+  }
+  CHECK(sections == expected);
+}
+
+TEST_CASE("finding_name knows the table's codes only") {
+  for (const FindingKind& kind : finding_kinds()) CHECK(finding_name(kind.code) == kind.name);
+  CHECK(finding_name(302) == "SHELL_NOT_CLOSED");
+  CHECK(finding_name(0).empty());
+  CHECK(finding_name(304).empty());
+  CHECK(finding_name(9999).empty());
+}

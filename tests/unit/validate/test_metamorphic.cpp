@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The verdict does not depend on how a solid is written down.
+#include "tests/unit/validate/solids.h"
+
+using namespace watertight;
+using namespace watertight::test;
+
+namespace {
+
+/// The same solid with facets, interior shells, ring starts and vertices in another order.
+Solid shuffled(std::vector<Shell> shells, std::mt19937& random) {
+  for (Shell& shell : shells) {
+    std::shuffle(shell.begin(), shell.end(), random);
+    for (Facet& facet : shell) {
+      for (Ring& ring : facet) {
+        std::rotate(ring.begin(),
+                    ring.begin() + static_cast<std::ptrdiff_t>(random() % ring.size()), ring.end());
+      }
+      if (facet.size() > 2) std::shuffle(facet.begin() + 1, facet.end(), random);
+    }
+  }
+  if (shells.size() > 2) std::shuffle(shells.begin() + 1, shells.end(), random);
+  return solid_of(shells);
+}
+
+/// How often each code was found.
+std::multiset<int> code_counts(const Report& report) {
+  std::multiset<int> codes;
+  for (const Finding& finding : report.findings) codes.insert(finding.code);
+  return codes;
+}
+
+std::vector<std::vector<Shell>> samples() {
+  Shell open = cube(4);
+  open.pop_back();
+  Shell flipped = cube(4);
+  std::reverse(flipped[2][0].begin(), flipped[2][0].end());
+  Shell pierced = cube(9);
+  pierced[1].push_back(Ring{{3, 3, 9}, {3, 6, 9}, {6, 6, 9}, {6, 3, 9}});
+  return {{cube(4)},
+          {open},
+          {flipped},
+          {pierced},
+          {join(cube(2), box({2, 2, 2}, {4, 4, 4}))},
+          {join(cube(2), box({2, 2, 0}, {4, 4, 2}))},
+          {join(cube(9), box({-3, 3, 3}, {12, 4, 4}))},
+          {cube(9), inside_out(box({1, 1, 1}, {3, 3, 3})), inside_out(box({5, 5, 5}, {7, 7, 7}))},
+          {cube(9), inside_out(box({1, 1, 1}, {3, 3, 3})), inside_out(box({2, 2, 2}, {7, 7, 7}))}};
+}
+
+}  // namespace
+
+TEST_CASE("verdict and codes are the same for every order of facets, rings and vertices") {
+  std::mt19937 random(5);
+  for (const std::vector<Shell>& shells : samples()) {
+    const Report expected = report_of(shells);
+    for (int round = 0; round < 20; ++round) {
+      const Report report = certify(shuffled(shells, random), nullptr).report;
+      CHECK(report.verdict == expected.verdict);
+      CHECK(code_counts(report) == code_counts(expected));
+      CHECK(report.first_level == expected.first_level);
+    }
+  }
+}
+
+TEST_CASE("verdict and codes are the same under turns and shifts of the lattice") {
+  for (const std::vector<Shell>& shells : samples()) {
+    const Report expected = report_of(shells);
+    for (int turn = 0; turn < 3; ++turn) {
+      std::vector<Shell> moved = shells;
+      for (Shell& shell : moved) {
+        for (Facet& facet : shell) {
+          for (Ring& ring : facet) {
+            for (Point& p : ring) {
+              const double shift = 1099511627776.0;  // 2^40
+              p = {p[turn] + shift, p[(turn + 1) % 3] - shift, p[(turn + 2) % 3] + 3 * shift};
+            }
+          }
+        }
+      }
+      const Report report = report_of(moved);
+      CHECK(code_counts(report) == code_counts(expected));
+      CHECK(report.first_level == expected.first_level);
+    }
+  }
+}

@@ -40,7 +40,8 @@ Processed process(Feature feature, const Document& document, EngineWorkers* work
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   if (stores && processed.outcome.verdict == Verdict::valid) {
-    auto stored = to_stored(inspected, document, options.collection, options.encode);
+    auto stored =
+        to_stored(inspected, document, options.collection, options.encode, options.steiner);
     if (stored) {
       processed.stored = *std::move(stored);
     } else {
@@ -161,6 +162,20 @@ InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyO
   }
   inspected.feature = std::move(feature);
   return inspected;
+}
+
+Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,
+                                        const IngestOptions& options) {
+  auto processed = process_all(document, workers, options, true);
+  if (!processed) return std::move(processed).error();
+  EncodedDocument encoded;
+  for (Processed& feature : *processed) {
+    if (feature.error) return *std::move(feature.error);
+    if (feature.stored) encoded.features.push_back(*std::move(feature.stored));
+  }
+  encoded.outcome = summarize(*processed);
+  if (encoded.outcome.verdict != Verdict::valid) encoded.features.clear();
+  return encoded;
 }
 
 Result<IngestOutcome> validate_document(Document document, EngineWorkers* workers,

@@ -36,10 +36,14 @@ Verdict worse(Verdict a, Verdict b);
 /// vertices that the reader rounded gets the finding for it.
 InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options);
 
+/// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
+enum class SteinerVertices : std::uint8_t { leave_out, keep };
+
 /// Encodes a feature whose verdict is valid into what the store keeps.
 /// Errors: invalid_argument when a solid is not valid; those of encode().
 Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
-                                const std::string& collection, const EncodeOptions& options = {});
+                                const std::string& collection, const EncodeOptions& options = {},
+                                SteinerVertices steiner = SteinerVertices::leave_out);
 
 /// Decodes a stored feature: the document (with one feature) that came in.
 /// Errors: malformed when what is stored is not what to_stored() made; those of decode().
@@ -73,6 +77,7 @@ struct IngestOptions {
   std::string collection;
   CertifyOptions certify;
   EncodeOptions encode;
+  SteinerVertices steiner = SteinerVertices::leave_out;
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
   std::size_t threads = 1;
   std::function<bool()> is_cancelled = {};
@@ -84,6 +89,16 @@ struct IngestOutcome {
   Verdict verdict = Verdict::valid;      // the worst of all features
   std::size_t stored = 0;                // features
 };
+
+/// A document encoded feature by feature, but not stored.
+struct EncodedDocument {
+  std::vector<StoredFeature> features;  // in document order; empty unless all are valid
+  IngestOutcome outcome;
+};
+
+/// Validates and encodes. Errors: cancelled; those of encode().
+Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,
+                                        const IngestOptions& options);
 
 /// Validates all features without storing anything.
 /// Errors: cancelled. Cost: features are spread over `threads`.

@@ -30,10 +30,13 @@ void include(std::optional<StoredBox>& box, const Solid& solid) {
 }
 
 Result<StoredSolid> store_solid(const InspectedSolid& solid, const Solid& submitted,
-                                const EncodeOptions& options) {
+                                EncodeOptions options, SteinerVertices steiner) {
   const Inspection& inspection = solid.inspection;
   if (inspection.report.verdict != Verdict::valid || !inspection.certified) {
     return Error{ErrorCode::invalid_argument, "only valid solids are stored"};
+  }
+  if (steiner == SteinerVertices::keep && inspection.certified->certificate) {
+    options.certificate = &*inspection.certified->certificate;
   }
   auto blob = encode(inspection.certified->solid, options);
   if (!blob) return std::move(blob).error();
@@ -81,7 +84,8 @@ Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleto
 }  // namespace
 
 Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
-                                const std::string& collection, const EncodeOptions& options) {
+                                const std::string& collection, const EncodeOptions& options,
+                                SteinerVertices steiner) {
   StoredFeature stored;
   stored.collection = collection;
   stored.id = feature.feature.id;
@@ -91,7 +95,7 @@ Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document&
   stored.header = document.header;
   for (std::size_t i = 0; i < feature.solids.size(); ++i) {
     const InspectedSolid& inspected = feature.solids[i];
-    auto solid = store_solid(inspected, feature.feature.solids[i].solid, options);
+    auto solid = store_solid(inspected, feature.feature.solids[i].solid, options, steiner);
     if (!solid) {
       Error error = std::move(solid).error();
       if (error.pointer.empty()) error.pointer = inspected.source.pointer;

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The commands behind `watertight COMMAND`, as functions of their options. Results go to standard
+// output, messages to standard error.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/summary.h"
+
+namespace watertight {
+
+struct ValidateCommand {
+  std::vector<std::string> files;
+  std::string report;  // file to write the JSON report to, "" for none
+  double planarity_metres = 0.01;
+  double planarity_degrees = 20;
+  std::string proof = "tetrahedralization";
+  bool is_strict = false;
+  bool is_quiet = false;  // no line per finding
+  std::size_t jobs = 1;
+};
+Exit run(const ValidateCommand& command);
+
+struct EncodeCommand {
+  std::string input;
+  std::string output;
+  std::string mode = "auto";
+  bool keeps_steiner = false;
+  bool is_bare = false;  // one blob instead of a Watertight file
+  std::size_t jobs = 1;
+};
+Exit run(const EncodeCommand& command);
+
+struct DecodeCommand {
+  std::string input;
+  std::string output;
+};
+Exit run(const DecodeCommand& command);
+
+struct InfoCommand {
+  std::string input;
+  bool is_json = false;
+};
+Exit run(const InfoCommand& command);
+
+struct ConvertCommand {
+  std::string input;
+  std::string output;
+};
+Exit run(const ConvertCommand& command);
+
+/// Where the solids are kept.
+struct StoreChoice {
+  std::string data_directory;
+  std::string database_url;
+};
+
+struct ServeCommand {
+  StoreChoice store;
+  std::string listen = "127.0.0.1:8080";
+};
+Exit run(const ServeCommand& command);
+
+struct IngestCommand {
+  StoreChoice store;
+  std::vector<std::string> files;
+  std::string collection;
+  std::string invalid = "refuse";
+  bool is_json = false;
+  bool is_quiet = false;
+  std::size_t jobs = 1;
+};
+Exit run(const IngestCommand& command);
+
+/// "watertight: <file>: <what> (at <place>)" on standard error.
+void complain(const std::string& file, const Error& error);
+
+/// The findings of a document's solids that are not valid, as lines on standard output.
+void print_findings(const std::string& file, const IngestOutcome& outcome);
+
+}  // namespace watertight

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// encode, decode, info, convert: files to files.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/progress.h"
+#include "pipeline/container.h"
+
+namespace watertight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Exit fail(const std::string& file, const Error& error) {
+  complain(file, error);
+  return Exit::error;
+}
+
+Result<Input> load(const std::string& path, bool split_features) {
+  ReadOptions options;
+  options.split_features = split_features;
+  const auto bytes = read_file(path, options.limits);
+  if (!bytes) return bytes.error();
+  return load_input(path, *bytes, options);
+}
+
+Mode mode_named(const std::string& name) {
+  if (name == "raw") return Mode::raw;
+  return name == "bitmap" ? Mode::bitmap : Mode::automatic;
+}
+
+Result<Bytes> pack(const EncodeCommand& command, const std::vector<StoredFeature>& features) {
+  if (!command.is_bare) return write_container(features);
+  std::size_t solids = 0;
+  const Bytes* blob = nullptr;
+  for (const StoredFeature& feature : features) {
+    solids += feature.solids.size();
+    if (!feature.solids.empty()) blob = &feature.solids.front().blob;
+  }
+  if (solids == 1) return *blob;
+  return Error{ErrorCode::invalid_argument,
+               "--bare takes a document with one solid; this one has " + std::to_string(solids)};
+}
+
+Result<Document> load_encoded(const std::string& path) {
+  auto input = load(path, false);
+  if (!input) return std::move(input).error();
+  if (input->kind == InputKind::document) {
+    return Error{ErrorCode::malformed, "neither a Watertight file nor a blob"};
+  }
+  return std::move(input->document);
+}
+
+Exit save(const Document& document, const std::string& output) {
+  const auto format = output == "-" ? Result<Format>(document.format) : format_of_name(output);
+  if (!format) return fail(output, format.error());
+  const auto bytes = convert_document(document, *format);
+  if (!bytes) return fail(output, bytes.error());
+  const Status status = write_file(output, *bytes);
+  return status ? Exit::valid : fail(output, status.error());
+}
+
+Json json_of(const BlobInfo& info) {
+  Json json{{"formatVersion", info.version},
+            {"mode", to_string(info.mode)},
+            {"srid", info.srid},
+            {"vertices", info.vertices},
+            {"steinerVertices", info.steiner_vertices},
+            {"facets", info.facets},
+            {"rings", info.rings},
+            {"shells", info.shells},
+            {"delaunayFaces", info.delaunay_faces},
+            {"markedFaces", info.marked_faces},
+            {"unrecoveredFaces", info.unrecovered_faces},
+            {"hasOrder", info.has_order},
+            {"ruleSet", info.acceptance.rule_set},
+            {"proof", info.acceptance.proof == Proof::boundary ? "boundary" : "tetrahedralization"},
+            {"planarityMetres", info.acceptance.tolerances.planarity_metres},
+            {"planarityDegrees", info.acceptance.tolerances.planarity_degrees},
+            {"checksum", info.checksum}};
+  json["parts"] = Json::object();
+  for (const BlobInfo::Part& part : info.parts) json["parts"][part.name] = part.bytes;
+  return json;
+}
+
+void print_info(const Json& json, const std::string& indent) {
+  for (const auto& [name, value] : json.items()) {
+    if (value.is_object()) {
+      std::printf("%s%s\n", indent.c_str(), name.c_str());
+      print_info(value, indent + "  ");
+      continue;
+    }
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    std::printf("%s%-20s %s\n", indent.c_str(), name.c_str(), text.c_str());
+  }
+}
+
+Result<Json> info_of_container(ByteView bytes) {
+  auto features = read_container(bytes);
+  if (!features) return std::move(features).error();
+  Json json{{"file", "Watertight file"}, {"bytes", bytes.size()}};
+  json["format"] = features->empty() ? "" : features->front().format;
+  json["features"] = features->size();
+  std::uint64_t solids = 0;
+  std::uint64_t blob_bytes = 0;
+  Json parts = Json::object();
+  for (const StoredFeature& feature : *features) {
+    for (const StoredSolid& solid : feature.solids) {
+      const auto info = describe(solid.blob);
+      if (!info) return info.error();
+      ++solids;
+      blob_bytes += solid.blob.size();
+      for (const BlobInfo::Part& part : info->parts) {
+        parts[part.name] = parts.value(part.name, std::uint64_t{0}) + part.bytes;
+      }
+    }
+  }
+  json["solids"] = solids;
+  json["blobBytes"] = blob_bytes;
+  json["documentBytes"] = bytes.size() - blob_bytes;
+  json["parts"] = parts;
+  return json;
+}
+
+}  // namespace
+
+Exit run(const EncodeCommand& command) {
+  auto input = load(command.input, false);
+  if (!input) return fail(command.input, input.error());
+  EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
+  IngestOptions options;
+  options.threads = command.jobs;
+  options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
+  options.steiner = command.keeps_steiner ? SteinerVertices::keep : SteinerVertices::leave_out;
+  auto encoded = [&] {
+    ProgressBar bar(command.input);
+    options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    return encode_document(std::move(input->document), &workers, options);
+  }();
+  if (!encoded) return fail(command.input, encoded.error());
+  const Exit exit = exit_of(encoded->outcome.verdict);
+  if (exit != Exit::valid) {
+    if (command.output != "-") print_findings(command.input, encoded->outcome);
+    std::fprintf(stderr, "watertight: %s: not all solids are valid; nothing was written\n",
+                 command.input.c_str());
+    return exit;
+  }
+  const auto packed = pack(command, encoded->features);
+  if (!packed) return fail(command.input, packed.error());
+  const Status status = write_file(command.output, *packed);
+  return status ? Exit::valid : fail(command.output, status.error());
+}
+
+Exit run(const DecodeCommand& command) {
+  const auto document = load_encoded(command.input);
+  if (!document) return fail(command.input, document.error());
+  return save(*document, command.output);
+}
+
+Exit run(const ConvertCommand& command) {
+  const auto input = load(command.input, false);
+  if (!input) return fail(command.input, input.error());
+  return save(input->document, command.output);
+}
+
+Exit run(const InfoCommand& command) {
+  const auto bytes = read_file(command.input, {});
+  if (!bytes) return fail(command.input, bytes.error());
+  Result<Json> json = Json();
+  if (is_container(*bytes)) {
+    json = info_of_container(*bytes);
+  } else {
+    const auto info = describe(*bytes);
+    json = info ? Result<Json>(json_of(*info)) : Result<Json>(info.error());
+  }
+  if (!json) return fail(command.input, json.error());
+  if (command.is_json) {
+    std::printf("%s\n", json->dump().c_str());
+  } else {
+    print_info(*json, "");
+  }
+  return Exit::valid;
+}
+
+}  // namespace watertight

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// serve and ingest: the commands with a store.
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/progress.h"
+#include "pipeline/outcome_json.h"
+#include "server/serve.h"
+#include "store/private_cluster.h"
+
+namespace watertight {
+namespace {
+
+/// A connection string, with the private cluster behind it if there is one.
+struct OpenedStore {
+  std::unique_ptr<PrivateCluster> cluster;
+  std::string connection;
+};
+
+Result<OpenedStore> open_store(const StoreChoice& choice) {
+  OpenedStore opened;
+  if (!choice.database_url.empty()) {
+    opened.connection = choice.database_url;
+    return opened;
+  }
+  std::error_code error;
+  const std::string directory = std::filesystem::absolute(choice.data_directory, error).string();
+  const Status status = drop_root_privileges(directory);
+  if (!status) return status.error();
+  ClusterOptions options;
+  options.data_directory = directory;
+  auto cluster = PrivateCluster::start(options);
+  if (!cluster) return std::move(cluster).error();
+  opened.connection = (*cluster)->connection();
+  opened.cluster = *std::move(cluster);
+  return opened;
+}
+
+/// "127.0.0.1:8080", "[::1]:8080" or ":8080".
+Status read_listen(const std::string& text, ServerOptions& options) {
+  const Error wrong{ErrorCode::invalid_argument,
+                    "'" + text + "' is not ADDRESS:PORT (example: 127.0.0.1:8080)"};
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return wrong;
+  std::string address = text.substr(0, colon);
+  if (address.starts_with('[') && address.ends_with(']')) {
+    address = address.substr(1, address.size() - 2);
+  }
+  if (!address.empty()) options.address = address;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, options.port);
+  return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
+}
+
+Result<IngestOutcome> ingest_file(const IngestCommand& command, const std::string& file,
+                                  const Bytes& bytes, SolidStore& store, EngineWorkers& workers) {
+  auto input = load_input(file, bytes, {});
+  if (!input) return std::move(input).error();
+  // Formats without ids: the file's name is the feature's.
+  for (Feature& feature : input->document.features) {
+    if (feature.id.empty()) feature.id = std::filesystem::path(file).stem().string();
+  }
+  IngestOptions options;
+  options.collection = command.collection;
+  options.threads = command.jobs;
+  options.invalid_features =
+      command.invalid == "skip" ? InvalidFeatures::skip : InvalidFeatures::refuse_document;
+  ProgressBar bar(file);
+  options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+  return ingest(std::move(input->document), store, &workers, options);
+}
+
+}  // namespace
+
+Exit run(const ServeCommand& command) {
+  ServeOptions options;
+  const Status status = read_listen(command.listen, options.server);
+  if (!status) {
+    complain("--listen", status.error());
+    return Exit::error;
+  }
+  hold_stop_signals();
+  auto opened = open_store(command.store);
+  if (!opened) {
+    complain("store", opened.error());
+    return Exit::error;
+  }
+  options.connection = opened->connection;
+  const Status served = serve(options);
+  if (served) return Exit::valid;
+  complain("serve", served.error());
+  return Exit::error;
+}
+
+Exit run(const IngestCommand& command) {
+  const auto start = std::chrono::steady_clock::now();
+  // Read first: as root, opening the store gives up the right to read other users' files.
+  std::vector<Result<Bytes>> contents;
+  for (const std::string& file : command.files) contents.push_back(read_file(file, {}));
+  auto opened = open_store(command.store);
+  auto store = opened ? open_postgres_store(opened->connection)
+                      : Result<std::unique_ptr<SolidStore>>(opened.error());
+  if (!store) {
+    complain("store", store.error());
+    return Exit::error;
+  }
+  EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
+  Summary summary;
+  Exit exit = Exit::valid;
+  for (std::size_t i = 0; i < command.files.size(); ++i) {
+    const std::string& file = command.files[i];
+    const auto outcome = contents[i] ? ingest_file(command, file, *contents[i], **store, workers)
+                                     : Result<IngestOutcome>(contents[i].error());
+    if (!outcome) {
+      complain(file, outcome.error());
+      exit = Exit::error;
+      continue;
+    }
+    if (!command.is_quiet && !command.is_json) print_findings(file, *outcome);
+    if (outcome->verdict != Verdict::valid) {
+      std::fprintf(stderr, "watertight: %s: not all features are valid; %zu of %zu were stored\n",
+                   file.c_str(), outcome->stored, outcome->features.size());
+    }
+    summary.add(*outcome, contents[i]->size());
+    contents[i] = Bytes();
+    exit = worse(exit, exit_of(outcome->verdict));
+  }
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::string text = command.is_json ? summary.json(seconds) + "\n" : summary.table(seconds);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return exit;
+}
+
+}  // namespace watertight

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `watertight COMMAND ...`: reads the command line and runs the command (docs/cli.md).
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <thread>
+
+#include "cli/commands.h"
+
+namespace watertight {
+namespace {
+
+/// The command that was chosen; set by CLI11's callbacks.
+using Chosen = std::function<Exit()>;
+
+std::size_t default_jobs() {
+  return std::max(1U, std::min(std::thread::hardware_concurrency(), 64U));
+}
+
+void add_jobs(CLI::App& app, std::size_t& jobs) {
+  jobs = default_jobs();
+  app.add_option("-j,--jobs", jobs, "features validated at once")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+}
+
+void add_store(CLI::App& app, StoreChoice& store) {
+  auto* data = app.add_option("--data-dir,--data", store.data_directory,
+                              "directory of a private PostgreSQL cluster, made when missing");
+  auto* url = app.add_option("--database-url", store.database_url,
+                             "any PostgreSQL database (URL or libpq connection string)")
+                  ->envname("WATERTIGHT_DATABASE_URL");
+  data->excludes(url);
+}
+
+/// Not by CLI11's require_option: a URL may come from the environment.
+void require_store(const StoreChoice& store) {
+  if (!store.data_directory.empty() || !store.database_url.empty()) return;
+  throw CLI::ValidationError("--data-dir DIR or --database-url URL is required");
+}
+
+void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("validate", "Say which solids are valid, and why not");
+  sub->add_option("FILE", command.files, "documents; - for standard input")->required();
+  sub->add_option("--report", command.report, "write all reports as JSON to this file");
+  sub->add_option("--planarity", command.planarity_metres, "largest distance from a plane, metres")
+      ->check(CLI::Range(1e-9, 1000.0))
+      ->capture_default_str();
+  sub->add_option("--planarity-angle", command.planarity_degrees,
+                  "largest angle within a facet, degrees")
+      ->check(CLI::Range(1e-6, 90.0))
+      ->capture_default_str();
+  sub->add_option("--proof", command.proof, "what proves validity")
+      ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
+      ->capture_default_str();
+  sub->add_flag("--strict", command.is_strict, "only the canonical triangles of facets count");
+  sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
+  add_jobs(*sub, command.jobs);
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
+void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("encode", "Validate and compress a document");
+  sub->add_option("IN", command.input, "document; - for standard input")->required();
+  sub->add_option("-o,--output", command.output, "Watertight file; - for standard output")
+      ->required();
+  auto* mode = sub->add_option("--mode", command.mode, "how solids are coded")
+                   ->check(CLI::IsMember({"raw", "bitmap", "auto"}))
+                   ->capture_default_str();
+  sub->add_flag("--steiner", command.keeps_steiner,
+                "keep the Steiner vertices of the proof (mode bitmap)")
+      ->excludes(mode);
+  sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
+  add_jobs(*sub, command.jobs);
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
+void add_decode(CLI::App& app, DecodeCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("decode", "Restore the document of a Watertight file or blob");
+  sub->add_option("IN", command.input, "Watertight file or blob; - for standard input")->required();
+  sub->add_option("-o,--output", command.output, "the ending names the format; - as it was")
+      ->required();
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
+void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("convert", "Write a document in another format, unvalidated");
+  sub->add_option("IN", command.input, "document; - for standard input")->required();
+  sub->add_option("-o,--output", command.output, "the ending names the format")->required();
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
+void add_info(CLI::App& app, InfoCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("info", "Describe a blob or a Watertight file");
+  sub->add_option("BLOB", command.input, "file; - for standard input")->required();
+  sub->add_flag("--json", command.is_json, "as one line of JSON");
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
+void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("serve", "Run the HTTP service until SIGTERM or SIGINT");
+  add_store(*sub, command.store);
+  sub->add_option("--listen", command.listen, "ADDRESS:PORT")->capture_default_str();
+  sub->callback([&] {
+    require_store(command.store);
+    chosen = [&] { return run(command); };
+  });
+}
+
+void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("ingest", "Validate documents and store them");
+  sub->add_option("FILE", command.files, "documents; each is stored whole or not at all")
+      ->required();
+  sub->add_option("--collection", command.collection, "collection, made when missing")
+      ->required()
+      ->check([](const std::string& id) {
+        const bool is_id = !id.empty() && id.size() <= 64 && id != "." && id != ".." &&
+                           id.find_first_not_of(
+                               "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
+                               "_.-") == std::string::npos;
+        return is_id ? std::string()
+                     : std::string("a collection id is 1 to 64 of A-Z a-z 0-9 _ . -");
+      });
+  add_store(*sub, command.store);
+  sub->add_option("--invalid", command.invalid,
+                  "documents with invalid features: refuse them, or skip those features")
+      ->check(CLI::IsMember({"refuse", "skip"}))
+      ->capture_default_str();
+  sub->add_flag("--json", command.is_json, "the table as one line of JSON");
+  sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
+  add_jobs(*sub, command.jobs);
+  sub->callback([&] {
+    require_store(command.store);
+    chosen = [&] { return run(command); };
+  });
+}
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app("Validates, stores and compresses 3D solids", "watertight");
+  app.set_version_flag("--version", WATERTIGHT_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 all valid (warnings allowed), 1 something invalid, 2 error, 3 undecided");
+  ValidateCommand validate_command;
+  EncodeCommand encode_command;
+  DecodeCommand decode_command;
+  InfoCommand info_command;
+  ConvertCommand convert_command;
+  ServeCommand serve_command;
+  IngestCommand ingest_command;
+  Chosen chosen;
+  add_validate(app, validate_command, chosen);
+  add_encode(app, encode_command, chosen);
+  add_decode(app, decode_command, chosen);
+  add_info(app, info_command, chosen);
+  add_convert(app, convert_command, chosen);
+  add_serve(app, serve_command, chosen);
+  add_ingest(app, ingest_command, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::error);
+  }
+  return static_cast<int>(chosen());
+}
+
+}  // namespace
+}  // namespace watertight
+
+int main(int argc, char** argv) {
+  try {
+    return watertight::run_command_line(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fputs("watertight: not enough memory\n", stderr);
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "watertight: unexpected failure: %s\n", failure.what());
+  }
+  return static_cast<int>(watertight::Exit::error);
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/summary.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace watertight {
+namespace {
+
+std::string row(const std::string& name, const std::string& value) {
+  constexpr std::size_t kNameWidth = 36;
+  constexpr std::size_t kValueWidth = 14;
+  const std::size_t dots = name.size() < kNameWidth ? kNameWidth - name.size() : 1;
+  const std::size_t blanks = value.size() < kValueWidth ? kValueWidth - value.size() : 1;
+  return name + std::string(dots, ' ') + std::string(blanks, ' ') + value + "\n";
+}
+
+std::string row(const std::string& name, std::uint64_t value) {
+  return row(name, std::to_string(value));
+}
+
+std::string decimals(double value, int digits) {
+  std::array<char, 64> buffer{};
+  const int length = std::snprintf(buffer.data(), buffer.size(), "%.*f", digits, value);
+  return std::string(buffer.data(), static_cast<std::size_t>(std::max(length, 0)));
+}
+
+std::set<int> error_codes(const Report& report) {
+  std::set<int> codes;
+  for (const Finding& finding : report.findings) {
+    if (finding.severity == Severity::error) codes.insert(finding.code);
+  }
+  return codes;
+}
+
+}  // namespace
+
+Exit worse(Exit a, Exit b) {
+  constexpr std::array<Exit, 4> kOrder{Exit::error, Exit::invalid, Exit::undecided, Exit::valid};
+  return *std::find_if(kOrder.begin(), kOrder.end(),
+                       [&](Exit exit) { return exit == a || exit == b; });
+}
+
+Exit exit_of(Verdict verdict) {
+  if (verdict == Verdict::valid) return Exit::valid;
+  return verdict == Verdict::invalid ? Exit::invalid : Exit::undecided;
+}
+
+void Summary::add(const IngestOutcome& outcome, std::size_t file_bytes) {
+  file_bytes_ += file_bytes;
+  features_ += outcome.features.size();
+  stored_ += outcome.stored;
+  for (const FeatureOutcome& feature : outcome.features) {
+    for (const SolidOutcome& solid : feature.solids) {
+      const Report& report = solid.report;
+      if (report.verdict == Verdict::valid) {
+        ++valid_;
+        if (!report.findings.empty()) ++with_warnings_;
+        ++by_rung_[report.rung];
+      } else if (report.verdict == Verdict::invalid) {
+        ++invalid_;
+        for (const int code : error_codes(report)) ++by_code_[code];
+      } else {
+        ++undecided_;
+      }
+      if (solid.blob_bytes == 0) continue;
+      plain_bytes_ += solid.source_bytes;
+      blob_bytes_ += solid.blob_bytes;
+    }
+  }
+}
+
+std::string Summary::table(double seconds) const {
+  std::string text = row("features", features_) + row("solids", solids()) + row("  valid", valid_);
+  if (with_warnings_ > 0) text += row("    with warnings", with_warnings_);
+  for (const auto& [rung, count] : by_rung_) {
+    text += row("    proven by " + std::string(to_string(rung)), count);
+  }
+  text += row("  invalid", invalid_);
+  for (const auto& [code, count] : by_code_) {
+    text += row("    " + std::to_string(code) + " " + std::string(finding_name(code)), count);
+  }
+  text += row("  undecided", undecided_);
+  if (stored_ > 0) text += row("features stored", stored_);
+  text += row("bytes of the files", file_bytes_);
+  if (blob_bytes_ > 0) {
+    text += row("bytes in: solids as plain arrays", plain_bytes_);
+    text += row("bytes out: solids as blobs", blob_bytes_);
+    text += row("ratio",
+                decimals(static_cast<double>(plain_bytes_) / static_cast<double>(blob_bytes_), 2));
+  }
+  return text + row("seconds", decimals(seconds, 2));
+}
+
+std::string Summary::json(double seconds) const {
+  nlohmann::ordered_json json{{"features", features_},
+                              {"solids", solids()},
+                              {"valid", valid_},
+                              {"validWithWarnings", with_warnings_},
+                              {"invalid", invalid_},
+                              {"undecided", undecided_},
+                              {"stored", stored_},
+                              {"fileBytes", file_bytes_},
+                              {"plainBytes", plain_bytes_},
+                              {"blobBytes", blob_bytes_}};
+  json["invalidByCode"] = nlohmann::ordered_json::object();
+  for (const auto& [code, count] : by_code_) json["invalidByCode"][std::to_string(code)] = count;
+  json["validByRung"] = nlohmann::ordered_json::object();
+  for (const auto& [rung, count] : by_rung_) {
+    json["validByRung"][std::string(to_string(rung))] = count;
+  }
+  json["seconds"] = seconds;
+  return json.dump();
+}
+
+}  // namespace watertight

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a run over files says at its end: the table, and the exit status.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "pipeline/pipeline.h"
+
+namespace watertight {
+
+/// Exit statuses of the program (docs/cli.md).
+enum class Exit : int { valid = 0, invalid = 1, error = 2, undecided = 3 };
+
+/// The worse of two: error, then invalid, then undecided, then valid.
+Exit worse(Exit a, Exit b);
+Exit exit_of(Verdict verdict);
+
+/// Counts over all files of a run.
+class Summary {
+ public:
+  void add(const IngestOutcome& outcome, std::size_t file_bytes);
+
+  /// The table as text.
+  std::string table(double seconds) const;
+  /// The same figures as a JSON object.
+  std::string json(double seconds) const;
+  std::uint64_t solids() const { return valid_ + invalid_ + undecided_; }
+
+ private:
+  std::uint64_t valid_ = 0;
+  std::uint64_t with_warnings_ = 0;  // of the valid ones
+  std::uint64_t invalid_ = 0;
+  std::uint64_t undecided_ = 0;
+  std::uint64_t features_ = 0;
+  std::uint64_t stored_ = 0;
+  std::uint64_t file_bytes_ = 0;
+  std::uint64_t plain_bytes_ = 0;  // of the encoded solids
+  std::uint64_t blob_bytes_ = 0;
+  std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; one solid, several codes
+  std::map<Rung, std::uint64_t> by_rung_;
+};
+
+}  // namespace watertight

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The handlers behind the route table, and what they share. Internal to server/.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/problem.h"
+#include "server/routes.h"
+
+namespace watertight {
+
+inline constexpr std::string_view kJson = "application/json";
+inline constexpr std::string_view kCityJson = "application/city+json";
+inline constexpr std::string_view kCityJsonSeq = "application/city+json-seq";
+inline constexpr std::string_view kObj = "model/obj";
+inline constexpr std::string_view kBlob = "application/vnd.watertight.blob";
+inline constexpr std::string_view kContainer = "application/vnd.watertight";
+
+/// A request that matched a route.
+struct RoutedRequest {
+  const Service& service;
+  const Request& request;
+  const Target& target;
+  const IsCancelled& is_cancelled;
+};
+
+using Handler = Response (*)(const RoutedRequest&);
+
+struct Route {
+  std::string_view method;
+  std::string_view path;  // "/collections/{collectionId}": as in the OpenAPI document
+  Lane lane;
+  Handler handler;
+  std::vector<std::string_view> parameters;  // query parameters it knows
+};
+
+/// All routes; the OpenAPI document describes exactly these (a test compares them).
+const std::vector<Route>& routes();
+
+Response get_landing(const RoutedRequest& request);
+Response get_api(const RoutedRequest& request);
+Response get_health(const RoutedRequest& request);
+Response get_readiness(const RoutedRequest& request);
+Response get_collections(const RoutedRequest& request);
+Response get_collection(const RoutedRequest& request);
+Response get_items(const RoutedRequest& request);
+Response get_item(const RoutedRequest& request);
+Response post_items(const RoutedRequest& request);
+Response delete_item(const RoutedRequest& request);
+Response post_validate(const RoutedRequest& request);
+
+/// A plain problem.
+Response refuse(unsigned status, std::string kind, std::string detail);
+
+/// CRS URI of an EPSG code; the OGC's "unknown" for 0.
+std::string crs_uri(std::uint32_t srid);
+
+/// The same as the value of a Content-Crs field.
+std::string crs_header(std::uint32_t srid);
+
+/// "/collections/<id>/items/<item>", percent-encoded.
+std::string item_path(std::string_view collection, std::string_view item);
+
+/// The OpenAPI 3 document as JSON text.
+std::string openapi_text();
+
+}  // namespace watertight

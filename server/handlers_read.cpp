@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Handlers that only look: landing, health, collections, lists of items.
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "server/handlers.h"
+
+namespace watertight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kUnknownCrs = "http://www.opengis.net/def/nil/OGC/0/unknown";
+
+Response json_response(const Json& json, std::string_view type = kJson) {
+  return Response{
+      200, std::string(type), json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n", {}};
+}
+
+Json link(std::string href, std::string_view relation, std::string_view type,
+          std::string_view title) {
+  return {{"href", std::move(href)}, {"rel", relation}, {"type", type}, {"title", title}};
+}
+
+/// Nothing when JSON is what the client wants of a JSON-only resource.
+std::optional<Response> json_only(const RoutedRequest& request) {
+  const std::string* format = request.target.parameter("f");
+  if (format != nullptr) {
+    if (*format == "json") return std::nullopt;
+    return refuse(406, "not-acceptable", "f=json is what there is here");
+  }
+  if (negotiate(request.request.header("accept"), {kJson})) return std::nullopt;
+  return refuse(406, "not-acceptable", "application/json is what there is here");
+}
+
+Json box_json(const StoredBox& box) {
+  return Json::array({box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]});
+}
+
+Json collection_json(const StoredCollection& collection) {
+  const std::string self = "/collections/" + percent_encode(collection.id);
+  Json json{{"id", collection.id}, {"itemType", "feature"}};
+  json["crs"] = Json::array({crs_uri(collection.srid)});
+  json["storageCrs"] = crs_uri(collection.srid);
+  if (collection.box) {
+    json["extent"]["spatial"] = {{"bbox", Json::array({box_json(*collection.box)})},
+                                 {"crs", crs_uri(collection.srid)}};
+  }
+  json["features"] = collection.features;
+  json["solids"] = collection.solids;
+  json["blobBytes"] = collection.blob_bytes;
+  json["links"] = Json::array({link(self, "self", kJson, "this collection"),
+                               link(self + "/items", "items", kJson, "its features")});
+  return json;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+/// A box of 4 numbers has no limit in z.
+Result<StoredBox> parse_box(std::string_view text) {
+  const Error wrong{ErrorCode::invalid_argument,
+                    "bbox takes 4 or 6 comma-separated numbers: minima, then maxima"};
+  std::vector<double> numbers;
+  while (numbers.size() <= 6) {
+    const std::size_t comma = text.find(',');
+    const auto number = parse_number(text.substr(0, comma));
+    if (!number) return wrong;
+    numbers.push_back(*number);
+    if (comma == std::string_view::npos) break;
+    text.remove_prefix(comma + 1);
+  }
+  if (numbers.size() != 4 && numbers.size() != 6) return wrong;
+  const std::size_t axes = numbers.size() / 2;
+  StoredBox box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool is_given = axis < axes;
+    box.min[axis] = is_given ? numbers[axis] : std::numeric_limits<double>::lowest();
+    box.max[axis] = is_given ? numbers[axes + axis] : std::numeric_limits<double>::max();
+    if (box.min[axis] > box.max[axis]) {
+      return Error{ErrorCode::invalid_argument, "bbox: a minimum is above its maximum"};
+    }
+  }
+  return box;
+}
+
+/// `bbox` counts in the collection's own CRS only, and the client has to say so.
+Result<std::optional<StoredBox>> box_of_request(const Target& target,
+                                                const StoredCollection& collection) {
+  const std::string* box = target.parameter("bbox");
+  const std::string* crs = target.parameter("bbox-crs");
+  const std::string storage_crs = crs_uri(collection.srid);
+  if (crs != nullptr && *crs != storage_crs) {
+    return Error{ErrorCode::invalid_argument, "bbox-crs can only be " + storage_crs};
+  }
+  if (box == nullptr) return std::optional<StoredBox>();
+  if (crs == nullptr) {
+    return Error{ErrorCode::invalid_argument,
+                 "bbox needs bbox-crs=" + storage_crs + " (the collection's storage CRS)"};
+  }
+  auto parsed = parse_box(*box);
+  if (!parsed) return std::move(parsed).error();
+  return std::optional<StoredBox>(*parsed);
+}
+
+Result<std::uint64_t> limit_of_request(const Target& target, const RouteOptions& options) {
+  const std::string* text = target.parameter("limit");
+  if (text == nullptr) return options.default_page;
+  std::uint64_t limit = 0;
+  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), limit);
+  if (error == std::errc::result_out_of_range) return options.largest_page;
+  if (error != std::errc{} || end != text->data() + text->size() || limit == 0) {
+    return Error{ErrorCode::invalid_argument,
+                 "limit is a whole number from 1 to " + std::to_string(options.largest_page)};
+  }
+  return std::min(limit, options.largest_page);
+}
+
+std::string page_path(const RoutedRequest& request, std::string_view after) {
+  std::string path = "/collections/" + percent_encode(request.target.segments[1]) + "/items";
+  char separator = '?';
+  for (const auto& [name, value] : request.target.parameters) {
+    if (name == "after") continue;
+    path += separator + name + "=" + percent_encode(value);
+    separator = '&';
+  }
+  if (!after.empty()) path += separator + ("after=" + percent_encode(after));
+  return path;
+}
+
+Json feature_json(const StoredFeature& feature) {
+  std::uint64_t bytes = 0;
+  for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
+  Json json{{"type", "Feature"}, {"id", feature.id}};
+  if (feature.box) json["bbox"] = box_json(*feature.box);
+  json["geometry"] = nullptr;
+  json["properties"] = {{"type", feature.type},
+                        {"solids", feature.solids.size()},
+                        {"blobBytes", bytes},
+                        {"version", feature.version}};
+  const std::string path = item_path(feature.collection, feature.id);
+  json["links"] = Json::array({link(path + "?f=cityjson", "item", kCityJson, "CityJSON"),
+                               link(path + "?f=obj", "alternate", kObj, "OBJ"),
+                               link(path + "?f=wt", "alternate", kContainer, "Watertight file")});
+  return json;
+}
+
+}  // namespace
+
+std::string crs_uri(std::uint32_t srid) {
+  if (srid == 0) return std::string(kUnknownCrs);
+  return "http://www.opengis.net/def/crs/EPSG/0/" + std::to_string(srid);
+}
+
+std::string crs_header(std::uint32_t srid) {
+  std::string header = "<";
+  header += crs_uri(srid);
+  header += '>';
+  return header;
+}
+
+std::string item_path(std::string_view collection, std::string_view item) {
+  return "/collections/" + percent_encode(collection) + "/items/" + percent_encode(item);
+}
+
+Response get_landing(const RoutedRequest& request) {
+  if (auto refusal = json_only(request)) return *std::move(refusal);
+  Json json{{"title", "Watertight"}, {"description", "Validates, stores and compresses 3D solids"}};
+  json["links"] = Json::array(
+      {link("/", "self", kJson, "this page"),
+       link("/api", "service-desc", "application/vnd.oai.openapi+json;version=3.0", "the API"),
+       link("/collections", "data", kJson, "collections of solids"),
+       link("/validate", "validate", kJson, "POST a document to validate it"),
+       link("/healthz", "status", kJson, "is the process alive"),
+       link("/readyz", "status", kJson, "is the database there")});
+  return json_response(json);
+}
+
+Response get_api(const RoutedRequest& request) {
+  const std::string* format = request.target.parameter("f");
+  constexpr std::string_view kOpenApi = "application/vnd.oai.openapi+json;version=3.0";
+  const bool is_acceptable =
+      format != nullptr
+          ? *format == "json"
+          : negotiate(request.request.header("accept"), {"application/vnd.oai.openapi+json", kJson})
+                .has_value();
+  if (!is_acceptable) {
+    return refuse(406, "not-acceptable", "the API description is OpenAPI 3 in JSON");
+  }
+  return Response{200, std::string(kOpenApi), openapi_text(), {}};
+}
+
+Response get_health(const RoutedRequest& /*request*/) {
+  return json_response(Json{{"status", "ok"}});
+}
+
+Response get_readiness(const RoutedRequest& request) {
+  const Status status = request.service.store->ping();
+  if (status) return json_response(Json{{"status", "ready"}});
+  Problem problem = to_problem(status.error());
+  problem.status = 503;
+  problem.headers = {{"Retry-After", "5"}};
+  return to_response(problem);
+}
+
+Response get_collections(const RoutedRequest& request) {
+  if (auto refusal = json_only(request)) return *std::move(refusal);
+  const auto collections = request.service.store->collections();
+  if (!collections) return to_response(to_problem(collections.error()));
+  Json json;
+  json["links"] = Json::array({link("/collections", "self", kJson, "this list")});
+  json["collections"] = Json::array();
+  for (const StoredCollection& collection : *collections) {
+    json["collections"].push_back(collection_json(collection));
+  }
+  return json_response(json);
+}
+
+Response get_collection(const RoutedRequest& request) {
+  if (auto refusal = json_only(request)) return *std::move(refusal);
+  const auto collection = request.service.store->collection(request.target.segments[1]);
+  if (!collection) return to_response(to_problem(collection.error()));
+  return json_response(collection_json(*collection));
+}
+
+Response get_items(const RoutedRequest& request) {
+  if (auto refusal = json_only(request)) return *std::move(refusal);
+  const auto collection = request.service.store->collection(request.target.segments[1]);
+  if (!collection) return to_response(to_problem(collection.error()));
+  const auto box = box_of_request(request.target, *collection);
+  if (!box) return to_response(to_problem(box.error()));
+  const auto limit = limit_of_request(request.target, request.service.options);
+  if (!limit) return to_response(to_problem(limit.error()));
+  const std::string* after = request.target.parameter("after");
+  const auto page = request.service.store->list(
+      {collection->id, *limit, after == nullptr ? std::string() : *after, *box});
+  if (!page) return to_response(to_problem(page.error()));
+
+  Json json{{"type", "FeatureCollection"}};
+  json["links"] = Json::array(
+      {link(page_path(request, after == nullptr ? "" : *after), "self", kJson, "this page")});
+  if (!page->next.empty()) {
+    json["links"].push_back(link(page_path(request, page->next), "next", kJson, "next page"));
+  }
+  json["numberMatched"] = page->matched;
+  json["numberReturned"] = page->features.size();
+  json["features"] = Json::array();
+  for (const StoredFeature& feature : page->features) {
+    json["features"].push_back(feature_json(feature));
+  }
+  Response response = json_response(json);
+  response.headers.push_back({"Content-Crs", crs_header(collection->srid)});
+  return response;
+}
+
+}  // namespace watertight

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Handlers that validate: POST items (and store), POST /validate.
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "pipeline/outcome_json.h"
+#include "server/handlers.h"
+#include "server/submission.h"
+
+namespace watertight {
+namespace {
+
+IngestOptions ingest_options(const RoutedRequest& request) {
+  IngestOptions options;
+  options.threads = request.service.options.threads_per_request;
+  options.certify.limits = request.service.options.limits;
+  options.certify.limits.findings = request.service.options.largest_findings;
+  options.certify.ladder.cancel = request.is_cancelled;
+  options.is_cancelled = request.is_cancelled;
+  return options;
+}
+
+/// 422: what is wrong is in the report.
+Response refused_document(const IngestOutcome& outcome) {
+  Problem problem;
+  problem.status = 422;
+  problem.extension = "{\"report\":" + outcome_json(outcome) + "}";
+  if (outcome.verdict == Verdict::invalid) {
+    problem.kind = "invalid-solids";
+    problem.detail = "the document has solids that are not valid; nothing was stored";
+  } else {
+    problem.kind = "undecided-solids";
+    problem.detail =
+        "no engine could decide whether all solids are valid; nothing was stored, trying again "
+        "can help";
+    problem.headers.push_back({"Retry-After", "60"});
+  }
+  return to_response(problem);
+}
+
+Result<bool> parse_flag(const Target& target, std::string_view name) {
+  const std::string* text = target.parameter(name);
+  if (text == nullptr || *text == "false") return false;
+  if (*text == "true") return true;
+  return Error{ErrorCode::invalid_argument, std::string(name) + " is true or false"};
+}
+
+/// Sets `value` from a parameter in (0, limit]; leaves it when there is none.
+Status read_tolerance(const Target& target, std::string_view name, double limit, double& value) {
+  const std::string* text = target.parameter(name);
+  if (text == nullptr) return Done{};
+  double number = 0;
+  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
+  if (error != std::errc{} || end != text->data() + text->size() || !(number > 0) ||
+      number > limit) {
+    return Error{ErrorCode::invalid_argument,
+                 std::string(name) + " is a number above 0, at most " + std::to_string(limit)};
+  }
+  value = number;
+  return Done{};
+}
+
+Status read_certify_options(const Target& target, CertifyOptions& options) {
+  constexpr double kWidestMetres = 1000;
+  constexpr double kWidestDegrees = 90;
+  Status status =
+      read_tolerance(target, "planarity", kWidestMetres, options.tolerances.planarity_metres);
+  if (!status) return status;
+  status = read_tolerance(target, "planarity-angle", kWidestDegrees,
+                          options.tolerances.planarity_degrees);
+  if (!status) return status;
+  const auto strict = parse_flag(target, "strict");
+  if (!strict) return strict.error();
+  options.ladder.strict = *strict;
+  const std::string* proof = target.parameter("proof");
+  if (proof == nullptr || *proof == "tetrahedralization") return Done{};
+  if (*proof != "boundary") {
+    return Error{ErrorCode::invalid_argument, "proof is tetrahedralization or boundary"};
+  }
+  options.proof = Proof::boundary;
+  return Done{};
+}
+
+/// The header that a bare feature needs: that of the collection it goes into.
+Result<std::string> header_for(const RoutedRequest& request) {
+  if (!is_bare_feature(request)) return std::string();
+  const auto collection = request.service.store->collection(request.target.segments[1]);
+  if (collection) return collection->header;
+  if (collection.error().code == ErrorCode::not_found) return std::string();
+  return collection.error();
+}
+
+}  // namespace
+
+Response post_items(const RoutedRequest& request) {
+  IngestOptions options = ingest_options(request);
+  options.collection = request.target.segments[1];
+  const std::string* invalid = request.target.parameter("invalid");
+  if (invalid != nullptr && *invalid != "skip" && *invalid != "refuse") {
+    return refuse(400, "invalid-argument", "invalid is refuse (the default) or skip");
+  }
+  if (invalid != nullptr && *invalid == "skip") options.invalid_features = InvalidFeatures::skip;
+  const auto header = header_for(request);
+  if (!header) return to_response(to_problem(header.error()));
+  Submission submission = read_submission(request, AcceptedFormats::city_models, *header);
+  if (submission.problem) return to_response(*submission.problem);
+  auto outcome = ingest(*std::move(submission.document), *request.service.store,
+                        request.service.workers, options);
+  if (!outcome) return to_response(to_problem(outcome.error()));
+  const bool is_refused = outcome->verdict != Verdict::valid &&
+                          options.invalid_features == InvalidFeatures::refuse_document;
+  if (is_refused) return refused_document(*outcome);
+  // Skipping: some may be stored, the report says which.
+  Response response{
+      outcome->stored > 0 ? 201U : 200U, std::string(kJson), outcome_json(*outcome) + "\n", {}};
+  if (outcome->features.size() == 1 && outcome->stored == 1) {
+    response.headers.push_back(
+        {"Location", item_path(options.collection, outcome->features.front().id)});
+  }
+  return response;
+}
+
+Response post_validate(const RoutedRequest& request) {
+  IngestOptions options = ingest_options(request);
+  const Status status = read_certify_options(request.target, options.certify);
+  if (!status) return to_response(to_problem(status.error()));
+  Submission submission = read_submission(request, AcceptedFormats::all, "");
+  if (submission.problem) return to_response(*submission.problem);
+  auto outcome =
+      validate_document(*std::move(submission.document), request.service.workers, options);
+  if (!outcome) return to_response(to_problem(outcome.error()));
+  return Response{200, std::string(kJson), outcome_json(*outcome) + "\n", {}};
+}
+
+}  // namespace watertight

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/routes.h"
+
+#include <algorithm>
+
+#include "server/handlers.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::size_t kLongestId = 1024;  // bytes
+
+std::vector<std::string_view> segments_of(std::string_view path) {
+  std::vector<std::string_view> segments;
+  for (std::size_t start = 1; start < path.size();) {
+    const std::size_t end = std::min(path.find('/', start), path.size());
+    segments.push_back(path.substr(start, end - start));
+    start = end + 1;
+  }
+  return segments;
+}
+
+bool matches(const Route& route, const Target& target) {
+  const std::vector<std::string_view> segments = segments_of(route.path);
+  if (segments.size() != target.segments.size()) return false;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (!segments[i].starts_with('{') && segments[i] != target.segments[i]) return false;
+  }
+  return true;
+}
+
+/// HEAD is GET without the body, which the session leaves out.
+std::string_view effective_method(const Request& request) {
+  return request.method == "HEAD" ? std::string_view("GET") : std::string_view(request.method);
+}
+
+std::string allowed_methods(const Target& target) {
+  std::string allowed;
+  for (const Route& route : routes()) {
+    if (!matches(route, target)) continue;
+    allowed += std::string(route.method) + ", ";
+    if (route.method == "GET") allowed += "HEAD, ";
+  }
+  return allowed.empty() ? allowed : allowed + "OPTIONS";
+}
+
+bool is_collection_id(std::string_view id) {
+  const auto is_allowed = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.' || c == '-';
+  };
+  return !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), is_allowed) &&
+         id != "." && id != "..";
+}
+
+/// What is wrong with a target that matches a route; nothing when it is fine.
+std::optional<Response> refusal_of(const Target& target, const Route& route) {
+  if (target.segments.size() > 1 && !is_collection_id(target.segments[1])) {
+    return refuse(route.method == "GET" ? 404 : 400, "collection-id",
+                  "a collection id is 1 to 64 of A-Z a-z 0-9 _ . -");
+  }
+  if (target.segments.size() > 3 && target.segments[3].size() > kLongestId) {
+    return refuse(400, "item-id", "an item id has at most 1024 bytes");
+  }
+  for (const auto& [name, value] : target.parameters) {
+    if (std::find(route.parameters.begin(), route.parameters.end(), name) !=
+        route.parameters.end()) {
+      continue;
+    }
+    std::string known;
+    for (const std::string_view parameter : route.parameters) {
+      known += (known.empty() ? "" : ", ") + std::string(parameter);
+    }
+    return refuse(400, "invalid-argument",
+                  "unknown parameter '" + name.substr(0, 64) +
+                      "'; known here: " + (known.empty() ? "none" : known));
+  }
+  return std::nullopt;
+}
+
+Response unrouted(const Request& request, const Target& target) {
+  const std::string allowed = allowed_methods(target);
+  if (allowed.empty()) {
+    return refuse(404, "not-found", "there is nothing at this path; see /api");
+  }
+  if (request.method == "OPTIONS") return Response{204, "", "", {{"Allow", allowed}}};
+  Problem problem{405, "method-not-allowed", "this path takes " + allowed, {}, {}, {}, {}};
+  problem.headers.push_back({"Allow", allowed});
+  return to_response(problem);
+}
+
+}  // namespace
+
+const std::vector<Route>& routes() {
+  static const std::vector<Route> table{
+      {"GET", "/", Lane::quick, get_landing, {"f"}},
+      {"GET", "/api", Lane::quick, get_api, {"f"}},
+      {"GET", "/healthz", Lane::quick, get_health, {}},
+      {"GET", "/readyz", Lane::reading, get_readiness, {}},
+      {"GET", "/collections", Lane::reading, get_collections, {"f"}},
+      {"GET", "/collections/{collectionId}", Lane::reading, get_collection, {"f"}},
+      {"GET",
+       "/collections/{collectionId}/items",
+       Lane::reading,
+       get_items,
+       {"f", "limit", "after", "bbox", "bbox-crs"}},
+      {"POST", "/collections/{collectionId}/items", Lane::computing, post_items, {"f", "invalid"}},
+      {"GET",
+       "/collections/{collectionId}/items/{itemId}",
+       Lane::reading,
+       get_item,
+       {"f", "solid"}},
+      {"DELETE", "/collections/{collectionId}/items/{itemId}", Lane::reading, delete_item, {}},
+      {"POST",
+       "/validate",
+       Lane::computing,
+       post_validate,
+       {"f", "planarity", "planarity-angle", "proof", "strict"}},
+  };
+  return table;
+}
+
+Response refuse(unsigned status, std::string kind, std::string detail) {
+  return to_response(Problem{status, std::move(kind), std::move(detail), {}, {}, {}, {}});
+}
+
+Lane lane_of(const Request& request) {
+  const auto target = parse_target(request.target);
+  if (!target) return Lane::quick;
+  for (const Route& route : routes()) {
+    if (route.method == effective_method(request) && matches(route, *target)) return route.lane;
+  }
+  return Lane::quick;
+}
+
+Response respond(const Service& service, const Request& request, const IsCancelled& is_cancelled) {
+  const auto target = parse_target(request.target);
+  if (!target) return to_response(to_problem(target.error()));
+  for (const Route& route : routes()) {
+    if (route.method != effective_method(request) || !matches(route, *target)) continue;
+    auto refusal = refusal_of(*target, route);
+    if (refusal) return *std::move(refusal);
+    return route.handler({service, request, *target, is_cancelled});
+  }
+  return unrouted(request, *target);
+}
+
+Application make_application(const Service& service) {
+  return Application{lane_of, [service](const Request& request, const IsCancelled& is_cancelled) {
+                       return respond(service, request, is_cancelled);
+                     }};
+}
+
+}  // namespace watertight

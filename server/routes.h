@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The routes of the service (docs/api.md): pure functions of a request, a store and the engines.
+// Nothing here knows of sockets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "pipeline/pipeline.h"
+#include "server/http.h"
+#include "server/listener.h"
+
+namespace watertight {
+
+struct RouteOptions {
+  Limits limits;  // of a submitted document
+  std::size_t threads_per_request = 1;
+  std::uint64_t largest_page = 1000;  // features
+  std::uint64_t default_page = 10;
+  std::uint64_t largest_findings = 1000;  // kept per report in answers
+};
+
+/// What routes work on. The store and workers must outlive the service and be thread-safe.
+struct Service {
+  SolidStore* store = nullptr;
+  EngineWorkers* workers = nullptr;  // null: rung 0 only
+  RouteOptions options;
+};
+
+/// Answers a request. Never fails: every error is an application/problem+json answer.
+Response respond(const Service& service, const Request& request, const IsCancelled& is_cancelled);
+
+/// Which threads should answer a request.
+Lane lane_of(const Request& request);
+
+/// The two functions above as the server wants them.
+Application make_application(const Service& service);
+
+}  // namespace watertight

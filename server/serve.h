@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Runs the service until SIGTERM or SIGINT: store, engines, routes and listener together.
+#pragma once
+
+#include <string>
+
+#include "server/listener.h"
+#include "server/routes.h"
+
+namespace watertight {
+
+struct ServeOptions {
+  ServerOptions server;
+  std::string connection;  // libpq connection string or URL of the database
+  std::size_t database_connections = 8;
+  Limits limits;
+};
+
+/// Keeps SIGTERM and SIGINT for serve() to wait for, in this and all later threads. For callers
+/// that start threads before serve(); a signal that comes in between stops serve() at once,
+/// gracefully.
+void hold_stop_signals();
+
+/// Blocks. Prints "listening on http://ADDRESS:PORT" on standard output when requests are taken,
+/// log lines on standard error. Returns after a graceful stop.
+/// Errors: unavailable (database, address), invalid_argument.
+/// Requires that no other thread takes the two signals: see hold_stop_signals().
+Status serve(const ServeOptions& options);
+
+}  // namespace watertight

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/submission.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace watertight {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Stops as soon as the top-level "type" was seen.
+class TypeFinder : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool string(string_t& value) override {
+    if (depth_ != 1 || !is_type_) return true;
+    type_ = value;
+    return false;
+  }
+  bool key(string_t& name) override {
+    is_type_ = depth_ == 1 && name == "type";
+    return true;
+  }
+  bool start_object(std::size_t) override { return ++depth_ < kDeepest; }
+  bool end_object() override {
+    --depth_;
+    return depth_ > 0;
+  }
+  bool start_array(std::size_t) override { return ++depth_ < kDeepest; }
+  bool end_array() override {
+    --depth_;
+    return depth_ > 0;
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;
+  }
+  std::string take() { return std::move(type_); }
+
+ private:
+  static constexpr int kDeepest = 64;
+  std::string type_;
+  int depth_ = 0;
+  bool is_type_ = false;
+};
+
+struct FormatName {
+  std::string_view parameter;  // value of f=
+  std::string_view type;       // media type
+  Format format;
+};
+
+constexpr std::array<FormatName, 9> kNames{{
+    {"cityjson", kCityJson, Format::city_json},
+    {"json", kJson, Format::city_json},
+    {"cityjsonseq", kCityJsonSeq, Format::city_json_seq},
+    {"cityjsonseq", "application/x-ndjson", Format::city_json_seq},
+    {"obj", kObj, Format::obj},
+    {"off", "model/vnd.off", Format::off},
+    {"wkt", "text/wkt", Format::wkt},
+    {"wkb", "application/wkb", Format::ewkb},
+    {"ewkb", "application/ewkb", Format::ewkb},
+}};
+
+bool is_allowed(Format format, AcceptedFormats accepted) {
+  return accepted == AcceptedFormats::all || format == Format::city_json ||
+         format == Format::city_json_seq;
+}
+
+Problem unsupported_type(AcceptedFormats accepted) {
+  std::string known;
+  for (const FormatName& name : kNames) {
+    if (!is_allowed(name.format, accepted)) continue;
+    known += (known.empty() ? "" : ", ") + std::string(name.type);
+  }
+  return Problem{415, "unsupported", "send a body of one of these types: " + known, {}, {}, {}, {}};
+}
+
+/// Nothing when neither f= nor Content-Type names a format taken here.
+std::optional<Format> stated_format(const RoutedRequest& request, AcceptedFormats accepted) {
+  const std::string* parameter = request.target.parameter("f");
+  const std::string* content_type = request.request.header("content-type");
+  const std::string type = content_type == nullptr ? "" : media_type(*content_type);
+  for (const FormatName& name : kNames) {
+    const bool is_named = parameter != nullptr ? name.parameter == *parameter : name.type == type;
+    if (is_named && is_allowed(name.format, accepted)) return name.format;
+  }
+  const bool says_nothing = type.empty() || type == "application/octet-stream";
+  if (parameter != nullptr || !says_nothing) return std::nullopt;
+  const auto detected = detect_format("", as_bytes(request.request.body));
+  if (!detected || !is_allowed(*detected, accepted)) return std::nullopt;
+  return *detected;
+}
+
+std::string_view first_line(std::string_view text) { return text.substr(0, text.find('\n')); }
+
+/// A sequence sent as JSON: its first line is a whole CityJSON object and more lines follow.
+bool is_sequence(std::string_view body) {
+  const std::string_view line = first_line(body);
+  return line.size() < body.size() && top_level_type(line) == "CityJSON" &&
+         body.find_first_not_of(" \t\r\n", line.size()) != std::string_view::npos &&
+         Json::accept(line);
+}
+
+Result<Document> read_bare_feature(std::string body, const std::string& header,
+                                   const Limits& limits) {
+  if (header.empty()) {
+    return Error{ErrorCode::malformed,
+                 "a CityJSONFeature needs the transform of its document, and there is no "
+                 "collection with one: "
+                 "send a CityJSONSeq whose first line is the CityJSON header"};
+  }
+  auto city_header = read_city_json_header(header);
+  if (!city_header) return std::move(city_header).error();
+  // Line ends outside strings are white space, and inside strings JSON has none.
+  std::replace(body.begin(), body.end(), '\n', ' ');
+  std::replace(body.begin(), body.end(), '\r', ' ');
+  auto feature = read_city_json_feature(*city_header, body, limits);
+  if (!feature) return std::move(feature).error();
+  Document document;
+  document.format = Format::city_json_seq;
+  document.header = header;
+  document.features.push_back(*std::move(feature));
+  return document;
+}
+
+}  // namespace
+
+std::string top_level_type(std::string_view json) {
+  TypeFinder finder;
+  Json::sax_parse(json.begin(), json.end(), &finder);
+  return finder.take();
+}
+
+bool is_bare_feature(const RoutedRequest& request) {
+  const auto format = stated_format(request, AcceptedFormats::city_models);
+  return format == Format::city_json && top_level_type(request.request.body) == "CityJSONFeature";
+}
+
+Submission read_submission(const RoutedRequest& request, AcceptedFormats accepted,
+                           const std::string& header) {
+  Submission submission;
+  auto format = stated_format(request, accepted);
+  if (!format) {
+    submission.problem = unsupported_type(accepted);
+    return submission;
+  }
+  const std::string& body = request.request.body;
+  const RouteOptions& options = request.service.options;
+  ReadOptions read_options;
+  read_options.limits = options.limits;
+  if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
+  auto document = *format == Format::city_json && is_bare_feature(request)
+                      ? read_bare_feature(body, header, options.limits)
+                      : read_document(as_bytes(body), *format, read_options);
+  if (document) {
+    submission.document = *std::move(document);
+  } else {
+    submission.problem = to_problem(document.error());
+    // A known format with content that this service does not know is the body's fault.
+    if (document.error().code == ErrorCode::unsupported) submission.problem->status = 422;
+  }
+  return submission;
+}
+
+}  // namespace watertight

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Reads a submitted body: which format it is, and the document in it. Internal to server/.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "server/handlers.h"
+
+namespace watertight {
+
+/// What a JSON body says it is, by its top-level "type": "CityJSON", "CityJSONFeature" or another
+/// word; "" when there is none. Reads no further than needed.
+std::string top_level_type(std::string_view json);
+
+/// What clients may send.
+enum class AcceptedFormats : std::uint8_t { city_models, all };
+
+/// The document in the body, by f= or else by Content-Type. `header` is the document header that a
+/// bare CityJSONFeature needs (that of the collection), "" when there is none.
+/// Returns a problem: 400 malformed, 413, 415.
+struct Submission {
+  std::optional<Document> document;
+  std::optional<Problem> problem;
+};
+Submission read_submission(const RoutedRequest& request, AcceptedFormats accepted,
+                           const std::string& header);
+
+/// True if the body is a single CityJSONFeature, which needs a header from elsewhere.
+bool is_bare_feature(const RoutedRequest& request);
+
+}  // namespace watertight

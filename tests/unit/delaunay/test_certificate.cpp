@@ -240,7 +240,7 @@ TEST_CASE("certificate refuses flipped, dropped, doubled and strange tetrahedra"
   }
   Case bad = good;
   bad.tetrahedralization.tetrahedra.clear();
-  CHECK(bad.judge() == CertificateRefusal::not_a_complex);
+  CHECK(bad.judge() == CertificateRefusal::vertex_missing);
 }
 
 TEST_CASE("certificate refuses moved, dropped and additional vertices") {

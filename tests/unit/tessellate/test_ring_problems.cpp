@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <map>
+#include <random>
+
+#include "tessellate/ring_problems.h"
+
+using namespace watertight;
+
+namespace {
+
+using Ring = std::vector<Point>;
+using Kinds = std::vector<RingProblemKind>;
+
+Solid facet_solid(const std::vector<Ring>& rings) {
+  SolidArrays arrays;
+  std::map<Point, Index> number;
+  for (const Ring& ring : rings) {
+    for (const Point& p : ring) {
+      const auto [place, is_new] = number.emplace(p, static_cast<Index>(number.size()));
+      if (is_new) arrays.vertices.push_back(p);
+      arrays.ring_vertices.push_back(place->second);
+    }
+    arrays.end_ring();
+  }
+  arrays.end_facet();
+  arrays.end_shell();
+  auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
+  REQUIRE(solid);
+  return *solid;
+}
+
+std::vector<RingProblem> problems_of(const std::vector<Ring>& rings) {
+  const RingProblems result = ring_problems(facet_solid(rings), 0, 100);
+  CHECK(result.is_complete);
+  return result.problems;
+}
+
+Kinds kinds_of(const std::vector<Ring>& rings) {
+  Kinds kinds;
+  for (const RingProblem& problem : problems_of(rings)) kinds.push_back(problem.kind);
+  return kinds;
+}
+
+Ring square(double low, double high) {
+  return {{low, low, 0}, {high, low, 0}, {high, high, 0}, {low, high, 0}};
+}
+
+}  // namespace
+
+TEST_CASE("simple rings that share at most vertices have no problems") {
+  CHECK(kinds_of({square(0, 9)}).empty());
+  CHECK(kinds_of({square(0, 9), square(2, 4)}).empty());
+  CHECK(kinds_of({square(0, 9), square(0, 4)}) != Kinds{});  // shares parts of edges
+  CHECK(kinds_of({square(0, 9), {{0, 0, 0}, {2, 5, 0}, {5, 2, 0}}}).empty());
+  CHECK(kinds_of({square(0, 9), square(1, 3), square(3, 5)}).empty());
+}
+
+TEST_CASE("a bow tie meets itself in the exact crossing point") {
+  const auto problems = problems_of({{{0, 0, 0}, {3, 3, 3}, {3, 0, 3}, {0, 3, 0}}});
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].kind == RingProblemKind::self_contact);
+  CHECK(problems[0].edge == 0);
+  CHECK(problems[0].other_edge == 2);
+  CHECK(problems[0].witness == Point{1.5, 1.5, 1.5});
+}
+
+TEST_CASE("touching, spikes and repeated vertices are contacts of a ring with itself") {
+  const Kinds once{RingProblemKind::self_contact};
+  CHECK(kinds_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {4, 0, 0}, {0, 8, 0}}}) == once);
+  CHECK(kinds_of({{{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 0}}}) == once);
+  CHECK(kinds_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {8, 4, 0}, {0, 8, 0}}}) == once);
+}
+
+TEST_CASE("collapsed and duplicate rings are told") {
+  CHECK(kinds_of({{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}}}) ==
+        Kinds{RingProblemKind::collapsed});
+  CHECK(kinds_of({square(0, 9), square(2, 4), square(2, 4)}) == Kinds{RingProblemKind::same_ring});
+}
+
+TEST_CASE("rings that cross, nest or lie outside are told apart") {
+  CHECK(kinds_of({square(0, 9), square(5, 12)}) ==
+        Kinds{RingProblemKind::rings_meet, RingProblemKind::rings_meet});
+  CHECK(kinds_of({square(0, 9), square(12, 14)}) == Kinds{RingProblemKind::outside_exterior});
+  CHECK(kinds_of({square(0, 9), square(1, 8), square(3, 4)}) == Kinds{RingProblemKind::nested});
+  // Crosses the exterior ring in two of its vertices only.
+  CHECK(kinds_of({square(0, 9), {{9, 0, 0}, {12, 12, 0}, {0, 9, 0}, {4, 4, 0}}}) ==
+        Kinds{RingProblemKind::rings_meet});
+  // All vertices are vertices of the exterior ring: the edges tell.
+  CHECK(kinds_of({{{0, 0, 0}, {9, 0, 0}, {5, 5, 0}, {0, 9, 0}},
+                  {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}}) != Kinds{});
+}
+
+TEST_CASE("problems are found whichever way the facet lies in space") {
+  for (int axis = 0; axis < 3; ++axis) {
+    Ring ring{{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 6, 0}};
+    for (Point& p : ring) {
+      Point turned;
+      for (int i = 0; i < 3; ++i) turned[(i + axis) % 3] = p[i];
+      p = turned;
+    }
+    CHECK(kinds_of({ring}) == Kinds{RingProblemKind::self_contact});
+  }
+}
+
+TEST_CASE("a facet is triangulated exactly when its rings have no problem") {
+  std::mt19937 random(3);
+  std::size_t triangulated = 0;
+  std::size_t wrong = 0;
+  const auto point = [&] { return Point{double(random() % 7), double(random() % 7), 0}; };
+  for (int round = 0; round < 20000; ++round) {
+    std::vector<Ring> rings(1 + random() % 2);
+    for (Ring& ring : rings) {
+      while (ring.size() < 3 + random() % 3) {
+        const Point p = point();
+        if (ring.empty() || (ring.back() != p && ring.front() != p)) ring.push_back(p);
+      }
+    }
+    const Solid solid = facet_solid(rings);
+    const bool is_good = triangulate_facets(solid).state[0] == FacetState::triangulated;
+    const bool has_problems = !ring_problems(solid, 0, 100).problems.empty();
+    triangulated += is_good ? 1 : 0;
+    if (is_good == has_problems) ++wrong;
+  }
+  CHECK(wrong == 0);
+  CHECK(triangulated > 1000);
+}
+
+TEST_CASE("many problems are cut off and said to be") {
+  Ring ring;
+  for (int i = 0; i < 60; ++i) ring.push_back({double(i % 2 * 100), double(i * 7 % 60), 0});
+  const RingProblems result = ring_problems(facet_solid({ring}), 0, 10);
+  CHECK(result.problems.size() <= 10);
+  CHECK_FALSE(result.is_complete);
+}
+
+TEST_CASE("the turn of a ring is exact and independent of its start") {
+  std::vector<Ring> rings{square(0, 4)};
+  for (int start = 0; start < 4; ++start) {
+    CHECK(ring_turn(facet_solid(rings), 0, 2) == 1);
+    std::rotate(rings[0].begin(), rings[0].begin() + 1, rings[0].end());
+  }
+  std::reverse(rings[0].begin(), rings[0].end());
+  CHECK(ring_turn(facet_solid(rings), 0, 2) == -1);
+}

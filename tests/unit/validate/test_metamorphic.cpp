@@ -85,3 +85,29 @@ TEST_CASE("verdict and codes are the same under turns and shifts of the lattice"
     }
   }
 }
+
+TEST_CASE("random facets on a small grid give the same codes in every order, and no crash") {
+  std::mt19937 random(17);
+  const auto point = [&] {
+    return Point{double(random() % 3), double(random() % 3), double(random() % 3)};
+  };
+  for (int round = 0; round < 400; ++round) {
+    std::vector<Shell> shells(1 + random() % 3);
+    for (Shell& shell : shells) {
+      shell.resize(random() % 9);
+      for (Facet& facet : shell) {
+        facet.resize(1 + random() % 8 / 6);
+        for (Ring& ring : facet) {
+          ring.resize(2 + random() % 4);
+          for (Point& p : ring) p = point();
+        }
+      }
+    }
+    if (round % 2 == 0) shells[0] = join(cube(2), shells[0]);
+    const Report expected = report_of(shells);
+    const Report report = certify(shuffled(shells, random), nullptr).report;
+    CHECK(report.verdict == expected.verdict);
+    CHECK(error_codes(report) == error_codes(expected));
+    CHECK(report.first_level == expected.first_level);
+  }
+}

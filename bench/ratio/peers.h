@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The bytes that other coders need for one solid on the same integer grid. Draco stores triangles
+// only (polygons, holes and identity are lost); the others keep polygons.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "geometry/solid.h"
+
+namespace watertight {
+
+struct PeerBytes {
+  std::size_t wkb = 0;             // EWKB, doubles in world coordinates
+  std::size_t wkb_zstd = 0;        // the same through zstd -19
+  std::size_t city_json_zstd = 0;  // {"vertices":[ints],"boundaries":[...]} through zstd -19
+  std::size_t draco = 0;           // Draco, compression level 10, int32 positions; 0 = it refused
+};
+
+/// `triangles` = canonical triangulation of the solid. Requires an integer lattice.
+PeerBytes measure_peers(const Solid& solid, std::span<const Triangle> triangles);
+
+}  // namespace watertight

@@ -28,6 +28,8 @@ class Certifier {
                               "the tetrahedralization is built only for solids that pass the "
                               "exact tests");
       verdict_ = Verdict::invalid;
+    } else if (!incomplete_.empty()) {
+      inspection_.report.undecided_reason = incomplete_;
     } else {
       prove(workers);
     }
@@ -48,6 +50,7 @@ class Certifier {
   const CertifyOptions& options_;
   ExaminedSolid examined_;
   std::vector<ShellTopology> shells_;
+  std::string incomplete_;  // why the exact tests did not finish
   Verdict verdict_ = Verdict::undecided;
   Inspection inspection_;
 };
@@ -58,7 +61,9 @@ void Certifier::apply_exact_rules() {
   check_facets(examined_);
   shells_ = check_shells(examined_);
   const std::vector<Index> duplicate_of = check_duplicate_shells(examined_);
-  const ShellContacts contacts = check_intersections(examined_, duplicate_of);
+  const ShellContacts contacts =
+      check_intersections(examined_, duplicate_of, options_.ladder.cancel);
+  incomplete_ = contacts.incomplete;
   check_solid(examined_, shells_, duplicate_of, contacts);
   check_vertices(examined_);
   check_rounded(examined_, options_.rounded);

@@ -24,9 +24,11 @@ struct FacetPair {
 
 class IntersectionExaminer {
  public:
-  IntersectionExaminer(ExaminedSolid& examined, const std::vector<Index>& duplicate_of)
+  IntersectionExaminer(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
+                       const CancelPoll& cancel)
       : examined_(examined),
         duplicate_of_(duplicate_of),
+        cancel_(cancel),
         vertices_(examined.solid().vertices()),
         triangles_(examined.triangles().triangles) {
     contacts_.is_touching.assign(examined.solid().shell_count(), false);
@@ -53,6 +55,7 @@ class IntersectionExaminer {
 
   ExaminedSolid& examined_;
   const std::vector<Index>& duplicate_of_;
+  const CancelPoll& cancel_;
   std::span<const Point> vertices_;
   std::span<const Triangle> triangles_;
   ShellContacts contacts_;
@@ -121,10 +124,11 @@ void IntersectionExaminer::report(const FacetPair& pair) {
 bool IntersectionExaminer::search(std::uint64_t limit) {
   IntersectionOptions options;
   options.limit = limit;
+  options.cancel = cancel_;
   const auto found = intersecting_pairs(vertices_, triangles_, options);
   if (!found) {
-    examined_.findings.skip({kShellSelfIntersection, kIntersectionShells},
-                            to_string(found.error()));
+    contacts_.incomplete = "the search for intersections was ended: " + to_string(found.error());
+    examined_.findings.skip({kShellSelfIntersection, kIntersectionShells}, contacts_.incomplete);
     return true;
   }
   std::vector<FacetPair> pairs;
@@ -149,16 +153,17 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   if (pairs.empty() && is_cut_off && limit < kLastLimit) return false;
   for (const FacetPair& pair : pairs) report(pair);
   if (is_cut_off) {
-    examined_.findings.skip({kShellSelfIntersection, kIntersectionShells},
-                            "the search stopped after " + std::to_string(limit) +
-                                " pairs of triangles; there may be more");
+    contacts_.incomplete = "the search for intersections stopped after " + std::to_string(limit) +
+                           " pairs of triangles; there may be more";
+    examined_.findings.skip({kShellSelfIntersection, kIntersectionShells}, contacts_.incomplete);
   }
   return true;
 }
 
 }  // namespace
 
-ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of) {
+ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
+                                  const CancelPoll& cancel) {
   const auto& states = examined.triangles().state;
   const auto place = std::find_if(states.begin(), states.end(), [](FacetState state) {
     return state != FacetState::triangulated;
@@ -168,7 +173,7 @@ ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Ind
                            "not for facets whose rings bound no region (first: facet " +
                                std::to_string(place - states.begin()) + ")");
   }
-  return IntersectionExaminer(examined, duplicate_of).examine();
+  return IntersectionExaminer(examined, duplicate_of, cancel).examine();
 }
 
 }  // namespace watertight

@@ -5,6 +5,7 @@
 // validate/.
 #pragma once
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,11 +40,13 @@ using ShellPair = std::pair<Index, Index>;
 struct ShellContacts {
   std::vector<ShellPair> intersecting;  // facets cross or overlap; sorted
   std::vector<bool> is_touching;        // per shell: has a point in common with another
+  std::string incomplete;               // why the search did not finish; "" when it did
 };
 
 /// 306 and 401: facets that intersect. Facets of different shells may touch in points and edges;
 /// duplicate shells are not compared with each other.
-ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of);
+ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
+                                  const CancelPoll& cancel);
 /// 401 (shells that cross in vertices and edges, nested cavities), 403, 405.
 void check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
                  const std::vector<Index>& duplicate_of, const ShellContacts& contacts);

@@ -41,6 +41,7 @@ class SolidExaminer {
         for (const Index vertex : t) box.include(examined.solid().vertices()[vertex]);
       }
       boxes_.push_back(box);
+      is_surface_.push_back(shells[shell].is_closed && is_triangulated(examined, shell));
     }
   }
 
@@ -48,9 +49,7 @@ class SolidExaminer {
   void check_nesting();
 
  private:
-  bool can_be_located_in(Index shell) const {
-    return shells_[shell].is_closed && is_triangulated(examined_, shell);
-  }
+  bool can_be_located_in(Index shell) const { return is_surface_[shell]; }
   bool do_intersect(Index a, Index b) const {
     return std::binary_search(contacts_.intersecting.begin(), contacts_.intersecting.end(),
                               ShellPair(std::min(a, b), std::max(a, b)));
@@ -71,6 +70,7 @@ class SolidExaminer {
   const std::vector<Index>& duplicate_of_;
   const ShellContacts& contacts_;
   std::vector<Box> boxes_;
+  std::vector<bool> is_surface_;  // closed and triangulated
   std::uint64_t looks_ = 0;
   std::vector<std::string> reasons_;
 };
@@ -84,8 +84,7 @@ void SolidExaminer::skip(std::vector<int> codes, const std::string& reason) {
 
 void SolidExaminer::check_orientation() {
   for (Index shell = 0; shell < shells_.size(); ++shell) {
-    if (!shells_[shell].is_closed || !shells_[shell].is_oriented ||
-        !is_triangulated(examined_, shell)) {
+    if (!is_surface_[shell] || !shells_[shell].is_oriented) {
       skip({kWrongOrientationShell},
            "the orientation of a shell that is not closed, turned alike and triangulated has no "
            "meaning");

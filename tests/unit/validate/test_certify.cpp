@@ -247,3 +247,34 @@ TEST_CASE("nothing crashes on empty and degenerate solids") {
     CHECK_FALSE(inspection.report.first_level.empty());
   }
 }
+
+TEST_CASE("a cancelled certification is undecided, never valid") {
+  CertifyOptions options;
+  options.proof = Proof::boundary;
+  options.ladder.cancel = [] { return true; };
+  // A fine box: enough triangles for the search to ask.
+  Shell shell;
+  const int n = 90;
+  for (const Facet& facet : cube(n)) {
+    const Point& a = facet[0][0];
+    const auto step = [&](std::size_t to) {
+      const Point& b = facet[0][to];
+      return Point{(b.x - a.x) / n, (b.y - a.y) / n, (b.z - a.z) / n};
+    };
+    const Point u = step(1);
+    const Point v = step(3);
+    const auto at = [&](int i, int j) {
+      return Point{a.x + i * u.x + j * v.x, a.y + i * u.y + j * v.y, a.z + i * u.z + j * v.z};
+    };
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        shell.push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}});
+      }
+    }
+  }
+  const Inspection inspection = certify(solid_of({shell}), nullptr, options);
+  CHECK(inspection.report.verdict == Verdict::undecided);
+  CHECK_FALSE(inspection.certified);
+  options.ladder.cancel = {};
+  CHECK(certify(solid_of({shell}), nullptr, options).report.verdict == Verdict::valid);
+}

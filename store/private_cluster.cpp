@@ -160,8 +160,11 @@ class Cluster {
       const std::optional<pid_t> pid = postmaster();
       if (!pid) return;
       kill(*pid, signal);
+      // postmaster.pid goes a moment before the process.
       const Clock::time_point deadline = Clock::now() + kStopPatience;
-      while (postmaster() && Clock::now() < deadline) std::this_thread::sleep_for(kPoll);
+      for (; is_postgres_in(*pid, pgdata()) && Clock::now() < deadline; reap()) {
+        std::this_thread::sleep_for(kPoll);
+      }
     }
   }
 

@@ -3,6 +3,7 @@
 // PostgreSQL refuses root: as root the tests become an unprivileged user before anything else.
 #include <grp.h>
 #include <pwd.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,7 +21,9 @@ bool become_unprivileged() {
     const gid_t gid = user->pw_gid;
     const char* shared = std::getenv("WATERTIGHT_TEST_CLUSTER");
     if (shared != nullptr && mkdir(shared, 0700) == 0 && chown(shared, uid, gid) != 0) return false;
-    return setgroups(0, nullptr) == 0 && setgid(gid) == 0 && setuid(uid) == 0 && chdir("/") == 0;
+    // A process that changed its user cannot be inspected, which the leak check at its end needs.
+    return setgroups(0, nullptr) == 0 && setgid(gid) == 0 && setuid(uid) == 0 &&
+           prctl(PR_SET_DUMPABLE, 1) == 0 && chdir("/") == 0;
   }
   return false;
 }

@@ -10,7 +10,7 @@
 namespace watertight {
 
 /// Sign of det(b-a, c-a, d-a), six times the signed volume of tetrahedron abcd: +1 when a, b, c
-/// turn clockwise as seen from d, -1 when counter-clockwise, 0 when the points are coplanar. For an
+/// turn counter-clockwise as seen from d, -1 when clockwise, 0 when the points are coplanar. For an
 /// outward oriented facet (a, b, c) a point inside the solid beside it gives -1.
 int orient3d(const Point& a, const Point& b, const Point& c, const Point& d);
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -285,7 +286,7 @@ std::unique_ptr<WorkerPool> make_pool(const std::string& executable, const std::
 
 }  // namespace
 
-EngineWorkers::EngineWorkers(Options options)
+EngineWorkers::EngineWorkers(const Options& options)
     : cgal_(make_pool(options.cgal_executable, "watertight-worker", options.processes, 500)),
       // TetGen keeps tables in globals and frees twice on errors: one job a process.
       tetgen_(make_pool(options.tetgen_executable, "watertight-tetgen", options.processes, 1)) {}

@@ -23,7 +23,7 @@ class EngineWorkers {
     std::string tetgen_executable;  // "" = find_helper("watertight-tetgen")
     std::size_t processes = 2;
   };
-  explicit EngineWorkers(Options options);
+  explicit EngineWorkers(const Options& options);
   EngineWorkers();
   WorkerPool* cgal();    // null when the executable does not exist
   WorkerPool* tetgen();  // null when the executable does not exist

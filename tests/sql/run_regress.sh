@@ -70,7 +70,7 @@ if [ -n "$program" ]; then
       base64 -d >"$folder/$name.ewkb"
     query "SELECT encode(wt_encode(ewkb), 'base64') FROM solids WHERE name = '$name'" |
       base64 -d >"$folder/$name.sql"
-    "$program" encode "$folder/$name.ewkb" -o "$folder/$name.blob"
+    "$program" encode --bare "$folder/$name.ewkb" -o "$folder/$name.blob"
     cmp "$folder/$name.blob" "$folder/$name.sql" || {
       echo "SQL and command line encode '$name' differently"
       exit 1

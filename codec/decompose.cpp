@@ -30,6 +30,40 @@ Triangle sorted(Triangle t) {
   return t;
 }
 
+/// Triangles of all facets: the following ones, or the canonical ones where told.
+void collect_triangles(const FollowingTriangles& following, const FacetTriangles& facets,
+                       const std::vector<bool>& takes_canonical, BoundaryComplex& complex) {
+  complex.triangles.clear();
+  complex.facet_of.clear();
+  for (Index facet = 0; facet < takes_canonical.size(); ++facet) {
+    const auto& first = takes_canonical[facet] ? facets.first : following.first;
+    const auto& triangles = takes_canonical[facet] ? facets.triangles : following.triangles;
+    for (Index i = first[facet]; i < first[facet + 1]; ++i) {
+      complex.triangles.push_back(sorted(triangles[i]));
+      complex.facet_of.push_back(facet);
+    }
+  }
+}
+
+/// Adds the facets that have a triangle in common with another to `takes_canonical`.
+/// Returns false if there is none to add.
+bool part_equal_triangles(const BoundaryComplex& complex, std::vector<bool>& takes_canonical) {
+  std::vector<std::pair<Triangle, Index>> uses;
+  for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
+    uses.emplace_back(complex.triangles[i], complex.facet_of[i]);
+  }
+  std::sort(uses.begin(), uses.end());
+  bool has_changed = false;
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].first != uses[i - 1].first) continue;
+    for (const Index facet : {uses[i - 1].second, uses[i].second}) {
+      has_changed = has_changed || !takes_canonical[facet];
+      takes_canonical[facet] = true;
+    }
+  }
+  return has_changed;
+}
+
 Result<BoundaryComplex> follow(const CanonicalSolid& canonical) {
   const Solid& solid = canonical.boundary.solid();
   BoundaryComplex complex;
@@ -49,10 +83,12 @@ Result<BoundaryComplex> follow(const CanonicalSolid& canonical) {
                            " has no triangulation");
     }
   }
-  for (const Triangle& triangle : following.triangles) {
-    complex.triangles.push_back(sorted(triangle));
-  }
-  complex.facet_of = following.facet_of;
+  // Two facets that are not planar may follow the same Delaunay face; their canonical triangles
+  // differ wherever the solid is valid. Each round changes a facet, so this ends.
+  std::vector<bool> takes_canonical(solid.facet_count(), false);
+  do {
+    collect_triangles(following, facets, takes_canonical, complex);
+  } while (part_equal_triangles(complex, takes_canonical));
   complex.delaunay = std::move(delaunay).value();
   return complex;
 }

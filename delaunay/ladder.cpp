@@ -211,8 +211,11 @@ class Climb {
     if (workers_ != nullptr) pool = rung == Rung::tetgen ? workers_->tetgen() : workers_->cgal();
     if (pool == nullptr) return "not-started: no engine executable";
     if (input_.facet_at.empty()) input_ = engine_input(solid_, canonical_);
+    // Scaling bends the angles that decide where Steiner points go: only where it must be.
+    const bool keeps_coordinates =
+        rung == Rung::patch || (rung == Rung::tetgen && !is_anisotropic());
     const std::array<double, 3> scale =
-        rung == Rung::patch ? std::array<double, 3>{1, 1, 1} : unit_scale(solid_.vertices());
+        keeps_coordinates ? std::array<double, 3>{1, 1, 1} : unit_scale(solid_.vertices());
     CdtJob job;
     job.constraints = rung == Rung::patch || rung == Rung::patch_scaled ? Constraints::patches
                                                                         : Constraints::triangles;

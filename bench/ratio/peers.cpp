@@ -5,8 +5,10 @@
 #include <draco/mesh/mesh.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -58,6 +60,9 @@ std::string city_json(const Solid& solid) {
 }
 
 std::size_t draco_size(const Solid& solid, std::span<const Triangle> triangles) {
+  const Box box = solid.box();  // the minimum is 0 in a lattice's normal form
+  if (std::max({box.max.x, box.max.y, box.max.z}) > std::numeric_limits<std::int32_t>::max())
+    return 0;
   draco::Mesh mesh;
   mesh.set_num_points(solid.vertex_count());
   draco::GeometryAttribute position;

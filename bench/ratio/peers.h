@@ -15,7 +15,7 @@ struct PeerBytes {
   std::size_t wkb = 0;             // EWKB, doubles in world coordinates
   std::size_t wkb_zstd = 0;        // the same through zstd -19
   std::size_t city_json_zstd = 0;  // {"vertices":[ints],"boundaries":[...]} through zstd -19
-  std::size_t draco = 0;           // Draco, compression level 10, int32 positions; 0 = it refused
+  std::size_t draco = 0;  // Draco, compression level 10, int32 positions; 0 = wider than it takes
 };
 
 /// `triangles` = canonical triangulation of the solid. Requires an integer lattice.

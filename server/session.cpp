@@ -88,9 +88,7 @@ std::optional<Response> refusal_of(const Parser& parser) {
   if (request.version() >= 11 && request.count(http::field::host) != 1) {
     return problem(400, "malformed", "the request needs exactly one Host field");
   }
-  const bool takes_body = request.method() == http::verb::post ||
-                          request.method() == http::verb::put ||
-                          request.method() == http::verb::patch;
+  const bool takes_body = request.method() == http::verb::post;
   if (takes_body && !parser.chunked() && !parser.content_length()) {
     return problem(411, "length-required",
                    "send Content-Length or Transfer-Encoding: chunked with the body");

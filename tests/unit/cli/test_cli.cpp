@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Runs the executable on small files.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/unit/pipeline/samples.h"
+
+namespace watertight {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ran {
+  int status = -1;
+  std::string output;  // standard output and error
+};
+
+class Fixture {
+ public:
+  Fixture() {
+    std::string name = (fs::temp_directory_path() / "watertight-cli-XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    folder = name;
+  }
+  ~Fixture() {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  }
+  Fixture(const Fixture&) = delete;
+  Fixture& operator=(const Fixture&) = delete;
+
+  Ran run(const std::string& arguments) const {
+    const std::string command = "cd " + folder.string() +
+                                " && env -u WATERTIGHT_DATABASE_URL " WATERTIGHT_EXECUTABLE " " +
+                                arguments + " 2>&1";
+    FILE* pipe = ::popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    Ran ran;
+    std::array<char, 4096> buffer{};
+    for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+      ran.output.append(buffer.data(), count);
+    }
+    const int status = ::pclose(pipe);
+    ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    INFO(arguments << "\n" << ran.output);
+    return ran;
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name, std::ios::binary) << text;
+  }
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  fs::path folder;
+};
+
+const std::string kValid = samples::sequence({samples::feature("a"), samples::feature("b")});
+const std::string kInvalid =
+    samples::sequence({samples::feature("open", samples::kOpenFacets), samples::feature("b")});
+const std::string kCubeObj =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST_CASE_METHOD(Fixture, "the exit status tells valid, invalid and broken input apart") {
+  write("good.city.jsonl", kValid);
+  write("bad.city.jsonl", kInvalid);
+  write("broken.city.json", "{\"type\":\"CityJSON\",");
+  CHECK(run("validate good.city.jsonl").status == 0);
+  const Ran bad = run("validate bad.city.jsonl");
+  CHECK(bad.status == 1);
+  CHECK(bad.output.find("302") != std::string::npos);
+  CHECK(bad.output.find("bad.city.jsonl") != std::string::npos);
+  const Ran broken = run("validate broken.city.json");
+  CHECK(broken.status == 2);
+  CHECK(broken.output.find("broken.city.json: malformed") != std::string::npos);
+  CHECK(broken.output.find("at byte") != std::string::npos);
+  CHECK(run("validate missing.obj").status == 2);
+  CHECK(run("validate good.city.jsonl bad.city.jsonl missing.obj").status == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "wrong usage is status 2 with a message") {
+  CHECK(run("").status == 2);
+  CHECK(run("fly").status == 2);
+  CHECK(run("validate").status == 2);
+  CHECK(run("validate --proof faith x").status == 2);
+  CHECK(run("encode x").status == 2);
+  CHECK(run("ingest x --collection a").status == 2);
+  CHECK(run("ingest x --collection a/b --data-dir d").status == 2);
+  CHECK(run("serve --data-dir d --listen nowhere").status == 2);
+  CHECK(run("--help").status == 0);
+  CHECK(run("--version").status == 0);
+}
+
+TEST_CASE_METHOD(Fixture, "a report is written as JSON") {
+  write("bad.city.jsonl", kInvalid);
+  CHECK(run("validate bad.city.jsonl --report r.json").status == 1);
+  const auto json = nlohmann::json::parse(read("r.json"), nullptr, false);
+  REQUIRE(json.is_object());
+  CHECK(json["summary"]["solids"] == 2);
+  CHECK(json["summary"]["invalidByCode"]["302"] == 1);
+  CHECK(json["files"][0]["outcome"]["features"][0]["solids"][0]["report"]["verdict"] == "invalid");
+}
+
+TEST_CASE_METHOD(Fixture, "encode and decode return the document") {
+  write("in.city.jsonl", kValid);
+  REQUIRE(run("encode in.city.jsonl -o x.wt").status == 0);
+  REQUIRE(run("decode x.wt -o out.city.jsonl").status == 0);
+  CHECK(read("out.city.jsonl") == kValid);
+  const Ran info = run("info --json x.wt");
+  CHECK(info.status == 0);
+  CHECK(nlohmann::json::parse(info.output)["solids"] == 2);
+  CHECK(run("validate x.wt").status == 0);
+  CHECK(run("encode - -o - < in.city.jsonl > y.wt").status == 0);
+  CHECK(read("y.wt") == read("x.wt"));
+}
+
+TEST_CASE_METHOD(Fixture, "encode writes nothing when a solid is invalid") {
+  write("in.city.jsonl", kInvalid);
+  write("x.wt", "old");
+  CHECK(run("encode in.city.jsonl -o x.wt").status == 1);
+  CHECK(read("x.wt") == "old");
+  CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "a bare blob is the one solid") {
+  write("cube.obj", kCubeObj);
+  REQUIRE(run("encode cube.obj --bare -o cube.blob").status == 0);
+  const Ran info = run("info cube.blob");
+  CHECK(info.status == 0);
+  CHECK(info.output.find("facets               6") != std::string::npos);
+  CHECK(run("decode cube.blob -o cube.wkt").status == 0);
+  CHECK(read("cube.wkt").find("POLYHEDRALSURFACE Z") != std::string::npos);
+  CHECK(run("validate cube.wkt").status == 0);
+  write("two.city.jsonl", kValid);
+  CHECK(run("encode two.city.jsonl --bare -o two.blob").status == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "encode can keep Steiner vertices and choose the mode") {
+  write("cube.obj", kCubeObj);
+  CHECK(run("encode cube.obj --mode raw -o a.wt").status == 0);
+  CHECK(run("encode cube.obj --mode bitmap -o b.wt").status == 0);
+  CHECK(run("encode cube.obj --steiner -o c.wt").status == 0);
+  CHECK(run("encode cube.obj --mode fancy -o d.wt").status == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "convert follows the ending of the output") {
+  write("cube.obj", kCubeObj);
+  CHECK(run("convert cube.obj -o cube.off").status == 0);
+  CHECK(read("cube.off").starts_with("OFF"));
+  CHECK(run("validate cube.off").status == 0);
+  const Ran unknown = run("convert cube.obj -o cube.xyz");
+  CHECK(unknown.status == 2);
+  CHECK(unknown.output.find(".obj") != std::string::npos);
+  CHECK(run("convert cube.obj -o no/such/folder.off").status == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "damaged Watertight files are refused") {
+  write("in.city.jsonl", kValid);
+  REQUIRE(run("encode in.city.jsonl -o x.wt").status == 0);
+  const std::string whole = read("x.wt");
+  write("short.wt", whole.substr(0, whole.size() / 2));
+  CHECK(run("decode short.wt -o y.city.jsonl").status == 2);
+  CHECK(run("info short.wt").status == 2);
+  CHECK_FALSE(fs::exists(folder / "y.city.jsonl"));
+}
+
+}  // namespace
+}  // namespace watertight

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Small documents and a store in memory, for the tests of pipeline, server and cli.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "store/solid_store.h"
+
+namespace watertight::samples {
+
+inline constexpr std::string_view kHeader =
+    R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.001,0.001,0.001],)"
+    R"("translate":[100.0,200.0,0.0]},"metadata":{"referenceSystem":)"
+    R"("https://www.opengis.net/def/crs/EPSG/0/7415"},"CityObjects":{},"vertices":[]})";
+
+/// Facets of a box over vertices 0 to 7; outward.
+inline constexpr std::string_view kBoxFacets =
+    "[[[0,3,2,1]],[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]";
+/// The same without its top.
+inline constexpr std::string_view kOpenFacets =
+    "[[[0,3,2,1]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]";
+inline constexpr std::string_view kBoxVertices =
+    "[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,2500],[1000,0,2500],[1000,1000,2500],"
+    "[0,1000,2500]]";
+
+/// One line: a building with one solid.
+inline std::string feature(const std::string& id, std::string_view facets = kBoxFacets,
+                           std::string_view vertices = kBoxVertices) {
+  return R"({"type":"CityJSONFeature","id":")" + id + R"(","CityObjects":{")" + id +
+         R"(":{"type":"Building","attributes":{"height":2.50},"geometry":[{"type":"Solid",)" +
+         R"("lod":"2.2","boundaries":[)" + std::string(facets) + R"(]}]}},"vertices":)" +
+         std::string(vertices) + "}";
+}
+
+inline std::string sequence(const std::vector<std::string>& features) {
+  std::string text(kHeader);
+  for (const std::string& line : features) text += "\n" + line;
+  return text + "\n";
+}
+
+/// A store in memory that keeps its promises, and can be away.
+class MemoryStore final : public SolidStore {
+ public:
+  bool is_away = false;
+
+  Status ping() override {
+    if (is_away) return away();
+    return Done{};
+  }
+  Result<std::vector<StoredCollection>> collections() override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    std::vector<StoredCollection> all;
+    for (const auto& [id, features] : features_) all.push_back(summary(id));
+    return all;
+  }
+  Result<StoredCollection> collection(const std::string& id) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
+    return summary(id);
+  }
+  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    std::vector<std::uint64_t> versions;
+    for (const StoredFeature& feature : features) {
+      StoredFeature& kept = features_[feature.collection][feature.id];
+      kept = feature;
+      kept.version = ++version_;
+      versions.push_back(version_);
+    }
+    return versions;
+  }
+  Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    const auto features = features_.find(collection);
+    if (features == features_.end() || !features->second.contains(id)) {
+      return Error{ErrorCode::not_found, "no feature " + id};
+    }
+    return features->second.at(id);
+  }
+  Result<FeaturePage> list(const FeatureQuery& query) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    FeaturePage page;
+    for (const auto& [id, feature] : features_[query.collection]) {
+      if (query.box && !(feature.box && overlap(*query.box, *feature.box))) continue;
+      ++page.matched;
+      if (id <= query.after) continue;
+      if (page.features.size() == query.limit) {
+        page.next = page.features.back().id;
+        continue;
+      }
+      page.features.push_back(feature);
+    }
+    return page;
+  }
+  Status remove(const std::string& collection, const std::string& id) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (features_[collection].erase(id) == 0) return Error{ErrorCode::not_found, "no " + id};
+    return Done{};
+  }
+
+ private:
+  static Error away() { return Error{ErrorCode::unavailable, "the database is away"}; }
+  static bool overlap(const StoredBox& a, const StoredBox& b) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (a.min[axis] > b.max[axis] || a.max[axis] < b.min[axis]) return false;
+    }
+    return true;
+  }
+  StoredCollection summary(const std::string& id) {
+    StoredCollection collection;
+    collection.id = id;
+    for (const auto& [name, feature] : features_[id]) {
+      collection.srid = feature.srid;
+      collection.header = feature.header;
+      ++collection.features;
+      collection.solids += feature.solids.size();
+    }
+    return collection;
+  }
+
+  std::mutex mutex_;
+  std::map<std::string, std::map<std::string, StoredFeature>> features_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace watertight::samples

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/handlers.h"
+#include "tests/unit/pipeline/samples.h"
+
+namespace watertight {
+namespace {
+
+using Json = nlohmann::json;
+
+class Fixture {
+ public:
+  Response send(Request request) const {
+    return respond(Service{&store, nullptr, {}}, request, [] { return false; });
+  }
+  Response get(const std::string& target, std::vector<HeaderField> headers = {}) const {
+    return send({"GET", target, std::move(headers), ""});
+  }
+  Response post(const std::string& target, std::string body,
+                const std::string& type = "application/city+json-seq") const {
+    return send({"POST", target, {{"content-type", type}}, std::move(body)});
+  }
+  mutable samples::MemoryStore store;
+};
+
+Json problem_of(const Response& response) {
+  CHECK(response.content_type == "application/problem+json");
+  Json json = Json::parse(response.body, nullptr, false);
+  REQUIRE(json.is_object());
+  CHECK(json["status"] == response.status);
+  CHECK(json.contains("type"));
+  return json;
+}
+
+const std::string* header_of(const Response& response, std::string_view name) {
+  for (const HeaderField& field : response.headers) {
+    if (field.name == name) return &field.value;
+  }
+  return nullptr;
+}
+
+const std::string kTwo = samples::sequence({samples::feature("a"), samples::feature("b")});
+const std::string kOneOpen =
+    samples::sequence({samples::feature("a"), samples::feature("open", samples::kOpenFacets)});
+
+TEST_CASE_METHOD(Fixture, "the OpenAPI document describes exactly the routes") {
+  const Json api = Json::parse(get("/api").body);
+  std::size_t operations = 0;
+  for (const auto& [path, methods] : api["paths"].items()) operations += methods.size();
+  CHECK(operations == routes().size());
+  for (const Route& route : routes()) {
+    INFO(route.method << " " << route.path);
+    std::string method(route.method);
+    for (char& c : method) c = static_cast<char>(c - 'A' + 'a');
+    REQUIRE(api["paths"].contains(std::string(route.path)));
+    REQUIRE(api["paths"][std::string(route.path)].contains(method));
+    std::vector<std::string> described;
+    const Json operation = api["paths"][std::string(route.path)][method];
+    for (const Json& parameter : operation.value("parameters", Json::array())) {
+      if (parameter["in"] == "query") described.push_back(parameter["name"]);
+    }
+    std::vector<std::string> known(route.parameters.begin(), route.parameters.end());
+    std::sort(described.begin(), described.end());
+    std::sort(known.begin(), known.end());
+    CHECK(described == known);
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "a posted document is stored and comes back in each format") {
+  const Response posted = post("/collections/town/items", kTwo);
+  REQUIRE(posted.status == 201);
+  CHECK(Json::parse(posted.body)["stored"] == 2);
+  const Response city = get("/collections/town/items/a");
+  REQUIRE(city.status == 200);
+  CHECK(city.content_type == "application/city+json");
+  CHECK(Json::parse(city.body)["type"] == "CityJSON");
+  const Response sequence = get("/collections/town/items/a?f=cityjsonseq");
+  const std::size_t line = sequence.body.find('\n');
+  CHECK(Json::parse(sequence.body.substr(line + 1)) == Json::parse(samples::feature("a")));
+  CHECK(get("/collections/town/items/a", {{"accept", "model/obj"}}).content_type == "model/obj");
+  CHECK(get("/collections/town/items/a?f=blob").content_type == "application/vnd.watertight.blob");
+  CHECK(get("/collections/town/items/a?f=wt").content_type == "application/vnd.watertight");
+  problem_of(get("/collections/town/items/a", {{"accept", "image/png"}}));
+  CHECK(get("/collections/town/items/a", {{"accept", "image/png"}}).status == 406);
+  CHECK(get("/collections/town/items/a?f=ply").status == 406);
+}
+
+TEST_CASE_METHOD(Fixture, "a single feature takes the transform of its collection") {
+  const Response early = post("/collections/town/items", samples::feature("c"), "application/json");
+  CHECK(early.status == 400);
+  problem_of(early);
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  const Response posted =
+      post("/collections/town/items", samples::feature("c"), "application/city+json");
+  REQUIRE(posted.status == 201);
+  REQUIRE(header_of(posted, "Location"));
+  CHECK(*header_of(posted, "Location") == "/collections/town/items/c");
+  CHECK(get("/collections/town/items/c").status == 200);
+}
+
+TEST_CASE_METHOD(Fixture, "an invalid solid is refused with the report and nothing is stored") {
+  const Response response = post("/collections/town/items", kOneOpen);
+  REQUIRE(response.status == 422);
+  const Json json = problem_of(response);
+  CHECK(json["type"] == "urn:watertight:problem:invalid-solids");
+  CHECK(json["report"]["features"][1]["solids"][0]["report"]["verdict"] == "invalid");
+  CHECK(get("/collections/town/items/a").status == 404);
+}
+
+TEST_CASE_METHOD(Fixture, "invalid=skip stores the valid features and reports the rest") {
+  const Response response = post("/collections/town/items?invalid=skip", kOneOpen);
+  REQUIRE(response.status == 201);
+  CHECK(Json::parse(response.body)["verdict"] == "invalid");
+  CHECK(get("/collections/town/items/a").status == 200);
+  CHECK(get("/collections/town/items/open").status == 404);
+  CHECK(post("/collections/town/items?invalid=maybe", kOneOpen).status == 400);
+}
+
+TEST_CASE_METHOD(Fixture, "validate gives verdicts of any format and stores nothing") {
+  const Response response = post("/validate", kOneOpen);
+  REQUIRE(response.status == 200);
+  CHECK(Json::parse(response.body)["verdict"] == "invalid");
+  const std::string wkt = "POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)))";
+  CHECK(Json::parse(post("/validate", wkt, "text/wkt").body)["verdict"] == "invalid");
+  CHECK(Json::parse(post("/validate?f=wkt", wkt, "").body)["verdict"] == "invalid");
+  CHECK(get("/collections").body.find("town") == std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "a malformed body is answered with its place") {
+  const Response response = post("/validate", "{\"type\":\"CityJSON\",", "application/json");
+  CHECK(response.status == 400);
+  CHECK(problem_of(response).contains("byteOffset"));
+  CHECK(post("/validate", "x", "image/png").status == 415);
+  CHECK(post("/collections/town/items", "v 0 0 0\n", "model/obj").status == 415);
+  CHECK(post("/validate?planarity=-1", kTwo).status == 400);
+  CHECK(post("/validate?proof=faith", kTwo).status == 400);
+}
+
+TEST_CASE_METHOD(Fixture, "lists are paged by next links that visit each item once") {
+  std::vector<std::string> features;
+  for (int i = 10; i < 17; ++i) features.push_back(samples::feature("f " + std::to_string(i)));
+  REQUIRE(post("/collections/town/items", samples::sequence(features)).status == 201);
+  std::string target = "/collections/town/items?limit=3";
+  std::vector<std::string> seen;
+  while (!target.empty() && seen.size() < 20) {
+    const Response response = get(target);
+    REQUIRE(response.status == 200);
+    const Json page = Json::parse(response.body);
+    CHECK(page["numberMatched"] == 7);
+    for (const Json& item : page["features"]) seen.push_back(item["id"]);
+    target.clear();
+    for (const Json& link : page["links"]) {
+      if (link["rel"] == "next") target = link["href"];
+    }
+  }
+  CHECK(seen.size() == 7);
+  CHECK(std::is_sorted(seen.begin(), seen.end()));
+}
+
+TEST_CASE_METHOD(Fixture, "bbox counts in the storage CRS only, and must say so") {
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  const std::string items = "/collections/town/items?bbox=";
+  const std::string crs = "&bbox-crs=http://www.opengis.net/def/crs/EPSG/0/7415";
+  const auto matched = [&](const std::string& box) {
+    return Json::parse(get(items + box + crs).body)["numberMatched"].get<int>();
+  };
+  CHECK(matched("100,200,101,201") == 2);
+  CHECK(matched("100,200,0,101,201,1") == 2);
+  CHECK(matched("101.5,200,102,201") == 0);
+  CHECK(matched("100,200,3,101,201,4") == 0);
+  CHECK(get(items + "100,200,101,201").status == 400);
+  CHECK(get(items + "100,200,101,201&bbox-crs=http://www.opengis.net/def/crs/EPSG/0/4326").status ==
+        400);
+  for (const char* wrong :
+       {"", "1,2,3", "1,2,3,4,5", "1,2,3,x", "3,3,1,1", "1,2,3,4,5,6,7", "nan,0,1,1"}) {
+    INFO(wrong);
+    CHECK(get(items + wrong + crs).status == 400);
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "ETags change with the feature and save a download") {
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  const Response first = get("/collections/town/items/a");
+  REQUIRE(header_of(first, "ETag"));
+  const std::string etag = *header_of(first, "ETag");
+  CHECK(get("/collections/town/items/a", {{"if-none-match", etag}}).status == 304);
+  CHECK(get("/collections/town/items/a?f=obj", {{"if-none-match", etag}}).status == 200);
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  CHECK(get("/collections/town/items/a", {{"if-none-match", etag}}).status == 200);
+}
+
+TEST_CASE_METHOD(Fixture, "delete removes an item once") {
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  CHECK(send({"DELETE", "/collections/town/items/a", {}, ""}).status == 204);
+  CHECK(send({"DELETE", "/collections/town/items/a", {}, ""}).status == 404);
+  CHECK(get("/collections/town/items/b").status == 200);
+}
+
+TEST_CASE_METHOD(Fixture, "paths and parameters that mean nothing are refused by name") {
+  CHECK(get("/nothing").status == 404);
+  CHECK(get("/collections/%2e%2e/items").status == 404);
+  CHECK(get("/collections/../items").status == 404);
+  CHECK(get("/collections/a%2Fb").status == 404);
+  CHECK(get("/collections/town%00").status == 400);
+  CHECK(get("/collections//items").status == 400);
+  CHECK(get("/collections?f=json&f=json").status == 400);
+  CHECK(get("/collections?colour=red").status == 400);
+  CHECK(get("/collections/town/items/" + std::string(2000, 'a')).status == 400);
+  const Response wrong = send({"PUT", "/collections", {}, ""});
+  CHECK(wrong.status == 405);
+  REQUIRE(header_of(wrong, "Allow"));
+  CHECK(*header_of(wrong, "Allow") == "GET, HEAD, OPTIONS");
+  problem_of(wrong);
+}
+
+TEST_CASE_METHOD(Fixture, "an absent database is 503 everywhere but in healthz") {
+  store.is_away = true;
+  CHECK(get("/healthz").status == 200);
+  for (const char* target : {"/readyz", "/collections", "/collections/town",
+                             "/collections/town/items", "/collections/town/items/a"}) {
+    const Response response = get(target);
+    CHECK(response.status == 503);
+    problem_of(response);
+  }
+  CHECK(post("/collections/town/items", kTwo).status == 503);
+}
+
+TEST_CASE("Accept chooses by quality and specificity") {
+  const std::vector<std::string_view> offers{"application/json", "model/obj"};
+  const auto choose = [&](const std::string& accept) { return negotiate(&accept, offers); };
+  CHECK(negotiate(nullptr, offers) == 0);
+  CHECK(choose("*/*") == 0);
+  CHECK(choose("model/*") == 1);
+  CHECK(choose("application/json;q=0.1, model/obj;q=0.5") == 1);
+  CHECK(choose("*/*;q=0.1, application/json;q=0") == 1);
+  CHECK_FALSE(choose("image/png"));
+  CHECK_FALSE(choose("*/*;q=0"));
+}
+
+TEST_CASE("targets are decoded strictly") {
+  CHECK(parse_target("/a%20b/c?x=1+2&y=%C3%A9"));
+  CHECK(parse_target("/a%20b/c?x=1+2")->segments[0] == "a b");
+  CHECK(*parse_target("/?x=1+2")->parameter("x") == "1 2");
+  for (const char* wrong : {"", "x", "http://a/", "/%", "/%1", "/%zz", "/%ff", "/%c0%af", "/a//b",
+                            "/%0a", "/?x=1&x=2"}) {
+    INFO(wrong);
+    CHECK_FALSE(parse_target(wrong));
+  }
+}
+
+}  // namespace
+}  // namespace watertight

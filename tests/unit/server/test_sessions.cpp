@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <catch2/catch_test_macros.hpp>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "server/listener.h"
+
+namespace watertight {
+namespace {
+
+/// A client on a plain socket; whatever it waits for, it waits at most ten seconds.
+class Client {
+ public:
+  explicit Client(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{10, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    REQUIRE(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  }
+  ~Client() { ::close(socket_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  void send(const std::string& text) const {
+    ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
+  }
+  /// Everything up to the end of the connection.
+  std::string receive_all() const {
+    std::string text;
+    while (receive_some(text)) {
+    }
+    return text;
+  }
+  /// Up to the end of the body of one answer, by its Content-Length.
+  std::string receive_answer() const {
+    std::string text;
+    for (;;) {
+      const std::size_t end = text.find("\r\n\r\n");
+      const std::size_t field = text.find("Content-Length: ");
+      if (end != std::string::npos && field != std::string::npos) {
+        const std::size_t length = std::stoul(text.substr(field + 16));
+        if (text.size() >= end + 4 + length) return text;
+      }
+      if (!receive_some(text)) return text;
+    }
+  }
+
+ private:
+  bool receive_some(std::string& text) const {
+    char buffer[4096];
+    const ssize_t count = ::recv(socket_, buffer, sizeof buffer, 0);
+    if (count > 0) text.append(buffer, static_cast<std::size_t>(count));
+    return count > 0;
+  }
+  int socket_;
+};
+
+/// "/slow" computes until `release`; everything else answers at once with the body's size.
+class Server {
+ public:
+  explicit Server(ServerOptions options = small()) {
+    options.port = 0;
+    Application application;
+    application.lane = [](const Request& request) {
+      return request.target == "/slow" ? Lane::computing : Lane::quick;
+    };
+    application.respond = [this](const Request& request, const IsCancelled& is_cancelled) {
+      if (request.target == "/slow") {
+        ++slow_;
+        while (!release && !is_cancelled()) std::this_thread::sleep_for(kTick);
+      }
+      const std::string body = is_cancelled() ? "cancelled" : std::to_string(request.body.size());
+      return Response{200, "text/plain", body, {}};
+    };
+    auto started = HttpServer::start(options, application, [](const std::string&) {});
+    REQUIRE(started);
+    server = *std::move(started);
+  }
+  ~Server() { server->stop(); }
+
+  static ServerOptions small() {
+    ServerOptions options;
+    options.header_bytes = 1000;
+    options.body_bytes = 10'000;
+    options.body_bytes_together = 15'000;
+    options.idle_seconds = 0.5;
+    options.header_seconds = 0.5;
+    options.body_seconds = 0.5;
+    options.drain_seconds = 5;
+    options.connections = 8;
+    options.computing_threads = 1;
+    options.computing_queue = 1;
+    return options;
+  }
+  void wait_for_slow(int count) const {
+    while (slow_ < count) std::this_thread::sleep_for(kTick);
+  }
+
+  std::unique_ptr<HttpServer> server;
+  std::atomic<bool> release = false;
+
+ private:
+  static constexpr std::chrono::milliseconds kTick{2};
+  std::atomic<int> slow_ = 0;
+};
+
+const std::string kGet = "GET / HTTP/1.1\r\nHost: x\r\n\r\n";
+const std::string kGetSlow = "GET /slow HTTP/1.1\r\nHost: x\r\n\r\n";
+
+bool starts(const std::string& answer, const std::string& status) {
+  INFO(answer);
+  const bool does = answer.starts_with("HTTP/1.1 " + status);
+  CHECK(does);
+  return does;
+}
+
+TEST_CASE("a connection serves several requests") {
+  const Server server;
+  const Client client(server.server->port());
+  for (int i = 0; i < 3; ++i) {
+    client.send(kGet);
+    starts(client.receive_answer(), "200");
+  }
+  client.send("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  starts(client.receive_all(), "200");
+}
+
+TEST_CASE("pipelined requests are answered in order") {
+  const Server server;
+  const Client client(server.server->port());
+  client.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\n\r\nabc" + kGet);
+  CHECK(client.receive_answer().ends_with("\r\n\r\n3"));
+}
+
+TEST_CASE("limits of header and body are answered as problems") {
+  const Server server;
+  const auto ask = [&](const std::string& request) {
+    const Client client(server.server->port());
+    client.send(request);
+    std::string answer = client.receive_all();
+    CHECK(answer.find("application/problem+json") != std::string::npos);
+    return answer;
+  };
+  starts(ask("GET / HTTP/1.1\r\nHost: x\r\nX: " + std::string(2000, 'a') + "\r\n\r\n"), "431");
+  starts(ask("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 20000\r\n\r\n"), "413");
+  starts(ask("POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n4e20\r\n" +
+             std::string(20000, 'a') + "\r\n0\r\n\r\n"),
+         "413");
+  starts(ask("POST / HTTP/1.1\r\nHost: x\r\n\r\n"), "411");
+  starts(ask("GET / HTTP/1.1\r\n\r\n"), "400");
+  starts(ask("rubbish\r\n\r\n"), "400");
+  starts(
+      ask("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nContent-Encoding: gzip\r\n\r\nabc"),
+      "415");
+}
+
+TEST_CASE("senders that never finish are cut off") {
+  const Server server;
+  for (const char* part :
+       {"", "GET / HT", "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\na"}) {
+    const Client client(server.server->port());
+    client.send(part);
+    CHECK(client.receive_all().empty());
+  }
+}
+
+TEST_CASE("bodies together have a limit of their own") {
+  const Server server;
+  const Client first(server.server->port());
+  first.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\na");
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const Client second(server.server->port());
+  second.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\n");
+  starts(second.receive_all(), "503");
+}
+
+TEST_CASE("a client that expects it is told to go on") {
+  const Server server;
+  const Client client(server.server->port());
+  client.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nExpect: 100-continue\r\n\r\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  client.send("abc");
+  const std::string answer = client.receive_answer();
+  starts(answer, "100");
+  CHECK(answer.find("HTTP/1.1 200") != std::string::npos);
+}
+
+TEST_CASE("HEAD has the length of the body but not the body") {
+  const Server server;
+  const Client client(server.server->port());
+  client.send("HEAD / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  const std::string answer = client.receive_all();
+  CHECK(answer.find("Content-Length: 1\r\n") != std::string::npos);
+  CHECK(answer.ends_with("\r\n\r\n"));
+}
+
+TEST_CASE("quick requests are answered while others compute, and a full queue is 503") {
+  Server server;
+  const Client computing(server.server->port());
+  computing.send(kGetSlow);
+  server.wait_for_slow(1);
+  const Client waiting(server.server->port());
+  waiting.send(kGetSlow);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const Client refused(server.server->port());
+  refused.send(kGetSlow);
+  starts(refused.receive_answer(), "503");
+  const Client quick(server.server->port());
+  quick.send(kGet);
+  starts(quick.receive_answer(), "200");
+  server.release = true;
+  starts(computing.receive_answer(), "200");
+  starts(waiting.receive_answer(), "200");
+}
+
+TEST_CASE("connections beyond the limit are told to come back") {
+  ServerOptions options = Server::small();
+  options.connections = 1;
+  Server server(options);
+  const Client first(server.server->port());
+  first.send(kGetSlow);
+  server.wait_for_slow(1);
+  const Client second(server.server->port());
+  starts(second.receive_answer(), "503");
+  server.release = true;
+  starts(first.receive_answer(), "200");
+}
+
+TEST_CASE("stopping lets a request in flight finish and closes idle connections") {
+  ServerOptions options = Server::small();
+  options.idle_seconds = 60;
+  Server server(options);
+  const Client idle(server.server->port());
+  idle.send(kGet);
+  starts(idle.receive_answer(), "200");
+  const Client busy(server.server->port());
+  busy.send(kGetSlow);
+  server.wait_for_slow(1);
+  std::thread stopper([&] { server.server->stop(); });
+  CHECK(idle.receive_all().empty());
+  server.release = true;
+  const std::string answer = busy.receive_all();
+  starts(answer, "200");
+  CHECK(answer.ends_with("\r\n\r\n0"));
+  stopper.join();
+}
+
+TEST_CASE("stopping cancels what does not finish in time") {
+  ServerOptions options = Server::small();
+  options.drain_seconds = 0.2;
+  Server server(options);
+  const Client busy(server.server->port());
+  busy.send(kGetSlow);
+  server.wait_for_slow(1);
+  server.server->stop();
+  CHECK(busy.receive_all().ends_with("cancelled"));
+}
+
+TEST_CASE("an address that cannot be listened on is an error") {
+  const Server server;
+  ServerOptions options;
+  options.port = server.server->port();
+  const auto second = HttpServer::start(options, {}, [](const std::string&) {});
+  REQUIRE_FALSE(second);
+  CHECK(second.error().code == ErrorCode::unavailable);
+  options.address = "nowhere";
+  CHECK_FALSE(HttpServer::start(options, {}, [](const std::string&) {}));
+}
+
+}  // namespace
+}  // namespace watertight

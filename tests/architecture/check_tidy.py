@@ -95,7 +95,7 @@ def main(arguments):
         for name, done in pool.map(run, jobs):
             if done.returncode != 0:
                 failures += 1
-                print(f"{name}:\n{done.stdout}\n{done.stderr[-2000:]}")
+                print(f"{name}:\n{done.stdout}\n{done.stderr[-2000:]}", flush=True)
     print(f"clang-tidy: {len(jobs)} units run, {failures} with findings, {unchanged} unchanged since they "
           f"passed, {len(heavy)} left out (CGAL or Boost)")
     return 1 if failures else 0

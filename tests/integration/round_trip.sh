@@ -11,6 +11,8 @@ export CONTAINERS_CONF=$PWD/docker/containers.conf
 
 project=watertight-test-$$
 folder=$(mktemp -d)
+# A bridge network switches forwarding on; it is put back at the end.
+forwarding=$(cat /proc/sys/net/ipv4/ip_forward)
 free_port() { python3 -c 'import socket; s=socket.socket(); s.bind(("127.0.0.1",0)); print(s.getsockname()[1])'; }
 POSTGRES_PASSWORD=$(head -c 18 /dev/urandom | base64 | tr -d '+/=')
 POSTGRES_PORT=$(free_port)
@@ -27,6 +29,8 @@ clean_up() {
     done
   fi
   compose down --volumes --timeout 5 >"$folder/down.log" 2>&1 || cat "$folder/down.log"
+  podman network rm --force "${project}_default" >/dev/null 2>&1 || true
+  [ "$forwarding" != 0 ] || echo 0 >/proc/sys/net/ipv4/ip_forward || true
   rm -rf "$folder"
 }
 trap clean_up EXIT
@@ -46,7 +50,11 @@ for target in service postgres; do
     { tail -60 "$folder/build.log"; exit 1; }
 done
 
-compose up --detach --no-build >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; exit 1; }
+# Its exit status says nothing: what counts is that both run.
+compose up --detach --no-build >"$folder/up.log" 2>&1 || true
+for name in db service; do
+  podman container exists "${project}_${name}_1" || { cat "$folder/up.log"; exit 1; }
+done
 python3 tests/integration/round_trip.py --service "http://127.0.0.1:$SERVICE_PORT" \
   --database "postgresql://watertight:$POSTGRES_PASSWORD@127.0.0.1:$POSTGRES_PORT/watertight" \
   --kill "podman kill -s KILL ${project}_db_1" --start "podman start ${project}_db_1" \

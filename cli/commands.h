@@ -17,6 +17,7 @@ struct ValidateCommand {
   double planarity_metres = 0.01;
   double planarity_degrees = 20;
   std::string proof = "tetrahedralization";
+  std::string engine = "auto";  // "auto", "cgal" or "tetgen"
   bool is_strict = false;
   bool is_quiet = false;  // no line per finding
   std::size_t jobs = 1;

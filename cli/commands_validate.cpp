@@ -11,12 +11,18 @@
 namespace watertight {
 namespace {
 
+Engine engine_of(const std::string& name) {
+  if (name == "cgal") return Engine::cgal;
+  return name == "tetgen" ? Engine::tetgen : Engine::automatic;
+}
+
 IngestOptions options_of(const ValidateCommand& command) {
   IngestOptions options;
   options.threads = command.jobs;
   options.certify.tolerances.planarity_metres = command.planarity_metres;
   options.certify.tolerances.planarity_degrees = command.planarity_degrees;
   options.certify.proof = command.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
+  options.certify.ladder.engine = engine_of(command.engine);
   options.certify.ladder.strict = command.is_strict;
   return options;
 }

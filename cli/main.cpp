@@ -56,6 +56,9 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   sub->add_option("--proof", command.proof, "what proves validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
       ->capture_default_str();
+  sub->add_option("--engine", command.engine, "what makes the tetrahedralizations")
+      ->check(CLI::IsMember({"auto", "cgal", "tetgen"}))
+      ->capture_default_str();
   sub->add_flag("--strict", command.is_strict, "only the canonical triangles of facets count");
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
   add_jobs(*sub, command.jobs);

@@ -114,6 +114,19 @@ TEST_CASE_METHOD(Fixture, "a report is written as JSON") {
   CHECK(json["files"][0]["outcome"]["features"][0]["solids"][0]["report"]["verdict"] == "invalid");
 }
 
+TEST_CASE_METHOD(Fixture, "an engine that is named makes every proof") {
+  write("in.city.jsonl", kValid);
+  CHECK(run("validate --engine guess in.city.jsonl").status == 2);
+  for (const std::string engine : {"cgal", "tetgen"}) {
+    const Ran ran = run("validate in.city.jsonl --report r.json --engine " + engine);
+    const auto json = nlohmann::json::parse(read("r.json"), nullptr, false);
+    const auto& report = json["files"][0]["outcome"]["features"][0]["solids"][0]["report"];
+    // A build without the engine is undecided: another rung must not stand in for it.
+    CHECK((ran.status == 0 || ran.status == 3));
+    CHECK(report["rung"] == (ran.status == 3 ? "none" : engine == "cgal" ? "patch" : "tetgen"));
+  }
+}
+
 TEST_CASE_METHOD(Fixture, "encode and decode return the document") {
   write("in.city.jsonl", kValid);
   REQUIRE(run("encode in.city.jsonl -o x.wt").status == 0);

@@ -105,15 +105,16 @@ void check_solid(const SolidKey& key, const ValidSolid& solid, Totals& totals) {
   }
 }
 
-/// Document -> blobs -> (store) -> document; empty on success, else what differs.
-std::string round_trip(const InspectedFeature& feature, const Document& document,
-                       SolidStore* store) {
-  auto stored = to_stored(feature, document, "reference");
+/// Document -> blobs -> (store, a collection per file) -> document; empty on success, else what
+/// differs.
+std::string round_trip(const std::string& file, const InspectedFeature& feature,
+                       const Document& document, SolidStore* store) {
+  auto stored = to_stored(feature, document, file);
   if (!stored) return "encode: " + to_string(stored.error());
   StoredFeature returned = *stored;
   if (store != nullptr) {
     if (auto put = store->put({&*stored, 1}); !put) return "put: " + to_string(put.error());
-    auto got = store->get("reference", stored->id);
+    auto got = store->get(file, stored->id);
     if (!got) return "get: " + to_string(got.error());
     returned = *got;
   }
@@ -160,7 +161,7 @@ void check_feature(const std::string& file, Feature input, const Document& docum
     }
   }
   if (feature.verdict() != Verdict::valid || feature.solids.empty()) return;
-  const std::string difference = round_trip(feature, document, path.store);
+  const std::string difference = round_trip(file, feature, document, path.store);
   if (difference.empty()) {
     ++totals.feature_round_trips;
   } else {

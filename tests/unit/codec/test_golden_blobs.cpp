@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Files of format version 0. A change of theirs is a change of the format: see CONTRIBUTING.
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <fstream>
 #include <iterator>
+#include <sstream>
+#include <string>
 
 #include "geometry/canonical_form.h"
 #include "golden_blobs.h"
@@ -21,7 +24,31 @@ Bytes file_of(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// The bytes of the worked example: in its fenced lines, the pairs of hex digits before two spaces.
+Bytes example_of_format() {
+  std::ifstream file(WATERTIGHT_TEST_DATA "/../../docs/format.md");
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::size_t example = text.find("\n## Example");
+  if (example == std::string::npos) return {};
+  std::istringstream lines(text.substr(std::min(text.find("```\n", example), text.size())));
+  std::string line;
+  std::getline(lines, line);  // the fence
+  Bytes bytes;
+  while (std::getline(lines, line) && line != "```") {
+    const std::size_t first = line.find_first_not_of(' ');
+    std::istringstream pairs(line.substr(first, line.find("  ", first) - first));
+    for (std::string pair; pairs >> pair;) {
+      bytes.push_back(static_cast<std::uint8_t>(std::stoul(pair, nullptr, 16)));
+    }
+  }
+  return bytes;
+}
+
 }  // namespace
+
+TEST_CASE("the worked example of docs/format.md is the golden box") {
+  CHECK(example_of_format() == file_of("box-bitmap"));
+}
 
 TEST_CASE("golden blobs keep their sizes and decode to their solids") {
   for (const auto& golden : generated::goldens()) {

@@ -40,6 +40,8 @@ class RingExaminer {
  private:
   std::span<const Index> ring(Index number) const { return solid_.ring(rings_.begin + number); }
   bool choose_axis(Index facet);
+  void measure_boxes();
+  bool are_apart(Index a, Index b) const;
   void find_collapsed();
   void find_same();
   void collect_edges();
@@ -71,7 +73,12 @@ class RingExaminer {
   IndexRange rings_;
   std::size_t most_;
   int axis_ = 2;
+  struct Box {
+    std::array<double, 2> min{};
+    std::array<double, 2> max{};
+  };
   std::vector<Edge> edges_;
+  std::vector<Box> boxes_;         // of each ring, in the plane of projection
   std::vector<bool> is_left_out_;  // rings that are short, collapsed or a duplicate
   RingProblems result_;
 };
@@ -171,11 +178,10 @@ void RingExaminer::find_contacts() {
     const Edge& edge = edges_[number];
     std::erase_if(active, [&](std::size_t a) { return edges_[a].max[0] < edge.min[0]; });
     pairs += active.size();
-    if (pairs > kMostPairs || result_.problems.size() > most_) {
-      result_.is_complete = false;
-      return;
-    }
+    if (pairs > kMostPairs) result_.is_complete = false;
     for (const std::size_t a : active) {
+      // Exact witnesses of problems that nobody will see could take hours.
+      if (!result_.is_complete) return;
       const Edge& other = edges_[a];
       if (other.max[1] < edge.min[1] || edge.max[1] < other.min[1]) continue;
       if (a < number) {
@@ -303,13 +309,37 @@ std::optional<bool> RingExaminer::is_within(Index inner, Index outer, bool& is_m
   return result;
 }
 
+void RingExaminer::measure_boxes() {
+  boxes_.assign(rings_.size(), Box{});
+  for (Index r = 0; r < rings_.size(); ++r) {
+    Box& box = boxes_[r];
+    const std::span<const Index> corners = ring(r);
+    if (corners.empty()) continue;
+    box.min = box.max = {u(corners[0]), v(corners[0])};
+    for (const Index corner : corners) {
+      box.min = {std::min(box.min[0], u(corner)), std::min(box.min[1], v(corner))};
+      box.max = {std::max(box.max[0], u(corner)), std::max(box.max[1], v(corner))};
+    }
+  }
+}
+
+bool RingExaminer::are_apart(Index a, Index b) const {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (boxes_[a].max[axis] < boxes_[b].min[axis]) return true;
+    if (boxes_[b].max[axis] < boxes_[a].min[axis]) return true;
+  }
+  return false;
+}
+
 /// Requires rings that share at most vertices.
 void RingExaminer::find_nesting() {
+  measure_boxes();
   for (Index inner = 1; inner < rings_.size(); ++inner) {
     if (is_left_out_[inner]) continue;
     const Point& witness = vertices_[ring(inner).front()];
     for (Index outer = 0; outer < rings_.size(); ++outer) {
       if (outer == inner || is_left_out_[outer]) continue;
+      if (outer != 0 && are_apart(inner, outer)) continue;
       bool is_mixed = false;
       const std::optional<bool> within = is_within(inner, outer, is_mixed);
       if (is_mixed) {

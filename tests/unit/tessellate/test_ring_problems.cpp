@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <chrono>
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -133,6 +135,29 @@ TEST_CASE("many problems are cut off and said to be") {
   const RingProblems result = ring_problems(facet_solid({ring}), 0, 10);
   CHECK(result.problems.size() <= 10);
   CHECK_FALSE(result.is_complete);
+}
+
+TEST_CASE("a star with millions of crossings costs no more than the problems that are kept") {
+  Ring ring;  // 2,001 edges across a circle: two million crossings
+  for (int i = 0; i < 2001; ++i) {
+    const double angle = 2 * 3.14159265358979 * i * 1000 / 2001;
+    ring.push_back({std::round(1e6 * std::cos(angle)), std::round(1e6 * std::sin(angle)), 0});
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const RingProblems result = ring_problems(facet_solid({ring}), 0, 100);
+  CHECK(result.problems.size() <= 100);
+  CHECK_FALSE(result.is_complete);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+}
+
+TEST_CASE("a nested hole among thousands is found by the holes near it") {
+  std::vector<Ring> rings{square(0, 100000)};
+  for (int i = 0; i < 2000; ++i) rings.push_back(square(10 * i + 1, 10 * i + 9));
+  rings.push_back(square(13, 15));
+  const RingProblems result = ring_problems(facet_solid(rings), 0, 100);
+  REQUIRE(result.problems.size() == 1);
+  CHECK(result.problems[0].kind == RingProblemKind::nested);
+  CHECK(result.problems[0].other_ring == 2);
 }
 
 TEST_CASE("the turn of a ring is exact and independent of its start") {

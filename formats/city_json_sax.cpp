@@ -33,6 +33,8 @@ struct Frame {
 };
 
 // The parser's messages quote the input: keep them short and printable.
+constexpr std::size_t kLongestMessage = 300;  // bytes of a syntax error
+
 std::string syntax_message(std::string_view what) {
   if (const auto end = what.find("] "); end != std::string_view::npos) what.remove_prefix(end + 2);
   std::string message(what.substr(0, 240));
@@ -102,6 +104,12 @@ class CitySax {
   bool parse_error(std::size_t position, const std::string&, const Json::exception& exception) {
     error_.code = ErrorCode::malformed;
     error_.message = syntax_message(exception.what());
+    // It quotes the token, which may be megabytes of digits.
+    if (error_.message.size() > kLongestMessage) {
+      std::size_t end = kLongestMessage;
+      while (end > 0 && (static_cast<unsigned char>(error_.message[end]) & 0xC0U) == 0x80U) --end;
+      error_.message = error_.message.substr(0, end) + " ...";
+    }
     error_.byte_offset = position == 0 ? 0 : position - 1;
     return false;
   }
@@ -341,6 +349,10 @@ Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, cons
   if (text.size() > limits.bytes) {
     return Error{ErrorCode::limit_exceeded, std::to_string(text.size()) + " bytes; the limit is " +
                                                 std::to_string(limits.bytes)};
+  }
+  // The parser takes a NUL for the end of the text, and what follows would be lost.
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+    return Error{ErrorCode::malformed, "a NUL byte is no part of a JSON text", nul, {}};
   }
   CitySax sax(is_city, kind, limits);
   if (!Json::sax_parse(text.begin(), text.end(), &sax)) return std::move(sax.error());

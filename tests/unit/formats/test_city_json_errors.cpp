@@ -43,6 +43,17 @@ TEST_CASE("syntax errors name the byte") {
   CHECK(error_of("").code == ErrorCode::malformed);
 }
 
+TEST_CASE("nothing hides behind a NUL byte") {
+  const Error error = error_of(kTwoBuildings + std::string("\0rest", 5));
+  CHECK(error.code == ErrorCode::malformed);
+  CHECK(error.byte_offset == kTwoBuildings.size());
+}
+
+TEST_CASE("a syntax error does not repeat megabytes of input") {
+  CHECK(error_of("[1" + std::string(1 << 20, '0') + "]").message.size() < 400);
+  CHECK(error_of("{\"\xC3\xA9" + std::string(1 << 20, 'x')).message.size() < 400);
+}
+
 TEST_CASE("content errors name the place by JSON Pointer") {
   CHECK(error_of(R"({"version":"2.0"})").pointer == "/type");
   CHECK(error_of(R"({"type":"CityJSON"})").pointer == "/version");

@@ -306,6 +306,21 @@ Status check_transform(const Transform& transform) {
   return Done{};
 }
 
+/// Measures and boxes are doubles: a solid beyond them has none.
+Status check_world(const LatticePoints& points) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto less = [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; };
+    const auto [least, most] =
+        std::minmax_element(points.points.begin(), points.points.end(), less);
+    if (least == points.points.end()) break;
+    if (!std::isfinite(points.lattice.world((*least)[axis], axis)) ||
+        !std::isfinite(points.lattice.world((*most)[axis], axis))) {
+      return Error{ErrorCode::limit_exceeded, "a transformed coordinate exceeds the doubles"};
+    }
+  }
+  return Done{};
+}
+
 /// The transformed integers as nearest doubles: for transforms whose exact products need more
 /// digits than a lattice holds.
 Result<LatticePoints> rounded_transform(std::span<const std::array<std::int64_t, 3>> vertices,
@@ -345,7 +360,10 @@ Result<LatticePoints> lattice_of_integers(std::span<const std::array<std::int64_
     if (!values) return rounded_transform(vertices, transform);
     axes[axis] = std::move(*values);
   }
-  if (auto points = on_decimal_grid(axes)) return *std::move(points);
+  if (auto points = on_decimal_grid(axes)) {
+    if (auto status = check_world(*points); !status) return status.error();
+    return *std::move(points);
+  }
   return Error{ErrorCode::limit_exceeded,
                "the vertices spread over more than 2^53 steps of the transform"};
 }

@@ -207,6 +207,14 @@ TEST_CASE("degrees beside metres keep their precision and compact coordinates") 
   CHECK(points->lattice.world(points->points[1]) == doubles[1]);
 }
 
+TEST_CASE("integers whose transform leaves the doubles are refused") {
+  const Transform transform = transform_of("1e300", {"0", "0", "0"});
+  CHECK(lattice_of_integers(Integers{{0, 0, 0}, {100'000'000, 1, 1}}, transform));
+  const auto beyond = lattice_of_integers(Integers{{0, 0, 0}, {1, 1'000'000'000, 1}}, transform);
+  REQUIRE_FALSE(beyond);
+  CHECK(beyond.error().code == ErrorCode::limit_exceeded);
+}
+
 TEST_CASE("seventeen-digit scales stay exact or are rounded with every point listed") {
   const Transform transform =
       transform_of("0.00012345678901234567", {"84616.468", "447422.999", "-0.293"});

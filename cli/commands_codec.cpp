@@ -20,6 +20,10 @@ Exit fail(const std::string& file, const Error& error) {
   return Exit::error;
 }
 
+Exit fail_to_write(const std::string& file, const Error& error) {
+  return fail(file == "-" ? "standard output" : file, error);
+}
+
 Result<Input> load(const std::string& path, bool split_features) {
   ReadOptions options;
   options.split_features = split_features;
@@ -57,11 +61,11 @@ Result<Document> load_encoded(const std::string& path) {
 
 Exit save(const Document& document, const std::string& output) {
   const auto format = output == "-" ? Result<Format>(document.format) : format_of_name(output);
-  if (!format) return fail(output, format.error());
+  if (!format) return fail_to_write(output, format.error());
   const auto bytes = convert_document(document, *format);
-  if (!bytes) return fail(output, bytes.error());
+  if (!bytes) return fail_to_write(output, bytes.error());
   const Status status = write_file(output, *bytes);
-  return status ? Exit::valid : fail(output, status.error());
+  return status ? Exit::valid : fail_to_write(output, status.error());
 }
 
 Json json_of(const BlobInfo& info) {
@@ -152,7 +156,7 @@ Exit run(const EncodeCommand& command) {
   const auto packed = pack(command, encoded->features);
   if (!packed) return fail(command.input, packed.error());
   const Status status = write_file(command.output, *packed);
-  return status ? Exit::valid : fail(command.output, status.error());
+  return status ? Exit::valid : fail_to_write(command.output, status.error());
 }
 
 Exit run(const DecodeCommand& command) {

@@ -3,6 +3,7 @@
 // `watertight COMMAND ...`: reads the command line and runs the command (docs/cli.md).
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -18,6 +19,18 @@ using Chosen = std::function<Exit()>;
 
 std::size_t default_jobs() {
   return std::max(1U, std::min(std::thread::hardware_concurrency(), 64U));
+}
+
+/// Like CLI::Range, which takes "nan" for a number in range.
+CLI::Validator in_range(double min, double max, const std::string& words) {
+  const auto check = [min, max, words](std::string& text) {
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    const bool is_good = error == std::errc{} && rest == end && value >= min && value <= max;
+    return is_good ? std::string() : "'" + text + "' is not a number " + words;
+  };
+  return CLI::Validator(check, words);
 }
 
 void add_jobs(CLI::App& app, std::size_t& jobs) {
@@ -47,11 +60,11 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   sub->add_option("FILE", command.files, "documents; - for standard input")->required();
   sub->add_option("--report", command.report, "write all reports as JSON to this file");
   sub->add_option("--planarity", command.planarity_metres, "largest distance from a plane, metres")
-      ->check(CLI::Range(1e-9, 1000.0))
+      ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
       ->capture_default_str();
   sub->add_option("--planarity-angle", command.planarity_degrees,
                   "largest angle within a facet, degrees")
-      ->check(CLI::Range(1e-6, 90.0))
+      ->check(in_range(1e-6, 90, "from 1e-6 to 90"))
       ->capture_default_str();
   sub->add_option("--proof", command.proof, "what proves validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
@@ -167,7 +180,10 @@ int run_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::error);
   }
-  return static_cast<int>(chosen());
+  const Exit exit = chosen();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(exit);
+  std::fputs("watertight: standard output could not be written\n", stderr);
+  return static_cast<int>(Exit::error);
 }
 
 }  // namespace

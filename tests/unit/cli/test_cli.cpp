@@ -96,12 +96,20 @@ TEST_CASE_METHOD(Fixture, "wrong usage is status 2 with a message") {
   CHECK(run("fly").status == 2);
   CHECK(run("validate").status == 2);
   CHECK(run("validate --proof faith x").status == 2);
+  CHECK(run("validate --planarity nan x").output.find("number from 1e-9") != std::string::npos);
   CHECK(run("encode x").status == 2);
   CHECK(run("ingest x --collection a").status == 2);
   CHECK(run("ingest x --collection a/b --data-dir d").status == 2);
   CHECK(run("serve --data-dir d --listen nowhere").status == 2);
   CHECK(run("--help").status == 0);
   CHECK(run("--version").status == 0);
+}
+
+TEST_CASE_METHOD(Fixture, "output that cannot be written is status 2") {
+  write("good.city.jsonl", kValid);
+  CHECK(run("validate good.city.jsonl > /dev/full").status == 2);
+  const Ran ran = run("encode good.city.jsonl -o - > /dev/full");
+  CHECK(ran.status == 2);
 }
 
 TEST_CASE_METHOD(Fixture, "a report is written as JSON") {

@@ -213,6 +213,10 @@ const std::string* Target::parameter(std::string_view name) const {
 }
 
 Result<Target> parse_target(std::string_view target) {
+  // The absolute form, which every server must take (RFC 9112, section 3.2.2).
+  if (target.starts_with("http://") && target.find('/', 7) != std::string_view::npos) {
+    target.remove_prefix(target.find('/', 7));
+  }
   if (target.empty() || target.front() != '/') {
     return malformed_target("the request target must be an absolute path");
   }

@@ -244,8 +244,10 @@ TEST_CASE("targets are decoded strictly") {
   CHECK(parse_target("/a%20b/c?x=1+2&y=%C3%A9"));
   CHECK(parse_target("/a%20b/c?x=1+2")->segments[0] == "a b");
   CHECK(*parse_target("/?x=1+2")->parameter("x") == "1 2");
-  for (const char* wrong : {"", "x", "http://a/", "/%", "/%1", "/%zz", "/%ff", "/%c0%af", "/a//b",
-                            "/%0a", "/?x=1&x=2"}) {
+  CHECK(parse_target("http://a:80/b?c=d")->segments == std::vector<std::string>{"b"});
+  CHECK(parse_target("http://a/")->segments.empty());
+  for (const char* wrong : {"", "x", "ftp://a/", "http://a", "/%", "/%1", "/%zz", "/%ff", "/%c0%af",
+                            "/a//b", "/%0a", "/?x=1&x=2"}) {
     INFO(wrong);
     CHECK_FALSE(parse_target(wrong));
   }

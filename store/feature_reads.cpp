@@ -27,8 +27,9 @@ std::string collections_where(const char* condition) {
 /// is generous by 1e-6, so it never misses).
 std::string matching(const FeatureQuery& query) {
   return std::string(" FROM watertight.feature WHERE collection = $1") +
-         (query.box ? " AND min_x IS NOT NULL AND box(point(max_x, max_y), point(min_x, min_y))"
-                      "   && box(point($5, $6), point($2, $3))"
+         (query.box ? " AND min_x IS NOT NULL"
+                      " AND watertight.index_box(min_x, min_y, max_x, max_y)"
+                      "   && watertight.index_box($2, $3, $5, $6)"
                       " AND min_x <= $5 AND min_y <= $6 AND min_z <= $7"
                       " AND max_x >= $2 AND max_y >= $3 AND max_z >= $4"
                     : "");

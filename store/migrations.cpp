@@ -74,6 +74,26 @@ constexpr Migration kMigrations[] = {
               written timestamptz NOT NULL DEFAULT now()))",
          R"(CREATE INDEX write_receipt_age ON watertight.write_receipt (written))",
      }},
+    {"an index of boxes whose areas stay in range",
+     {
+         // PostgreSQL multiplies the sides of the boxes in an index page, and refuses products that
+         // overflow or underflow: one box of 1e200 or 1e-200 would refuse every later feature. So
+         // the index has the box rounded outwards to multiples of 2^-20, within +-1e18.
+         R"(CREATE FUNCTION watertight.index_box(min_x double precision, min_y double precision,
+                                                 max_x double precision, max_y double precision)
+              RETURNS box LANGUAGE sql IMMUTABLE PARALLEL SAFE
+              RETURN box(
+                point(ceil(least(greatest(max_x, -1e18::float8), 1e18::float8) * 1048576) / 1048576,
+                      ceil(least(greatest(max_y, -1e18::float8), 1e18::float8) * 1048576) / 1048576),
+                point(floor(least(greatest(min_x, -1e18::float8), 1e18::float8) * 1048576) / 1048576,
+                      floor(least(greatest(min_y, -1e18::float8), 1e18::float8) * 1048576)
+                        / 1048576)))",
+         R"(DROP INDEX watertight.feature_box)",
+         // Finds candidates in x and y; the query compares the six numbers exactly.
+         R"(CREATE INDEX feature_box ON watertight.feature
+              USING gist (watertight.index_box(min_x, min_y, max_x, max_y))
+              WHERE min_x IS NOT NULL)",
+     }},
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);
 

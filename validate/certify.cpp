@@ -57,7 +57,7 @@ class Certifier {
 
 void Certifier::apply_exact_rules() {
   check_not_empty(examined_);
-  check_rings(examined_);
+  check_rings(examined_, options_.ladder.cancel);
   check_facets(examined_);
   shells_ = check_shells(examined_);
   const std::vector<Index> duplicate_of = check_duplicate_shells(examined_);

@@ -95,19 +95,23 @@ Finding finding_of(const ExaminedSolid& examined, Index facet, const RingProblem
   return finding;
 }
 
-void check_shape(ExaminedSolid& examined, Index facet) {
-  const RingProblems found = ring_problems(examined.solid(), facet, kMostProblemsPerFacet);
-  for (const RingProblem& problem : found.problems) {
-    examined.findings.add(finding_of(examined, facet, problem));
-  }
-  if (!found.is_complete) examined.findings.omit(1);
-  if (!found.problems.empty()) return;
+/// What is known of a facet without a triangulation before the reason is looked for.
+void report_no_region(ExaminedSolid& examined, Index facet) {
   Finding finding;
   finding.code =
       examined.solid().rings_of(facet).size() == 1 ? kRingSelfIntersection : kIntersectionRings;
   finding.place = examined.at_facet(facet);
   finding.detail = "the rings bound no region in the facet's projection";
   examined.findings.add(std::move(finding));
+}
+
+void check_shape(ExaminedSolid& examined, Index facet) {
+  const RingProblems found = ring_problems(examined.solid(), facet, kMostProblemsPerFacet);
+  for (const RingProblem& problem : found.problems) {
+    examined.findings.add(finding_of(examined, facet, problem));
+  }
+  if (!found.is_complete) examined.findings.omit(1);
+  if (found.problems.empty()) report_no_region(examined, facet);
 }
 
 }  // namespace
@@ -120,19 +124,24 @@ void check_not_empty(ExaminedSolid& examined) {
   examined.findings.add(std::move(finding));
 }
 
-void check_rings(ExaminedSolid& examined) {
+void check_rings(ExaminedSolid& examined, const CancelPoll& cancel) {
   Index unshaped = kNone;
+  bool is_cancelled = false;
   for (Index facet = 0; facet < examined.solid().facet_count(); ++facet) {
     const bool has_points = check_points(examined, facet);
+    is_cancelled = is_cancelled || (cancel && cancel());
     const bool is_triangulated = examined.triangles().state[facet] == FacetState::triangulated;
     if (has_points && is_triangulated) continue;
     examined.mark_faulty(facet);
-    if (has_points) {
+    if (has_points && is_cancelled) {
+      report_no_region(examined, facet);
+    } else if (has_points) {
       check_shape(examined, facet);
     } else if (unshaped == kNone) {
       unshaped = facet;
     }
   }
+  if (is_cancelled) examined.findings.skip({104, 201, 202, 206, 207}, "the search was cancelled");
   if (unshaped != kNone) {
     examined.findings.skip(
         {104, 201, 202, 203, 204, 205, 206, 207, 208},

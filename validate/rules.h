@@ -16,7 +16,7 @@ namespace watertight {
 /// 902.
 void check_not_empty(ExaminedSolid& examined);
 /// 101, 102, 104 and, because they come out of the same search, 201, 202, 206, 207.
-void check_rings(ExaminedSolid& examined);
+void check_rings(ExaminedSolid& examined, const CancelPoll& cancel);
 /// 203, 204, 205, 208.
 void check_facets(ExaminedSolid& examined);
 

@@ -63,6 +63,14 @@ class ShellExaminer {
   bool bounds_region(Index facet) const {
     return examined_.triangles().state[facet] == FacetState::triangulated;
   }
+  /// The first corner of the first ring that has one. Requires a facet with an edge.
+  Place first_corner(Index facet) const {
+    const Solid& submitted = examined_.submitted();
+    const Index begin = submitted.rings_of(facet).begin;
+    Index ring = 0;
+    while (submitted.ring(begin + ring).empty()) ++ring;
+    return examined_.at_corner(facet, ring, 0);
+  }
   Place place_of(const EdgeUse& use) const {
     return examined_.at_corner(use.facet, use.ring_in_facet, use.position);
   }
@@ -269,7 +277,7 @@ void ShellExaminer::check_components() {
     if (part == largest) continue;
     Finding finding;
     finding.code = kMultipleComponents;
-    finding.place = examined_.at_corner(part->second.front(), 0, 0);
+    finding.place = first_corner(part->second.front());
     finding.witness = examined_.submitted().world(finding.place.vertex);
     finding.measured = static_cast<double>(part->second.size());
     finding.unit = "facets";

@@ -278,3 +278,16 @@ TEST_CASE("a cancelled certification is undecided, never valid") {
   options.ladder.cancel = {};
   CHECK(certify(solid_of({shell}), nullptr, options).report.verdict == Verdict::valid);
 }
+
+// Found by tests/fuzz/fuzz_certify.cpp: the place of finding 305 was taken from the exterior ring.
+TEST_CASE("an empty exterior ring in a part of its own is reported, not divided by") {
+  Shell shell = join(cube(4), {{Ring{}, Ring{{9, 9, 9}, {9, 9, 8}, {9, 8, 9}}}});
+  const Report report = report_of({shell});
+  CHECK(report.verdict == Verdict::invalid);
+  const auto part = std::find_if(report.findings.begin(), report.findings.end(),
+                                 [](const Finding& finding) { return finding.code == 305; });
+  REQUIRE(part != report.findings.end());
+  CHECK(part->place.facet == 6);
+  CHECK(part->place.ring == 1);
+  CHECK(part->place.vertex != kNone);
+}

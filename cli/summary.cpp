@@ -11,11 +11,11 @@ namespace watertight {
 namespace {
 
 std::string row(const std::string& name, const std::string& value) {
-  constexpr std::size_t kNameWidth = 36;
-  constexpr std::size_t kValueWidth = 14;
-  const std::size_t dots = name.size() < kNameWidth ? kNameWidth - name.size() : 1;
+  constexpr std::size_t kNameWidth = 46;  // holds the longest finding name
+  constexpr std::size_t kValueWidth = 10;
+  const std::size_t padding = name.size() < kNameWidth ? kNameWidth - name.size() : 1;
   const std::size_t blanks = value.size() < kValueWidth ? kValueWidth - value.size() : 1;
-  return name + std::string(dots, ' ') + std::string(blanks, ' ') + value + "\n";
+  return name + std::string(padding, ' ') + std::string(blanks, ' ') + value + "\n";
 }
 
 std::string row(const std::string& name, std::uint64_t value) {

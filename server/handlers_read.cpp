@@ -37,6 +37,36 @@ std::optional<Response> json_only(const RoutedRequest& request) {
   return refuse(406, "not-acceptable", "application/json is what there is here");
 }
 
+constexpr std::string_view kHtml = "text/html";
+constexpr std::string_view kTitle = "Watertight";
+constexpr std::string_view kDescription = "Validates, stores and compresses 3D solids";
+
+/// The landing page for a browser: the links of the JSON one, nothing from elsewhere.
+std::string landing_html(const Json& links) {
+  std::string html = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>";
+  html.append(kTitle).append("</title>\n<style>body{font:16px/1.5 sans-serif;margin:3em auto;");
+  html.append("max-width:40em;padding:0 1em}</style>\n<h1>").append(kTitle).append("</h1>\n<p>");
+  html.append(kDescription).append(".</p>\n<ul>\n");
+  for (const Json& item : links) {
+    const auto href = item["href"].get<std::string>();
+    html.append("<li><a href=\"").append(href).append("\"><code>").append(href);
+    html.append("</code></a> ").append(item["title"].get<std::string>()).append("</li>\n");
+  }
+  return html.append("</ul>\n</html>\n");
+}
+
+/// JSON or HTML, by `f` or the Accept header; nothing when the client wants neither.
+std::optional<std::string_view> landing_type(const RoutedRequest& request) {
+  if (const std::string* format = request.target.parameter("f")) {
+    if (*format == "json") return kJson;
+    if (*format == "html") return kHtml;
+    return std::nullopt;
+  }
+  const auto offer = negotiate(request.request.header("accept"), {kJson, kHtml});
+  if (!offer) return std::nullopt;
+  return *offer == 0 ? std::string_view(kJson) : kHtml;
+}
+
 Json box_json(const StoredBox& box) {
   return Json::array({box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]});
 }
@@ -174,16 +204,19 @@ std::string item_path(std::string_view collection, std::string_view item) {
 }
 
 Response get_landing(const RoutedRequest& request) {
-  if (auto refusal = json_only(request)) return *std::move(refusal);
-  Json json{{"title", "Watertight"}, {"description", "Validates, stores and compresses 3D solids"}};
-  json["links"] = Json::array(
+  const auto type = landing_type(request);
+  if (!type) {
+    return refuse(406, "not-acceptable", "application/json and text/html are what there is here");
+  }
+  const Json links = Json::array(
       {link("/", "self", kJson, "this page"),
        link("/api", "service-desc", "application/vnd.oai.openapi+json;version=3.0", "the API"),
        link("/collections", "data", kJson, "collections of solids"),
        link("/validate", "validate", kJson, "POST a document to validate it"),
        link("/healthz", "status", kJson, "is the process alive"),
        link("/readyz", "status", kJson, "is the database there")});
-  return json_response(json);
+  if (*type == kHtml) return Response{200, "text/html; charset=utf-8", landing_html(links), {}};
+  return json_response({{"title", kTitle}, {"description", kDescription}, {"links", links}});
 }
 
 Response get_api(const RoutedRequest& request) {

@@ -17,8 +17,8 @@ constexpr char kOpenApi[] = R"json({
 "operationId": "getLanding",
 "summary": "Landing page",
 "tags": ["service"],
-"parameters": [{"name": "f", "in": "query", "description": "Answer format, instead of Accept", "schema": {"type": "string", "enum": ["json"]}}],
-"responses": {"200": {"description": "Links to everything else", "content": {"application/json": {"schema": {"$ref": "#/components/schemas/Links"}}}}, "400": {"description": "Not understood: parameter, path or body; byteOffset and pointer say where", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "406": {"description": "None of the accepted formats can be given", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "503": {"description": "Too busy, out of memory, or the database is away; try again", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}, "headers": {"Retry-After": {"description": "seconds to wait", "schema": {"type": "integer"}}}}}
+"parameters": [{"name": "f", "in": "query", "description": "Answer format, instead of Accept", "schema": {"type": "string", "enum": ["json", "html"]}}],
+"responses": {"200": {"description": "Links to everything else", "content": {"application/json": {"schema": {"$ref": "#/components/schemas/Links"}}, "text/html": {"schema": {"type": "string"}}}}, "400": {"description": "Not understood: parameter, path or body; byteOffset and pointer say where", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "406": {"description": "None of the accepted formats can be given", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "503": {"description": "Too busy, out of memory, or the database is away; try again", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}, "headers": {"Retry-After": {"description": "seconds to wait", "schema": {"type": "integer"}}}}}
 }
 },
 "/api": {

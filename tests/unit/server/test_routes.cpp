@@ -69,6 +69,17 @@ TEST_CASE_METHOD(Fixture, "the OpenAPI document describes exactly the routes") {
   }
 }
 
+TEST_CASE_METHOD(Fixture, "the landing page is HTML for browsers and JSON for programs") {
+  const Response json = get("/");
+  CHECK(json.content_type == "application/json");
+  const Response html = get("/?f=html");
+  CHECK(html.content_type == "text/html; charset=utf-8");
+  for (const Json& link : Json::parse(json.body)["links"]) {
+    CHECK(html.body.find("href=\"" + link["href"].get<std::string>() + "\"") != std::string::npos);
+  }
+  CHECK(get("/?f=pdf").status == 406);
+}
+
 TEST_CASE_METHOD(Fixture, "a posted document is stored and comes back in each format") {
   const Response posted = post("/collections/town/items", kTwo);
   REQUIRE(posted.status == 201);

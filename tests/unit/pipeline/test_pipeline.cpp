@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
+#include <fstream>
+#include <iterator>
 #include <string>
 
+#include "codec/encode_boundary.h"
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
@@ -183,6 +186,26 @@ TEST_CASE("JSON strings are escaped and always UTF-8") {
   CHECK(json_string("\xC3\xA9") == "\"\xC3\xA9\"");
   CHECK(json_string("\xC3") == "\"\xEF\xBF\xBD\"");
   CHECK(json_string("\xED\xA0\x80") == "\"\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\"");
+}
+
+// Two facets of this solid are not planar and share three vertices; both could follow one Delaunay
+// face, and the bitmap would have lost one of them.
+TEST_CASE("facets that could follow the same Delaunay face keep apart in mode bitmap") {
+  std::ifstream stream(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const auto document = read_document(as_bytes(text), Format::city_json);
+  REQUIRE(document);
+  REQUIRE(document->features.at(0).solids.size() == 1);
+  const Solid solid = merge_equal_vertices(document->features[0].solids[0].solid).solid;
+  const auto boundary = OrientedBoundary::make(solid);
+  REQUIRE(boundary);
+  EncodeOptions options;
+  options.mode = Mode::bitmap;
+  const auto blob = encode_boundary(*boundary, {}, options);
+  REQUIRE(blob);
+  const auto decoded = decode(*blob);
+  REQUIRE(decoded);
+  CHECK(decoded->solid == solid);
 }
 
 }  // namespace

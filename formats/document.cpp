@@ -25,6 +25,9 @@ Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
     if (!text) return std::move(text).error();
     return bytes_of(*text);
   }
+  if (format != Format::wkt && format != Format::ewkb) {
+    return Error{ErrorCode::unsupported, std::string(to_string(format)) + " is read, not written"};
+  }
   Bytes out;
   for (const Feature& feature : features) {
     for (const SubmittedSolid& solid : feature.solids) {
@@ -52,6 +55,16 @@ std::string_view to_string(Format format) {
       return "wkt";
     case Format::ewkb:
       return "ewkb";
+    case Format::gml:
+      return "gml";
+    case Format::json_fg:
+      return "json-fg";
+    case Format::stl:
+      return "stl";
+    case Format::ply:
+      return "ply";
+    case Format::poly:
+      return "poly";
   }
   return "";
 }
@@ -61,12 +74,23 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
     return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +
                                                 std::to_string(options.limits.bytes)};
   }
-  if (format == Format::city_json) return read_city_json(as_text(bytes), options);
-  if (format == Format::city_json_seq) return read_city_json_seq(as_text(bytes), options);
-  if (format == Format::obj) return read_obj(as_text(bytes), options.limits);
-  if (format == Format::off) return read_off(as_text(bytes), options.limits);
-  if (format == Format::wkt) return read_wkt_document(as_text(bytes), options.limits);
-  return read_ewkb_document(bytes, options.limits);
+  switch (format) {
+    case Format::city_json:
+      return read_city_json(as_text(bytes), options);
+    case Format::city_json_seq:
+      return read_city_json_seq(as_text(bytes), options);
+    case Format::obj:
+      return read_obj(as_text(bytes), options.limits);
+    case Format::off:
+      return read_off(as_text(bytes), options.limits);
+    case Format::wkt:
+      return read_wkt_document(as_text(bytes), options.limits);
+    case Format::ewkb:
+      return read_ewkb_document(bytes, options.limits);
+    default:
+      break;
+  }
+  return Error{ErrorCode::unsupported, "no reader for " + std::string(to_string(format))};
 }
 
 Result<std::string> write_feature(const Document& document, const Feature& feature) {

@@ -18,11 +18,23 @@
 
 namespace watertight {
 
-enum class Format : std::uint8_t { city_json, city_json_seq, obj, off, wkt, ewkb };
+enum class Format : std::uint8_t {
+  city_json,
+  city_json_seq,
+  obj,
+  off,
+  wkt,
+  ewkb,
+  gml,      // GML 3.2 solids, CityGML 1 to 3; read only
+  json_fg,  // read only
+  stl,      // text and binary; read only, welded by equal coordinates
+  ply,      // text and binary; read only
+  poly      // TetGen; read only
+};
 std::string_view to_string(Format format);
 
-/// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb"), else by
-/// the first bytes. Errors: unsupported.
+/// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb", "x.gml",
+/// "x.xml", "x.stl", "x.ply", "x.poly"), else by the first bytes. Errors: unsupported.
 Result<Format> detect_format(std::string_view file_name, ByteView bytes);
 
 /// Where a solid stands in its document.
@@ -38,7 +50,10 @@ struct SolidSource {
 struct SubmittedSolid {
   Solid solid;  // vertices in order of first use; equal vertices are not merged
   SolidSource source;
-  std::vector<Index> rounded;  // vertices whose source digits were rounded
+  std::vector<Index> rounded = {};  // vertices whose source digits were rounded
+  /// Rings whose last position does not repeat the first, in formats that demand it (finding 103);
+  /// indices into the rings of `solid`, ascending.
+  std::vector<Index> unclosed_rings = {};
 };
 
 /// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one

@@ -15,6 +15,7 @@
 #include "formats/document.h"
 #include "store/solid_store.h"
 #include "validate/certify.h"
+#include "validate/groups.h"
 
 namespace watertight {
 
@@ -23,17 +24,29 @@ struct InspectedSolid {
   Inspection inspection;
 };
 
+/// Solids of a feature that are compared with each other: the members of one CompositeSolid, or the
+/// solids of one building and its parts in one level of detail.
+struct InspectedGroup {
+  GroupKind kind = GroupKind::composite_solid;
+  std::string object_id;             // the composite's object, or the building
+  std::string lod;                   // as written, "" when absent
+  std::vector<std::size_t> members;  // indices into the feature's solids, ascending
+  GroupReport report;                // Place::solid is an index into `members`
+};
+
 struct InspectedFeature {
   Feature feature;
   std::vector<InspectedSolid> solids;  // one per feature.solids, same order
-  Verdict verdict() const;             // the worst of its solids; valid when it has none
+  std::vector<InspectedGroup> groups;  // in order of their first members
+  Verdict verdict() const;             // the worst of solids and groups; valid when it has none
 };
 
 /// The worse of two verdicts: invalid, then undecided, then valid.
 Verdict worse(Verdict a, Verdict b);
 
-/// Validates every solid of a feature. Guarantees one InspectedSolid per solid. A solid with
-/// vertices that the reader rounded gets the finding for it.
+/// Validates every solid of a feature, then its groups. Guarantees one InspectedSolid per solid. A
+/// solid with vertices that the reader rounded, or rings that the source left open, gets the
+/// findings for them.
 InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options);
 
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
@@ -63,6 +76,7 @@ struct FeatureOutcome {
   std::string id;
   Verdict verdict = Verdict::undecided;
   std::vector<SolidOutcome> solids;
+  std::vector<InspectedGroup> groups;
   bool is_stored = false;
   std::uint64_t version = 0;  // when stored
 };

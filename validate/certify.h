@@ -20,6 +20,9 @@ struct CertifyOptions {
   LadderOptions ladder;
   /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
   std::span<const Index> rounded = {};
+  /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
+  std::span<const Index> unclosed_rings = {};
+  bool also_tolerant = false;  // fill Report::tolerant
 };
 
 /// A solid that passed, with what proves it.

@@ -45,7 +45,9 @@ struct FindingKind {
   int code = 0;
   std::string_view name;
   Severity severity = Severity::error;
-  std::string_view summary;  // one clause, lower case
+  std::string_view summary;    // one clause, lower case
+  std::string_view hint = {};  // what to do about it, one sentence
+  bool is_repairable = false;  // a program can mend it without guessing what was meant
 };
 
 /// All kinds this program reports, ascending by code.

@@ -26,6 +26,7 @@ struct Place {
   Index facet = kNone;
   Index ring = kNone;    // index of the ring within its facet: 0 is the exterior ring
   Index vertex = kNone;  // index into the submitted vertices
+  Index solid = kNone;   // member of a group (5xx, 6xx), see validate/groups.h
   friend auto operator<=>(const Place&, const Place&) = default;
 };
 
@@ -48,13 +49,20 @@ struct SkippedRule {
   std::string reason;
 };
 
+/// What val3dity's default tolerances say of a solid (snap 1 mm, planarity 1 cm and 20 degrees).
+struct TolerantVerdict {
+  Verdict verdict = Verdict::undecided;  // by the exact tests of the snapped solid
+  std::vector<int> first_level;          // codes, sorted
+};
+
 struct Report {
   Verdict verdict = Verdict::undecided;
   std::string undecided_reason;        // when undecided
   std::vector<Finding> findings;       // ordered by level, then place
   std::uint64_t findings_omitted = 0;  // beyond Limits::findings
   std::vector<SkippedRule> not_run;
-  std::vector<int> first_level;  // the codes val3dity's cascade would give, sorted
+  std::vector<int> first_level;             // the codes val3dity's cascade would give, sorted
+  std::optional<TolerantVerdict> tolerant;  // when asked for; information, decides nothing
   Acceptance acceptance;
   std::vector<std::string> notes;     // e.g. unit assumptions
   std::vector<RungAttempt> attempts;  // of the CDT ladder

@@ -14,6 +14,7 @@ namespace watertight {
 enum FindingCode : int {
   kTooFewPoints = 101,
   kConsecutivePointsSame = 102,
+  kRingNotClosed = 103,
   kRingSelfIntersection = 104,
   kIntersectionRings = 201,
   kDuplicatedRings = 202,
@@ -23,6 +24,7 @@ enum FindingCode : int {
   kInnerRingOutside = 206,
   kInnerRingsNested = 207,
   kOrientationRingsSame = 208,
+  kNotValid2Manifold = 300,
   kTooFewPolygons = 301,
   kShellNotClosed = 302,
   kNonManifold = 303,
@@ -34,11 +36,20 @@ enum FindingCode : int {
   kInnerShellOutside = 403,
   kSolidInteriorDisconnected = 404,
   kWrongOrientationShell = 405,
+  kIntersectionSolids = 501,
+  kDuplicatedSolids = 502,
+  kDisconnectedSolids = 503,
+  kBuildingPartsOverlap = 601,
   kNearDuplicateVertices = 801,
   kUnusedVertices = 802,
   kSliverFacet = 803,
+  kTriangulationDependent = 804,
   kCoordinatesRounded = 805,
-  kEmptyPrimitive = 902
+  kZeroVolume = 806,
+  kInvalidInputFile = 901,
+  kEmptyPrimitive = 902,
+  kWrongInputParameters = 903,
+  kFormatNotSupported = 904
 };
 
 struct FindingKind {
@@ -56,7 +67,8 @@ std::span<const FindingKind> finding_kinds();
 /// The kind of a code, or null.
 const FindingKind* find_kind(int code);
 
-/// The order in which findings are listed: 0 input, 1 ring, 2 facet, 3 shell, 4 solid, 9 warnings.
+/// The order in which findings are listed: 0 input, 1 ring, 2 facet, 3 shell, 4 solid,
+/// 5 composite solid, 6 building, 9 warnings.
 int finding_level(int code);
 
 }  // namespace watertight

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Reports of whole runs, written while features arrive: the JSON report (a superset of val3dity's),
+// the GeoJSON layer of findings and the HTML page. For command line and service. All are described
+// in docs/report.md.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/validate_stream.h"
+
+namespace watertight {
+
+/// Takes the next piece of text. An error ends the report and is handed to its caller.
+using TextSink = std::function<Status(std::string_view)>;
+
+/// What is the same for all documents of a run.
+struct ReportHead {
+  std::string program_version;  // "0.1.0"
+  std::string time;             // when the run began, RFC 3339; "" leaves all times out
+  Acceptance acceptance;
+  bool is_strict = false;      // LadderOptions::strict
+  double overlap_metres = 0;   // GroupOptions::overlap_metres
+  bool also_tolerant = false;  // CertifyOptions::also_tolerant
+};
+
+/// What is known of a document before its features are.
+struct DocumentHead {
+  std::string file;              // as the user named it; any bytes
+  std::optional<Format> format;  // nothing when it could not be told
+};
+
+/// What is known of a document after its features.
+struct DocumentEnd {
+  std::vector<std::string> notes;  // Document::notes
+  double seconds = 0;              // wall
+};
+
+/// Writes one report. Call begin_document(), then add() and add_error() in document order, then
+/// end_document(); again for each further document; finish() last. One thread at a time. After an
+/// error no further call is allowed. Text of documents (ids, messages) may be any bytes.
+/// Cost: linear in what is added; memory is bounded, whatever the number of features.
+/// Errors of all: those of the sink.
+class FeatureReport {
+ public:
+  virtual ~FeatureReport() = default;
+  virtual Status begin_document(const DocumentHead& head) = 0;
+  virtual Status add(const ValidatedFeature& feature) = 0;
+  /// Something that could not be read: a feature, or the rest of the document.
+  virtual Status add_error(const Error& error) = 0;
+  virtual Status end_document(const DocumentEnd& end) = 0;
+  virtual Status finish() = 0;
+};
+
+/// One line of JSON for each document: docs/schema/report-2.schema.json. Deterministic when
+/// `head.time` is empty.
+std::unique_ptr<FeatureReport> json_report(TextSink sink, ReportHead head);
+
+/// One GeoJSON FeatureCollection for all documents: a point for each finding, in the coordinates of
+/// the document, whose reference system is named by the member "crs".
+std::unique_ptr<FeatureReport> geojson_report(TextSink sink, ReportHead head);
+
+struct HtmlOptions {
+  std::size_t most_rows = 5000;     // findings in the table; the page says how many there are
+  std::size_t most_pictures = 500;  // findings with a picture
+  std::size_t most_pictures_per_code = 100;
+  std::size_t most_facets = 240;  // of one picture, the nearest ones
+};
+
+/// One page of HTML for all documents that needs nothing but itself. Written by finish(): what it
+/// holds until then is bounded by the options.
+std::unique_ptr<FeatureReport> html_report(TextSink sink, ReportHead head,
+                                           const HtmlOptions& options = {});
+
+}  // namespace watertight

@@ -44,6 +44,7 @@ struct ModelIndex {
   std::vector<std::uint32_t> root_of;   // object -> its top-level object
   std::vector<GeometryRef> geometries;  // by object, then geometry
   std::vector<std::string> notes;
+  bool are_templates = false;  // the "objects" are geometry templates without ids, one each
 };
 
 /// A solid with the vertex of the document that each of its vertices is.
@@ -54,9 +55,9 @@ struct CitySolid {
   std::size_t boundary = 0;
 };
 
-/// Checks the shape of the document and finds geometries and top-level objects.
-/// Errors: malformed with JSON Pointer.
-Result<ModelIndex> index_city_model(const CityModel& model);
+/// Checks the shape of the document and finds geometries and top-level objects. Geometry instances
+/// may refer to `template_count` templates. Errors: malformed with JSON Pointer.
+Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count);
 
 /// One lattice for all solids whose objects have the same top-level object, or, for a
 /// CityJSONFeature, one for all. Solids come in document order.

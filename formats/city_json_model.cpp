@@ -73,8 +73,32 @@ bool is_known_version(std::string_view version) {
   return false;
 }
 
+// A geometry that is a template moved to a vertex of the document.
+Status check_instance(const Json& geometry, const std::string& pointer,
+                      std::uint64_t template_count) {
+  const Json* number = find_member(geometry, "template");
+  if (number == nullptr || !number->is_number_unsigned()) {
+    return wrong("a geometry instance needs the index of its template", pointer + "/template");
+  }
+  if (number->get<std::uint64_t>() >= template_count) {
+    return wrong("template " + std::to_string(number->get<std::uint64_t>()) + " is out of range (" +
+                     std::to_string(template_count) + " templates)",
+                 pointer + "/template");
+  }
+  if (find_member(geometry, "boundaries") == nullptr) {
+    return wrong("a geometry instance needs the vertex it stands on", pointer + "/boundaries");
+  }
+  const Json* matrix = find_member(geometry, "transformationMatrix");
+  const bool is_matrix = matrix != nullptr && matrix->is_array() && matrix->size() == 16 &&
+                         std::all_of(matrix->begin(), matrix->end(), is_number_value);
+  if (!is_matrix) {
+    return wrong("a transformationMatrix needs 16 numbers", pointer + "/transformationMatrix");
+  }
+  return Done{};
+}
+
 Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref,
-                      std::vector<GeometryRef>& out) {
+                      std::uint64_t template_count, std::vector<GeometryRef>& out) {
   const std::string pointer = geometry_pointer(id, ref.geometry);
   if (!geometry.is_object()) return wrong("a geometry must be an object", pointer);
   const Json* type = find_member(geometry, "type");
@@ -82,6 +106,9 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
   ref.type = type->get<std::string>();
   if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
     ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
+  }
+  if (ref.type == "GeometryInstance") {
+    if (auto status = check_instance(geometry, pointer, template_count); !status) return status;
   }
   const Json* boundaries = find_member(geometry, "boundaries");
   if (boundaries == nullptr) {
@@ -93,7 +120,8 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
   return Done{};
 }
 
-Status index_object(const Json& object, std::uint32_t number, ModelIndex& index) {
+Status index_object(const Json& object, std::uint32_t number, std::uint64_t template_count,
+                    ModelIndex& index) {
   const std::string& id = index.ids[number];
   const std::string pointer = "/CityObjects" + pointer_token(id);
   if (!object.is_object()) return wrong("a city object must be an object", pointer);
@@ -104,8 +132,8 @@ Status index_object(const Json& object, std::uint32_t number, ModelIndex& index)
   if (!geometries->is_array()) return wrong("geometry must be an array", pointer + "/geometry");
   std::uint32_t position = 0;
   for (const Json& geometry : geometries->get_ref<const Json::array_t&>()) {
-    auto status =
-        index_geometry(geometry, id, GeometryRef{number, position++, 0, {}, {}}, index.geometries);
+    auto status = index_geometry(geometry, id, GeometryRef{number, position++, 0, {}, {}},
+                                 template_count, index.geometries);
     if (!status) return status;
   }
   return Done{};
@@ -197,10 +225,17 @@ Result<CityHeader> city_header(const Json& root) {
   if (const Json* metadata = find_member(root, "metadata"); metadata != nullptr) {
     header.srid = epsg_code(string_member(*metadata, "referenceSystem"));
   }
+  if (const Json* section = find_member(root, "geometry-templates"); section != nullptr) {
+    const Json* templates = find_member(*section, "templates");
+    if (templates == nullptr || !templates->is_array()) {
+      return wrong("templates is missing or not an array", "/geometry-templates/templates");
+    }
+    header.template_count = templates->size();
+  }
   return header;
 }
 
-Result<ModelIndex> index_city_model(const CityModel& model) {
+Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count) {
   const Json* objects = find_member(model.root, "CityObjects");
   if (objects == nullptr || !objects->is_object()) {
     return wrong("CityObjects is missing or not an object", "/CityObjects");
@@ -218,7 +253,8 @@ Result<ModelIndex> index_city_model(const CityModel& model) {
   std::vector<Index> parent;
   std::uint32_t number = 0;
   for (const auto& [id, object] : members) {
-    if (auto status = index_object(object, number++, index); !status) return status.error();
+    if (auto status = index_object(object, number++, template_count, index); !status)
+      return status.error();
     parent.push_back(parent_of(object, by_id));
   }
   if (auto status = find_roots(parent, index); !status) return status.error();

@@ -16,7 +16,7 @@ struct ReadModel {
 };
 
 Result<ReadModel> read_model(CityModel model, const CityHeader& header, const Limits& limits) {
-  auto index = index_city_model(model);
+  auto index = index_city_model(model, header.template_count);
   if (!index) return std::move(index).error();
   if (header.transform) {
     if (auto status = require_integers(model.vertices); !status) return status.error();
@@ -239,6 +239,9 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   header->text = header_text(model->root);
   document.header = header->text;
   note_vertices_without_transform(*header, document.notes);
+  auto templates = read_geometry_templates(*header, options.limits);
+  if (!templates) return std::move(templates).error();
+  document.templates = std::move(*templates);
 
   auto read = read_model(std::move(*model), *header, options.limits);
   if (!read) return std::move(read).error();

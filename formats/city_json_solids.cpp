@@ -95,6 +95,9 @@ Status check_range(std::span<const BoundaryToken> tokens, std::size_t vertex_cou
 }
 
 std::string boundary_pointer(const ModelIndex& index, const GeometryRef& ref) {
+  if (index.are_templates) {
+    return "/geometry-templates/templates" + pointer_token(ref.geometry) + "/boundaries";
+  }
   return "/CityObjects" + pointer_token(index.ids[ref.object]) + "/geometry" +
          pointer_token(ref.geometry) + "/boundaries";
 }

@@ -74,6 +74,10 @@ struct Document {
   std::string header;
   std::vector<Feature> features;
   std::vector<std::string> notes;  // readings of doubtful input, one clause each
+  /// Solids of CityJSON geometry templates, for validation only: writing takes them from `header`.
+  /// Coordinates are the templates' own, on no reference system; `source.pointer` is, for example,
+  /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's position.
+  std::vector<SubmittedSolid> templates = {};
 };
 
 struct ReadOptions {
@@ -89,6 +93,7 @@ struct CityHeader {
   std::string version;
   std::optional<Transform> transform;  // absent: vertices are coordinates (an error in a sequence)
   std::uint32_t srid = 0;
+  std::uint64_t template_count = 0;  // geometry templates that features may refer to
 };
 
 /// For streams: the first line of a CityJSONSeq (or a Document::header), then one call per line, so
@@ -97,6 +102,11 @@ struct CityHeader {
 Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits = {});
 Result<Feature> read_city_json_feature(const CityHeader& header, std::string_view line,
                                        const Limits& limits = {});
+/// The solids of the header's geometry templates (Document::templates), each template on a lattice
+/// of its own; none for most headers, at no cost. Errors: malformed with JSON Pointer. Cost:
+/// linear.
+Result<std::vector<SubmittedSolid>> read_geometry_templates(const CityHeader& header,
+                                                            const Limits& limits = {});
 /// write_feature() without reading the header again.
 Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature);
 

@@ -22,6 +22,8 @@
 #include <numeric>
 #include <string>
 
+#include "delaunay/cancellation.h"
+
 namespace watertight {
 namespace {
 
@@ -42,7 +44,8 @@ std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& poi
   return order;
 }
 
-Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra, Delaunay& delaunay) {
+Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
+                  const std::function<bool()>& is_cancelled, Delaunay& delaunay) {
   std::vector<Kernel::Point_3> converted;
   converted.reserve(points.size());
   for (const Point& p : points) {
@@ -52,8 +55,11 @@ Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra, D
     }
     converted.emplace_back(p.x, p.y, p.z);
   }
+  Cancellation cancellation(is_cancelled);
   Delaunay::Vertex_handle hint;
   for (const std::size_t i : insertion_order(converted)) {
+    // Asked by cells made: degenerate sets make many with each point.
+    const std::size_t cells = delaunay.tds().number_of_cells();
     const std::size_t before = delaunay.number_of_vertices();
     hint = delaunay.insert(converted[i], hint);
     if (delaunay.number_of_vertices() == before) {
@@ -65,6 +71,10 @@ Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra, D
     if (delaunay.tds().number_of_cells() / 2 > max_tetrahedra) {
       return Error{ErrorCode::limit_exceeded, "the Delaunay tetrahedralization has more than " +
                                                   std::to_string(max_tetrahedra) + " tetrahedra"};
+    }
+    const std::size_t cells_now = delaunay.tds().number_of_cells();
+    if (cancellation.is_due_and_wanted(cells_now > cells ? 1 + cells_now - cells : 1)) {
+      return Error{ErrorCode::cancelled, "cancelled by the caller"};
     }
   }
   return Done{};
@@ -86,12 +96,13 @@ Tetrahedron canonical_tetrahedron(Tetrahedron t) {
 }  // namespace
 
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
-                                             std::uint64_t max_tetrahedra) {
+                                             std::uint64_t max_tetrahedra,
+                                             const std::function<bool()>& is_cancelled) {
   if (points.size() >= kNone) {
     return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
   }
   Delaunay delaunay;
-  if (Status inserted = insert_all(points, max_tetrahedra, delaunay); !inserted) {
+  if (Status inserted = insert_all(points, max_tetrahedra, is_cancelled, delaunay); !inserted) {
     return std::move(inserted).error();
   }
   CanonicalDelaunay result;

@@ -7,7 +7,8 @@
 // Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations" (2011), section 3.
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,8 +27,10 @@ struct CanonicalDelaunay {
 /// Requires distinct points. Guarantees the same result for every insertion order, compiler and
 /// machine; indices refer to `points`. Returns an empty tetrahedralization if the points span no
 /// volume (fewer than 4, or all coplanar).
-/// Errors: limit_exceeded beyond `max_tetrahedra`. Cost: O(n log n) typical, O(n^2) worst.
+/// Errors: limit_exceeded beyond `max_tetrahedra`; cancelled once `is_cancelled` (asked every few
+/// thousand points) says so. Cost: O(n log n) typical, O(n^2) worst.
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
-                                             std::uint64_t max_tetrahedra = 64'000'000);
+                                             std::uint64_t max_tetrahedra = 64'000'000,
+                                             const std::function<bool()>& is_cancelled = {});
 
 }  // namespace watertight

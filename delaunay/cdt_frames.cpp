@@ -2,9 +2,9 @@
 //
 //   job:     u8 Constraints | u32 vertices, then 3 f64 each | u32 triangles, then 4 u32 each (three
 //            vertices, facet)
-//   answer:  u8 1 | u32 Steiner points, then 3 f64 each | u32 tetrahedra, then 4 u32 each | u32
-//            constrained faces, then 4 u32 each
-//        or  u8 0 | text of the refusal
+//   answer:  u8 1 | f64 CPU seconds | u32 Steiner points, then 3 f64 each | u32 tetrahedra, then 4
+//            u32 each | u32 constrained faces, then 4 u32 each
+//        or  u8 0 | f64 CPU seconds | text of the refusal
 #include "delaunay/cdt_frames.h"
 
 #include <algorithm>
@@ -12,6 +12,9 @@
 
 namespace watertight {
 namespace {
+
+/// Seconds; an engine that claims more is lying.
+constexpr double kLongestEngineTime = 1e9;
 
 void write_points(ByteWriter& writer, const Point* begin, const Point* end) {
   writer.u32(static_cast<std::uint32_t>(end - begin));
@@ -104,11 +107,13 @@ Bytes write_answer(const CdtAnswer& answer) {
   ByteWriter writer;
   if (!answer.tetrahedralization) {
     writer.u8(0);
+    writer.f64(answer.engine_seconds);
     writer.append(as_bytes(answer.refusal));
     return std::move(writer).bytes();
   }
   const Tetrahedralization& result = *answer.tetrahedralization;
   writer.u8(1);
+  writer.f64(answer.engine_seconds);
   write_points(writer, result.points.data() + result.input_count,
                result.points.data() + result.points.size());
   writer.u32(static_cast<std::uint32_t>(result.tetrahedra.size()));
@@ -128,7 +133,12 @@ Result<CdtAnswer> read_answer(ByteView bytes, const std::vector<Point>& vertices
   ByteReader reader(bytes);
   CdtAnswer answer;
   const std::uint8_t is_success = reader.u8();
-  if (reader.failed() || is_success > 1) return malformed(reader, "malformed answer of an engine");
+  answer.engine_seconds = reader.f64();
+  // Not "<": a time that is not a number must fail.
+  const bool has_time = answer.engine_seconds >= 0 && answer.engine_seconds <= kLongestEngineTime;
+  if (reader.failed() || is_success > 1 || !has_time) {
+    return malformed(reader, "malformed answer of an engine");
+  }
   if (is_success == 0) {
     answer.refusal = std::string(as_text(reader.take(reader.remaining())));
     return answer;

@@ -29,6 +29,8 @@ struct CdtJob {
 struct CdtAnswer {
   std::optional<Tetrahedralization> tetrahedralization;
   std::string refusal;
+  /// CPU time of the engine's own call, without reading the job and writing the answer.
+  double engine_seconds = 0;
 };
 
 Bytes write_job(const CdtJob& job);

@@ -13,6 +13,7 @@
 #include <numeric>
 #include <utility>
 
+#include "delaunay/cancellation.h"
 #include "delaunay/complex.h"
 #include "delaunay/facet_surface.h"
 #include "geometry/measures.h"
@@ -41,11 +42,13 @@ struct OrientedFace {
 
 class Examination {
  public:
-  Examination(const Solid& solid, const FacetTriangles& canonical, Certificate& certificate)
+  Examination(const Solid& solid, const FacetTriangles& canonical, Certificate& certificate,
+              const std::function<bool()>& is_cancelled)
       : solid_(solid),
         canonical_(canonical),
         certificate_(certificate),
-        data_(certificate.tetrahedralization) {
+        data_(certificate.tetrahedralization),
+        cancellation_(is_cancelled) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double largest = 0;
       for (const Point& p : solid.vertices()) {
@@ -62,6 +65,7 @@ class Examination {
           &Examination::check_facets, &Examination::check_regions, &Examination::check_orientation,
           &Examination::check_interior, &Examination::check_cavities, &Examination::check_volume}) {
       if (Checked refused = (this->*step)()) return refused;
+      if (cancellation_.is_wanted()) return cancelled();
     }
     return std::nullopt;
   }
@@ -69,6 +73,10 @@ class Examination {
  private:
   static Checked refuse(CertificateRefusal refusal, std::string detail, Index facet = kNone) {
     return Refusal{refusal, std::move(detail), facet};
+  }
+
+  static Checked cancelled() {
+    return refuse(CertificateRefusal::cancelled, "cancelled by the caller");
   }
 
   Checked check_indices() {
@@ -143,6 +151,7 @@ class Examination {
     auto begin = faces.begin();
     for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
       auto end = begin;
+      if (cancellation_.is_due_and_wanted(1 + surface.faces.size())) return cancelled();
       while (end != faces.end() && end->facet == facet) ++end;
       if (auto wrong = surfaces.check(facet, {begin, end}, surface)) {
         return refuse(CertificateRefusal::facet_not_conforming,
@@ -373,6 +382,7 @@ class Examination {
   std::vector<Index> parity_;         // region -> 0 outside or cavity, 1 interior
   Index region_count_ = 0;
   double volume_slack_ = 0;
+  Cancellation cancellation_;
 };
 
 }  // namespace
@@ -419,16 +429,19 @@ std::string_view to_string(CertificateRefusal refusal) {
       return "wrong-orientation";
     case CertificateRefusal::volume_mismatch:
       return "volume-mismatch";
+    case CertificateRefusal::cancelled:
+      return "cancelled";
   }
   return "";
 }
 
 CertificateResult check_certificate(const Solid& solid, const FacetTriangles& facets,
-                                    Tetrahedralization tetrahedralization, Rung rung) {
+                                    Tetrahedralization tetrahedralization, Rung rung,
+                                    const std::function<bool()>& is_cancelled) {
   CertificateResult result;
   result.certificate.rung = rung;
   result.certificate.tetrahedralization = std::move(tetrahedralization);
-  if (const Checked refused = Examination(solid, facets, result.certificate).run()) {
+  if (const Checked refused = Examination(solid, facets, result.certificate, is_cancelled).run()) {
     result.refusal = refused->refusal;
     result.detail = refused->detail;
     result.facet = refused->facet;

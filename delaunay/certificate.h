@@ -5,6 +5,7 @@
 // one interior region. Source: Verbree & Si 2008, section 3.1.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,8 @@ enum class CertificateRefusal : std::uint8_t {
   facet_not_conforming,   // a facet's faces are no disc with its rings as boundary
   foreign_face,           // a constrained face that belongs to no facet
   wrong_orientation,      // a declared normal points inward (a property of the solid)
-  volume_mismatch
+  volume_mismatch,
+  cancelled  // the caller did not want to know; says nothing
 };
 std::string_view to_string(CertificateRefusal refusal);
 
@@ -60,8 +62,9 @@ struct CertificateResult {
 };
 
 /// Requires merged vertices, `facets` = triangulate_facets(solid), and a solid that passed the
-/// exact tests. Cost: linear in tetrahedra.
+/// exact tests. `is_cancelled` is asked every few thousand steps. Cost: O(n log n) in tetrahedra.
 CertificateResult check_certificate(const Solid& solid, const FacetTriangles& facets,
-                                    Tetrahedralization tetrahedralization, Rung rung);
+                                    Tetrahedralization tetrahedralization, Rung rung,
+                                    const std::function<bool()>& is_cancelled = {});
 
 }  // namespace watertight

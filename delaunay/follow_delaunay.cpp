@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/assert.h"
+#include "delaunay/cancellation.h"
 #include "geometry/predicates.h"
 
 namespace watertight {
@@ -304,16 +305,22 @@ std::vector<Triangle> follow_facet(const Solid& merged, Index facet,
 
 }  // namespace
 
-FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
-                                   const CanonicalDelaunay& delaunay) {
+Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+                                           const CanonicalDelaunay& delaunay,
+                                           const std::function<bool()>& is_cancelled) {
   WATERTIGHT_ASSERT(canonical.first.size() == std::size_t{merged.facet_count()} + 1);
   FollowingTriangles result;
+  Cancellation cancellation(is_cancelled);
   DelaunayFaces faces(delaunay);
   std::vector<Index> local_of(merged.vertex_count(), kNone);
   for (Index facet = 0; facet < merged.facet_count(); ++facet) {
     const auto own =
         std::span(canonical.triangles)
             .subspan(canonical.first[facet], canonical.first[facet + 1] - canonical.first[facet]);
+    // A facet of k <= kLargestRing vertices may take k^3 steps, a larger one about k log k.
+    if (cancellation.is_due_and_wanted(1 + 16 * own.size())) {
+      return Error{ErrorCode::cancelled, "cancelled by the caller"};
+    }
     std::vector<Triangle> triangles = follow_facet(merged, facet, own, faces, local_of);
     for (Triangle& t : triangles)
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -330,6 +337,13 @@ FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& ca
     result.missing_total += missing;
   }
   return result;
+}
+
+FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+                                   const CanonicalDelaunay& delaunay) {
+  Result<FollowingTriangles> result = follow_delaunay(merged, canonical, delaunay, {});
+  WATERTIGHT_ASSERT(result.has_value());  // nobody cancels
+  return *std::move(result);
 }
 
 }  // namespace watertight

@@ -7,8 +7,10 @@
 // marks and the list of unrecovered faces say which triangles were taken.
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "base/result.h"
 #include "delaunay/canonical_delaunay.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
@@ -42,5 +44,10 @@ struct FollowingTriangles {
 /// facets' triangulation open.
 FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
                                    const CanonicalDelaunay& delaunay);
+
+/// The same, asking every few thousand triangles whether to go on. Errors: cancelled.
+Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+                                           const CanonicalDelaunay& delaunay,
+                                           const std::function<bool()>& is_cancelled);
 
 }  // namespace watertight

@@ -7,6 +7,8 @@
 // an answer does not depend on the numbering of the input.
 #include "delaunay/ladder.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -17,6 +19,7 @@
 
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/cdt_frames.h"
+#include "delaunay/cdt_statistics.h"
 #include "delaunay/follow_delaunay.h"
 
 namespace watertight {
@@ -35,10 +38,32 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-bool is_property(CertificateRefusal refusal) {
-  return refusal == CertificateRefusal::interior_disconnected ||
-         refusal == CertificateRefusal::cavity_mismatch ||
-         refusal == CertificateRefusal::wrong_orientation;
+/// CPU time of this thread, in seconds.
+double thread_seconds() {
+  timespec used{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
+}
+
+RungOutcome outcome_of(JobOutcome outcome) {
+  switch (outcome) {
+    case JobOutcome::failed:
+      return RungOutcome::engine_error;
+    case JobOutcome::crashed:
+      return RungOutcome::crashed;
+    case JobOutcome::timed_out:
+      return RungOutcome::timed_out;
+    case JobOutcome::out_of_memory:
+      return RungOutcome::memory_limit;
+    case JobOutcome::cancelled:
+      return RungOutcome::cancelled;
+    case JobOutcome::not_started:
+      return RungOutcome::not_started;
+    case JobOutcome::garbage:
+    case JobOutcome::ok:
+      break;
+  }
+  return RungOutcome::garbage;
 }
 
 /// The complex in the engines' order, and the way back.
@@ -145,11 +170,17 @@ class Climb {
          {Rung::delaunay, Rung::patch, Rung::patch_scaled, Rung::triangles_scaled, Rung::tetgen}) {
       if (rung > options_.last_rung) break;
       if (rung < options_.first_rung || !applies(rung)) continue;
-      if (is_cancelled_ || (options_.cancel && options_.cancel())) break;
+      if (options_.cancel && options_.cancel()) break;
+      attempt_ = RungAttempt{};
+      attempt_.rung = rung;
       const Clock::time_point start = Clock::now();
-      const std::string outcome = rung == Rung::delaunay ? try_delaunay() : try_engine(rung);
-      result_.attempts.push_back({rung, outcome, seconds_since(start)});
+      const double cpu_start = thread_seconds();
+      rung == Rung::delaunay ? try_delaunay() : try_engine(rung);
+      attempt_.seconds = seconds_since(start);
+      attempt_.cpu_seconds += thread_seconds() - cpu_start;
+      result_.attempts.push_back(std::move(attempt_));
       if (result_.certificate || result_.property != CertificateRefusal::none) break;
+      if (result_.attempts.back().result == RungOutcome::cancelled) break;
     }
     return std::move(result_);
   }
@@ -184,15 +215,34 @@ class Climb {
     return most > kAnisotropy * least;
   }
 
-  std::string try_delaunay() {
-    Result<CanonicalDelaunay> delaunay =
-        canonical_delaunay(solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count());
-    if (!delaunay) return "refused: " + delaunay.error().message;
-    FollowingTriangles following = follow_delaunay(solid_, canonical_, *delaunay);
+  void conclude(RungOutcome outcome, std::string text) {
+    attempt_.result = outcome;
+    attempt_.outcome = std::move(text);
+  }
+
+  void conclude(const Error& error) {
+    const bool is_limit = error.code == ErrorCode::limit_exceeded;
+    if (error.code == ErrorCode::cancelled) {
+      conclude(RungOutcome::cancelled, "cancelled: cancelled by the caller");
+    } else {
+      conclude(is_limit ? RungOutcome::memory_limit : RungOutcome::engine_error,
+               "refused: " + error.message);
+    }
+  }
+
+  void try_delaunay() {
+    Result<CanonicalDelaunay> delaunay = canonical_delaunay(
+        solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), options_.cancel);
+    if (!delaunay) return conclude(delaunay.error());
+    Result<FollowingTriangles> followed =
+        follow_delaunay(solid_, canonical_, *delaunay, options_.cancel);
+    if (!followed) return conclude(followed.error());
+    const FollowingTriangles& following = *followed;
     if (following.missing_total > 0) {
-      return "refused: " + std::to_string(following.missing_total) + " of " +
-             std::to_string(following.triangles.size()) +
-             " boundary triangles are no Delaunay faces";
+      return conclude(RungOutcome::not_delaunay,
+                      "refused: " + std::to_string(following.missing_total) + " of " +
+                          std::to_string(following.triangles.size()) +
+                          " boundary triangles are no Delaunay faces");
     }
     Tetrahedralization own;
     own.points.assign(solid_.vertices().begin(), solid_.vertices().end());
@@ -203,13 +253,19 @@ class Climb {
           {delaunay->faces[following.delaunay_face[t]], following.facet_of[t]});
     }
     std::sort(own.constrained.begin(), own.constrained.end());
-    return judge(std::move(own), Rung::delaunay);
+    judge(std::move(own), Rung::delaunay);
   }
 
-  std::string try_engine(Rung rung) {
+  void try_engine(Rung rung) {
     WorkerPool* pool = nullptr;
     if (workers_ != nullptr) pool = rung == Rung::tetgen ? workers_->tetgen() : workers_->cgal();
-    if (pool == nullptr) return "not-started: no engine executable";
+    if (pool == nullptr) {
+      return conclude(RungOutcome::not_started, "not-started: no engine executable");
+    }
+    const WorkerLimits limits = this->limits(rung);
+    if (!(limits.cpu_seconds > 0)) {
+      return conclude(RungOutcome::not_started, "not-started: the rungs before took all the time");
+    }
     if (input_.facet_at.empty()) input_ = engine_input(solid_, canonical_);
     // Scaling bends the angles that decide where Steiner points go: only where it must be.
     const bool keeps_coordinates =
@@ -221,15 +277,22 @@ class Climb {
                                                                         : Constraints::triangles;
     job.complex = input_.complex;
     for (Point& p : job.complex.vertices) p = scaled(p, scale);
-    const JobResult reply = pool->run(write_job(job), limits(rung), options_.cancel);
+    const JobResult reply = pool->run(write_job(job), limits, options_.cancel);
+    attempt_.cpu_seconds += reply.cpu_seconds;
+    engines_seconds_ += reply.cpu_seconds;
     if (reply.outcome != JobOutcome::ok) {
-      is_cancelled_ = reply.outcome == JobOutcome::cancelled;
-      return std::string(to_string(reply.outcome)) + ": " + reply.detail;
+      return conclude(outcome_of(reply.outcome),
+                      std::string(to_string(reply.outcome)) + ": " + reply.detail);
     }
     Result<CdtAnswer> answer = read_answer(reply.reply, job.complex.vertices, solid_.facet_count());
-    if (!answer) return "garbage: " + to_string(answer.error());
-    if (!answer->tetrahedralization) return "refused: " + answer->refusal;
-    return judge(restore(std::move(*answer->tetrahedralization), input_, scale, solid_), rung);
+    if (!answer) {
+      return conclude(RungOutcome::garbage, "garbage: " + to_string(answer.error()));
+    }
+    attempt_.engine_seconds = answer->engine_seconds;
+    if (!answer->tetrahedralization) {
+      return conclude(RungOutcome::engine_error, "refused: " + answer->refusal);
+    }
+    judge(restore(std::move(*answer->tetrahedralization), input_, scale, solid_), rung);
   }
 
   /// An engine takes about 0.1 ms a triangle on ordinary solids and up to 10 ms on nasty ones.
@@ -239,6 +302,10 @@ class Climb {
     const double triangles = static_cast<double>(canonical_.triangles.size());
     double seconds = rung == Rung::patch ? 2 + triangles * 0.5e-3 : 10 + triangles * 1e-3;
     if (options_.seconds_per_rung > 0) seconds = options_.seconds_per_rung;
+    const double in_all = options_.seconds_in_all > 0
+                              ? options_.seconds_in_all
+                              : default_ladder_seconds(canonical_.triangles.size());
+    seconds = std::min(seconds, in_all - engines_seconds_);
     WorkerLimits limits;
     limits.cpu_seconds = seconds;
     limits.wall_seconds = options_.seconds_per_rung > 0 ? seconds : 4 * seconds + 5;
@@ -246,22 +313,31 @@ class Climb {
     return limits;
   }
 
-  std::string judge(Tetrahedralization tetrahedralization, Rung rung) {
+  void judge(Tetrahedralization tetrahedralization, Rung rung) {
     CertificateResult checked =
-        check_certificate(solid_, canonical_, std::move(tetrahedralization), rung);
+        check_certificate(solid_, canonical_, std::move(tetrahedralization), rung, options_.cancel);
+    attempt_.refusal = checked.refusal;
+    if (checked.refusal == CertificateRefusal::cancelled) {
+      return conclude(RungOutcome::cancelled, "cancelled: cancelled by the caller");
+    }
     if (checked.refusal != CertificateRefusal::none) {
-      if (is_property(checked.refusal)) {
+      if (is_property_of_solid(checked.refusal)) {
         result_.property = checked.refusal;
         result_.detail = checked.detail;
         result_.facet = checked.facet;
       }
-      return "refused: " + std::string(to_string(checked.refusal)) + ": " + checked.detail;
+      return conclude(
+          RungOutcome::refused_by_certificate,
+          "refused: " + std::string(to_string(checked.refusal)) + ": " + checked.detail);
     }
     if (options_.strict && !checked.certificate.refilled_facets.empty()) {
-      return "refused: a facet that is not planar is filled otherwise than its canonical triangles";
+      attempt_.refusal = CertificateRefusal::facet_not_conforming;
+      return conclude(RungOutcome::refused_by_certificate,
+                      "refused: a facet that is not planar is filled otherwise than its canonical "
+                      "triangles");
     }
     result_.certificate = std::move(checked.certificate);
-    return "accepted";
+    conclude(RungOutcome::accepted, "accepted");
   }
 
   const Solid& solid_;
@@ -269,7 +345,8 @@ class Climb {
   EngineWorkers* workers_;
   const LadderOptions& options_;
   EngineInput input_;
-  bool is_cancelled_ = false;
+  RungAttempt attempt_;
+  double engines_seconds_ = 0;  // CPU time of workers so far
   LadderResult result_;
 };
 
@@ -288,6 +365,36 @@ std::unique_ptr<WorkerPool> make_pool(const std::string& executable, const std::
 }
 
 }  // namespace
+
+double default_ladder_seconds(std::size_t triangles) {
+  return 20 + static_cast<double>(triangles) * 1e-3;
+}
+
+std::string_view to_string(RungOutcome outcome) {
+  switch (outcome) {
+    case RungOutcome::accepted:
+      return "accepted";
+    case RungOutcome::refused_by_certificate:
+      return "refused-by-certificate";
+    case RungOutcome::not_delaunay:
+      return "not-delaunay";
+    case RungOutcome::engine_error:
+      return "engine-error";
+    case RungOutcome::crashed:
+      return "crashed";
+    case RungOutcome::timed_out:
+      return "timed-out";
+    case RungOutcome::memory_limit:
+      return "memory-limit";
+    case RungOutcome::garbage:
+      return "garbage";
+    case RungOutcome::cancelled:
+      return "cancelled";
+    case RungOutcome::not_started:
+      return "not-started";
+  }
+  return "";
+}
 
 EngineWorkers::EngineWorkers(const Options& options)
     : cgal_(make_pool(options.cgal_executable, "watertight-worker", options.processes, 500)),

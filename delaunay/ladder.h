@@ -38,15 +38,42 @@ struct LadderOptions {
   bool strict = false;  // triangle mode only: the CDT must hold the canonical triangles
   Rung first_rung = Rung::delaunay;  // the paper's table and tests leave out the rungs before it
   Rung last_rung = Rung::tetgen;
-  double seconds_per_rung = 0;  // 0: by size (2 s and more)
+  double seconds_per_rung = 0;  // CPU time of an engine on one rung; 0: by size (2 s and more)
+  /// CPU time of all engines on one solid together; 0: by size (20 s and more, see
+  /// default_ladder_seconds()). A rung gets what those before it left.
+  double seconds_in_all = 0;
   CancelPoll cancel = {};
 };
+
+/// CPU seconds of engines that a solid with this many boundary triangles may cost by default:
+/// 20 s and 1 ms a triangle. Wall-clock time is at most four times that and 5 s a rung.
+double default_ladder_seconds(std::size_t triangles);
+
+/// What became of one rung's attempt: the classes that statistics count.
+enum class RungOutcome : std::uint8_t {
+  accepted,                // by the certificate: the solid is decided
+  refused_by_certificate,  // RungAttempt::refusal names the reason
+  not_delaunay,            // rung 0: facets are not unions of Delaunay faces
+  engine_error,            // the engine said that it has no answer
+  crashed,                 // the worker process ended by itself
+  timed_out,
+  memory_limit,
+  garbage,  // bytes that are no answer
+  cancelled,
+  not_started  // no engine executable, no process, or no time left
+};
+inline constexpr std::size_t kRungOutcomes = 10;
+std::string_view to_string(RungOutcome outcome);
 
 /// One rung's attempt, for the report and for statistics.
 struct RungAttempt {
   Rung rung = Rung::none;
-  std::string outcome;  // "accepted", "refused: ...", "crashed: ...", "timed-out", ...
-  double seconds = 0;
+  std::string outcome;  // for people: "accepted", "refused: ...", "crashed: ...", "timed-out", ...
+  double seconds = 0;   // wall
+  RungOutcome result = RungOutcome::not_started;
+  CertificateRefusal refusal = CertificateRefusal::none;  // when refused_by_certificate
+  double cpu_seconds = 0;     // of the calling thread and of the worker process
+  double engine_seconds = 0;  // CPU time of the engine's own call; 0 when it did not answer
 };
 
 struct LadderResult {

@@ -49,32 +49,52 @@ class Conversation {
     unsent_header_ = header_;
   }
 
+  /// The CPU time of a process that did not answer is known only when it has ended.
   JobResult run() {
-    const Clock::time_point start = Clock::now();
-    while (!result_) {
-      if (cancel_ && cancel_()) return finish(JobOutcome::cancelled, "cancelled by the caller");
-      if (seconds_since(start) >= limits_.wall_seconds) {
-        return finish(JobOutcome::timed_out, "wall-clock limit");
-      }
-      wait();
-      if (!is_sent() && !transmit()) break;
-      if (!receive()) break;
-      parse();
+    if (converse()) return std::move(*result_);
+    const Ending ending = process_.end();
+    if (!result_) explain(ending);
+    if (ending.known) {
+      result_->cpu_seconds = std::max(ending.cpu_seconds - process_.accounted(), 0.0);
     }
-    return result_ ? std::move(*result_) : ended();
+    return std::move(*result_);
   }
 
   /// True if the process ended on its own before it saw this job: idle for too long.
   bool was_idle_end() const { return was_idle_end_; }
 
  private:
+  /// True if the process answered and can take another job. Without a result the stream ended.
+  bool converse() {
+    const Clock::time_point start = Clock::now();
+    while (!result_) {
+      if (cancel_ && cancel_()) {
+        finish(JobOutcome::cancelled, "cancelled by the caller");
+      } else if (seconds_since(start) >= limits_.wall_seconds) {
+        finish(JobOutcome::timed_out, "wall-clock limit");
+      } else if (cpu_of_job() >= limits_.cpu_seconds) {
+        finish(JobOutcome::timed_out, "CPU limit");
+      } else {
+        wait();
+        if (!is_sent() && !transmit()) return false;
+        if (!receive()) return false;
+        parse();
+      }
+    }
+    return result_->outcome == JobOutcome::ok;
+  }
+
   bool is_sent() const { return unsent_header_.empty() && unsent_body_.empty(); }
 
-  JobResult finish(JobOutcome outcome, std::string detail) {
-    JobResult result;
-    result.outcome = outcome;
-    result.detail = std::move(detail);
-    return result;
+  /// So far, with the start of a new process; 0 once it has ended.
+  double cpu_of_job() const {
+    return std::max(process_.cpu_seconds().value_or(0) - process_.accounted(), 0.0);
+  }
+
+  void finish(JobOutcome outcome, std::string detail) {
+    result_.emplace();
+    result_->outcome = outcome;
+    result_->detail = std::move(detail);
   }
 
   void wait() {
@@ -125,11 +145,11 @@ class Conversation {
     const std::uint32_t checksum = reader.u32();
     const std::uint8_t status = reader.u8();
     if (status > static_cast<std::uint8_t>(ReplyStatus::exception)) {
-      result_ = finish(JobOutcome::garbage, "reply with an unknown status");
+      finish(JobOutcome::garbage, "reply with an unknown status");
     } else if (length > limits_.reply_bytes) {
-      result_ = finish(JobOutcome::garbage, "reply of " + std::to_string(length) + " bytes");
+      finish(JobOutcome::garbage, "reply of " + std::to_string(length) + " bytes");
     } else if (received_.size() > kReplyHeader + length) {
-      result_ = finish(JobOutcome::garbage, "bytes after the reply");
+      finish(JobOutcome::garbage, "bytes after the reply");
     } else if (received_.size() == kReplyHeader + length) {
       conclude(static_cast<ReplyStatus>(status), checksum);
     }
@@ -138,27 +158,28 @@ class Conversation {
   void conclude(ReplyStatus status, std::uint32_t checksum) {
     received_.erase(received_.begin(), received_.begin() + kReplyHeader);
     if (!is_sent()) {
-      result_ = finish(JobOutcome::garbage, "a reply before the end of the request");
+      finish(JobOutcome::garbage, "a reply before the end of the request");
     } else if (crc32c(received_) != checksum) {
-      result_ = finish(JobOutcome::garbage, "reply with a wrong checksum");
+      finish(JobOutcome::garbage, "reply with a wrong checksum");
     } else if (status == ReplyStatus::out_of_memory) {
-      result_ = finish(JobOutcome::out_of_memory, "out of memory");
+      finish(JobOutcome::out_of_memory, "out of memory");
     } else if (status == ReplyStatus::exception) {
-      result_ = finish(JobOutcome::crashed, "exception: " + std::string(as_text(received_)));
+      finish(JobOutcome::failed, "exception: " + std::string(as_text(received_)));
     } else {
-      result_ = finish(JobOutcome::ok, {});
+      finish(JobOutcome::ok, {});
       result_->reply = std::move(received_);
+      result_->cpu_seconds = cpu_of_job();
     }
   }
 
   /// The stream ended without a whole reply.
-  JobResult ended() {
-    const Ending ending = process_.end();
+  void explain(const Ending& ending) {
     was_idle_end_ = ending.known && !ending.by_signal && ending.code == kExitIdle;
     if (ending.by_signal && ending.code == SIGXCPU) {
-      return finish(JobOutcome::timed_out, "CPU limit");
+      finish(JobOutcome::timed_out, "CPU limit");
+    } else {
+      finish(JobOutcome::crashed, to_string(ending));
     }
-    return finish(JobOutcome::crashed, to_string(ending));
   }
 
   WorkerProcess& process_;
@@ -178,6 +199,8 @@ std::string_view to_string(JobOutcome outcome) {
   switch (outcome) {
     case JobOutcome::ok:
       return "ok";
+    case JobOutcome::failed:
+      return "failed";
     case JobOutcome::crashed:
       return "crashed";
     case JobOutcome::timed_out:
@@ -262,7 +285,7 @@ struct WorkerPool::State {
       Conversation conversation(*process, request, limits, cancel);
       result = conversation.run();
       if (conversation.was_idle_end()) continue;
-      process->count_job();
+      process->count_job(result.cpu_seconds);
       if (result.outcome == JobOutcome::ok && process->jobs_done() < options.jobs_per_process) {
         kept = std::move(*process);
       }

@@ -17,13 +17,14 @@ namespace watertight {
 
 struct WorkerLimits {
   double wall_seconds = 20;
-  double cpu_seconds = 15;
+  double cpu_seconds = 15;                  // kept to about 10 ms
   std::uint64_t memory_bytes = 2ULL << 30;  // RLIMIT_AS of the process
   std::uint64_t reply_bytes = 1ULL << 30;
 };
 
 enum class JobOutcome : std::uint8_t {
   ok,
+  failed,  // the handler threw: it knows that it has no answer
   crashed,
   timed_out,
   out_of_memory,
@@ -35,9 +36,10 @@ std::string_view to_string(JobOutcome outcome);
 
 struct JobResult {
   JobOutcome outcome = JobOutcome::not_started;
-  Bytes reply;         // when ok
-  std::string detail;  // e.g. "killed by signal 11"
-  double seconds = 0;  // wall
+  Bytes reply;             // when ok
+  std::string detail;      // e.g. "killed by signal 11"
+  double seconds = 0;      // wall
+  double cpu_seconds = 0;  // of the worker: its start if it was new, framing and the job itself
 };
 
 /// Asked every few milliseconds while a job runs; true cancels it.

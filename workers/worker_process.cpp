@@ -41,6 +41,10 @@ Error system_error(const std::string& what, int number) {
   return Error{ErrorCode::unavailable, what + ": " + std::string(std::strerror(number))};
 }
 
+double to_seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+}
+
 /// Frees what posix_spawn's two parameter blocks hold.
 struct SpawnParameters {
   posix_spawn_file_actions_t actions{};
@@ -170,7 +174,8 @@ Result<WorkerProcess> WorkerProcess::start(const std::string& executable, double
 WorkerProcess::WorkerProcess(WorkerProcess&& other) noexcept
     : process_(std::exchange(other.process_, -1)),
       socket_(std::exchange(other.socket_, -1)),
-      jobs_done_(other.jobs_done_) {}
+      jobs_done_(other.jobs_done_),
+      accounted_(other.accounted_) {}
 
 WorkerProcess& WorkerProcess::operator=(WorkerProcess&& other) noexcept {
   if (this != &other) {
@@ -178,23 +183,31 @@ WorkerProcess& WorkerProcess::operator=(WorkerProcess&& other) noexcept {
     process_ = std::exchange(other.process_, -1);
     socket_ = std::exchange(other.socket_, -1);
     jobs_done_ = other.jobs_done_;
+    accounted_ = other.accounted_;
   }
   return *this;
 }
 
 WorkerProcess::~WorkerProcess() { end(); }
 
-Status WorkerProcess::limit(double cpu_seconds, std::uint64_t memory_bytes) {
+std::optional<double> WorkerProcess::cpu_seconds() const {
   clockid_t clock{};
   timespec used{};
-  if (clock_getcpuclockid(process_, &clock) == 0) clock_gettime(clock, &used);
+  if (clock_getcpuclockid(process_, &clock) != 0 || clock_gettime(clock, &used) != 0) {
+    return std::nullopt;
+  }
+  return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
+}
+
+Status WorkerProcess::limit(double cpu_seconds, std::uint64_t memory_bytes) {
   // Only soft limits change, so that the next job can have higher ones.
   rlimit current{};
   if (prlimit(process_, RLIMIT_CPU, nullptr, &current) != 0) {
     return system_error("cannot read a helper's limits", errno);
   }
+  // The pool reads the clock and is exact; this ends the process if the host cannot.
   const double seconds =
-      static_cast<double>(used.tv_sec) + std::ceil(std::max(cpu_seconds, 0.0)) + 1;
+      std::ceil(this->cpu_seconds().value_or(0) + std::max(cpu_seconds, 0.0)) + 1;
   current.rlim_cur = std::min(static_cast<rlim_t>(std::min(seconds, 1e9)), current.rlim_max);
   int failed = prlimit(process_, RLIMIT_CPU, &current, nullptr);
   if (kCanLimitMemory && failed == 0) {
@@ -219,14 +232,16 @@ Ending WorkerProcess::end() {
     // Before it is reaped, its number and so its group's belong to it alone.
     kill(-process_, SIGKILL);
     int status = 0;
+    rusage used{};
     pid_t reaped = -1;
     do {
-      reaped = waitpid(process_, &status, 0);
+      reaped = wait4(process_, &status, 0, &used);
     } while (reaped < 0 && errno == EINTR);
     if (reaped == process_) {
       ending.known = true;
       ending.by_signal = WIFSIGNALED(status);
       ending.code = ending.by_signal ? WTERMSIG(status) : WEXITSTATUS(status);
+      ending.cpu_seconds = to_seconds(used.ru_utime) + to_seconds(used.ru_stime);
     }
     process_ = -1;
   }

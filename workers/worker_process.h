@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "base/result.h"
@@ -15,8 +16,9 @@ namespace watertight {
 /// What became of a process that was killed or ended.
 struct Ending {
   bool by_signal = false;
-  int code = 0;        // signal number or exit status
-  bool known = false;  // false if somebody else reaped it
+  int code = 0;            // signal number or exit status
+  bool known = false;      // false if somebody else reaped it
+  double cpu_seconds = 0;  // of its whole life
 };
 std::string to_string(const Ending& ending);
 
@@ -34,10 +36,17 @@ class WorkerProcess {
 
   int socket() const { return socket_; }
   std::size_t jobs_done() const { return jobs_done_; }
-  void count_job() { ++jobs_done_; }
 
   /// Sets the memory limit, and the CPU limit counted from now.
   Status limit(double cpu_seconds, std::uint64_t memory_bytes);
+  /// CPU time since the process started; nothing once it has ended.
+  std::optional<double> cpu_seconds() const;
+  /// The same at the end of the last job that it answered.
+  double accounted() const { return accounted_; }
+  void count_job(double cpu_seconds) {
+    ++jobs_done_;
+    accounted_ += cpu_seconds;
+  }
   /// True if the process has ended (and waits to be reaped).
   bool has_ended() const;
   /// Kills the whole group if it still runs, and reaps the process.
@@ -49,6 +58,7 @@ class WorkerProcess {
   pid_t process_ = -1;
   int socket_ = -1;
   std::size_t jobs_done_ = 0;
+  double accounted_ = 0;
 };
 
 }  // namespace watertight

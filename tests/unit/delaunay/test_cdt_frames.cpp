@@ -95,8 +95,26 @@ TEST_CASE("CDT frames with wrong indices, counts or coordinates are malformed") 
       [](Tetrahedralization& t) { t.points[4].z = std::numeric_limits<double>::infinity(); }));
   // A count that the bytes cannot hold is refused before anything is allocated.
   Bytes bytes = write_answer(sample_answer());
-  bytes[1] = bytes[2] = bytes[3] = bytes[4] = 0xFF;
+  bytes[9] = bytes[10] = bytes[11] = bytes[12] = 0xFF;
   CHECK_FALSE(read_answer(bytes, vertices, 2).has_value());
+}
+
+TEST_CASE("CDT answers carry the engine's time, and impossible times are malformed") {
+  const std::vector<Point> vertices = sample_job().complex.vertices;
+  CdtAnswer answer = sample_answer();
+  answer.engine_seconds = 1.25;
+  const Result<CdtAnswer> read = read_answer(write_answer(answer), vertices, 2);
+  REQUIRE(read.has_value());
+  CHECK(read->engine_seconds == 1.25);
+  const Result<CdtAnswer> refusal = read_answer(write_answer({{}, "no", 0.5}), vertices, 2);
+  REQUIRE(refusal.has_value());
+  CHECK(refusal->engine_seconds == 0.5);
+  CHECK(refusal->refusal == "no");
+  for (const double wrong : {-1.0, 1e300, std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::quiet_NaN()}) {
+    answer.engine_seconds = wrong;
+    CHECK_FALSE(read_answer(write_answer(answer), vertices, 2).has_value());
+  }
 }
 
 }  // namespace

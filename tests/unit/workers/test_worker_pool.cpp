@@ -93,7 +93,7 @@ TEST_CASE("every fault of a worker has its own outcome and costs only its job") 
   check("exit", JobOutcome::crashed, "status 7");
   check("orphan", JobOutcome::crashed, "status 5");
   check("half-reply", JobOutcome::crashed, "status 0");
-  check("exception", JobOutcome::crashed, "thrown on purpose");
+  check("exception", JobOutcome::failed, "thrown on purpose");
   check("hang", JobOutcome::timed_out, "wall");
   check("slow-drip", JobOutcome::timed_out, "wall");
   check("garbage", JobOutcome::garbage, "");

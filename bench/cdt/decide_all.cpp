@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// decide_all [--engine-only] [--attempts] FILE_OR_FOLDER...: runs certify() on every solid of the
+// files and prints how many were decided, by rung and class of outcome; what the CDT step cost
+// beside the engine's own CPU time; and every undecided solid with the reason. With --engine-only
+// rung 0 is left out, so that the engine's own CPU time is that of the whole set; with --attempts
+// every attempt that was not accepted is printed, and every one that took longer than a second.
+// Exit status 1 if a solid is undecided.
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "delaunay/cdt_statistics.h"
+#include "formats/document.h"
+#include "validate/certify.h"
+
+using namespace watertight;
+
+namespace {
+
+/// Attempts that took longer than this many seconds of CPU time are printed.
+constexpr double kSlow = 1;
+
+struct Settings {
+  bool is_engine_only = false;
+  bool prints_attempts = false;
+  std::vector<std::string> files;
+};
+
+struct Totals {
+  std::size_t files = 0, unreadable = 0, solids = 0, valid = 0, invalid = 0;
+  double seconds = 0;  // of certify(), wall
+  /// Only solids that an engine was asked about.
+  double engine_step_seconds = 0;
+  double engine_seconds = 0;
+  CdtStatistics cdt;
+  std::vector<std::string> undecided;
+};
+
+void add_path(const std::string& path, std::vector<std::string>& files) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(path, failed)) {
+    files.push_back(path);
+    return;
+  }
+  for (std::filesystem::recursive_directory_iterator at(path, failed), end; at != end;
+       at.increment(failed)) {
+    if (at->is_regular_file(failed)) files.push_back(at->path().string());
+  }
+}
+
+void print_attempts(const std::string& name, const Report& report) {
+  for (const RungAttempt& attempt : report.attempts) {
+    const bool is_usual =
+        attempt.result == RungOutcome::accepted || attempt.result == RungOutcome::not_delaunay;
+    if (is_usual && attempt.cpu_seconds < kSlow) continue;
+    std::printf("attempt %s: %s: %s: %.2f s CPU, engine %.2f s\n", name.c_str(),
+                std::string(to_string(attempt.rung)).c_str(), attempt.outcome.c_str(),
+                attempt.cpu_seconds, attempt.engine_seconds);
+  }
+}
+
+void decide(const std::string& name, const SubmittedSolid& submitted, EngineWorkers& workers,
+            const Settings& settings, Totals& totals) {
+  CertifyOptions options;
+  options.unclosed_rings = submitted.unclosed_rings;
+  if (settings.is_engine_only) options.ladder.first_rung = Rung::patch;
+  const Inspection inspection = certify(submitted.solid, &workers, options);
+  const Report& report = inspection.report;
+  ++totals.solids;
+  totals.seconds += report.seconds;
+  totals.cdt.add(report.attempts);
+  double engine = 0;
+  double step = 0;
+  for (const RungAttempt& attempt : report.attempts) {
+    engine += attempt.engine_seconds;
+    step += attempt.cpu_seconds;
+  }
+  if (engine > 0) {
+    totals.engine_seconds += engine;
+    totals.engine_step_seconds += step;
+  }
+  if (settings.prints_attempts) print_attempts(name, report);
+  if (report.verdict == Verdict::valid) ++totals.valid;
+  if (report.verdict == Verdict::invalid) ++totals.invalid;
+  if (report.verdict == Verdict::undecided) {
+    totals.undecided.push_back(name + ": " + report.undecided_reason);
+  }
+}
+
+void decide_file(const std::string& file, EngineWorkers& workers, const Settings& settings,
+                 Totals& totals) {
+  std::ifstream stream(file, std::ios::binary);
+  const Bytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  ++totals.files;
+  const auto format = detect_format(file, bytes);
+  const auto document = format ? read_document(bytes, *format) : Result<Document>(format.error());
+  if (!document) {
+    ++totals.unreadable;
+    std::printf("unreadable %s: %s\n", file.c_str(), to_string(document.error()).c_str());
+    return;
+  }
+  std::size_t number = 0;
+  for (const Feature& feature : document->features) {
+    for (const SubmittedSolid& submitted : feature.solids) {
+      const std::string name =
+          file + "#" + std::to_string(number++) + " " + submitted.source.object_id;
+      decide(name, submitted, workers, settings, totals);
+    }
+  }
+}
+
+void print_totals(const Totals& totals) {
+  const CdtStatistics& cdt = totals.cdt;
+  std::printf("\n%zu files, %zu unreadable, %zu solids: %zu valid, %zu invalid, %zu undecided\n",
+              totals.files, totals.unreadable, totals.solids, totals.valid, totals.invalid,
+              totals.undecided.size());
+  std::printf(
+      "%llu solids passed the exact tests: %llu accepted, %llu refuted, %llu undecided\n",
+      static_cast<unsigned long long>(cdt.solids), static_cast<unsigned long long>(cdt.accepted),
+      static_cast<unsigned long long>(cdt.refuted), static_cast<unsigned long long>(cdt.undecided));
+  for (std::size_t rung = 0; rung < kRungs; ++rung) {
+    for (std::size_t outcome = 0; outcome < kRungOutcomes; ++outcome) {
+      if (cdt.attempts[rung][outcome] == 0) continue;
+      std::printf("  %-16s %-22s %8llu\n", std::string(to_string(static_cast<Rung>(rung))).c_str(),
+                  std::string(to_string(static_cast<RungOutcome>(outcome))).c_str(),
+                  static_cast<unsigned long long>(cdt.attempts[rung][outcome]));
+    }
+  }
+  std::printf("certify: %.2f s wall; CDT step: %.2f s wall, %.2f s CPU\n", totals.seconds,
+              cdt.seconds, cdt.cpu_seconds);
+  std::printf("engine's own calls: %.2f s CPU; step CPU / engine CPU = %.3f over all solids, ",
+              cdt.engine_seconds, cdt.cpu_seconds / std::max(cdt.engine_seconds, 1e-9));
+  std::printf("%.3f over those that reached an engine\n",
+              totals.engine_step_seconds / std::max(totals.engine_seconds, 1e-9));
+  for (const std::string& text : totals.undecided) std::printf("undecided %s\n", text.c_str());
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  Settings settings;
+  for (int i = 1; i < argument_count; ++i) {
+    if (std::strcmp(arguments[i], "--engine-only") == 0) {
+      settings.is_engine_only = true;
+    } else if (std::strcmp(arguments[i], "--attempts") == 0) {
+      settings.prints_attempts = true;
+    } else {
+      add_path(arguments[i], settings.files);
+    }
+  }
+  if (settings.files.empty()) {
+    std::fprintf(stderr, "usage: decide_all [--engine-only] [--attempts] FILE_OR_FOLDER...\n");
+    return 2;
+  }
+  std::sort(settings.files.begin(), settings.files.end());
+  EngineWorkers workers;
+  Totals totals;
+  for (const std::string& file : settings.files) decide_file(file, workers, settings, totals);
+  print_totals(totals);
+  return totals.undecided.empty() ? 0 : 1;
+}

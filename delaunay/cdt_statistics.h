@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Counts of what became of solids on the CDT ladder: by rung and by class of outcome. A plain value
+// that callers fill solid by solid and add up over threads; for summaries of CLI, jobs and benches.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "delaunay/ladder.h"
+
+namespace watertight {
+
+inline constexpr std::size_t kRungs = 5;  // Rung::delaunay to Rung::tetgen
+
+struct CdtStatistics {
+  std::uint64_t solids = 0;    // that climbed the ladder
+  std::uint64_t accepted = 0;  // certified
+  std::uint64_t refuted = 0;   // the certificate shows that the solid is invalid
+  std::uint64_t undecided = 0;
+  /// attempts[rung][RungOutcome]; a solid can have several attempts.
+  std::array<std::array<std::uint64_t, kRungOutcomes>, kRungs> attempts{};
+  double seconds = 0;         // wall, of all attempts
+  double cpu_seconds = 0;     // of the callers' threads and of the workers
+  double engine_seconds = 0;  // CPU time of the engines' own calls
+
+  /// Counts one solid. No attempts (an invalid solid, another proof) = not counted.
+  void add(std::span<const RungAttempt> attempts_of_solid);
+  CdtStatistics& operator+=(const CdtStatistics& other);
+  std::uint64_t count(Rung rung, RungOutcome outcome) const;
+};
+
+/// True if a refusal is a property of the solid (interior_disconnected, cavity_mismatch,
+/// wrong_orientation), whatever the engine: the solid is invalid.
+bool is_property_of_solid(CertificateRefusal refusal);
+
+}  // namespace watertight

@@ -5,8 +5,8 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
+#include "base/json_text.h"
 #include "pipeline/pipeline.h"
 
 namespace watertight {
@@ -17,8 +17,5 @@ std::string measures_json(const Measures& measures);
 /// {"verdict", "stored", "features": [{"id", "verdict", "stored", "solids": [{"object",
 /// "geometryType", "lod", "geometry", "ordinal", "pointer", "blobBytes", "report"}]}]}
 std::string outcome_json(const IngestOutcome& outcome);
-
-/// `text` as a JSON string with quotes; bytes that are no UTF-8 become U+FFFD.
-std::string json_string(std::string_view text);
 
 }  // namespace watertight

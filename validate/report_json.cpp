@@ -30,6 +30,7 @@ std::string place_text(const Place& place) {
     text += ' ';
     text += std::to_string(index);
   };
+  add("solid", place.solid);
   add("shell", place.shell);
   add("facet", place.facet);
   add("ring", place.ring);
@@ -37,11 +38,12 @@ std::string place_text(const Place& place) {
   return text;
 }
 
-Json place_json(const Place& place) {
+Json place_json(const Place& place, const ReportJsonOptions& options) {
   Json json = Json::object();
   const auto add = [&](const char* name, Index index) {
     if (index != kNone) json[name] = index;
   };
+  add("solid", options.solid_number);
   add("shell", place.shell);
   add("facet", place.facet);
   add("ring", place.ring);
@@ -50,18 +52,20 @@ Json place_json(const Place& place) {
 }
 
 /// val3dity's path of a place; a facet counts from the start of its shell.
-std::string path_text(const Place& place, const Solid& submitted) {
-  std::string text = "shell=";
+std::string path_text(const Place& place, const PlacedSolid& solid) {
+  const Solid& submitted = *solid.submitted;
+  std::string text = solid.options->id_prefix;
+  text += "shell=";
   if (place.shell != kNone) text += std::to_string(place.shell);
   text += "|face=";
-  if (place.facet != kNone && place.shell != kNone && place.shell < submitted.shell_count()) {
-    text += std::to_string(place.facet - submitted.facets_of(place.shell).begin);
-  }
+  const bool has_facet = place.facet != kNone && place.shell != kNone &&
+                         place.shell < submitted.shell_count() &&
+                         place.facet < submitted.facet_count();
+  if (has_facet) text += std::to_string(place.facet - submitted.facets_of(place.shell).begin);
   return text;
 }
 
-Json finding_json(const Finding& finding, const Solid& submitted,
-                  const ReportJsonOptions& options) {
+Json make_finding(const Finding& finding, const PlacedSolid& here, const PlacedSolid& there) {
   Json json;
   const FindingKind* kind = find_kind(finding.code);
   json["code"] = finding.code;
@@ -69,18 +73,21 @@ Json finding_json(const Finding& finding, const Solid& submitted,
   json["description"] = finding_name(finding.code);  // val3dity's member of that content
   json["severity"] = to_string(finding.severity);
   json["summary"] = kind == nullptr ? std::string_view{} : kind->summary;
-  std::string id = path_text(finding.place, submitted);
-  if (finding.other) id += "&&" + path_text(*finding.other, submitted);
+  json["hint"] = kind == nullptr ? std::string_view{} : kind->hint;
+  json["is_repairable"] = kind != nullptr && kind->is_repairable;
+  std::string id = path_text(finding.place, here);
+  if (finding.other) id += "&&" + path_text(*finding.other, there);
   json["id"] = id;
   json["info"] = finding.detail;
-  json["place"] = place_json(finding.place);
-  if (!options.pointer_prefix.empty()) {
-    json["pointer"] = place_pointer(finding.place, submitted, options);
+  json["place"] = place_json(finding.place, *here.options);
+  const bool has_pointers = !here.options->pointer_prefix.empty();
+  if (has_pointers) {
+    json["pointer"] = place_pointer(finding.place, *here.submitted, *here.options);
   }
   if (finding.other) {
-    json["other"] = place_json(*finding.other);
-    if (!options.pointer_prefix.empty()) {
-      json["other_pointer"] = place_pointer(*finding.other, submitted, options);
+    json["other"] = place_json(*finding.other, *there.options);
+    if (has_pointers) {
+      json["other_pointer"] = place_pointer(*finding.other, *there.submitted, *there.options);
     }
   }
   if (finding.witness) json["witness"] = *finding.witness;
@@ -90,6 +97,11 @@ Json finding_json(const Finding& finding, const Solid& submitted,
   json["uncertain"] = finding.uncertain;
   json["text"] = finding_text(finding);
   return json;
+}
+
+std::string dump(const Json& json, JsonStyle style = JsonStyle::compact) {
+  return json.dump(style == JsonStyle::indented ? 2 : -1, ' ', false,
+                   Json::error_handler_t::replace);
 }
 
 Json measures_json(const Measures& measures) {
@@ -117,6 +129,13 @@ Json parameters_json(const Acceptance& acceptance) {
 }
 
 }  // namespace
+
+std::string finding_json(const Finding& finding, const PlacedSolid& here,
+                         const PlacedSolid& there) {
+  return dump(make_finding(finding, here, there));
+}
+
+std::string report_measures_json(const Measures& measures) { return dump(measures_json(measures)); }
 
 std::string place_pointer(const Place& place, const Solid& submitted,
                           const ReportJsonOptions& options) {
@@ -172,6 +191,7 @@ std::vector<std::string> report_text(const Report& report) {
 
 std::string report_json(const Report& report, const Solid& submitted,
                         const ReportJsonOptions& options) {
+  const PlacedSolid solid{&submitted, &options};
   Json json;
   json["type"] = "watertight_report";
   json["schema"] = kReportSchema;
@@ -185,11 +205,15 @@ std::string report_json(const Report& report, const Solid& submitted,
   }
   json["all_errors"] = codes;
   json["first_level"] = report.first_level;
+  if (report.tolerant) {
+    json["tolerant"] = {{"verdict", to_string(report.tolerant->verdict)},
+                        {"first_level", report.tolerant->first_level}};
+  }
   json["errors"] = Json::array();
   json["warnings"] = Json::array();
   for (const Finding& finding : report.findings) {
     const char* list = finding.severity == Severity::error ? "errors" : "warnings";
-    json[list].push_back(finding_json(finding, submitted, options));
+    json[list].push_back(make_finding(finding, solid, solid));
   }
   json["findings_omitted"] = report.findings_omitted;
   json["not_run"] = Json::array();
@@ -206,8 +230,7 @@ std::string report_json(const Report& report, const Solid& submitted,
   }
   if (report.measures) json["measures"] = measures_json(*report.measures);
   if (options.include_times) json["seconds"] = report.seconds;
-  const int indent = options.style == JsonStyle::indented ? 2 : -1;
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  return dump(json, options.style);
 }
 
 }  // namespace watertight

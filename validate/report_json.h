@@ -3,7 +3,7 @@
 // Reports as JSON and as lines of text, for service, command line and SQL. The JSON says what
 // val3dity's says (validity, all_errors, parameters, errors with code, description, id, info) and
 // adds places as JSON Pointers, pairs, witnesses and measured values. Described in
-// docs/findings.md.
+// docs/report.md; reports of whole documents are report/feature_report.h's.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@
 namespace watertight {
 
 /// Number of this JSON layout; raised when a member changes its meaning or goes.
-inline constexpr int kReportSchema = 1;
+inline constexpr int kReportSchema = 2;
 
 enum class JsonStyle : std::uint8_t { compact, indented };
 
@@ -25,6 +25,10 @@ struct ReportJsonOptions {
   std::string pointer_prefix;
   /// False for a geometry whose boundaries are one shell (MultiSurface): no shell step in pointers.
   bool has_shells = true;
+  /// val3dity's path of the solid, "coid=b|geom=0|solid=1|", which starts the `id` of findings.
+  std::string id_prefix;
+  /// Position of the solid in a list, the member `solid` of places; kNone leaves it out.
+  Index solid_number = kNone;
   /// False leaves out wall times, so that equal solids give equal bytes.
   bool include_times = true;
   JsonStyle style = JsonStyle::compact;
@@ -35,6 +39,19 @@ struct ReportJsonOptions {
 /// replaced.
 std::string report_json(const Report& report, const Solid& submitted,
                         const ReportJsonOptions& options = {});
+
+/// A solid that places are in, and how they are written.
+struct PlacedSolid {
+  const Solid* submitted = nullptr;
+  const ReportJsonOptions* options = nullptr;
+};
+
+/// One finding as compact JSON, an element of `errors` or `warnings`. `here` is the solid of
+/// Finding::place, `there` that of Finding::other: the same one but for findings about groups.
+std::string finding_json(const Finding& finding, const PlacedSolid& here, const PlacedSolid& there);
+
+/// {"volume", "area", "bbox", "genus", "vertices", "facets", "rings", "shells"}
+std::string report_measures_json(const Measures& measures);
 
 /// JSON Pointer of a place: prefix, then shell, facet within the shell, ring, vertex within the
 /// ring, as far as they are given. "" when the prefix is empty.

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/json_text.h"
+#include "report/feature_report.h"
+#include "report/place.h"
+#include "report/tally.h"
+
+namespace watertight {
+namespace {
+
+/// Errors of reading that are listed; more are counted only.
+constexpr std::size_t kMostErrors = 1000;
+
+template <class Codes>
+void write_codes(JsonText& json, std::string_view name, const Codes& codes) {
+  json.key(name).open('[');
+  for (const int code : codes) json.value(code);
+  json.close(']');
+}
+
+void write_not_run(JsonText& json, const std::vector<SkippedRule>& rules) {
+  json.key("not_run").open('[');
+  for (const SkippedRule& rule : rules) {
+    json.open('{');
+    write_codes(json, "codes", rule.codes);
+    json.key("reason").value(rule.reason).close('}');
+  }
+  json.close(']');
+}
+
+void write_strings(JsonText& json, std::string_view name, const std::vector<std::string>& texts) {
+  json.key(name).open('[');
+  for (const std::string& text : texts) json.value(text);
+  json.close(']');
+}
+
+void write_overview(JsonText& json, std::string_view name,
+                    const std::map<std::string, VerdictCount>& types) {
+  json.key(name).open('[');
+  for (const auto& [type, verdicts] : types) {
+    json.open('{').key("type").value(type).key("total").value(verdicts.total());
+    json.key("valid").value(verdicts.valid).key("invalid").value(verdicts.invalid);
+    json.key("undecided").value(verdicts.undecided).close('}');
+  }
+  json.close(']');
+}
+
+void write_ladder(JsonText& json, const Report& report, bool has_times) {
+  json.key("rung").value(to_string(report.rung));
+  json.key("attempts").open('[');
+  for (const RungAttempt& attempt : report.attempts) {
+    json.open('{').key("rung").value(to_string(attempt.rung));
+    json.key("outcome").value(attempt.outcome);
+    if (has_times) json.key("seconds").value(attempt.seconds);
+    json.close('}');
+  }
+  json.close(']');
+}
+
+void write_primitive(JsonText& json, const InspectedSolid& solid, bool has_times) {
+  const Report& report = solid.inspection.report;
+  json.open('{').key("id").value(solid_id(solid.source));
+  json.key("type").value(solid.source.geometry_type);
+  json.key("object").value(solid.source.object_id);
+  if (!solid.source.lod.empty()) json.key("lod").value(solid.source.lod);
+  if (!solid.source.pointer.empty()) json.key("pointer").value(solid.source.pointer);
+  json.key("validity").value(report.verdict == Verdict::valid);
+  json.key("verdict").value(to_string(report.verdict));
+  if (!report.undecided_reason.empty()) {
+    json.key("undecided_reason").value(report.undecided_reason);
+  }
+  write_codes(json, "first_level", report.first_level);
+  if (report.tolerant) {
+    json.key("tolerant").open('{').key("verdict").value(to_string(report.tolerant->verdict));
+    write_codes(json, "first_level", report.tolerant->first_level);
+    json.close('}');
+  }
+  json.key("findings_omitted").value(report.findings_omitted);
+  write_not_run(json, report.not_run);
+  write_strings(json, "notes", report.notes);
+  write_ladder(json, report, has_times);
+  if (report.measures) json.key("measures").raw(report_measures_json(*report.measures));
+  if (has_times) json.key("seconds").value(report.seconds);
+  json.close('}');
+}
+
+void write_group(JsonText& json, const InspectedGroup& group) {
+  const bool is_composite = group.kind == GroupKind::composite_solid;
+  json.open('{').key("kind").value(is_composite ? "composite_solid" : "building_parts");
+  json.key("object").value(group.object_id);
+  if (!group.lod.empty()) json.key("lod").value(group.lod);
+  json.key("solids").open('[');
+  for (const std::size_t member : group.members) json.value(std::uint64_t{member});
+  json.close(']');
+  json.key("validity").value(group.report.verdict == Verdict::valid);
+  json.key("verdict").value(to_string(group.report.verdict));
+  json.key("findings_omitted").value(group.report.findings_omitted);
+  write_not_run(json, group.report.not_run);
+  json.close('}');
+}
+
+/// Writes the findings of one severity. `options` has one entry per solid.
+void write_findings(JsonText& json, const InspectedFeature& feature, Severity severity,
+                    const std::vector<ReportJsonOptions>& options) {
+  for (const PlacedFinding& placed : findings_of(feature)) {
+    if (placed.finding->severity != severity) continue;
+    const Solid* here = submitted_solid(feature, placed.solid);
+    const Solid* there = submitted_solid(feature, placed.other_solid);
+    if (here == nullptr) continue;
+    const PlacedSolid first{here, &options[placed.solid]};
+    const bool has_other = there != nullptr;
+    const PlacedSolid second{has_other ? there : here,
+                             &options[has_other ? placed.other_solid : placed.solid]};
+    json.raw(finding_json(*placed.finding, first, second));
+  }
+}
+
+std::string feature_json(const InspectedFeature& feature, bool has_times) {
+  std::vector<ReportJsonOptions> options;
+  for (const InspectedSolid& solid : feature.solids) {
+    options.push_back(json_options_of(solid.source, static_cast<Index>(options.size())));
+  }
+  const Verdict verdict = feature.verdict();
+  JsonText json;
+  json.open('{').key("id").value(feature.feature.id).key("type").value(feature.feature.type);
+  json.key("validity").value(verdict == Verdict::valid);
+  json.key("verdict").value(to_string(verdict));
+  json.key("errors").open('[');
+  write_findings(json, feature, Severity::error, options);
+  json.close(']').key("warnings").open('[');
+  write_findings(json, feature, Severity::warning, options);
+  json.close(']').key("primitives").open('[');
+  for (const InspectedSolid& solid : feature.solids) write_primitive(json, solid, has_times);
+  json.close(']').key("groups").open('[');
+  for (const InspectedGroup& group : feature.groups) write_group(json, group);
+  json.close(']').close('}');
+  return json.take();
+}
+
+class JsonReport final : public FeatureReport {
+ public:
+  JsonReport(TextSink sink, ReportHead head) : sink_(std::move(sink)), head_(std::move(head)) {}
+
+  Status begin_document(const DocumentHead& document) override {
+    tally_ = {};
+    errors_.clear();
+    is_first_ = true;
+    JsonText json;
+    json.open('{').key("type").value("val3dity_report").key("schema").value(kReportSchema);
+    json.key("program").open('{').key("name").value("watertight");
+    json.key("version").value(head_.program_version).close('}');
+    json.key("val3dity_version").value("watertight " + head_.program_version);
+    if (!head_.time.empty()) json.key("time").value(head_.time);
+    json.key("input_file").value(document.file);
+    json.key("input_file_type").value(document.format ? format_name(*document.format) : "unknown");
+    write_parameters(json);
+    json.key("features").open('[');
+    return sink_(json.take());
+  }
+
+  Status add(const ValidatedFeature& feature) override {
+    tally_.add(feature.inspected);
+    std::string text = is_first_ ? "" : ",";
+    is_first_ = false;
+    text += feature_json(feature.inspected, !head_.time.empty());
+    return sink_(text);
+  }
+
+  Status add_error(const Error& error) override {
+    tally_.add_error(code_of(error));
+    if (errors_.size() < kMostErrors) errors_.push_back(error);
+    return Done{};
+  }
+
+  Status end_document(const DocumentEnd& end) override {
+    std::string text = "]";
+    text += tail(end);
+    text += "}\n";
+    return sink_(text);
+  }
+
+  Status finish() override { return Done{}; }
+
+ private:
+  void write_parameters(JsonText& json) const {
+    const Tolerances& tolerances = head_.acceptance.tolerances;
+    const bool is_boundary = head_.acceptance.proof == Proof::boundary;
+    json.key("parameters").open('{').key("overlap_tol").value(head_.overlap_metres);
+    json.key("planarity_d2p_tol").value(tolerances.planarity_metres);
+    json.key("planarity_n_tol").value(tolerances.planarity_degrees);
+    json.key("snap_tol").value(tolerances.snap_metres);
+    json.key("proof").value(is_boundary ? "boundary" : "tetrahedralization");
+    json.key("strict").value(head_.is_strict).key("tolerant").value(head_.also_tolerant);
+    json.key("rule_set").value(int{head_.acceptance.rule_set}).close('}');
+  }
+
+  /// The members after the features, with a leading comma.
+  std::string tail(const DocumentEnd& end) const {
+    JsonText json;
+    json.open('{').key("dataset_errors").open('[');
+    for (const Error& error : errors_) write_error(json, error);
+    json.close(']').key("dataset_errors_omitted");
+    json.value(tally_.unreadable() - std::uint64_t{errors_.size()});
+    write_overview(json, "features_overview", tally_.features());
+    write_overview(json, "primitives_overview", tally_.solids());
+    write_codes(json, "all_errors", tally_.errors());
+    write_codes(json, "all_warnings", tally_.warnings());
+    json.key("finding_counts").open('{');
+    for (const auto& [code, count] : tally_.findings()) json.key(std::to_string(code)).value(count);
+    json.close('}').key("findings_omitted").value(tally_.omitted());
+    write_codes(json, "first_level", tally_.first_level());
+    write_strings(json, "notes", end.notes);
+    if (!head_.time.empty()) json.key("seconds").value(end.seconds);
+    json.key("validity").value(tally_.is_valid());
+    json.key("verdict").value(to_string(tally_.verdict()));
+    std::string text = json.take();
+    text.front() = ',';
+    return text;
+  }
+
+  static void write_error(JsonText& json, const Error& error) {
+    const int code = code_of(error);
+    json.open('{').key("code").value(code).key("description").value(name_of(code));
+    json.key("id").value(error.pointer).key("info").value(error.message);
+    json.key("kind").value(to_string(error.code));
+    if (error.byte_offset) json.key("byte_offset").value(*error.byte_offset);
+    if (!error.pointer.empty()) json.key("pointer").value(error.pointer);
+    json.close('}');
+  }
+
+  TextSink sink_;
+  ReportHead head_;
+  Tally tally_;
+  std::vector<Error> errors_;
+  bool is_first_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<FeatureReport> json_report(TextSink sink, ReportHead head) {
+  return std::make_unique<JsonReport>(std::move(sink), std::move(head));
+}
+
+}  // namespace watertight

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/tally.h"
+
+#include "validate/finding_kinds.h"
+
+namespace watertight {
+namespace {
+
+constexpr int kUnknownError = 999;
+
+/// Types come from the document: more different ones than this are counted together.
+constexpr std::size_t kMostTypes = 1000;
+
+void count(std::map<std::string, VerdictCount>& types, const std::string& type, Verdict verdict) {
+  const bool fits = types.size() < kMostTypes || types.contains(type);
+  types[fits ? type : "(other types)"].add(verdict);
+}
+
+VerdictCount sum(const std::map<std::string, VerdictCount>& types) {
+  VerdictCount all;
+  for (const auto& [type, verdicts] : types) {
+    all.valid += verdicts.valid;
+    all.invalid += verdicts.invalid;
+    all.undecided += verdicts.undecided;
+  }
+  return all;
+}
+
+}  // namespace
+
+void VerdictCount::add(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::valid:
+      ++valid;
+      break;
+    case Verdict::invalid:
+      ++invalid;
+      break;
+    case Verdict::undecided:
+      ++undecided;
+  }
+}
+
+void Tally::add_finding(const Finding& finding) {
+  ++findings_[finding.code];
+  (finding.severity == Severity::error ? errors_ : warnings_).insert(finding.code);
+}
+
+void Tally::add(const InspectedFeature& feature) {
+  const Verdict verdict = feature.verdict();
+  verdict_ = worse(verdict_, verdict);
+  count(features_, feature.feature.type, verdict);
+  for (const InspectedSolid& solid : feature.solids) {
+    const Report& report = solid.inspection.report;
+    count(solids_, solid.source.geometry_type, report.verdict);
+    omitted_ += report.findings_omitted;
+    first_level_.insert(report.first_level.begin(), report.first_level.end());
+    for (const Finding& finding : report.findings) add_finding(finding);
+  }
+  for (const InspectedGroup& group : feature.groups) {
+    omitted_ += group.report.findings_omitted;
+    for (const Finding& finding : group.report.findings) {
+      add_finding(finding);
+      if (finding.severity == Severity::error) first_level_.insert(finding.code);
+    }
+  }
+}
+
+void Tally::add_error(int code) {
+  ++unreadable_;
+  ++findings_[code];
+  errors_.insert(code);
+}
+
+VerdictCount Tally::all_features() const { return sum(features_); }
+VerdictCount Tally::all_solids() const { return sum(solids_); }
+
+Verdict Tally::verdict() const {
+  return unreadable_ > 0 ? worse(verdict_, Verdict::undecided) : verdict_;
+}
+
+int code_of(const Error& error) {
+  switch (error.code) {
+    case ErrorCode::malformed:
+    case ErrorCode::limit_exceeded:
+    case ErrorCode::not_encodable:
+      return kInvalidInputFile;
+    case ErrorCode::unsupported:
+      return kFormatNotSupported;
+    case ErrorCode::invalid_argument:
+      return kWrongInputParameters;
+    case ErrorCode::cancelled:
+    case ErrorCode::not_found:
+    case ErrorCode::conflict:
+    case ErrorCode::unavailable:
+      break;
+  }
+  return kUnknownError;
+}
+
+std::string_view name_of(int code) {
+  return code == kUnknownError ? "UNKNOWN_ERROR" : finding_name(code);
+}
+
+}  // namespace watertight

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a report counts: features and solids by type and verdict, findings by code. Internal to
+// report/.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+
+#include "pipeline/pipeline.h"
+
+namespace watertight {
+
+struct VerdictCount {
+  std::uint64_t valid = 0;
+  std::uint64_t invalid = 0;
+  std::uint64_t undecided = 0;
+  std::uint64_t total() const { return valid + invalid + undecided; }
+  void add(Verdict verdict);
+};
+
+class Tally {
+ public:
+  void add(const InspectedFeature& feature);
+  void add_error(int code);
+
+  const std::map<std::string, VerdictCount>& features() const { return features_; }
+  const std::map<std::string, VerdictCount>& solids() const { return solids_; }
+  VerdictCount all_features() const;
+  VerdictCount all_solids() const;
+  /// Findings of each code, omitted ones not counted; errors of reading under their codes.
+  const std::map<int, std::uint64_t>& findings() const { return findings_; }
+  const std::set<int>& errors() const { return errors_; }
+  const std::set<int>& warnings() const { return warnings_; }
+  const std::set<int>& first_level() const { return first_level_; }
+  std::uint64_t unreadable() const { return unreadable_; }
+  std::uint64_t omitted() const { return omitted_; }
+  /// The worst of all features; at least undecided when something could not be read.
+  Verdict verdict() const;
+  bool is_valid() const { return verdict() == Verdict::valid; }
+
+ private:
+  void add_finding(const Finding& finding);
+
+  std::map<std::string, VerdictCount> features_;  // by type
+  std::map<std::string, VerdictCount> solids_;
+  std::map<int, std::uint64_t> findings_;
+  std::set<int> errors_;
+  std::set<int> warnings_;
+  std::set<int> first_level_;
+  std::uint64_t unreadable_ = 0;
+  std::uint64_t omitted_ = 0;
+  Verdict verdict_ = Verdict::valid;
+};
+
+/// val3dity's number for something that could not be read: 901, 903, 904, or 999 where the fault is
+/// not the input's.
+int code_of(const Error& error);
+
+/// The name of a finding's code or of 999.
+std::string_view name_of(int code);
+
+}  // namespace watertight

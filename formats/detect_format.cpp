@@ -32,6 +32,9 @@ constexpr std::array kEndings{
     Ending{".ewkt", Format::wkt},
     Ending{".wkb", Format::ewkb},
     Ending{".ewkb", Format::ewkb},
+    Ending{".gml", Format::gml},
+    Ending{".citygml", Format::gml},
+    Ending{".xml", Format::gml},
 };
 
 // A sequence has a second JSON text after the line that ends the first.
@@ -67,6 +70,7 @@ Result<Format> format_of_text(std::string_view text) {
   if (start != std::string_view::npos) {
     text.remove_prefix(start);
     if (text.front() == '{') return json_format(text);
+    if (text.front() == '<') return Format::gml;
     const std::string head = lower_case(text.substr(0, 24));
     for (const std::string_view word : {"srid=", "polyhedralsurface", "solid", "tin"}) {
       if (head.starts_with(word)) return Format::wkt;
@@ -78,7 +82,7 @@ Result<Format> format_of_text(std::string_view text) {
   }
   return Error{ErrorCode::unsupported,
                "neither the name nor the first bytes tell the format; known are CityJSON, "
-               "CityJSONSeq, OBJ, OFF, WKT and EWKB"};
+               "CityJSONSeq, GML, OBJ, OFF, WKT and EWKB"};
 }
 
 }  // namespace

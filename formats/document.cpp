@@ -7,6 +7,7 @@
 
 #include "formats/city_json.h"
 #include "formats/ewkb.h"
+#include "formats/gml.h"
 #include "formats/mesh_text.h"
 
 namespace watertight {
@@ -87,6 +88,8 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
       return read_wkt_document(as_text(bytes), options.limits);
     case Format::ewkb:
       return read_ewkb_document(bytes, options.limits);
+    case Format::gml:
+      return read_gml(bytes, options.limits);
     default:
       break;
   }

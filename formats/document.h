@@ -54,6 +54,8 @@ struct SubmittedSolid {
   /// Rings whose last position does not repeat the first, in formats that demand it (finding 103);
   /// indices into the rings of `solid`, ascending.
   std::vector<Index> unclosed_rings = {};
+  /// gml:id of each facet's polygon, "" for those without one; empty when none has one.
+  std::vector<std::string> facet_ids = {};
 };
 
 /// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one

@@ -41,6 +41,7 @@ HOMES = [
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),
     (r"CLI/", "CLI11", [r"cli/", r"bench/"]),
     (r"(zstd|zstd_errors|zdict)\.h", "zstd", [r"codec/", r"formats/", r"bench/"]),
+    (r"expat\.h", "expat", [r"formats/"]),
     (r"draco/", "Draco", [r"bench/"]),
     (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|mb|port|storage|parser|"
      r"nodes|commands|common|tcop)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/[^/]+\.c$"]),

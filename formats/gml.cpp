@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/gml.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/gml_model.h"
+#include "formats/gml_shapes.h"
+#include "formats/surface.h"
+
+namespace watertight {
+namespace {
+
+struct Draft {
+  GmlSolid solid;
+  SolidSource source;
+};
+
+class GmlReader {
+ public:
+  GmlReader(const GmlModel& model, std::uint64_t byte_count, const Limits& limits)
+      : model_(model),
+        limits_(limits),
+        shapes_(model, byte_count, limits),
+        geometries_of_(model.objects.size(), 0) {}
+
+  Result<Document> read() {
+    document_.format = Format::gml;
+    // Geometries of one feature need not follow one another: features can hold collections.
+    std::vector<std::vector<Index>> of_object(model_.objects.size());
+    std::vector<std::vector<Index>> groups;
+    for (Index i = 0; i < model_.geometries.size(); ++i) {
+      const GmlGeometry& geometry = model_.geometries[i];
+      if (geometry.object != kNone && !geometry.is_template) {
+        of_object[model_.objects[geometry.object].feature].push_back(i);
+      }
+    }
+    std::vector<bool> is_grouped(model_.objects.size(), false);
+    for (Index i = 0; i < model_.geometries.size(); ++i) {
+      const GmlGeometry& geometry = model_.geometries[i];
+      if (geometry.object == kNone || geometry.is_template) {
+        if (auto status = feature_of({i}, geometry); !status) return std::move(status).error();
+        continue;
+      }
+      const Index feature = model_.objects[geometry.object].feature;
+      if (is_grouped[feature]) continue;
+      is_grouped[feature] = true;
+      auto status = feature_of(std::move(of_object[feature]), geometry);
+      if (!status) return std::move(status).error();
+    }
+    add_notes();
+    return std::move(document_);
+  }
+
+ private:
+  static Error in_object(Error error, const std::string& id) {
+    if (!id.empty()) error.message.append(", of object '").append(id).append("'");
+    return error;
+  }
+
+  // Geometries of one top-level object, one geometry outside of objects, or one template.
+  Status feature_of(const std::vector<Index>& geometries, const GmlGeometry& first) {
+    drafts_.clear();
+    positions_ = {};
+    for (const Index geometry : geometries) {
+      auto status = add_geometry(model_.geometries[geometry]);
+      if (!status) return status;
+    }
+    if (drafts_.empty()) return Done{};
+    Feature feature;
+    if (first.object != kNone) {
+      const GmlObject& top = model_.objects[model_.objects[first.object].feature];
+      feature.id = top.id;
+      feature.type = top.type;
+    } else {
+      feature.id = drafts_.front().source.object_id;
+    }
+    auto status = finish(feature);
+    if (!status) return in_object(std::move(status).error(), feature.id);
+    if (first.is_template) {
+      for (SubmittedSolid& solid : feature.solids) {
+        document_.templates.push_back(std::move(solid));
+      }
+    } else {
+      document_.features.push_back(std::move(feature));
+    }
+    return Done{};
+  }
+
+  Status add_geometry(const GmlGeometry& geometry) {
+    const GmlLink& link = model_.links[geometry.link];
+    // The template that an implicit geometry refers to is judged where it stands.
+    if (geometry.is_template && link.node == kNone) return Done{};
+    auto target = shapes_.resolve(link);
+    if (!target) return in_object(std::move(target).error(), id_of(geometry, kNone));
+    SolidSource source;
+    source.object_id = id_of(geometry, *target);
+    if (geometry.lod != '\0') source.lod = geometry.lod;
+    source.geometry = next_geometry(geometry.object);
+    auto status = add_solids(*target, geometry.object, source);
+    if (!status) return in_object(std::move(status).error(), source.object_id);
+    return status;
+  }
+
+  std::string id_of(const GmlGeometry& geometry, Index node) const {
+    if (geometry.object != kNone) return model_.objects[geometry.object].id;
+    return node == kNone ? "" : std::string(model_.name(model_.nodes[node].id));
+  }
+
+  std::uint32_t next_geometry(Index object) {
+    return object == kNone ? 0 : geometries_of_[object]++;
+  }
+
+  // The solids of a geometry: itself, or those of a collection and of the collections in it. A
+  // CompositeSolid within another collection is a geometry of its own: its members must fit
+  // together, the collection's need not.
+  Status add_solids(Index root, Index object, SolidSource source) {
+    const GmlKind kind = model_.nodes[root].kind;
+    if (kind == GmlKind::solid) return add_solid(root, source);
+    if (kind != GmlKind::solids && kind != GmlKind::mixed) {
+      ++passed_over_;
+      return Done{};
+    }
+    std::vector<Index> composites{root};
+    for (std::size_t i = 0; i < composites.size(); ++i) {
+      if (i > 0) source.geometry = next_geometry(object);
+      source.ordinal = 0;
+      if (auto status = add_members(composites[i], composites, source); !status) return status;
+    }
+    return Done{};
+  }
+
+  Status add_members(Index root, std::vector<Index>& composites, SolidSource& source) {
+    struct Step {
+      Index node;
+      Index link;  // the next to follow
+    };
+    std::vector<Step> path;
+    const auto open = [&](Index node) -> Status {
+      if (auto status = shapes_.check(node); !status) return status;
+      if (!shapes_.enter(node)) {
+        return error_at(model_.nodes[node].place, ErrorCode::malformed,
+                        shapes_.title(node) + " contains itself by xlink");
+      }
+      path.push_back({node, model_.nodes[node].first_link});
+      return Done{};
+    };
+    const bool is_composite = is_composite_solid(root);
+    if (auto status = open(root); !status) return status;
+    while (!path.empty()) {
+      const Step step = path.back();
+      if (step.link == kNone) {
+        shapes_.leave(step.node);
+        path.pop_back();
+        continue;
+      }
+      const GmlLink& link = model_.links[step.link];
+      path.back().link = link.next;
+      auto node = shapes_.resolve(link);
+      if (!node) return std::move(node).error();
+      const GmlKind kind = model_.nodes[*node].kind;
+      Status status = Done{};
+      if (kind == GmlKind::solid) {
+        source.geometry_type = model_.name(model_.nodes[root].name);
+        status = add_solid(*node, source);
+        ++source.ordinal;
+      } else if (is_composite_solid(*node) && !is_composite) {
+        composites.push_back(*node);
+      } else if (kind == GmlKind::solids || kind == GmlKind::mixed) {
+        status = open(*node);
+      } else if (model_.nodes[step.node].kind == GmlKind::solids) {
+        status = error_at(link.place, ErrorCode::malformed,
+                          shapes_.title(*node) + " where a solid is expected");
+      }
+      if (!status) return status;
+    }
+    return Done{};
+  }
+
+  bool is_composite_solid(Index node) const {
+    return model_.name(model_.nodes[node].name) == "CompositeSolid";
+  }
+
+  Status add_solid(Index node, SolidSource source) {
+    if (source.geometry_type.empty()) source.geometry_type = model_.name(model_.nodes[node].name);
+    auto solid = shapes_.solid(node, positions_);
+    if (!solid) return std::move(solid).error();
+    drafts_.push_back({std::move(*solid), std::move(source)});
+    return Done{};
+  }
+
+  // Puts the drafts on their common lattice.
+  Status finish(Feature& feature) {
+    const Draft& first = drafts_.front();
+    Index system = kNone;
+    for (const Draft& draft : drafts_) {
+      if (system == kNone) system = draft.solid.system;
+      if (!shapes_.is_same_system(system, draft.solid.system)) {
+        return error_at(draft.solid.place, ErrorCode::unsupported,
+                        "a solid in '" + model_.systems[draft.solid.system] +
+                            "' beside solids in '" + model_.systems[system] + "'");
+      }
+    }
+    feature.srid = shapes_.srid(system);
+    if (system != kNone && feature.srid == 0) unknown_systems_.insert(model_.systems[system]);
+    auto points = lattice_of_decimals(positions_.values);
+    if (!points) return error_at(first.solid.place, points.error().code, points.error().message);
+    std::vector<bool> is_rounded(points->points.size(), false);
+    for (const Index position : points->rounded) is_rounded[position] = true;
+    for (const Index position : positions_.rounded) is_rounded[position] = true;
+    for (std::size_t i = 0; i < drafts_.size(); ++i) {
+      const std::size_t begin = drafts_[i].solid.first_position;
+      const std::size_t end =
+          i + 1 < drafts_.size() ? drafts_[i + 1].solid.first_position : points->points.size();
+      LatticePoints own{points->lattice, {}, {}};
+      own.points.assign(points->points.begin() + static_cast<std::ptrdiff_t>(begin),
+                        points->points.begin() + static_cast<std::ptrdiff_t>(end));
+      for (std::size_t k = begin; k < end; ++k) {
+        if (is_rounded[k]) own.rounded.push_back(static_cast<Index>(k - begin));
+      }
+      auto status = place(drafts_[i], own, feature);
+      if (!status) return status;
+    }
+    return Done{};
+  }
+
+  Status place(Draft& draft, const LatticePoints& points, Feature& feature) {
+    auto solid = solid_of_points(std::move(draft.solid.arrays), points, std::move(draft.source),
+                                 feature.srid, limits_);
+    if (!solid) {
+      return error_at(draft.solid.place, solid.error().code, std::move(solid).error().message);
+    }
+    solid->unclosed_rings = std::move(draft.solid.unclosed_rings);
+    const auto& ids = draft.solid.facet_ids;
+    const auto has_id = [](const std::string& id) { return !id.empty(); };
+    if (std::any_of(ids.begin(), ids.end(), has_id)) {
+      solid->facet_ids = std::move(draft.solid.facet_ids);
+    }
+    feature.solids.push_back(std::move(*solid));
+    return Done{};
+  }
+
+  void add_notes() {
+    for (const std::string& system : unknown_systems_) {
+      document_.notes.push_back("reference system '" + system + "' has no known EPSG code");
+    }
+    if (document_.features.empty() && document_.templates.empty()) {
+      document_.notes.push_back("the document has no solids; " + std::to_string(passed_over_) +
+                                " other geometries are passed over");
+    }
+  }
+
+  const GmlModel& model_;
+  const Limits& limits_;
+  GmlShapes shapes_;
+  std::vector<std::uint32_t> geometries_of_;  // object -> geometries met
+  std::uint64_t passed_over_ = 0;
+  std::set<std::string> unknown_systems_;
+  std::vector<Draft> drafts_;
+  GmlPositions positions_;
+  Document document_;
+};
+
+}  // namespace
+
+Result<Document> read_gml(ByteView bytes, const Limits& limits) {
+  auto model = read_gml_model(bytes, limits);
+  if (!model) return std::move(model).error();
+  return GmlReader(*model, bytes.size(), limits).read();
+}
+
+}  // namespace watertight

@@ -25,7 +25,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "repair", "codec",
-           "formats", "store", "pipeline", "server", "cli", "sql"]
+           "formats", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
 
 # header pattern -> (what it is, path patterns it may be included from). First match decides.

@@ -29,7 +29,10 @@ for name in "${names[@]}"; do
   done <"$build/tests/fuzz/$name.seeds"
   options=(-max_total_time="$seconds" -max_len=32768 -timeout=20 -rss_limit_mb=2048
     -artifact_prefix="$build/corpora/$name-" -print_final_stats=1)
-  case $name in city_json* | skeleton) options+=(-dict="$here/json.dict") ;; esac
+  case $name in
+    city_json* | skeleton | json_fg) options+=(-dict="$here/json.dict") ;;
+    gml) options+=(-dict="$here/xml.dict") ;;
+  esac
   result=clean
   "$build/bin/fuzz_$name" "${options[@]}" "$corpus" >"$corpus.log" 2>&1 || { result=FIND && status=1; }
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$corpus.log")

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// libFuzzer harness of the GML reader. What it reads can be written as other formats, and those
+// texts are read again.
+#include <algorithm>
+
+#include "fuzz_formats.h"
+
+namespace watertight::fuzz {
+
+void check_submitted(const SubmittedSolid& submitted) {
+  const Solid& solid = submitted.solid;
+  require(submitted.facet_ids.empty() || submitted.facet_ids.size() == solid.facet_count());
+  require(std::is_sorted(submitted.unclosed_rings.begin(), submitted.unclosed_rings.end()));
+  for (const Index ring : submitted.unclosed_rings) require(ring < solid.ring_count());
+  for (const Index vertex : submitted.rounded) require(vertex < solid.vertex_count());
+}
+
+void check_written(const Document& document, Format format) {
+  const auto written = write_document(document, format);
+  if (!written) {
+    require(written.error().code == ErrorCode::unsupported);
+    return;
+  }
+  ReadOptions options;
+  options.limits.bytes = 1U << 26U;  // decimals of large exponents print long
+  const auto again = read_document(*written, format, options);
+  require(again || document.features.empty());
+}
+
+}  // namespace watertight::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace watertight;
+  ReadOptions options;
+  options.limits = fuzz::small_limits();
+  const auto document = read_document(ByteView(data, size), Format::gml, options);
+  if (!document) {
+    fuzz::require(!document.error().message.empty());
+    return 0;
+  }
+  for (const Feature& feature : document->features) {
+    for (const SubmittedSolid& solid : feature.solids) fuzz::check_submitted(solid);
+  }
+  for (const SubmittedSolid& solid : document->templates) fuzz::check_submitted(solid);
+  fuzz::require(!write_document(*document, Format::gml));
+  fuzz::check_written(*document, Format::ewkb);
+  fuzz::check_written(*document, Format::city_json);
+  return 0;
+}

@@ -1,0 +1,1 @@
+<CityModel xmlns:g="http://www.opengis.net/gml/3.2" xmlns:x="http://www.w3.org/1999/xlink"><B><lod1Solid><g:Solid><g:exterior><g:CompositeSurface g:id="a"><g:surfaceMember x:href="#a"/></g:CompositeSurface></g:exterior></g:Solid></lod1Solid></B></CityModel>

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+
+#include "formats/gml.h"
+#include "gml_samples.h"
+
+namespace watertight {
+namespace {
+
+using namespace test;
+
+Document file(const std::string& name) { return gml_of(file_text("gml/" + name)); }
+
+TEST_CASE("GML: a lone Solid has shells of triangles, patches and polygons") {
+  const Document document = file("solid_3_2.gml");
+  REQUIRE(document.features.size() == 1);
+  const Feature& feature = document.features[0];
+  CHECK(feature.id == "nested");
+  CHECK(feature.srid == 7415);
+  REQUIRE(feature.solids.size() == 1);
+  const SubmittedSolid& submitted = feature.solids[0];
+  CHECK(submitted.source.object_id == "nested");
+  CHECK(submitted.source.geometry_type == "Solid");
+  CHECK(submitted.solid.shell_count() == 2);
+  CHECK(submitted.solid.facets_of(1).size() == 4);
+  CHECK(submitted.solid.srid() == 7415);
+  CHECK(submitted.solid.vertex_count() == 8);
+  CHECK(is_closed(submitted.solid));
+  REQUIRE(submitted.facet_ids.size() == 8);
+  CHECK(submitted.facet_ids[7] == "last");
+  CHECK(submitted.facet_ids[0].empty());
+}
+
+TEST_CASE("GML: a CityGML 2 building takes its facets by reference, turned where it says so") {
+  const Document document = file("citygml_2_xlinks.gml");
+  REQUIRE(document.features.size() == 1);
+  const Feature& feature = document.features[0];
+  CHECK(feature.id == "house");
+  CHECK(feature.type == "Building");
+  CHECK(feature.srid == 25832);
+  REQUIRE(feature.solids.size() == 3);
+  const SubmittedSolid& house = feature.solids[0];
+  CHECK(house.source.object_id == "house");
+  CHECK(house.source.lod == "2");
+  CHECK(house.solid.facet_count() == 5);
+  CHECK(house.solid.vertex_count() == 5);
+  CHECK(is_closed(house.solid));
+  CHECK(house.facet_ids == std::vector<std::string>{"ground", "west", "east-inside", "south", ""});
+  const SubmittedSolid& part = feature.solids[2];
+  CHECK(part.source.object_id == "part");
+  CHECK(part.source.lod == "3");
+  CHECK(part.solid == house.solid);
+}
+
+TEST_CASE("GML: CityGML 3 spaces, exact numbers, comments and CDATA in coordinates") {
+  const Document document = file("citygml_3.gml");
+  REQUIRE(document.features.size() == 1);
+  const Feature& tower = document.features[0];
+  CHECK(tower.srid == 25833);
+  REQUIRE(tower.solids.size() == 2);
+  CHECK(is_closed(tower.solids[0].solid));
+  CHECK(tower.solids[0].solid.vertex_count() == 4);
+  CHECK(tower.solids[0].source.lod == "2");
+  CHECK(tower.solids[1].source.object_id == "tower-part");
+  CHECK(tower.solids[1].source.geometry_type == "MultiSolid");
+  CHECK(tower.solids[1].source.lod == "1");
+  REQUIRE(document.templates.size() == 1);
+  CHECK(document.templates[0].source.object_id == "bench");
+  CHECK(document.templates[0].source.lod == "3");
+  CHECK(is_closed(document.templates[0].solid));
+}
+
+TEST_CASE("GML: real files have the solids that others count in them") {
+  CHECK(file("ogc_Building_LOD1-EPSG25832.gml").features.at(0).srid == 25832);
+  const Document lod2 = file("ogc_Building_LOD2-EPSG25832.gml");
+  REQUIRE(lod2.features.size() == 1);
+  REQUIRE(lod2.features[0].solids.size() == 1);
+  CHECK(lod2.features[0].solids[0].solid.facet_count() == 7);
+  CHECK(is_closed(lod2.features[0].solids[0].solid));
+  const Document lod3 = file("ogc_Building_LOD3-EPSG25832.gml");
+  CHECK(lod3.features.at(0).solids.at(0).solid.facet_count() == 22);
+  CHECK_FALSE(is_closed(lod3.features[0].solids[0].solid));
+
+  const Document swiss = file("small_sig3d-genericattributes-citygml2.xml");
+  CHECK(swiss.features.at(0).srid == 0);
+  CHECK(swiss.notes ==
+        std::vector<std::string>{"reference system 'CH1903' has no known EPSG code"});
+}
+
+TEST_CASE("GML: members of a CompositeSolid are solids of one geometry") {
+  const Document document = file("csol5.gml");
+  REQUIRE(document.features.size() == 1);
+  const auto& solids = document.features[0].solids;
+  REQUIRE(solids.size() == 3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    CHECK(solids[i].source.geometry_type == "CompositeSolid");
+    CHECK(solids[i].source.geometry == 0);
+    CHECK(solids[i].source.ordinal == i);
+    CHECK(solids[i].solid.lattice() == solids[0].solid.lattice());
+  }
+}
+
+TEST_CASE("GML: cells of IndoorGML are features of their own") {
+  const Document document = file("igml_703_1.gml");
+  REQUIRE(document.features.size() == 2);
+  CHECK(document.features[0].id == "C1");
+  CHECK(document.features[1].id == "C2");
+  CHECK(document.features[1].type == "CellSpace");
+  CHECK(document.features[1].solids.at(0).solid.facet_count() == 6);
+}
+
+TEST_CASE("GML: a CompositeSolid in a MultiSolid is a geometry of its own") {
+  const auto solid = [](const std::string& s) {
+    return "<g:solidMember>" + s + "</g:solidMember>";
+  };
+  const Document document =
+      gml_of(model(building("<g:MultiSolid>" + solid(kTetrahedron) +
+                            solid("<g:CompositeSolid>" + solid(kTetrahedron) + solid(kTetrahedron) +
+                                  "</g:CompositeSolid>") +
+                            solid(kTetrahedron) + "</g:MultiSolid>")));
+  const auto& solids = document.features.at(0).solids;
+  REQUIRE(solids.size() == 4);
+  CHECK(solids[1].source.geometry_type == "MultiSolid");
+  CHECK(solids[1].source.ordinal == 1);
+  CHECK(solids[2].source.geometry_type == "CompositeSolid");
+  CHECK(solids[2].source.geometry == 1);
+  CHECK(solids[2].source.ordinal == 0);
+  CHECK(solids[3].source.ordinal == 1);
+}
+
+TEST_CASE("GML: features come in any collection and need no gml:id") {
+  const std::string features =
+      R"(<w:FeatureCollection xmlns:w="http://www.opengis.net/wfs/2.0" )"
+      R"(xmlns:g="http://www.opengis.net/gml/3.2" xmlns:a="urn:own">)"
+      "<w:member><w:FeatureCollection><w:member><a:Tank g:id=\"t1\"><a:shape>" +
+      kTetrahedron +
+      "</a:shape></a:Tank></w:member></w:FeatureCollection></w:member>"
+      "<w:member><a:Tank><a:shape><g:MultiGeometry><g:geometryMembers>" +
+      kBase + kTetrahedron +
+      "</g:geometryMembers></g:MultiGeometry></a:shape></a:Tank></w:member>"
+      "<w:member>" +
+      kTetrahedron + "</w:member></w:FeatureCollection>";
+  const Document document = gml_of(features);
+  REQUIRE(document.features.size() == 3);
+  CHECK(document.features[0].id == "t1");
+  CHECK(document.features[0].type == "Tank");
+  CHECK(document.features[1].id.empty());
+  CHECK(document.features[1].solids.at(0).source.geometry_type == "MultiGeometry");
+  CHECK(document.features[2].type.empty());
+}
+
+TEST_CASE("GML: a ring that does not end where it starts is kept and listed") {
+  const Document document =
+      gml_of(model(building(solid_of(member(kBase) + member(polygon("0 0 0 1 0 0 0 0 1")) +
+                                     member(polygon("")) + member(polygon("5 5 5"))))));
+  const SubmittedSolid& submitted = document.features.at(0).solids.at(0);
+  CHECK(submitted.unclosed_rings == std::vector<Index>{1});
+  CHECK(submitted.solid.ring(1).size() == 3);
+  CHECK(submitted.solid.ring(2).empty());
+  CHECK(submitted.solid.ring(3).size() == 1);
+}
+
+TEST_CASE("GML: a solid or polygon without exterior has an empty one") {
+  const std::string interior =
+      "<g:interior><g:LinearRing><g:posList>0 0 0 1 0 0 0 1 0 0 0 0"
+      "</g:posList></g:LinearRing></g:interior>";
+  const Document document = gml_of(model(building(
+      "<g:Solid><g:interior><g:Shell>" + member("<g:Polygon>" + interior + "</g:Polygon>") +
+      "</g:Shell></g:interior></g:Solid>")));
+  const Solid& solid = document.features.at(0).solids.at(0).solid;
+  REQUIRE(solid.shell_count() == 2);
+  CHECK(solid.facets_of(0).size() == 0);
+  REQUIRE(solid.rings_of(0).size() == 2);
+  CHECK(solid.ring(0).empty());
+  CHECK(solid.ring(1).size() == 3);
+}
+
+TEST_CASE("GML: what no solid uses is not judged") {
+  const Document document =
+      gml_of(model("<cityObjectMember><Road g:id=\"r\"><lod1MultiSurface><g:MultiSurface>" +
+                   member(polygon("not numbers")) + member_of("nothing") +
+                   "</g:MultiSurface></lod1MultiSurface></Road></cityObjectMember>"));
+  CHECK(document.features.empty());
+  REQUIRE(document.notes.size() == 1);
+  CHECK(document.notes[0] == "the document has no solids; 1 other geometries are passed over");
+}
+
+TEST_CASE("GML: positions by pos in Points, and by three numbers in coordinates") {
+  const std::string ring =
+      "<g:pointProperty><g:Point><g:pos>0 0 0</g:pos></g:Point></g:pointProperty>"
+      "<g:pos>0 1 0</g:pos><g:pointRep><g:Point><g:coordinates>1,0,0</g:coordinates></g:Point>"
+      "</g:pointRep><g:pos>0 0 0</g:pos>";
+  const Document document =
+      gml_of(model(building(solid_of(member("<g:Polygon><g:exterior><g:LinearRing>" + ring +
+                                            "</g:LinearRing></g:exterior></g:Polygon>") +
+                                     kSides))));
+  CHECK(document.features.at(0).solids.at(0).solid ==
+        gml_of(model(building(kTetrahedron))).features.at(0).solids.at(0).solid);
+}
+
+TEST_CASE("GML: digits beyond the exact ones are rounded and said so") {
+  const Document document = gml_of(model(
+      building(solid_of(member(polygon("0 0 0 0 1 0.12345678901234567890123 1 0 0 0 0 0"))))));
+  CHECK(document.features.at(0).solids.at(0).rounded == std::vector<Index>{1});
+}
+
+TEST_CASE("GML: srsName to EPSG code") {
+  CHECK(srid_of_srs_name("EPSG:25832") == 25832);
+  CHECK(srid_of_srs_name("epsg:4979") == 4979);
+  CHECK(srid_of_srs_name("urn:ogc:def:crs:EPSG::6697") == 6697);
+  CHECK(srid_of_srs_name("urn:ogc:def:crs:EPSG:6.12:3068") == 3068);
+  CHECK(srid_of_srs_name("urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783") == 3068);
+  CHECK(srid_of_srs_name("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783") == 25832);
+  CHECK(srid_of_srs_name("http://www.opengis.net/def/crs/EPSG/0/6697") == 6697);
+  CHECK(srid_of_srs_name("https://www.opengis.net/def/crs/EPSG/9.9.1/7415") == 7415);
+  CHECK(srid_of_srs_name("http://www.opengis.net/gml/srs/epsg.xml#4326") == 4326);
+  CHECK(srid_of_srs_name("http://www.opengis.net/def/crs-compound?1=http://www.opengis.net/def/"
+                         "crs/EPSG/0/25832&2=http://www.opengis.net/def/crs/EPSG/0/5783") == 25832);
+  CHECK(srid_of_srs_name("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016") == 25832);
+  CHECK(srid_of_srs_name("urn:adv:crs:DE_DHDN_3GK4") == 31468);
+  CHECK(srid_of_srs_name("urn:adv:crs:elsewhere") == 0);
+  CHECK(srid_of_srs_name("CH1903") == 0);
+  CHECK(srid_of_srs_name("EPSG") == 0);
+  CHECK(srid_of_srs_name("EPSG:99999999999") == 0);
+  CHECK(srid_of_srs_name("") == 0);
+}
+
+TEST_CASE("GML: features can have reference systems of their own, a solid only one") {
+  const auto in = [](const std::string& system) {
+    return solid_of(member(kBase) + kSides, " srsName=\"" + system + "\"");
+  };
+  const Document document =
+      gml_of(model(building(in("EPSG:25832"), "a") + building(in("EPSG:25833"), "b")));
+  CHECK(document.features.at(0).srid == 25832);
+  CHECK(document.features.at(1).srid == 25833);
+
+  const Error two = gml_error(
+      model(building(solid_of(member(polygon("0 0 0 0 1 0 1 0 0 0 0 0", " srsName=\"EPSG:7415\"")),
+                              " srsName=\"EPSG:25832\""))));
+  CHECK(two.code == ErrorCode::unsupported);
+  CHECK(says(two, "is in 'EPSG:7415', its solid in 'EPSG:25832'"));
+  CHECK(gml_of(model(building(solid_of(member(polygon("0 0 0 0 1 0 1 0 0 0 0 0",
+                                                      " srsName=\"urn:ogc:def:crs:EPSG::25832\"")),
+                                       " srsName=\"EPSG:25832\""))))
+            .features.size() == 1);
+}
+
+TEST_CASE("GML: the format is told by name and by the first bytes") {
+  for (const char* name : {"x.gml", "x.XML", "x.citygml"}) {
+    CHECK(*detect_format(name, {}) == Format::gml);
+  }
+  CHECK(*detect_format("-", as_bytes("\xEF\xBB\xBF <?xml version='1.0'?><a/>")) == Format::gml);
+}
+
+TEST_CASE("GML: solids are written as CityJSON, OBJ and WKT; GML is not written") {
+  const Document document = file("citygml_2_xlinks.gml");
+  for (const Format format : {Format::city_json, Format::city_json_seq, Format::wkt, Format::obj}) {
+    const auto bytes = write_document(document, format);
+    REQUIRE(bytes);
+    const auto again = read_document(*bytes, format);
+    REQUIRE(again);
+    std::size_t solids = 0;
+    for (const Feature& feature : again->features) solids += feature.solids.size();
+    CHECK(solids == 3);
+  }
+  const auto gml = write_document(document, Format::gml);
+  REQUIRE_FALSE(gml);
+  CHECK(gml.error().code == ErrorCode::unsupported);
+}
+
+}  // namespace
+}  // namespace watertight

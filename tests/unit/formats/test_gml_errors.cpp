@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+
+#include "gml_samples.h"
+
+namespace watertight {
+namespace {
+
+using namespace test;
+
+Error solid_error(const std::string& members) {
+  return gml_error(model(building(solid_of(members, " g:id=\"s\""), "b7")));
+}
+
+TEST_CASE("GML: two-dimensional positions are refused with their place") {
+  const Error list = solid_error("\n\n" + member(polygon("0 0 0 1 1 0 0 0", " g:id=\"p\"")));
+  CHECK(list.code == ErrorCode::unsupported);
+  CHECK(says(list, "line 3: a posList of 8 numbers, which is no multiple of 3: two-dimensional"));
+  CHECK(says(list, "in Polygon 'p', in Solid 's', of object 'b7'"));
+
+  const Error stated = solid_error(
+      member("<g:Polygon srsDimension=\"2\"><g:exterior><g:LinearRing><g:posList>0 0 0 1 1 1"
+             "</g:posList></g:LinearRing></g:exterior></g:Polygon>"));
+  CHECK(says(stated, "srsDimension 2"));
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:pos>0 1</g:pos>"
+                                "</g:LinearRing></g:exterior></g:Polygon>")),
+             "a position of 2 numbers"));
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:coordinates>0,0 0,1 1,1"
+                                "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>")),
+             "a position of 2 numbers"));
+
+  // Six positions of two numbers are four of three; the Envelope and the ring's end tell.
+  const std::string envelope = "<g:boundedBy><g:Envelope srsDimension=\"2\"/></g:boundedBy>";
+  const std::string flat = building(solid_of(member(polygon("0 0 4 0 4 4 2 5 0 4 0 0"))));
+  CHECK(says(gml_error(model(envelope + flat)), "srsDimension 2 of the Envelope"));
+  CHECK(gml_of(model(envelope + building(kTetrahedron))).features.size() == 1);
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing srsDimension=\"x\">"
+                                "<g:posList>0 0 0</g:posList></g:LinearRing></g:exterior>"
+                                "</g:Polygon>")),
+             "srsDimension must be 3"));
+}
+
+TEST_CASE("GML: coordinates are finite numbers") {
+  for (const char* word : {"nan", "NaN", "INF", "-inf", "1e400", "0x10", "1,5", "--1", "1e"}) {
+    const Error error = solid_error(member(polygon(std::string("0 0 0 1 0 0 0 1 ") + word)));
+    CHECK(says(error, "a coordinate of the ring"));
+  }
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:posList>0 0 <b/>0"
+                                "</g:posList></g:LinearRing></g:exterior></g:Polygon>")),
+             "an element inside of coordinates"));
+  for (const char* tuples : {"0,0,0,0", "0,,0,0", "0,0,0 ,1", "0,0,", "0,,0 0,,0 0,,0"}) {
+    const Error error =
+        solid_error(member(std::string("<g:Polygon><g:exterior><g:LinearRing><g:coordinates>") +
+                           tuples + "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>"));
+    CHECK(error.code == ErrorCode::unsupported);
+  }
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:coordinates cs=\"ab\">"
+                                "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>")),
+             "'cs' of coordinates must be one character"));
+}
+
+TEST_CASE("GML: a reference must lead to one geometry of the document") {
+  CHECK(says(solid_error(member_of("away")),
+             "xlink:href '#away': no geometry of this document has this gml:id, in Solid 's', of "
+             "object 'b7'"));
+  const Error elsewhere = solid_error("<g:surfaceMember x:href=\"roof.gml#r1\"/>");
+  CHECK(elsewhere.code == ErrorCode::unsupported);
+  CHECK(says(elsewhere, "xlink:href 'roof.gml#r1' is not the gml:id of this document"));
+  CHECK(says(solid_error(member(polygon("", " g:id=\"p\"")) + member(polygon("", " g:id=\"p\"")) +
+                         member_of("p")),
+             "several geometries have this gml:id"));
+  CHECK(says(solid_error(member_of("s")), "Solid 's' where a surface is expected"));
+  CHECK(says(solid_error("<g:surfaceMember x:href=\"#p\">" + polygon("", " g:id=\"p\"") +
+                         "</g:surfaceMember>"),
+             "both an xlink:href and a value"));
+  CHECK(says(gml_error(model("<cityObjectMember><Building g:id=\"b\"><lod1Solid x:href=\"#no\"/>"
+                             "</Building></cityObjectMember>")),
+             "of object 'b'"));
+}
+
+TEST_CASE("GML: a reference by way of others keeps every turn") {
+  // r1 turns p, r2 turns r1: p as written. A ring can be referred to as well.
+  const Document document = gml_of(model(
+      building(
+          solid_of(member("<g:OrientableSurface orientation=\"-\"><g:baseSurface x:href=\"#r1\"/>"
+                          "</g:OrientableSurface>") +
+                   kSides)) +
+      "<cityObjectMember><Wall><lod2MultiSurface><g:MultiSurface>" +
+      member("<g:OrientableSurface g:id=\"r1\" orientation=\"-\"><g:baseSurface x:href=\"#c\"/>"
+             "</g:OrientableSurface>") +
+      member("<g:CompositeSurface g:id=\"c\">" +
+             member("<g:Polygon><g:exterior x:href=\"#ring\"/></g:Polygon>") +
+             "</g:CompositeSurface>") +
+      member("<g:Polygon><g:exterior><g:LinearRing g:id=\"ring\"><g:posList>"
+             "0 0 0 0 1 0 1 0 0 0 0 0</g:posList></g:LinearRing></g:exterior></g:Polygon>") +
+      "</g:MultiSurface></lod2MultiSurface></Wall></cityObjectMember>"));
+  CHECK(is_closed(document.features.at(0).solids.at(0).solid));
+}
+
+TEST_CASE("GML: geometry that contains itself by reference is refused") {
+  CHECK(says(solid_error(member("<g:CompositeSurface g:id=\"a\">" + member_of("a") +
+                                "</g:CompositeSurface>")),
+             "CompositeSurface 'a' contains itself by xlink"));
+  CHECK(says(solid_error(member("<g:CompositeSurface g:id=\"a\">" + member_of("b") +
+                                "</g:CompositeSurface>") +
+                         member("<g:Shell g:id=\"b\">" + member_of("a") + "</g:Shell>")),
+             "contains itself by xlink"));
+  CHECK(says(gml_error(model(building("<g:MultiSolid g:id=\"m\"><g:solidMember x:href=\"#m\"/>"
+                                      "</g:MultiSolid>"))),
+             "MultiSolid 'm' contains itself by xlink"));
+  CHECK(says(gml_error(model(building("<g:MultiSolid g:id=\"m\"><g:solidMember>"
+                                      "<g:CompositeSolid><g:solidMember x:href=\"#m\"/>"
+                                      "</g:CompositeSolid></g:solidMember></g:MultiSolid>"))),
+             "contains itself by xlink"));
+}
+
+TEST_CASE("GML: references cannot multiply geometry without bound") {
+  // Every surface holds the next one twice: 2^40 polygons.
+  std::string members = member(polygon("0 0 0 1 0 0 0 1 0 0 0 0", " g:id=\"c0\""));
+  const auto numbered = [](int i) { return std::string("c").append(std::to_string(i)); };
+  for (int i = 1; i <= 40; ++i) {
+    std::string surface = "<g:CompositeSurface g:id=\"";
+    surface.append(numbered(i)).append("\">");
+    for (int twice = 0; twice < 2; ++twice) surface += member_of(numbered(i - 1));
+    members += member(surface.append("</g:CompositeSurface>"));
+  }
+  const Error error = solid_error(members);
+  CHECK(error.code == ErrorCode::limit_exceeded);
+  CHECK(says(error, "xlinks repeat more geometry than a document of this size could hold"));
+}
+
+TEST_CASE("GML: what a solid cannot be made of is named") {
+  const Error ring = solid_error(
+      member("<g:Polygon><g:exterior><g:Ring><g:curveMember/></g:Ring></g:exterior></g:Polygon>"));
+  CHECK(ring.code == ErrorCode::unsupported);
+  CHECK(says(ring, "Ring is not read as part of a solid"));
+  CHECK(says(solid_error(member("<g:Surface><g:patches><g:Sphere/></g:patches></g:Surface>")),
+             "Sphere is not read"));
+  CHECK(says(solid_error("<g:edgeMember/>"), "'edgeMember' is not read in Shell"));
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:coord/></g:LinearRing>"
+                                "</g:exterior></g:Polygon>")),
+             "'coord' is not read in a LinearRing"));
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:pointRep x:href=\"#p\"/>"
+                                "</g:LinearRing></g:exterior></g:Polygon>")),
+             "'pointRep' by reference is not read"));
+  CHECK(says(solid_error(member("<g:Polygon><g:exterior/><g:exterior><g:LinearRing/></g:exterior>"
+                                "<g:exterior><g:LinearRing/></g:exterior></g:Polygon>")),
+             "has a second exterior ring"));
+  CHECK(says(gml_error(model(building("<g:MultiSolid><g:solidMember>" + kBase +
+                                      "</g:solidMember></g:MultiSolid>"))),
+             "Polygon where a solid is expected"));
+}
+
+TEST_CASE("GML: XML that is broken is refused where it breaks") {
+  const std::string whole = model(building(kTetrahedron));
+  for (std::size_t size = 0; size + 1 < whole.size(); size += 7) {
+    CHECK(gml_error(whole.substr(0, size)).code == ErrorCode::malformed);
+  }
+  CHECK(says(gml_error("<a>\n<b>\n</a>"), "line 3: not well-formed XML: mismatched tag"));
+  CHECK(says(gml_error("<g:Solid/>"), "unbound prefix"));
+  CHECK(says(gml_error(whole + "x"), "junk after document element"));
+  CHECK(says(gml_error("<a b='1' b='2'/>"), "duplicate attribute"));
+  CHECK(says(gml_error("<a>\xC3(</a>"), "invalid token"));
+}
+
+TEST_CASE("GML: nothing but the five entities of XML is known, and no other file is opened") {
+  for (const char* start :
+       {"<!DOCTYPE a SYSTEM \"file:///etc/passwd\">",
+        "<!DOCTYPE a [<!ENTITY e SYSTEM \"file:///etc/passwd\">]>",
+        "<!DOCTYPE a [<!ENTITY % p SYSTEM \"http://localhost/x\"> %p;]>",
+        "<!DOCTYPE a [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]>",
+        "<!DOCTYPE a>"}) {
+    const Error error = gml_error(std::string(start) + "<a>&e;</a>");
+    CHECK(error.code == ErrorCode::unsupported);
+    CHECK(says(error, "DOCTYPE"));
+  }
+  CHECK(says(gml_error("<a>&nbsp;</a>"), "undefined entity"));
+  CHECK(gml_of(model(building(solid_of(member(polygon("&#48; 0 0 &#x31; 0 0 0 1 0 0 0 0"))))))
+            .features.size() == 1);
+}
+
+TEST_CASE("GML: encodings are UTF-8, UTF-16 and ISO-8859-1") {
+  std::string utf16 = "\xFF\xFE";
+  for (const char c : "<?xml version='1.0' encoding='UTF-16'?>" + model(building(kTetrahedron))) {
+    utf16 += c;
+    utf16 += '\0';
+  }
+  CHECK(gml_of(utf16).features.size() == 1);
+  CHECK(*detect_format("-", as_bytes(utf16)) == Format::gml);
+  const std::string latin =
+      "<?xml version='1.0' encoding='ISO-8859-1'?>" + model(building(kTetrahedron,
+                                                                     "Stra\xDF"
+                                                                     "e"));
+  CHECK(gml_of(latin).features.at(0).id ==
+        "Stra\xC3\x9F"
+        "e");
+  const Error error = gml_error("<?xml version='1.0' encoding='EBCDIC-CP-US'?><a/>");
+  CHECK(error.code == ErrorCode::unsupported);
+  CHECK(says(error, "encoding is not read"));
+}
+
+TEST_CASE("GML: limits hold before memory is taken") {
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  const Error nested = gml_error(deep);
+  CHECK(nested.code == ErrorCode::limit_exceeded);
+  CHECK(says(nested, "nested deeper than 64"));
+
+  ReadOptions options;
+  options.limits.facets = 3;
+  const std::string text = model(building(kTetrahedron));
+  const auto facets = read_document(as_bytes(text), Format::gml, options);
+  REQUIRE_FALSE(facets);
+  CHECK(facets.error().code == ErrorCode::limit_exceeded);
+  options = {};
+  options.limits.vertices = 1;
+  const auto vertices = read_document(as_bytes(text), Format::gml, options);
+  REQUIRE_FALSE(vertices);
+  CHECK(vertices.error().code == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("GML: a million members, attributes and text that nobody reads cost their size") {
+  std::string many = "<g:MultiSurface g:id=\"m\">";
+  for (int i = 0; i < 100'000; ++i) many += "<g:surfaceMember/>";
+  many += "</g:MultiSurface>";
+  std::string attributes;
+  for (int i = 0; i < 20'000; ++i) attributes.append(" a").append(std::to_string(i)).append("=''");
+  const std::string text = "<?pi data?><!-- comment -->" + std::string(1'000'000, ' ');
+  const Document document =
+      gml_of(model(building(kTetrahedron) + building(many, "c") + "<x" + attributes + "/>" + text +
+                   "<app><ring y='" + std::string(1'000'000, 'y') + "'/></app>"));
+  CHECK(document.features.size() == 1);
+}
+
+}  // namespace
+}  // namespace watertight

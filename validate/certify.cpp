@@ -19,10 +19,12 @@ namespace watertight {
 class Certifier {
  public:
   Certifier(const Solid& solid, const CertifyOptions& options)
-      : options_(options), examined_(solid, options.tolerances, options.limits) {}
+      : options_(options),
+        examined_(solid, options.tolerances, options.limits, options.ladder.cancel) {}
 
   Inspection run(EngineWorkers* workers) {
     apply_exact_rules();
+    measure_solid();
     if (examined_.findings.has_errors()) {
       examined_.findings.skip({kSolidInteriorDisconnected},
                               "the tetrahedralization is built only for solids that pass the "
@@ -36,12 +38,21 @@ class Certifier {
     return finish();
   }
 
+  /// The exact rules alone.
+  TolerantVerdict run_exact_rules() {
+    apply_exact_rules();
+    return exact_verdict();
+  }
+  /// What the exact rules said, whatever the tetrahedralization said later.
+  TolerantVerdict exact_verdict() const { return exact_; }
+
   void add_note(std::string note) { inspection_.report.notes.push_back(std::move(note)); }
 
  private:
   void apply_exact_rules();
   void measure_solid();
   void prove(EngineWorkers* workers);
+  bool is_sound() const;
   void climb(EngineWorkers* workers);
   void report_property(const LadderResult& result);
   void accept(std::optional<Certificate> certificate);
@@ -51,23 +62,46 @@ class Certifier {
   ExaminedSolid examined_;
   std::vector<ShellTopology> shells_;
   std::string incomplete_;  // why the exact tests did not finish
+  TolerantVerdict exact_;
   Verdict verdict_ = Verdict::undecided;
   Inspection inspection_;
 };
 
 void Certifier::apply_exact_rules() {
   check_not_empty(examined_);
-  check_rings(examined_, options_.ladder.cancel);
+  check_rings(examined_);
+  check_closed_rings(examined_, options_.unclosed_rings);
   check_facets(examined_);
   shells_ = check_shells(examined_);
   const std::vector<Index> duplicate_of = check_duplicate_shells(examined_);
   const ShellContacts contacts =
       check_intersections(examined_, duplicate_of, options_.ladder.cancel);
   incomplete_ = contacts.incomplete;
+  check_diagonals(examined_, contacts);
   check_solid(examined_, shells_, duplicate_of, contacts);
   check_vertices(examined_);
   check_rounded(examined_, options_.rounded);
-  measure_solid();
+  if (examined_.was_cancelled() && incomplete_.empty())
+    incomplete_ = "the validation was cancelled";
+  const bool has_errors = examined_.findings.has_errors();
+  if (!has_errors && incomplete_.empty() && !is_sound()) {
+    incomplete_ = "the exact tests contradict each other; please report this solid as a defect";
+  }
+  exact_.first_level = first_level_codes(examined_.findings.all());
+  exact_.verdict = has_errors            ? Verdict::invalid
+                   : incomplete_.empty() ? Verdict::valid
+                                         : Verdict::undecided;
+}
+
+/// What the absence of findings means, asked of the facts themselves.
+bool Certifier::is_sound() const {
+  const auto& states = examined_.triangles().state;
+  return !shells_.empty() &&
+         std::all_of(shells_.begin(), shells_.end(),
+                     [](const ShellTopology& shell) { return shell.is_sound(); }) &&
+         std::all_of(states.begin(), states.end(),
+                     [](FacetState state) { return state == FacetState::triangulated; }) &&
+         !examined_.findings.has(kZeroVolume);
 }
 
 void Certifier::measure_solid() {
@@ -114,7 +148,17 @@ void Certifier::climb(EngineWorkers* workers) {
   }
 }
 
+/// The exact tests of a single closed, orientable shell prove one interior and its orientation: a
+/// certificate that says otherwise shows a defect of this program, not of the solid.
 void Certifier::report_property(const LadderResult& result) {
+  const bool is_proven = examined_.solid().shell_count() == 1 ||
+                         result.property == CertificateRefusal::wrong_orientation;
+  if (is_proven) {
+    inspection_.report.undecided_reason = "the exact tests and the tetrahedralization disagree (";
+    inspection_.report.undecided_reason += to_string(result.property);
+    inspection_.report.undecided_reason += "); please report this solid as a defect";
+    return;
+  }
   Finding finding;
   switch (result.property) {
     case CertificateRefusal::interior_disconnected:
@@ -122,9 +166,6 @@ void Certifier::report_property(const LadderResult& result) {
       break;
     case CertificateRefusal::cavity_mismatch:
       finding.code = kInnerShellOutside;
-      break;
-    case CertificateRefusal::wrong_orientation:
-      finding.code = kWrongOrientationShell;
       break;
     default:
       inspection_.report.undecided_reason =
@@ -161,20 +202,50 @@ Inspection Certifier::finish() {
   return std::move(inspection_);
 }
 
+namespace {
+
+/// val3dity's defaults.
+constexpr Tolerances kTolerant{
+    .planarity_metres = 0.01, .planarity_degrees = 20, .snap_metres = 0.001};
+
+/// `exact` is what the exact rules say under `options`, which hold for the tolerant verdict too
+/// when nothing but the snapping differs and that moves nothing.
+TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& options,
+                                 const TolerantVerdict& exact) {
+  CertifyOptions tolerant = options;
+  tolerant.tolerances = kTolerant;
+  if (options.tolerances == kTolerant) return exact;
+  const auto snapped = snap_vertices(solid, kTolerant.snap_metres, options.ladder.cancel);
+  if (!snapped) return {};
+  Tolerances unsnapped = kTolerant;
+  unsnapped.snap_metres = 0;
+  if (snapped->moved == 0 && options.tolerances == unsnapped) return exact;
+  return Certifier(snapped->solid, tolerant).run_exact_rules();
+}
+
+}  // namespace
+
 Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Inspection inspection;
+  TolerantVerdict exact;
   const double snap = options.tolerances.snap_metres;
   if (!(snap > 0)) {
-    inspection = Certifier(solid, options).run(workers);
-  } else if (auto snapped = snap_vertices(solid, snap); snapped) {
+    Certifier certifier(solid, options);
+    inspection = certifier.run(workers);
+    exact = certifier.exact_verdict();
+  } else if (auto snapped = snap_vertices(solid, snap, options.ladder.cancel); snapped) {
     Certifier certifier(snapped->solid, options);
     certifier.add_note("the snap tolerance moved " + std::to_string(snapped->moved) +
                        " vertices; the verdict is about the snapped solid");
     inspection = certifier.run(workers);
+    exact = certifier.exact_verdict();
   } else {
     inspection.report.undecided_reason = to_string(snapped.error());
     inspection.report.acceptance = {options.tolerances, options.proof, kRuleSet};
+  }
+  if (options.also_tolerant) {
+    inspection.report.tolerant = tolerant_verdict(solid, options, exact);
   }
   inspection.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The ring edges of one shell, grouped by their two vertices. Internal to validate/.
+// The ring edges of a shell, grouped by their two vertices. Internal to validate/.
 #pragma once
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+#include <span>
 #include <vector>
 
 #include "geometry/solid.h"
@@ -14,18 +14,20 @@ namespace watertight {
 
 /// One passage of a ring along an edge.
 struct EdgeUse {
-  Index low = 0;            // the smaller vertex
-  Index high = 0;           // the larger vertex
-  bool is_forward = false;  // from low to high
+  Index low = 0;   // the smaller vertex
+  Index high = 0;  // the larger vertex
   Index facet = 0;
-  Index ring_in_facet = 0;
-  Index position = 0;  // of the edge's first vertex in the ring
-  Index corner = 0;    // index of that vertex in ring_vertices
-  Index next_corner = 0;
-
-  Index corner_at_low() const { return is_forward ? corner : next_corner; }
-  Index corner_at_high() const { return is_forward ? next_corner : corner; }
+  Index corner = 0;  // index in ring_vertices of the vertex where it starts
 };
+
+/// Where a corner stands.
+struct CornerPlace {
+  Index ring_in_facet = 0;
+  Index position = 0;  // in the ring
+  Index next = 0;      // the corner after it
+};
+/// Cost: logarithmic in the rings of the facet.
+CornerPlace place_of_corner(const Solid& solid, Index facet, Index corner);
 
 /// Union-find with path halving; the smallest member is the root.
 class DisjointSets {
@@ -48,8 +50,34 @@ class DisjointSets {
   std::vector<Index> parent_;
 };
 
-/// Sorted by vertices, then by place. Edges of no length are left out. Cost: O(n log n).
-std::vector<EdgeUse> edge_uses(const Solid& solid, Index shell);
+/// The edges of shells, one shell at a time.
+class EdgeTable {
+ public:
+  explicit EdgeTable(const Solid& solid) : solid_(solid), number_of_(solid.vertex_count(), kNone) {}
+
+  /// Turns to another shell. Edges of no length and rings below 3 vertices are left out.
+  /// Cost: linear in the shell where vertices are numbered in order of first use, or nearly.
+  void examine(Index shell);
+
+  /// Sorted by vertices, then by corner.
+  std::span<const EdgeUse> uses() const { return uses_; }
+  /// The vertices of the edges, ascending.
+  std::span<const Index> vertices() const { return vertices_; }
+  /// Position of a vertex among vertices(). Requires one of them.
+  Index number_of(Index vertex) const { return number_of_[vertex]; }
+  bool is_forward(const EdgeUse& use) const {
+    return solid_.arrays().ring_vertices[use.corner] == use.low;
+  }
+
+ private:
+  template <class Visit>
+  void for_each_passage(IndexRange facets, Visit visit) const;
+
+  const Solid& solid_;
+  std::vector<Index> number_of_;
+  std::vector<Index> vertices_;
+  std::vector<EdgeUse> uses_;
+};
 
 /// Calls visit(span of the uses of one edge) for each edge in order.
 template <class Visit>

@@ -47,16 +47,18 @@ void FindingCollector::move_to(Report& report) && {
 }
 
 ExaminedSolid::ExaminedSolid(const Solid& submitted, const Tolerances& tolerances,
-                             const Limits& limits)
+                             const Limits& limits, CancelPoll cancel)
     : findings(limits.findings),
       submitted_(submitted),
+      cancel_(std::move(cancel)),
       merged_(merge_equal_vertices(submitted)),
       triangles_(triangulate_facets(merged_.solid)),
       tolerances_(tolerances),
       limits_(limits),
       shell_of_(submitted.facet_count(), 0),
       first_submitted_(merged_.solid.vertex_count(), kNone),
-      is_faulty_(submitted.facet_count(), false) {
+      is_faulty_(submitted.facet_count(), false),
+      is_not_planar_(submitted.facet_count(), false) {
   for (Index shell = 0; shell < submitted.shell_count(); ++shell) {
     const IndexRange facets = submitted.facets_of(shell);
     for (Index facet = facets.begin; facet < facets.end; ++facet) shell_of_[facet] = shell;
@@ -128,17 +130,54 @@ bool ExaminedSolid::is_shell_faulty(Index shell) const {
   return false;
 }
 
-bool ExaminedSolid::is_junction(Index without, Index with) const {
-  const auto place = junctions_.find(without);
-  if (place == junctions_.end()) return false;
-  const IndexRange rings = solid().rings_of(with);
-  for (Index r = rings.begin; r < rings.end; ++r) {
-    for (const Index vertex : solid().ring(r)) {
-      const auto& lacking = place->second;
-      if (std::find(lacking.begin(), lacking.end(), vertex) != lacking.end()) return true;
+bool ExaminedSolid::is_cancelled() {
+  constexpr std::uint32_t kInterval = 1U << 10U;
+  if (!was_cancelled_ && cancel_ && polls_++ % kInterval == 0) was_cancelled_ = cancel_();
+  return was_cancelled_;
+}
+
+void ExaminedSolid::index_junctions() {
+  owners_.clear();
+  if (junctions_.empty()) return;
+  std::sort(junctions_.begin(), junctions_.end());
+  std::vector<bool> is_lacked(solid().vertex_count(), false);
+  for (const auto& [facet, vertex] : junctions_) is_lacked[vertex] = true;
+  for (Index facet = 0; facet < solid().facet_count(); ++facet) {
+    const IndexRange rings = solid().rings_of(facet);
+    for (Index r = rings.begin; r < rings.end; ++r) {
+      for (const Index vertex : solid().ring(r)) {
+        if (is_lacked[vertex]) owners_.emplace_back(vertex, facet);
+      }
     }
   }
-  return false;
+  std::sort(owners_.begin(), owners_.end());
+}
+
+/// True if `with` has a vertex that `without` lacks.
+bool ExaminedSolid::is_junction(Index without, Index with) const {
+  const auto begin =
+      std::lower_bound(junctions_.begin(), junctions_.end(), std::pair(without, Index{0}));
+  const auto end = std::lower_bound(begin, junctions_.end(), std::pair(without + 1, Index{0}));
+  if (begin == end) return false;
+  const SolidArrays& arrays = solid().arrays();
+  const IndexRange rings = solid().rings_of(with);
+  const std::span<const Index> corners =
+      std::span<const Index>(arrays.ring_vertices)
+          .subspan(arrays.ring_offsets[rings.begin],
+                   arrays.ring_offsets[rings.end] - arrays.ring_offsets[rings.begin]);
+  if (corners.size() < static_cast<std::size_t>(end - begin)) {
+    return std::any_of(corners.begin(), corners.end(), [&](Index vertex) {
+      return std::binary_search(begin, end, std::pair(without, vertex));
+    });
+  }
+  return std::any_of(begin, end, [&](const auto& lacked) {
+    return std::binary_search(owners_.begin(), owners_.end(), std::pair(lacked.second, with));
+  });
+}
+
+bool ExaminedSolid::is_junction_contact(ContactClass contact, Index a, Index b) const {
+  if (contact != ContactClass::vertex_edge && contact != ContactClass::edge_overlap) return false;
+  return is_junction(a, b) || is_junction(b, a);
 }
 
 }  // namespace watertight

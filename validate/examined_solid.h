@@ -5,9 +5,11 @@
 #pragma once
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "geometry/crs.h"
+#include "geometry/triangle_triangle.h"
 #include "tessellate/facets.h"
 #include "validate/finding_kinds.h"
 #include "validate/report.h"
@@ -28,6 +30,7 @@ class FindingCollector {
   }
   const std::vector<Finding>& all() const { return findings_; }
   bool has_errors() const { return has_errors_; }
+  bool has(int code) const { return count_.count(code) != 0; }
   bool has_errors_up_to_level(int level) const;
 
   /// Findings ordered by level, code and place; at most `most`.
@@ -45,7 +48,12 @@ class FindingCollector {
 class ExaminedSolid {
  public:
   /// Keeps a reference to `submitted`.
-  ExaminedSolid(const Solid& submitted, const Tolerances& tolerances, const Limits& limits);
+  ExaminedSolid(const Solid& submitted, const Tolerances& tolerances, const Limits& limits,
+                CancelPoll cancel = {});
+
+  /// For long loops: true once the caller wants an end. Asks now and then, and remembers.
+  bool is_cancelled();
+  bool was_cancelled() const { return was_cancelled_; }
 
   const Solid& submitted() const { return submitted_; }
   const Solid& solid() const { return merged_.solid; }
@@ -76,15 +84,26 @@ class ExaminedSolid {
   bool is_faulty(Index facet) const { return is_faulty_[facet]; }
   bool is_shell_faulty(Index shell) const;
 
+  /// Marks a triangulated facet whose points are not all in one plane, exactly.
+  void mark_not_planar(Index facet) { is_not_planar_[facet] = true; }
+  bool is_not_planar(Index facet) const { return is_not_planar_[facet]; }
+
   /// Notes that a vertex lies inside an edge of a facet that lacks it (reported as 302).
-  void note_junction(Index facet, Index vertex) { junctions_[facet].push_back(vertex); }
-  /// True if `with` has a vertex that `without` lacks.
-  bool is_junction(Index without, Index with) const;
+  void note_junction(Index facet, Index vertex) { junctions_.emplace_back(facet, vertex); }
+  /// To be called after the last note_junction() and before is_junction_contact().
+  void index_junctions();
+  /// True if facets that meet so touch at a T-junction: one defect, reported once, as 302.
+  bool is_junction_contact(ContactClass contact, Index a, Index b) const;
 
   FindingCollector findings;
 
  private:
+  bool is_junction(Index without, Index with) const;
+
   const Solid& submitted_;
+  CancelPoll cancel_;
+  std::uint32_t polls_ = 0;
+  bool was_cancelled_ = false;
   MergedSolid merged_;
   FacetTriangles triangles_;
   Tolerances tolerances_;
@@ -94,7 +113,9 @@ class ExaminedSolid {
   std::vector<Index> shell_of_;
   std::vector<Index> first_submitted_;
   std::vector<bool> is_faulty_;
-  std::map<Index, std::vector<Index>> junctions_;  // facet -> vertices it lacks
+  std::vector<bool> is_not_planar_;
+  std::vector<std::pair<Index, Index>> junctions_;  // facet and vertex it lacks; sorted
+  std::vector<std::pair<Index, Index>> owners_;     // such a vertex and facet that has it; sorted
 };
 
 }  // namespace watertight

@@ -10,15 +10,12 @@
 
 #include "geometry/predicates.h"
 #include "tessellate/ring_problems.h"
+#include "validate/box_tree.h"
 #include "validate/planarity.h"
 #include "validate/rules.h"
 
 namespace watertight {
 namespace {
-
-/// Pairs of triangles compared per facet for rule 204: about a second of work. Facets with more
-/// (above 6,000 triangles) whose triangles all face within half the limit need no pairs at all.
-constexpr std::size_t kMostTrianglePairs = 20'000'000;
 
 struct Corner {
   Index ring = 0;
@@ -42,16 +39,21 @@ std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index face
       .subspan(all.first[facet], all.first[facet + 1] - all.first[facet]);
 }
 
-/// Exact. Requires a triangulated facet.
-bool is_exactly_planar(const ExaminedSolid& examined, Index facet,
-                       const std::vector<Corner>& corners) {
+/// Exact.
+bool is_exactly_planar(const ExaminedSolid& examined, const std::vector<Corner>& corners) {
   const std::span<const Point> vertices = examined.solid().vertices();
-  const Triangle& t = triangles_of(examined, facet).front();
-  return std::all_of(corners.begin(), corners.end(), [&](const Corner& corner) {
-    const Index v = corner.vertex;
-    return v == t[0] || v == t[1] || v == t[2] ||
-           orient3d(vertices[t[0]], vertices[t[1]], vertices[t[2]], vertices[v]) == 0;
-  });
+  const auto at = [&](std::size_t i) -> const Point& { return vertices[corners[i].vertex]; };
+  std::size_t b = 1;
+  while (b < corners.size() && at(b) == at(0)) ++b;
+  std::size_t c = b + 1;
+  while (c < corners.size() &&
+         (at(c) == at(0) || at(c) == at(b) || are_collinear(at(0), at(b), at(c)))) {
+    ++c;
+  }
+  for (std::size_t i = c + 1; i < corners.size(); ++i) {
+    if (!are_coplanar(at(0), at(b), at(c), at(i))) return false;
+  }
+  return true;
 }
 
 /// Newell's normal of the exterior ring, in metres squared.
@@ -76,10 +78,10 @@ bool check_distance(ExaminedSolid& examined, Index facet, const std::vector<Corn
   PlaneDistance measured = distance_to_fitted_plane(points);
   if (measured.metres <= limit) return true;
   // Least squares lose digits on long and narrow facets; the plane across the ring's own normal
-  // is as good a witness of planarity.
+  // is as good a witness of planarity. Points that are exactly on one plane never come here.
   const PlaneDistance other = distance_to_plane(points, ring_normal(corners, points));
   if (other.metres < measured.metres) measured = other;
-  if (measured.metres <= limit || is_exactly_planar(examined, facet, corners)) return true;
+  if (measured.metres <= limit) return true;
   const Corner& corner = corners[measured.point];
   Finding finding;
   finding.code = kNonPlanarDistance;
@@ -100,16 +102,34 @@ struct WidestPair {
   std::size_t b = 0;
 };
 
+/// The pair with the smallest cosine. Cost: near linear, but for normals placed against it.
 WidestPair widest_pair(const std::vector<Vector>& normals) {
+  std::vector<Box> boxes;
+  boxes.reserve(normals.size());
+  for (const Vector& n : normals) boxes.push_back({{n[0], n[1], n[2]}, {n[0], n[1], n[2]}});
+  const BoxTree tree(boxes);
   WidestPair widest;
-  std::size_t pairs = 0;
+  const auto compare = [&](std::size_t a, std::size_t b) {
+    const double cosine = dot(normals[a], normals[b]);
+    if (cosine < widest.cosine) widest = {cosine, std::min(a, b), std::max(a, b)};
+  };
+  // A first guess: twice to the farthest of the last.
+  for (int round = 0; round < 2; ++round) {
+    const std::size_t from = widest.b;
+    for (std::size_t i = 0; i < normals.size(); ++i) compare(from, i);
+  }
   for (std::size_t a = 0; a < normals.size(); ++a) {
-    pairs += normals.size() - a;
-    if (pairs > kMostTrianglePairs) break;
-    for (std::size_t b = a + 1; b < normals.size(); ++b) {
-      const double cosine = dot(normals[a], normals[b]);
-      if (cosine < widest.cosine) widest = {cosine, a, b};
-    }
+    const Vector& n = normals[a];
+    tree.visit(
+        [&](const Box& box) {
+          double least = 0;
+          for (int axis = 0; axis < 3; ++axis) {
+            const double component = n[static_cast<std::size_t>(axis)];
+            least += std::min(component * box.min[axis], component * box.max[axis]);
+          }
+          return least < widest.cosine;
+        },
+        [&](Index b) { compare(a, b); });
   }
   return widest;
 }
@@ -118,7 +138,7 @@ double degrees_of(double cosine) {
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * (180.0 / std::numbers::pi);
 }
 
-void check_normals(ExaminedSolid& examined, Index facet, const std::vector<Corner>& corners) {
+void check_normals(ExaminedSolid& examined, Index facet) {
   const std::span<const Triangle> triangles = triangles_of(examined, facet);
   if (triangles.size() < 2) return;
   const double limit = examined.tolerances().planarity_degrees;
@@ -137,7 +157,7 @@ void check_normals(ExaminedSolid& examined, Index facet, const std::vector<Corne
   }
   const WidestPair widest = widest_pair(normals);
   const double measured = degrees_of(widest.cosine);
-  if (!(measured > limit) || is_exactly_planar(examined, facet, corners)) return;
+  if (!(measured > limit)) return;
   Finding finding;
   finding.code = kNonPlanarNormals;
   finding.place = examined.at_facet(facet);
@@ -229,26 +249,50 @@ void check_turns(ExaminedSolid& examined, Index facet) {
   }
 }
 
+/// False for facets with finding 101 or 102.
+bool has_good_points(const Solid& solid, IndexRange rings) {
+  for (Index r = rings.begin; r < rings.end; ++r) {
+    const std::span<const Index> ring = solid.ring(r);
+    if (ring.size() < 3 || ring.front() == ring.back()) return false;
+    if (std::adjacent_find(ring.begin(), ring.end()) != ring.end()) return false;
+  }
+  return rings.size() > 0;
+}
+
+void check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
+  const Solid& solid = examined.solid();
+  const std::vector<Corner> corners = corners_of(solid, facet);
+  if (!is_exactly_planar(examined, corners)) {
+    if (is_triangulated) examined.mark_not_planar(facet);
+    if (check_distance(examined, facet, corners) && is_triangulated) {
+      check_normals(examined, facet);
+    }
+  }
+  if (!is_triangulated || solid.rings_of(facet).size() < 2) return;
+  check_connected(examined, facet, corners);
+  check_turns(examined, facet);
+}
+
 }  // namespace
 
 void check_facets(ExaminedSolid& examined) {
   const Solid& solid = examined.solid();
   Index unmeasured = kNone;
   for (Index facet = 0; facet < solid.facet_count(); ++facet) {
-    const IndexRange rings = solid.rings_of(facet);
-    if (examined.triangles().state[facet] != FacetState::triangulated) {
-      if (unmeasured == kNone) unmeasured = facet;
-      continue;
+    if (examined.is_cancelled()) {
+      examined.findings.skip({203, 204, 205, 208}, "the search was cancelled");
+      break;
     }
+    const IndexRange rings = solid.rings_of(facet);
+    const bool is_triangulated = examined.triangles().state[facet] == FacetState::triangulated;
+    if (!is_triangulated && unmeasured == kNone) unmeasured = facet;
     if (rings.size() == 1 && solid.ring(rings.begin).size() == 3) continue;
-    const std::vector<Corner> corners = corners_of(solid, facet);
-    if (check_distance(examined, facet, corners)) check_normals(examined, facet, corners);
-    if (rings.size() < 2) continue;
-    check_connected(examined, facet, corners);
-    check_turns(examined, facet);
+    if (is_triangulated || has_good_points(solid, rings)) {
+      check_facet(examined, facet, is_triangulated);
+    }
   }
   if (unmeasured != kNone) {
-    examined.findings.skip({203, 204, 205, 208},
+    examined.findings.skip({204, 205, 208},
                            "not on facets whose rings bound no region (first: facet " +
                                std::to_string(unmeasured) + ")");
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// val3dity's cascade: per facet the first failing test ends the facet; facets must all pass before
-// a shell is looked at, shells before the solid.
+// val3dity's cascade: an open ring (103) ends it while reading; per facet the first failing test
+// ends the facet; all facets of a shell must pass before the shell is looked at, all shells before
+// the solid; a shell turned the wrong way (405) ends the tests of the solid. A one-sided shell
+// (300) is 303 there: its builder cannot add the facet that closes the strip.
 #include <algorithm>
 #include <initializer_list>
 #include <map>
@@ -37,45 +39,56 @@ Codes of_facet(const Codes& codes) {
 Codes of_shell(const Codes& codes) {
   if (has(codes, kTooFewPolygons)) return {kTooFewPolygons};
   Codes result;
-  for (const int code : {kNonManifold, kPolygonWrongOrientation}) {
-    if (has(codes, code)) result.insert(code);
-  }
+  if (has(codes, kNonManifold) || has(codes, kNotValid2Manifold)) result.insert(kNonManifold);
+  if (has(codes, kPolygonWrongOrientation)) result.insert(kPolygonWrongOrientation);
   if (!result.empty()) return result;
   return first_of(codes, {kMultipleComponents, kShellNotClosed, kShellSelfIntersection});
 }
 
+/// What is known of one shell.
+struct ShellCodes {
+  std::map<Index, Codes> facets;
+  bool has_folds = false;
+  Codes shell;
+
+  /// A shell's facets come before the shell itself, and all of them before 204.
+  Codes first_level() const {
+    Codes result;
+    for (const auto& [facet, codes] : facets) result.merge(of_facet(codes));
+    if (!result.empty()) return result;
+    if (has_folds) return {kNonPlanarNormals};
+    return of_shell(shell);
+  }
+};
+
 }  // namespace
 
 std::vector<int> first_level_codes(const std::vector<Finding>& findings) {
-  std::map<Index, Codes> of_facets;
-  std::map<Index, Codes> of_shells;
-  Codes result;
-  Codes folds;
-  Codes of_solid;
+  std::map<Index, ShellCodes> shells;
+  Codes input;
+  Codes solid;
   for (const Finding& finding : findings) {
     if (finding.severity != Severity::error) continue;
     const int level = finding_level(finding.code);
-    if (level == 0) result.insert(finding.code);
-    if (finding.code == kNonPlanarNormals) {
-      folds.insert(finding.code);
+    if (level == 0 || finding.code == kRingNotClosed) {
+      input.insert(finding.code);
+    } else if (finding.code == kNonPlanarNormals) {
+      shells[finding.place.shell].has_folds = true;
     } else if (level == 1 || level == 2) {
-      of_facets[finding.place.facet].insert(finding.code);
+      shells[finding.place.shell].facets[finding.place.facet].insert(finding.code);
     } else if (level == 3) {
-      of_shells[finding.place.shell].insert(finding.code);
-    } else if (level == 4) {
-      of_solid.insert(finding.code);
+      shells[finding.place.shell].shell.insert(finding.code);
+    } else {
+      solid.insert(finding.code);
     }
   }
-  const auto gather = [&](const std::map<Index, Codes>& groups, auto choose) {
-    for (const auto& [place, codes] : groups) {
-      Codes chosen = choose(codes);
-      result.merge(chosen);
-    }
-  };
-  if (result.empty()) gather(of_facets, of_facet);
-  if (result.empty()) result = folds;
-  if (result.empty()) gather(of_shells, of_shell);
-  if (result.empty()) result = of_solid;
+  Codes result = input;
+  if (result.empty()) {
+    for (const auto& [shell, codes] : shells) result.merge(codes.first_level());
+  }
+  if (result.empty()) {
+    result = has(solid, kWrongOrientationShell) ? Codes{kWrongOrientationShell} : solid;
+  }
   return {result.begin(), result.end()};
 }
 

@@ -48,9 +48,9 @@ class IntersectionExaminer {
   void mark_common_vertices();
   bool search(std::uint64_t limit);
   bool is_wrong(const FacetPair& pair);
-  bool is_part_of_junction(const FacetPair& pair) const;
   bool have_common_vertex(const IntersectingPair& pair) const;
   void report(const FacetPair& pair);
+  void keep_found(const std::vector<FacetPair>& pairs, std::vector<TrianglePair> all);
   Index facet_of(Index triangle) const { return examined_.triangles().facet_of[triangle]; }
 
   ExaminedSolid& examined_;
@@ -74,14 +74,6 @@ void IntersectionExaminer::mark_common_vertices() {
   }
 }
 
-/// The facets around a T-junction touch there: one defect, reported once, as 302.
-bool IntersectionExaminer::is_part_of_junction(const FacetPair& pair) const {
-  const ContactClass contact = pair.worst.contact;
-  if (contact != ContactClass::vertex_edge && contact != ContactClass::edge_overlap) return false;
-  return examined_.is_junction(pair.first, pair.second) ||
-         examined_.is_junction(pair.second, pair.first);
-}
-
 bool IntersectionExaminer::have_common_vertex(const IntersectingPair& pair) const {
   const Triangle& a = triangles_[pair.first];
   const Triangle& b = triangles_[pair.second];
@@ -92,7 +84,9 @@ bool IntersectionExaminer::have_common_vertex(const IntersectingPair& pair) cons
 bool IntersectionExaminer::is_wrong(const FacetPair& pair) {
   const Index a = examined_.shell_of(pair.first);
   const Index b = examined_.shell_of(pair.second);
-  if (a == b) return !is_part_of_junction(pair);
+  if (a == b) {
+    return !examined_.is_junction_contact(pair.worst.contact, pair.first, pair.second);
+  }
   if (duplicate_of_[a] == b || duplicate_of_[b] == a ||
       (duplicate_of_[a] != kNone && duplicate_of_[a] == duplicate_of_[b])) {
     return false;
@@ -120,6 +114,24 @@ void IntersectionExaminer::report(const FacetPair& pair) {
   examined_.findings.add(std::move(finding));
 }
 
+/// Keeps the triangle pairs of the facet pairs that are findings. Requires sorted facet pairs.
+void IntersectionExaminer::keep_found(const std::vector<FacetPair>& pairs,
+                                      std::vector<TrianglePair> all) {
+  std::erase_if(all, [&](const TrianglePair& pair) {
+    const auto place =
+        std::lower_bound(pairs.begin(), pairs.end(), pair, [](const FacetPair& a, const auto& b) {
+          return std::tie(a.first, a.second) < std::tie(b.first_facet, b.second_facet);
+        });
+    return place == pairs.end() || place->first != pair.first_facet ||
+           place->second != pair.second_facet;
+  });
+  std::sort(all.begin(), all.end(), [](const TrianglePair& a, const TrianglePair& b) {
+    return std::tie(a.first_facet, a.second_facet, a.first, a.second) <
+           std::tie(b.first_facet, b.second_facet, b.first, b.second);
+  });
+  contacts_.found = std::move(all);
+}
+
 /// False if the search must be repeated with a higher limit.
 bool IntersectionExaminer::search(std::uint64_t limit) {
   IntersectionOptions options;
@@ -137,6 +149,13 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
     // Triangles of one facet meet in common vertices and edges only, by construction.
     if (first != second) pairs.push_back({first, second, pair});
   }
+  std::vector<TrianglePair> triangle_pairs;
+  for (const FacetPair& pair : pairs) {
+    const bool is_swapped = facet_of(pair.worst.first) != pair.first;
+    triangle_pairs.push_back({pair.first, pair.second,
+                              is_swapped ? pair.worst.second : pair.worst.first,
+                              is_swapped ? pair.worst.first : pair.worst.second});
+  }
   std::sort(pairs.begin(), pairs.end(), [](const FacetPair& a, const FacetPair& b) {
     return std::tuple(a.first, a.second, -static_cast<int>(a.worst.contact), a.worst.first,
                       a.worst.second) < std::tuple(b.first, b.second,
@@ -152,6 +171,7 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   const bool is_cut_off = found->size() >= limit;
   if (pairs.empty() && is_cut_off && limit < kLastLimit) return false;
   for (const FacetPair& pair : pairs) report(pair);
+  keep_found(pairs, std::move(triangle_pairs));
   if (is_cut_off) {
     contacts_.incomplete = "the search for intersections stopped after " + std::to_string(limit) +
                            " pairs of triangles; there may be more";

@@ -4,6 +4,7 @@
 // validate/.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "validate/edge_table.h"
@@ -25,11 +26,12 @@ struct Border {
 struct OpenEdges {
   std::vector<TJunction> junctions;  // in edge order, along each edge
   std::vector<Border> borders;       // of the edges that T-junctions do not explain
-  bool is_complete = true;           // false: too many pairs to look for all T-junctions
+  bool is_complete = true;           // false: not all T-junctions were looked for
 };
 
-/// Requires edges that are each used once. Exact. Cost: O(n log n + pairs that overlap along the
-/// longest axis), bounded.
-OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open);
+/// Requires edges that are each used once, sorted by vertices. Exact. `is_cancelled` ends the
+/// search for T-junctions. Cost: O(n log n + vertices close to each edge), bounded.
+OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open,
+                             const std::function<bool()>& is_cancelled);
 
 }  // namespace watertight

@@ -2,6 +2,9 @@
 #include "validate/planarity.h"
 
 #include <cmath>
+#include <optional>
+
+#include "geometry/predicates.h"
 
 namespace watertight {
 namespace {
@@ -10,6 +13,25 @@ using Matrix = std::array<std::array<double, 3>, 3>;
 
 /// Cyclic Jacobi converges quadratically; 3 x 3 matrices need 5 to 8 sweeps in double precision.
 constexpr int kMostSweeps = 30;
+
+__extension__ using Wide = __int128;
+/// Products of three differences below this, six of them summed, stay below 2^127.
+constexpr double kMostDifference = 1099511627776.0;  // 2^40
+
+/// b - a where that is exact and a small integer on all axes.
+std::optional<std::array<std::int64_t, 3>> integer_difference(const Point& a, const Point& b) {
+  std::array<std::int64_t, 3> result{};
+  for (int axis = 0; axis < 3; ++axis) {
+    // Doubles below 2^53 are exact where they are integers, and so are their differences.
+    constexpr double kExact = 9007199254740992.0;
+    if (!(std::abs(a[axis]) < kExact) || !(std::abs(b[axis]) < kExact)) return std::nullopt;
+    if (a[axis] != std::trunc(a[axis]) || b[axis] != std::trunc(b[axis])) return std::nullopt;
+    const double difference = b[axis] - a[axis];
+    if (!(std::abs(difference) < kMostDifference)) return std::nullopt;
+    result[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(difference);
+  }
+  return result;
+}
 
 Vector mean_of(std::span<const Vector> points) {
   Vector sum{};
@@ -72,6 +94,17 @@ Vector smallest_eigenvector(Matrix m) {
 }
 
 }  // namespace
+
+bool are_coplanar(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const auto u = integer_difference(a, b);
+  const auto v = integer_difference(a, c);
+  const auto w = integer_difference(a, d);
+  if (!u || !v || !w) return orient3d(a, b, c, d) == 0;
+  const auto minor = [&](std::size_t i, std::size_t j) {
+    return Wide{(*u)[i]} * (*v)[j] - Wide{(*u)[j]} * (*v)[i];
+  };
+  return minor(1, 2) * (*w)[0] + minor(2, 0) * (*w)[1] + minor(0, 1) * (*w)[2] == 0;
+}
 
 Vector unit(const Vector& v) {
   const double length = std::sqrt(dot(v, v));

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // How far points are from a plane: measured in doubles, in metres, never deciding anything but the
-// tolerance rules 203 and 204. Internal to validate/.
+// tolerance rules 203 and 204; and whether they are in one plane, exactly. Internal to validate/.
 #pragma once
 
 #include <array>
 #include <span>
 
+#include "geometry/point.h"
+
 namespace watertight {
+
+/// Exact for any finite doubles; much faster than orient3d() where the answer is yes and the
+/// coordinates are integers. Requires four different points.
+bool are_coplanar(const Point& a, const Point& b, const Point& c, const Point& d);
 
 using Vector = std::array<double, 3>;
 

@@ -51,32 +51,77 @@ bool is_in_triangle(const Point& p, const Point& a, const Point& b, const Point&
   return false;
 }
 
+/// The parity of the triangles above a point, one triangle at a time.
+class RayParity {
+ public:
+  RayParity(const Point& p, std::span<const Point> vertices) : p_(p), vertices_(vertices) {}
+
+  void meet(const Triangle& t) {
+    const Point& a = vertices_[t[0]];
+    const Point& b = vertices_[t[1]];
+    const Point& c = vertices_[t[2]];
+    if (is_on_boundary_ || is_missed(a, b, c)) return;
+    int height = 2;  // not known yet; else the sign of orient3d
+    if (is_in_closed_box(p_, a, b, c)) {
+      const bool is_corner = p_ == a || p_ == b || p_ == c;
+      height = is_corner ? 0 : orient3d(a, b, c, p_);
+      is_on_boundary_ = height == 0 && is_in_triangle(p_, a, b, c);
+      if (is_on_boundary_) return;
+    }
+    const int turn = moved_turn(a, b, p_);
+    if (turn == 0 || moved_turn(b, c, p_) != turn || moved_turn(c, a, p_) != turn) return;
+    if (height == 2) height = orient3d(a, b, c, p_);
+    // From below, a triangle that turns left in plan turns clockwise: orient3d is positive above.
+    if (height * turn < 0) is_inside_ = !is_inside_;
+  }
+
+  Location location() const {
+    if (is_on_boundary_) return Location::boundary;
+    return is_inside_ ? Location::inside : Location::outside;
+  }
+
+ private:
+  bool is_missed(const Point& a, const Point& b, const Point& c) const {
+    const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
+    const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
+    return p_.x < low_x || p_.x > high_x || p_.y < low_y || p_.y > high_y ||
+           p_.z > std::max({a.z, b.z, c.z});
+  }
+
+  Point p_;
+  std::span<const Point> vertices_;
+  bool is_inside_ = false;
+  bool is_on_boundary_ = false;
+};
+
+std::vector<Box> boxes_of(std::span<const Point> vertices, std::span<const Triangle> triangles) {
+  std::vector<Box> boxes;
+  boxes.reserve(triangles.size());
+  for (const Triangle& t : triangles) boxes.push_back(box_of(t, vertices));
+  return boxes;
+}
+
 }  // namespace
+
+PointLocator::PointLocator(std::span<const Point> vertices, std::span<const Triangle> triangles)
+    : vertices_(vertices), triangles_(triangles), tree_(boxes_of(vertices, triangles)) {}
+
+Location PointLocator::locate(const Point& p) const {
+  RayParity parity(p, vertices_);
+  tree_.visit(
+      [&](const Box& box) {
+        return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y &&
+               p.z <= box.max.z;
+      },
+      [&](Index triangle) { parity.meet(triangles_[triangle]); });
+  return parity.location();
+}
 
 Location locate(const Point& p, std::span<const Point> vertices,
                 std::span<const Triangle> triangles) {
-  bool is_inside = false;
-  for (const Triangle& t : triangles) {
-    const Point& a = vertices[t[0]];
-    const Point& b = vertices[t[1]];
-    const Point& c = vertices[t[2]];
-    const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
-    const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
-    if (p.x < low_x || p.x > high_x || p.y < low_y || p.y > high_y) continue;
-    if (p.z > std::max({a.z, b.z, c.z})) continue;
-    int height = 2;  // not known yet; else the sign of orient3d
-    if (is_in_closed_box(p, a, b, c)) {
-      const bool is_corner = p == a || p == b || p == c;
-      height = is_corner ? 0 : orient3d(a, b, c, p);
-      if (height == 0 && is_in_triangle(p, a, b, c)) return Location::boundary;
-    }
-    const int turn = moved_turn(a, b, p);
-    if (turn == 0 || moved_turn(b, c, p) != turn || moved_turn(c, a, p) != turn) continue;
-    if (height == 2) height = orient3d(a, b, c, p);
-    // From below, a triangle that turns left in plan turns clockwise: orient3d is positive above.
-    if (height * turn < 0) is_inside = !is_inside;
-  }
-  return is_inside ? Location::inside : Location::outside;
+  RayParity parity(p, vertices);
+  for (const Triangle& t : triangles) parity.meet(t);
+  return parity.location();
 }
 
 }  // namespace watertight

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rings: enough points (101), no point twice in a row (102), simple (104), and how the rings of a
-// facet lie to each other (201, 202, 206, 207). Exact, in the facet's projection.
+// Rings: enough points (101), no point twice in a row (102), closed (103), simple (104), and how
+// the rings of a facet lie to each other (201, 202, 206, 207). Exact, in the facet's projection.
 #include <algorithm>
 
 #include "tessellate/ring_problems.h"
@@ -124,12 +124,28 @@ void check_not_empty(ExaminedSolid& examined) {
   examined.findings.add(std::move(finding));
 }
 
-void check_rings(ExaminedSolid& examined, const CancelPoll& cancel) {
+void check_closed_rings(ExaminedSolid& examined, std::span<const Index> unclosed) {
+  const Solid& solid = examined.submitted();
+  const std::vector<Index>& offsets = solid.arrays().facet_offsets;
+  for (const Index ring : unclosed) {
+    if (ring >= solid.ring_count()) continue;
+    const auto next = std::upper_bound(offsets.begin(), offsets.end(), ring);
+    const auto facet = static_cast<Index>(next - offsets.begin() - 1);
+    Finding finding;
+    finding.code = kRingNotClosed;
+    finding.place = solid.ring(ring).empty() ? examined.at_ring(facet, ring - offsets[facet])
+                                             : examined.at_corner(facet, ring - offsets[facet], 0);
+    if (!solid.ring(ring).empty()) finding.witness = solid.world(finding.place.vertex);
+    finding.detail = "the ring does not end with its first point, as its format demands";
+    examined.findings.add(std::move(finding));
+  }
+}
+
+void check_rings(ExaminedSolid& examined) {
   Index unshaped = kNone;
-  bool is_cancelled = false;
   for (Index facet = 0; facet < examined.solid().facet_count(); ++facet) {
     const bool has_points = check_points(examined, facet);
-    is_cancelled = is_cancelled || (cancel && cancel());
+    const bool is_cancelled = examined.is_cancelled();
     const bool is_triangulated = examined.triangles().state[facet] == FacetState::triangulated;
     if (has_points && is_triangulated) continue;
     examined.mark_faulty(facet);
@@ -141,7 +157,8 @@ void check_rings(ExaminedSolid& examined, const CancelPoll& cancel) {
       unshaped = facet;
     }
   }
-  if (is_cancelled) examined.findings.skip({104, 201, 202, 206, 207}, "the search was cancelled");
+  if (examined.was_cancelled())
+    examined.findings.skip({104, 201, 202, 206, 207}, "the search was cancelled");
   if (unshaped != kNone) {
     examined.findings.skip(
         {104, 201, 202, 203, 204, 205, 206, 207, 208},

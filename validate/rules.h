@@ -16,7 +16,9 @@ namespace watertight {
 /// 902.
 void check_not_empty(ExaminedSolid& examined);
 /// 101, 102, 104 and, because they come out of the same search, 201, 202, 206, 207.
-void check_rings(ExaminedSolid& examined, const CancelPoll& cancel);
+void check_rings(ExaminedSolid& examined);
+/// 103: rings that the reader found open.
+void check_closed_rings(ExaminedSolid& examined, std::span<const Index> unclosed);
 /// 203, 204, 205, 208.
 void check_facets(ExaminedSolid& examined);
 
@@ -29,7 +31,7 @@ struct ShellTopology {
   bool is_sound() const { return is_closed && is_manifold && is_oriented && is_connected; }
 };
 
-/// 301, 302, 303, 305, 307.
+/// 300, 301, 302, 303, 305, 307.
 std::vector<ShellTopology> check_shells(ExaminedSolid& examined);
 /// 402. Returns for each shell the earlier shell that equals it, or kNone.
 std::vector<Index> check_duplicate_shells(ExaminedSolid& examined);
@@ -37,17 +39,29 @@ std::vector<Index> check_duplicate_shells(ExaminedSolid& examined);
 /// Two shells, the smaller first.
 using ShellPair = std::pair<Index, Index>;
 
+/// Triangles of different facets that intersect and make a finding.
+struct TrianglePair {
+  Index first_facet = 0;  // the smaller
+  Index second_facet = 0;
+  Index first = 0;  // triangle of first_facet
+  Index second = 0;
+};
+
 struct ShellContacts {
   std::vector<ShellPair> intersecting;  // facets cross or overlap; sorted
   std::vector<bool> is_touching;        // per shell: has a point in common with another
   std::string incomplete;               // why the search did not finish; "" when it did
+  std::vector<TrianglePair> found;      // of the findings, all of each pair of facets; sorted
 };
 
 /// 306 and 401: facets that intersect. Facets of different shells may touch in points and edges;
 /// duplicate shells are not compared with each other.
 ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
                                   const CancelPoll& cancel);
-/// 401 (shells that cross in vertices and edges, nested cavities), 403, 405.
+/// Warning 804: facets that are not exactly planar, where another diagonal would make or undo a
+/// finding 306 or 401.
+void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts);
+/// 401 (shells that cross in vertices and edges, nested cavities), 403, 405; warning 806.
 void check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
                  const std::vector<Index>& duplicate_of, const ShellContacts& contacts);
 /// Warnings: 801, 802, 803.

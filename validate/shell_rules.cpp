@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shells by their edges and vertices alone: enough facets (301), closed (302), 2-manifold (303),
-// one component (305), facets turned alike (307). Exact: vertices are equal or they are not.
+// Shells by their edges and vertices alone: two-sided (300), enough facets (301), closed (302),
+// 2-manifold (303), one component (305), facets turned alike (307). Exact: vertices are equal or
+// they are not.
 #include <map>
 
 #include "geometry/measures.h"
@@ -14,19 +15,15 @@ namespace {
 
 class ShellExaminer {
  public:
-  ShellExaminer(ExaminedSolid& examined, Index shell)
+  /// Requires edges that examine the shell.
+  ShellExaminer(ExaminedSolid& examined, const EdgeTable& edges, Index shell)
       : examined_(examined),
         solid_(examined.solid()),
+        edges_(edges),
         shell_(shell),
         facets_(examined.solid().facets_of(shell)),
-        uses_(edge_uses(examined.solid(), shell)),
-        is_shell_faulty_(examined.is_shell_faulty(shell)) {
-    for (const EdgeUse& use : uses_) {
-      vertices_.push_back(use.low);
-      vertices_.push_back(use.high);
-    }
-    keep_distinct(vertices_);
-  }
+        uses_(edges.uses()),
+        is_shell_faulty_(examined.is_shell_faulty(shell)) {}
 
   ShellTopology examine();
 
@@ -50,11 +47,7 @@ class ShellExaminer {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
-  /// Position of a vertex among the shell's.
-  Index number_of(Index vertex) const {
-    return static_cast<Index>(std::lower_bound(vertices_.begin(), vertices_.end(), vertex) -
-                              vertices_.begin());
-  }
+  Index number_of(Index vertex) const { return edges_.number_of(vertex); }
   Index local(Index facet) const { return facet - facets_.begin; }
   bool is_faulty(EdgeSpan edge) const {
     return std::any_of(edge.begin(), edge.end(),
@@ -72,18 +65,26 @@ class ShellExaminer {
     return examined_.at_corner(facet, ring, 0);
   }
   Place place_of(const EdgeUse& use) const {
-    return examined_.at_corner(use.facet, use.ring_in_facet, use.position);
+    const CornerPlace place = place_of_corner(solid_, use.facet, use.corner);
+    return examined_.at_corner(use.facet, place.ring_in_facet, place.position);
+  }
+
+  /// Calls visit(a, b) for the two uses of each edge that has two.
+  template <class Visit>
+  void for_each_pair(Visit visit) const {
+    for_each_edge(uses_, [&](EdgeSpan edge) {
+      if (edge.size() == 2) visit(edge[0], edge[1]);
+    });
   }
 
   ExaminedSolid& examined_;
   const Solid& solid_;
+  const EdgeTable& edges_;
   Index shell_;
   IndexRange facets_;
-  std::vector<EdgeUse> uses_;
-  std::vector<EdgeUse> open_;    // used once
-  std::vector<EdgeUse> pairs_;   // used twice: two entries each
-  std::vector<Index> vertices_;  // of the shell's edges, ascending
-  std::vector<Index> crowded_;   // vertices of edges used more than twice, ascending
+  EdgeSpan uses_;
+  std::vector<EdgeUse> open_;   // used once
+  std::vector<Index> crowded_;  // vertices of edges used more than twice, ascending
   bool is_shell_faulty_ = false;
   std::string interior_connected_;
   ShellTopology topology_;
@@ -106,9 +107,7 @@ void ShellExaminer::sort_edges() {
   for_each_edge(uses_, [&](EdgeSpan edge) {
     if (edge.size() == 1) {
       open_.push_back(edge[0]);
-    } else if (edge.size() == 2) {
-      pairs_.insert(pairs_.end(), edge.begin(), edge.end());
-    } else {
+    } else if (edge.size() > 2) {
       topology_.is_manifold = false;
       crowded_.push_back(edge[0].low);
       crowded_.push_back(edge[0].high);
@@ -166,7 +165,8 @@ void ShellExaminer::report_border(const Border& border) {
 
 void ShellExaminer::check_open() {
   if (open_.empty()) return;
-  const OpenEdges result = examine_open_edges(solid_, open_);
+  const OpenEdges result =
+      examine_open_edges(solid_, open_, [this] { return examined_.is_cancelled(); });
   for (const TJunction& junction : result.junctions) report_junction(junction);
   for (const Border& border : result.borders) report_border(border);
   if (!result.is_complete) {
@@ -180,35 +180,41 @@ void ShellExaminer::check_open() {
 /// Corners of the rings around a vertex, linked over edges, form one fan or umbrella or several.
 void ShellExaminer::check_umbrellas() {
   const auto& offsets = solid_.arrays().ring_offsets;
+  const auto& ring_vertices = solid_.arrays().ring_vertices;
   const Index first_corner = offsets[solid_.arrays().facet_offsets[facets_.begin]];
   const Index last_corner = offsets[solid_.arrays().facet_offsets[facets_.end]];
   DisjointSets fans(last_corner - first_corner);
-  for (std::size_t i = 0; i < pairs_.size(); i += 2) {
-    const EdgeUse& a = pairs_[i];
-    const EdgeUse& b = pairs_[i + 1];
-    fans.join(a.corner_at_low() - first_corner, b.corner_at_low() - first_corner);
-    fans.join(a.corner_at_high() - first_corner, b.corner_at_high() - first_corner);
-  }
-  struct Fan {
-    Index vertex, root, facet;
+  const auto ends = [&](const EdgeUse& use) {  // corners at the low and the high vertex
+    const Index next = place_of_corner(solid_, use.facet, use.corner).next;
+    return edges_.is_forward(use) ? std::pair(use.corner - first_corner, next - first_corner)
+                                  : std::pair(next - first_corner, use.corner - first_corner);
   };
-  std::vector<Fan> list;
-  for (const EdgeUse& use : uses_) {
-    const Index vertex = use.is_forward ? use.low : use.high;
-    list.push_back({vertex, fans.root(use.corner - first_corner), use.facet});
-  }
-  std::sort(list.begin(), list.end(), [](const Fan& a, const Fan& b) {
-    return std::tie(a.vertex, a.root, a.facet) < std::tie(b.vertex, b.root, b.facet);
+  for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
+    const auto [low_of_a, high_of_a] = ends(a);
+    const auto [low_of_b, high_of_b] = ends(b);
+    fans.join(low_of_a, low_of_b);
+    fans.join(high_of_a, high_of_b);
   });
-  for (std::size_t i = 0; i < list.size();) {
-    std::size_t umbrellas = 1;
-    std::size_t next = i + 1;
-    for (; next < list.size() && list[next].vertex == list[i].vertex; ++next) {
-      if (list[next].root != list[next - 1].root) ++umbrellas;
-    }
-    const bool is_crowded = std::binary_search(crowded_.begin(), crowded_.end(), list[i].vertex);
-    if (umbrellas > 1 && !is_crowded) report_pinch(list[i].vertex, list[i].facet, umbrellas);
-    i = next;
+  // Every fan lies around one vertex.
+  struct Around {
+    Index umbrellas = 0;
+    Index facet = kNone;  // the first
+  };
+  std::vector<Around> around(edges_.vertices().size());
+  std::vector<bool> is_seen(last_corner - first_corner, false);
+  for (const EdgeUse& use : uses_) {
+    const Index root = fans.root(use.corner - first_corner);
+    Around& here = around[number_of(ring_vertices[use.corner])];
+    here.facet = std::min(here.facet, use.facet);
+    if (is_seen[root]) continue;
+    is_seen[root] = true;
+    ++here.umbrellas;
+  }
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    if (around[i].umbrellas < 2) continue;
+    const Index vertex = edges_.vertices()[i];
+    if (std::binary_search(crowded_.begin(), crowded_.end(), vertex)) continue;
+    report_pinch(vertex, around[i].facet, around[i].umbrellas);
   }
 }
 
@@ -236,9 +242,8 @@ void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t umbrella
 std::string_view ShellExaminer::interior_connected() {
   if (!interior_connected_.empty()) return interior_connected_;
   DisjointSets parts(facets_.size());
-  for (std::size_t i = 0; i < pairs_.size(); i += 2) {
-    parts.join(local(pairs_[i].facet), local(pairs_[i + 1].facet));
-  }
+  for_each_pair(
+      [&](const EdgeUse& a, const EdgeUse& b) { parts.join(local(a.facet), local(b.facet)); });
   std::map<Index, std::vector<Triangle>> triangles;
   const FacetTriangles& all = examined_.triangles();
   for (Index facet = facets_.begin; facet < facets_.end; ++facet) {
@@ -255,7 +260,7 @@ std::string_view ShellExaminer::interior_connected() {
 }
 
 void ShellExaminer::check_components() {
-  DisjointSets vertices(vertices_.size());
+  DisjointSets vertices(edges_.vertices().size());
   for (const EdgeUse& use : uses_) vertices.join(number_of(use.low), number_of(use.high));
   // A ring of a facet may hang together with the exterior ring by the facet alone.
   std::vector<Index> anchor(facets_.size(), kNone);
@@ -264,12 +269,15 @@ void ShellExaminer::check_components() {
     if (first == kNone) first = number_of(use.low);
     vertices.join(first, number_of(use.low));
   }
+  const auto is_apart = [&](Index first) {
+    return first != kNone && vertices.root(first) != vertices.root(0);
+  };
+  topology_.is_connected = std::none_of(anchor.begin(), anchor.end(), is_apart);
+  if (topology_.is_connected) return;
   std::map<Index, std::vector<Index>> components;  // root vertex -> facets
   for (Index i = 0; i < anchor.size(); ++i) {
     if (anchor[i] != kNone) components[vertices.root(anchor[i])].push_back(facets_.begin + i);
   }
-  topology_.is_connected = components.size() == 1;
-  if (components.size() < 2) return;
   const auto largest = std::max_element(
       components.begin(), components.end(),
       [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
@@ -294,19 +302,18 @@ void ShellExaminer::check_orientation() {
     Index from, to;
     bool is_conflict;
   };
+  topology_.is_oriented = true;
+  for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
+    if (edges_.is_forward(a) == edges_.is_forward(b)) topology_.is_oriented = false;
+  });
+  if (topology_.is_oriented) return;
   std::vector<Link> links;
-  bool has_conflict = false;
-  for (std::size_t i = 0; i < pairs_.size(); i += 2) {
-    const EdgeUse& a = pairs_[i];
-    const EdgeUse& b = pairs_[i + 1];
-    const bool is_conflict = a.is_forward == b.is_forward;
-    has_conflict = has_conflict || is_conflict;
-    if (!bounds_region(a.facet) || !bounds_region(b.facet)) continue;  // has no side to compare
+  for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
+    if (!bounds_region(a.facet) || !bounds_region(b.facet)) return;  // has no side to compare
+    const bool is_conflict = edges_.is_forward(a) == edges_.is_forward(b);
     links.push_back({local(a.facet), local(b.facet), is_conflict});
     links.push_back({local(b.facet), local(a.facet), is_conflict});
-  }
-  topology_.is_oriented = !has_conflict;
-  if (!has_conflict) return;
+  });
   std::stable_sort(links.begin(), links.end(),
                    [](const Link& a, const Link& b) { return a.from < b.from; });
   std::vector<std::size_t> first(facets_.size() + 1, 0);
@@ -336,12 +343,13 @@ void ShellExaminer::check_orientation() {
       continue;
     }
     Finding finding;
-    finding.code = kNonManifold;
+    finding.code = kNotValid2Manifold;
     finding.place = examined_.at_facet(facets_.begin + start);
-    finding.detail = "the facets cannot be turned alike: the surface is not orientable";
+    finding.measured = static_cast<double>(members.size());
+    finding.unit = "facets";
+    finding.detail = "the facets cannot be turned alike: the surface has only one side";
     finding.uncertain = is_shell_faulty_;
     examined_.findings.add(std::move(finding));
-    topology_.is_manifold = false;
   }
 }
 
@@ -369,20 +377,28 @@ ShellTopology ShellExaminer::examine() {
   check_facet_count();
   if (uses_.empty()) return topology_;
   sort_edges();
-  check_open();
-  check_umbrellas();
-  check_components();
-  check_orientation();
+  for (const auto check : {&ShellExaminer::check_open, &ShellExaminer::check_umbrellas,
+                           &ShellExaminer::check_components, &ShellExaminer::check_orientation}) {
+    if (examined_.is_cancelled()) return {};
+    (this->*check)();
+  }
   return topology_;
 }
 
 }  // namespace
 
 std::vector<ShellTopology> check_shells(ExaminedSolid& examined) {
-  std::vector<ShellTopology> result;
-  for (Index shell = 0; shell < examined.solid().shell_count(); ++shell) {
-    result.push_back(ShellExaminer(examined, shell).examine());
+  std::vector<ShellTopology> result(examined.solid().shell_count());
+  EdgeTable edges(examined.solid());
+  for (Index shell = 0; shell < result.size(); ++shell) {
+    if (examined.is_cancelled()) break;
+    edges.examine(shell);
+    result[shell] = ShellExaminer(examined, edges, shell).examine();
   }
+  if (examined.was_cancelled()) {
+    examined.findings.skip({300, 302, 303, 305, 307}, "the search was cancelled");
+  }
+  examined.index_junctions();
   return result;
 }
 

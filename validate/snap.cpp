@@ -5,6 +5,7 @@
 #include <map>
 
 #include "geometry/crs.h"
+#include "validate/near_vertices.h"
 
 namespace watertight {
 namespace {
@@ -34,6 +35,21 @@ class Snapper {
   }
 
   bool is_possible() const { return is_possible_; }
+
+  /// In metres from the corner of the box.
+  std::vector<Point> places() const {
+    std::vector<Point> result;
+    result.reserve(vertices_.size());
+    for (const Point& p : vertices_) {
+      Point place;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        place[axis] = (p[axis] - origin_[a]) * scale_[a];
+      }
+      result.push_back(place);
+    }
+    return result;
+  }
 
   /// The vertex that this one becomes: itself or an earlier one.
   Index target(Index vertex) {
@@ -86,16 +102,21 @@ class Snapper {
 
 }  // namespace
 
-Result<SnappedSolid> snap_vertices(const Solid& solid, double metres) {
+Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
+                                   const std::function<bool()>& cancel) {
   if (solid.vertex_count() == 0) return SnappedSolid{solid, 0};
   Snapper snapper(solid, metres);
   if (!snapper.is_possible()) {
     return Error{ErrorCode::limit_exceeded,
                  "the snap tolerance is too small for the size of the solid"};
   }
+  // The others neither move nor draw another; a little more reach than needed is_near() decides.
+  constexpr double kSlack = 1e-9;
+  const NearPoints near = near_points(snapper.places(), metres * (1 + kSlack), cancel);
+  if (cancel && cancel()) return Error{ErrorCode::cancelled, "the snapping was cancelled"};
   SolidArrays arrays = solid.arrays();
   Index moved = 0;
-  for (Index vertex = 0; vertex < solid.vertex_count(); ++vertex) {
+  for (const Index vertex : near.points) {
     const Point& to = solid.vertices()[snapper.target(vertex)];
     if (arrays.vertices[vertex] == to) continue;
     arrays.vertices[vertex] = to;

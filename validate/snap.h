@@ -4,6 +4,8 @@
 // to validate/.
 #pragma once
 
+#include <functional>
+
 #include "base/result.h"
 #include "geometry/solid.h"
 
@@ -16,8 +18,9 @@ struct SnappedSolid {
 
 /// Each vertex moves to the first earlier vertex, in the order of the solid, that did not move
 /// itself and is at most `metres` away (val3dity's rule). Requires metres > 0.
-/// Errors: limit_exceeded if the tolerance is too small for the size of the solid.
+/// Errors: limit_exceeded if the tolerance is too small for the size of the solid; cancelled.
 /// Cost: O(n log n).
-Result<SnappedSolid> snap_vertices(const Solid& solid, double metres);
+Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
+                                   const std::function<bool()>& cancel = {});
 
 }  // namespace watertight

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Solids: shells turned the right way (405), none twice (402), cavities inside the exterior shell
-// (403) and not inside each other (401). Exact.
+// (403) and not inside each other (401), shells with a volume (806). Exact.
 #include <algorithm>
-#include <optional>
+#include <map>
 
 #include "geometry/measures.h"
 #include "validate/point_location.h"
@@ -12,8 +12,9 @@
 namespace watertight {
 namespace {
 
-/// Triangles looked at while shells are located against each other: a few seconds of work.
-constexpr std::uint64_t kMostTriangleLooks = 1'000'000'000;
+/// Points located and boxes compared while shells are located against each other: a few seconds of
+/// work.
+constexpr std::uint64_t kMostLooks = 10'000'000;
 
 std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shell) {
   const IndexRange facets = examined.solid().facets_of(shell);
@@ -60,6 +61,8 @@ class SolidExaminer {
   };
   Sides locate_shell(Index shell, Index around);
   void report(int code, Index shell, Index other, std::string detail);
+  void report_no_volume(Index shell);
+  Location locate(const Point& p, Index around);
   void check_inside_exterior(Index shell);
   void check_apart(Index a, Index b);
   bool is_uncertain() const { return examined_.findings.has_errors_up_to_level(3); }
@@ -71,6 +74,7 @@ class SolidExaminer {
   const ShellContacts& contacts_;
   std::vector<Box> boxes_;
   std::vector<bool> is_surface_;  // closed and triangulated
+  std::map<Index, PointLocator> locators_;
   std::uint64_t looks_ = 0;
   std::vector<std::string> reasons_;
 };
@@ -82,6 +86,19 @@ void SolidExaminer::skip(std::vector<int> codes, const std::string& reason) {
   examined_.findings.skip(std::move(codes), reason);
 }
 
+/// A shell without volume has another finding, always: a closed 2-manifold that does not meet
+/// itself encloses some.
+void SolidExaminer::report_no_volume(Index shell) {
+  Finding finding;
+  finding.code = kZeroVolume;
+  finding.place = examined_.at_shell(shell);
+  finding.measured = 0;
+  finding.unit = "cubic units";
+  finding.detail = "the closed shell encloses a volume of exactly zero";
+  finding.uncertain = is_uncertain();
+  examined_.findings.add(std::move(finding));
+}
+
 void SolidExaminer::check_orientation() {
   for (Index shell = 0; shell < shells_.size(); ++shell) {
     if (!is_surface_[shell] || !shells_[shell].is_oriented) {
@@ -90,17 +107,35 @@ void SolidExaminer::check_orientation() {
            "meaning");
       continue;
     }
+    if (examined_.is_cancelled()) return;
     const int sign = volume_sign(examined_.solid().vertices(), triangles_of(examined_, shell));
     if (sign == (shell == 0 ? 1 : -1)) continue;
+    if (sign == 0) {
+      report_no_volume(shell);
+      continue;
+    }
     Finding finding;
     finding.code = kWrongOrientationShell;
     finding.place = examined_.at_shell(shell);
-    finding.detail = sign == 0    ? "the shell encloses no volume"
-                     : shell == 0 ? "the normals of the exterior shell point inward"
-                                  : "the normals of the inner shell point out of the cavity";
+    finding.detail = shell == 0 ? "the normals of the exterior shell point inward"
+                                : "the normals of the inner shell point out of the cavity";
     finding.uncertain = is_uncertain();
     examined_.findings.add(std::move(finding));
   }
+}
+
+/// Small surfaces are gone through; a tree is made of others when they are first asked about.
+Location SolidExaminer::locate(const Point& p, Index around) {
+  constexpr std::size_t kSmall = 64;
+  if (!boxes_[around].overlaps(Box{p, p})) return Location::outside;
+  const std::span<const Point> vertices = examined_.solid().vertices();
+  const std::span<const Triangle> surface = triangles_of(examined_, around);
+  if (surface.size() <= kSmall) return watertight::locate(p, vertices, surface);
+  auto place = locators_.find(around);
+  if (place == locators_.end()) {
+    place = locators_.emplace(around, PointLocator(vertices, surface)).first;
+  }
+  return place->second.locate(p);
 }
 
 /// Where `shell` lies to `around`, by its points that are not on `around`: by the first when the
@@ -108,19 +143,17 @@ void SolidExaminer::check_orientation() {
 /// overlap.
 SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
   const std::span<const Point> vertices = examined_.solid().vertices();
-  const std::span<const Triangle> surface = triangles_of(examined_, around);
   const bool is_one_enough = !contacts_.is_touching[shell] || !contacts_.is_touching[around];
   Sides sides;
   const auto look = [&](const Point& p) {
-    looks_ += surface.size();
-    const Location location =
-        boxes_[around].overlaps(Box{p, p}) ? locate(p, vertices, surface) : Location::outside;
+    ++looks_;
+    const Location location = locate(p, around);
     sides.has_inside = sides.has_inside || location == Location::inside;
     sides.has_outside = sides.has_outside || location == Location::outside;
     return location != Location::boundary;
   };
   for (const Triangle& t : triangles_of(examined_, shell)) {
-    if (looks_ > kMostTriangleLooks) break;
+    if (looks_ > kMostLooks || examined_.is_cancelled()) break;
     bool is_seen = false;
     for (const Index vertex : t) is_seen = look(vertices[vertex]) || is_seen;
     // All three corners touch: a point inside the triangle. Quarters of lattice integers are exact.
@@ -183,30 +216,43 @@ void SolidExaminer::check_apart(Index a, Index b) {
 }
 
 void SolidExaminer::check_nesting() {
-  for (Index shell = 1; shell < shells_.size() && looks_ <= kMostTriangleLooks; ++shell) {
+  const auto must_end = [&] { return looks_ > kMostLooks || examined_.is_cancelled(); };
+  for (Index shell = 1; shell < shells_.size() && !must_end(); ++shell) {
     check_inside_exterior(shell);
   }
-  // Inner shells against each other: a sweep along x.
-  std::vector<Index> order;
+  // Inner shells against those before them whose boxes overlap theirs.
+  std::vector<Index> shells;
+  std::vector<Box> boxes;
   for (Index shell = 1; shell < shells_.size(); ++shell) {
-    if (!boxes_[shell].is_empty()) order.push_back(shell);
+    if (boxes_[shell].is_empty()) continue;
+    shells.push_back(shell);
+    boxes.push_back(boxes_[shell]);
   }
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::pair(boxes_[a].min.x, a) < std::pair(boxes_[b].min.x, b);
-  });
-  std::vector<Index> active;
-  for (const Index shell : order) {
-    if (looks_ > kMostTriangleLooks) break;
-    std::erase_if(active, [&](Index a) { return boxes_[a].max.x < boxes_[shell].min.x; });
-    looks_ += active.size();
-    for (const Index other : active) {
-      if (boxes_[other].overlaps(boxes_[shell])) check_apart(other, shell);
+  const BoxTree tree(boxes);
+  for (const Index shell : shells) {
+    if (must_end()) break;
+    std::vector<Index> others;
+    tree.visit([&](const Box& box) { return box.overlaps(boxes_[shell]); },
+               [&](Index item) {
+                 const Index other = shells[item];
+                 ++looks_;
+                 if (other < shell && boxes_[other].overlaps(boxes_[shell])) {
+                   others.push_back(other);
+                 }
+               });
+    std::sort(others.begin(), others.end());
+    for (const Index other : others) {
+      if (must_end()) break;
+      check_apart(other, shell);
     }
-    active.push_back(shell);
   }
-  if (looks_ > kMostTriangleLooks) {
+  if (looks_ > kMostLooks) {
     skip({kIntersectionShells, kInnerShellOutside},
          "there are too many shells to locate each against the others");
+  }
+  if (examined_.was_cancelled()) {
+    skip({kIntersectionShells, kInnerShellOutside, kWrongOrientationShell},
+         "the search was cancelled");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validate/near_vertices.h"
 #include "validate/planarity.h"
 #include "validate/rules.h"
 
@@ -15,45 +16,43 @@ namespace {
 constexpr double kNearMetres = 0.001;
 /// Facets narrower than that are worth a warning: the same length, across the facet.
 constexpr double kSliverMetres = 0.001;
-/// Pairs of vertices measured; beyond it the closest pair is the closest of those.
-constexpr std::uint64_t kMostPairs = 5'000'000;
 
 double length(const Vector& v) { return std::sqrt(dot(v, v)); }
 
 void check_near(ExaminedSolid& examined) {
   const Solid& solid = examined.solid();
   if (solid.vertex_count() < 2) return;
-  std::vector<std::pair<double, Index>> order;  // metres along x
-  for (Index v = 0; v < solid.vertex_count(); ++v) order.emplace_back(examined.metres(0, v)[0], v);
-  std::sort(order.begin(), order.end());
-  std::uint64_t looks = 0;
-  std::uint64_t pairs = 0;
-  double closest = kNearMetres;
-  ShellPair who{kNone, kNone};
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t j = i + 1; j < order.size(); ++j) {
-      if (order[j].first - order[i].first >= kNearMetres || ++looks > kMostPairs) break;
-      const double distance = length(examined.metres(order[i].second, order[j].second));
-      if (distance >= kNearMetres) continue;
-      ++pairs;
-      if (distance >= closest) continue;
-      closest = distance;
-      who = std::minmax(order[i].second, order[j].second);
-    }
+  // Different vertices of a coarse lattice cannot be near: they differ by a step of some axis.
+  const std::array<double, 3> step = examined.metres(Point{}, Point{1, 1, 1});
+  const auto is_integer = [](const Point& p) {
+    return p.x == std::trunc(p.x) && p.y == std::trunc(p.y) && p.z == std::trunc(p.z);
+  };
+  const bool is_integral =
+      std::all_of(solid.vertices().begin(), solid.vertices().end(), is_integer);
+  if (is_integral && *std::min_element(step.begin(), step.end()) >= kNearMetres) return;
+  std::vector<Point> places;
+  places.reserve(solid.vertex_count());
+  for (Index v = 0; v < solid.vertex_count(); ++v) {
+    const std::array<double, 3> metres = examined.metres(0, v);
+    places.push_back({metres[0], metres[1], metres[2]});
   }
-  if (who.first == kNone) return;
+  const NearPoints near = near_points(places, std::nextafter(kNearMetres, 0.0),
+                                      [&] { return examined.is_cancelled(); });
+  if (examined.was_cancelled()) {
+    examined.findings.skip({kNearDuplicateVertices}, "the search was cancelled");
+  }
+  if (near.first == kNone) return;
   Finding finding;
   finding.code = kNearDuplicateVertices;
-  finding.place.vertex = examined.submitted_vertex(who.first);
+  finding.place.vertex = examined.submitted_vertex(near.first);
   finding.other = Place{};
-  finding.other->vertex = examined.submitted_vertex(who.second);
-  finding.witness = examined.world(who.first);
-  finding.measured = closest;
+  finding.other->vertex = examined.submitted_vertex(near.second);
+  finding.witness = examined.world(near.first);
+  finding.measured = near.distance;
   finding.limit = kNearMetres;
   finding.unit = std::string(1, 'm');
-  finding.detail = (looks > kMostPairs ? "at least " : "") + std::to_string(pairs) +
-                   (pairs == 1 ? " pair" : " pairs") +
-                   " of different vertices nearly coincide; these are the closest";
+  finding.detail = std::to_string(near.points.size()) +
+                   " vertices are nearly at the place of another; these two are the closest";
   examined.findings.add(std::move(finding));
 }
 
@@ -83,6 +82,7 @@ void check_unused(ExaminedSolid& examined) {
 void check_slivers(ExaminedSolid& examined) {
   const FacetTriangles& all = examined.triangles();
   for (Index facet = 0; facet < examined.solid().facet_count(); ++facet) {
+    if (examined.is_cancelled()) return;
     if (all.state[facet] != FacetState::triangulated) continue;
     double doubled_area = 0;
     double extent = 0;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A static tree of boxes for exact and measured searches: which boxes reach a point, a box or a
+// ray. It only leaves out what the caller's test of a whole box rules out. Internal to validate/.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/point.h"
+
+namespace watertight {
+
+class BoxTree {
+ public:
+  /// Cost: O(n log n). The same boxes in the same order give the same tree.
+  explicit BoxTree(std::span<const Box> boxes);
+
+  /// Calls visit(item) for the items of all leaves that enter(box) lets in. `enter` is asked for
+  /// inner boxes first; each contains all boxes below it. Cost: the boxes asked about.
+  template <class Enter, class Visit>
+  void visit(Enter enter, Visit visit) const {
+    for (std::size_t i = 0; i < nodes_.size();) {
+      const Node& node = nodes_[i];
+      if (!enter(node.box)) {
+        i = node.next;
+        continue;
+      }
+      for (Index at = node.begin; at < node.end; ++at) visit(items_[at]);
+      ++i;
+    }
+  }
+
+  /// Calls visit(items, box) for every leaf: items that lie close to each other.
+  template <class Visit>
+  void visit_leaves(Visit visit) const {
+    for (const Node& node : nodes_) {
+      if (node.begin == node.end) continue;
+      visit(std::span<const Index>(items_).subspan(node.begin, node.end - node.begin), node.box);
+    }
+  }
+
+ private:
+  struct Node {
+    Box box;
+    Index begin = 0;  // items of a leaf; an inner node has none of its own
+    Index end = 0;
+    std::size_t next = 0;  // the node after all that are below this one
+  };
+
+  std::vector<Index> items_;
+  std::vector<Node> nodes_;  // each before those below it, the lower half first
+};
+
+/// The box of a triangle.
+inline Box box_of(const Triangle& triangle, std::span<const Point> vertices) {
+  Box box;
+  for (const Index vertex : triangle) box.include(vertices[vertex]);
+  return box;
+}
+
+}  // namespace watertight

@@ -49,6 +49,10 @@ Format json_format(std::string_view text) {
   return is_sequence ? Format::city_json_seq : Format::city_json;
 }
 
+bool is_utf16_xml(std::string_view text) {
+  return text.starts_with("\xFF\xFE<") || text.starts_with(std::string_view("\xFE\xFF\0<", 4));
+}
+
 bool is_obj_line(std::string_view text) {
   for (const std::string_view word : {"v", "vn", "vt", "f", "o", "g", "mtllib", "usemtl", "s"}) {
     if (text.size() > word.size() && text.starts_with(word) &&
@@ -70,7 +74,7 @@ Result<Format> format_of_text(std::string_view text) {
   if (start != std::string_view::npos) {
     text.remove_prefix(start);
     if (text.front() == '{') return json_format(text);
-    if (text.front() == '<') return Format::gml;
+    if (text.front() == '<' || is_utf16_xml(text)) return Format::gml;
     const std::string head = lower_case(text.substr(0, 24));
     for (const std::string_view word : {"srid=", "polyhedralsurface", "solid", "tin"}) {
       if (head.starts_with(word)) return Format::wkt;

@@ -25,6 +25,23 @@ std::size_t sequence_length(std::string_view text) {
 
 }  // namespace
 
+std::string utf8_text(std::string_view text) {
+  std::string clean;
+  clean.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = sequence_length(text);
+    const auto first = static_cast<unsigned char>(text.front());
+    const bool is_control = (first < 0x20 && first != '\t' && first != '\n') || first == 0x7F;
+    if (length == 0 || is_control) {
+      clean += "\xEF\xBF\xBD";
+    } else {
+      clean += text.substr(0, length);
+    }
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return clean;
+}
+
 std::string json_string(std::string_view text) {
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string json = "\"";

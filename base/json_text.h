@@ -15,6 +15,10 @@ namespace watertight {
 /// `text` as a JSON string with quotes; bytes that are no UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 
+/// `text` as UTF-8 without control characters but tab and line feed; what is neither becomes
+/// U+FFFD.
+std::string utf8_text(std::string_view text);
+
 /// Writes JSON objects and arrays member by member; the caller keeps them balanced.
 class JsonText {
  public:

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/footprints.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/crs.h"
+#include "report/html_page.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::size_t kMostDots = 20'000;
+constexpr std::size_t kFewestDots = 8;
+constexpr double kWidth = 1160;
+constexpr double kHeight = 150;
+constexpr double kMargin = 8;
+
+}  // namespace
+
+void Footprints::add(const InspectedFeature& feature) {
+  if (dots_.size() >= kMostDots || feature.feature.solids.empty()) return;
+  const Solid& solid = feature.feature.solids.front().solid;
+  if (solid.vertex_count() == 0) return;
+  if (dots_.empty()) srid_ = solid.srid();
+  if (solid.srid() != srid_) return;
+  const Box box = solid.box();
+  const Lattice& lattice = solid.lattice();
+  dots_.push_back({lattice.world(box.min.x + (box.max.x - box.min.x) / 2, 0),
+                   lattice.world(box.min.y + (box.max.y - box.min.y) / 2, 1), feature.verdict()});
+}
+
+std::string Footprints::svg() const {
+  if (dots_.size() < kFewestDots) return "";
+  double left = dots_[0].x, right = left, low = dots_[0].y, high = low;
+  for (const Dot& dot : dots_) {
+    left = std::min(left, dot.x);
+    right = std::max(right, dot.x);
+    low = std::min(low, dot.y);
+    high = std::max(high, dot.y);
+  }
+  const auto metres = axis_units(srid_, {left, low, 0}).metres_per_unit;
+  const double width = (right - left) * metres[0];
+  const double height = (high - low) * metres[1];
+  const double scale = std::min((kWidth - 2 * kMargin) / std::max(width, 1e-9),
+                                (kHeight - 2 * kMargin) / std::max(height, 1e-9));
+  if (!std::isfinite(width) || !std::isfinite(height) || !std::isfinite(scale)) return "";
+  std::string html = "<svg viewBox=\"0 0 1160 150\" role=\"img\" aria-label=\"Map of features\">";
+  for (const Verdict verdict : {Verdict::valid, Verdict::undecided, Verdict::invalid}) {
+    std::string path;
+    for (const Dot& dot : dots_) {
+      if (dot.verdict != verdict) continue;
+      const double x = kWidth / 2 + ((dot.x - left) * metres[0] - width / 2) * scale;
+      const double y = kHeight / 2 - ((dot.y - low) * metres[1] - height / 2) * scale;
+      append(path,
+             {"M", std::to_string(std::lround(x)), " ", std::to_string(std::lround(y)), "h0"});
+    }
+    if (path.empty()) continue;
+    html += "<path class=\"";
+    html += to_string(verdict);
+    append(html, {"\" d=\"", path, "\"/>"});
+  }
+  return html + "</svg>";
+}
+
+}  // namespace watertight

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/crs.h"
+#include "validate/finding_kinds.h"
+
+namespace watertight {
+namespace {
+
+constexpr double kRadius = 1000;  // of a scene, from its centre
+
+/// Solids with more corners than this get no lines for open edges: finding them costs a sort.
+constexpr std::size_t kMostCornersForEdges = 1'000'000;
+
+/// Metres around a point of the document, so that far coordinates and degrees draw alike.
+class Frame {
+ public:
+  Frame(const Solid& solid, const Triple& centre)
+      : centre_(centre), metres_(axis_units(solid.srid(), centre).metres_per_unit) {}
+  Triple operator()(const Triple& world) const {
+    Triple local{};
+    for (std::size_t i = 0; i < 3; ++i) local[i] = (world[i] - centre_[i]) * metres_[i];
+    return local;
+  }
+  Triple operator()(const Solid& solid, Index vertex) const { return (*this)(solid.world(vertex)); }
+
+ private:
+  Triple centre_;
+  Triple metres_;
+};
+
+struct Candidate {
+  const Solid* solid = nullptr;
+  Index facet = kNone;
+  Role role = Role::other_facet;
+  double distance = 0;  // from the centre to the facet's box, squared
+};
+
+double squared_distance_to_box(const Triple& low, const Triple& high) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double d = low[i] > 0 ? low[i] : high[i] < 0 ? -high[i] : 0;
+    sum += d * d;
+  }
+  return sum;
+}
+
+/// Approximate positions of all vertices: cheaper than Solid::world.
+std::vector<Triple> positions_of(const Solid& solid, const Frame& frame) {
+  std::vector<Triple> positions;
+  positions.reserve(solid.vertex_count());
+  Triple origin{};
+  Triple scale{};
+  for (int axis = 0; axis < 3; ++axis) {
+    origin[static_cast<std::size_t>(axis)] = solid.lattice().world(0, axis);
+    scale[static_cast<std::size_t>(axis)] = solid.lattice().scale(axis);
+  }
+  for (const Point& p : solid.vertices()) {
+    positions.push_back(frame(
+        {origin[0] + scale[0] * p.x, origin[1] + scale[1] * p.y, origin[2] + scale[2] * p.z}));
+  }
+  return positions;
+}
+
+void add_candidates(const Solid& solid, const Frame& frame, Role role_of_all,
+                    std::vector<Candidate>& candidates) {
+  const std::vector<Triple> positions = positions_of(solid, frame);
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
+    const IndexRange rings = solid.rings_of(facet);
+    if (rings.size() == 0) continue;
+    Triple low{kFar, kFar, kFar};
+    Triple high{-kFar, -kFar, -kFar};
+    for (const Index vertex : solid.ring(rings.begin)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], positions[vertex][i]);
+        high[i] = std::max(high[i], positions[vertex][i]);
+      }
+    }
+    if (low[0] > high[0]) continue;
+    candidates.push_back({&solid, facet, role_of_all, squared_distance_to_box(low, high)});
+  }
+}
+
+/// Facets concerned first, then by distance; ties in order of the document.
+bool is_nearer(const Candidate& a, const Candidate& b) {
+  const bool a_first = a.role != Role::other_facet;
+  const bool b_first = b.role != Role::other_facet;
+  if (a_first != b_first) return a_first;
+  if (a.distance != b.distance) return a.distance < b.distance;
+  return a.facet < b.facet;
+}
+
+std::vector<Triple> ring_points(const Solid& solid, Index ring, const Frame& frame,
+                                std::size_t most) {
+  const std::span<const Index> vertices = solid.ring(ring);
+  const std::size_t stride = vertices.size() / std::max<std::size_t>(most, 3) + 1;
+  std::vector<Triple> points;
+  for (std::size_t i = 0; i < vertices.size(); i += stride) {
+    points.push_back(frame(solid, vertices[i]));
+  }
+  return points;
+}
+
+std::size_t corner_count(const SceneFacet& facet) {
+  std::size_t corners = 0;
+  for (const auto& ring : facet.rings) corners += ring.size();
+  return corners;
+}
+
+SceneFacet facet_of(const Candidate& candidate, const Frame& frame, std::size_t most_corners) {
+  SceneFacet facet;
+  facet.role = candidate.role;
+  const IndexRange rings = candidate.solid->rings_of(candidate.facet);
+  std::size_t corners = 0;
+  for (Index ring = rings.begin; ring < rings.end && corners < most_corners; ++ring) {
+    facet.rings.push_back(ring_points(*candidate.solid, ring, frame, most_corners - corners));
+    corners += facet.rings.back().size();
+  }
+  return facet;
+}
+
+/// Edges that are not used exactly twice, for the findings that speak of them.
+void add_bad_edges(const Solid& solid, const Frame& frame, std::size_t most, Scene& scene) {
+  if (solid.arrays().ring_vertices.size() > kMostCornersForEdges) return;
+  const MergedSolid merged = merge_equal_vertices(solid);
+  std::vector<std::array<Index, 2>> edges;
+  for (Index ring = 0; ring < merged.solid.ring_count(); ++ring) {
+    const std::span<const Index> vertices = merged.solid.ring(ring);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Index a = vertices[i];
+      const Index b = vertices[(i + 1) % vertices.size()];
+      if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size() && scene.lines.size() < most;) {
+    const auto end =
+        std::upper_bound(edges.begin() + static_cast<std::ptrdiff_t>(i), edges.end(), edges[i]);
+    const auto next = static_cast<std::size_t>(end - edges.begin());
+    if (next - i != 2) {
+      scene.lines.push_back({frame(merged.solid, edges[i][0]), frame(merged.solid, edges[i][1])});
+    }
+    i = next;
+  }
+}
+
+void add_ring_line(const Solid* solid, const Place& place, const Frame& frame, std::size_t most,
+                   Scene& scene) {
+  if (solid == nullptr || place.facet >= solid->facet_count()) return;
+  const IndexRange rings = solid->rings_of(place.facet);
+  if (place.ring >= rings.size()) return;
+  std::vector<Triple> line = ring_points(*solid, rings.begin + place.ring, frame, most);
+  if (line.empty()) return;
+  line.push_back(line.front());
+  scene.lines.push_back(std::move(line));
+}
+
+/// The middle of the solids' box: where a finding without a place of its own is shown.
+Triple middle_of(const Solid& solid) {
+  const Box box = solid.box();
+  Triple middle{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double half = box.min[axis] + (box.max[axis] - box.min[axis]) / 2;
+    middle[static_cast<std::size_t>(axis)] = solid.lattice().world(half, axis);
+  }
+  return middle;
+}
+
+template <class Function>
+void for_each_point(Scene& scene, Function function) {
+  for (SceneFacet& facet : scene.facets) {
+    for (auto& ring : facet.rings) std::for_each(ring.begin(), ring.end(), function);
+  }
+  for (auto& line : scene.lines) std::for_each(line.begin(), line.end(), function);
+  if (scene.witness) function(*scene.witness);
+}
+
+/// Moves the facets into a ball of kRadius around their middle. When farther facets are left out,
+/// the ball is that of `reach` metres and large facets stick out of it.
+bool fit(Scene& scene, double reach) {
+  Triple low;
+  Triple high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (const SceneFacet& facet : scene.facets) {
+    for (const auto& ring : facet.rings) {
+      for (const Triple& p : ring) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          const bool is_cut = scene.hidden_facets > 0;
+          low[i] = std::min(low[i], is_cut ? std::max(p[i], -reach) : p[i]);
+          high[i] = std::max(high[i], is_cut ? std::min(p[i], reach) : p[i]);
+        }
+      }
+    }
+  }
+  Triple middle{};
+  double diagonal = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    middle[i] = low[i] + (high[i] - low[i]) / 2;
+    diagonal += (high[i] - low[i]) * (high[i] - low[i]);
+  }
+  const double radius = std::sqrt(diagonal) / 2;
+  if (!std::isfinite(radius) || !(radius > 0)) return false;
+  constexpr double kFarthest = 100 * kRadius;
+  for_each_point(scene, [&](Triple& p) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      p[i] = std::clamp(std::round((p[i] - middle[i]) / radius * kRadius), -kFarthest, kFarthest);
+      if (p[i] == 0) p[i] = 0;  // no -0
+    }
+  });
+  return true;
+}
+
+Role role_in(const PlacedFinding& placed, const InspectedFeature& feature,
+             const Candidate& candidate) {
+  const Finding& finding = *placed.finding;
+  const bool is_here = submitted_solid(feature, placed.solid) == candidate.solid;
+  if (is_here && finding.place.facet == candidate.facet) return Role::first;
+  const bool is_there =
+      finding.other && submitted_solid(feature, placed.other_solid) == candidate.solid;
+  if (is_there && finding.other->facet == candidate.facet) return Role::second;
+  return candidate.role;
+}
+
+}  // namespace
+
+std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFinding& placed,
+                              const PictureOptions& options) {
+  const Solid* here = submitted_solid(feature, placed.solid);
+  const Solid* there = submitted_solid(feature, placed.other_solid);
+  if (here == nullptr || here->facet_count() == 0) return std::nullopt;
+  const auto point = point_of(feature, placed);
+  const Frame frame(*here, point ? *point : middle_of(*here));
+  const bool is_pair_of_solids = there != nullptr && there != here;
+  std::vector<Candidate> candidates;
+  add_candidates(*here, frame, Role::other_facet, candidates);
+  if (is_pair_of_solids) add_candidates(*there, frame, Role::other_facet, candidates);
+  for (Candidate& candidate : candidates) {
+    const bool is_of_second = is_pair_of_solids && candidate.solid == there;
+    if (is_pair_of_solids) candidate.role = is_of_second ? Role::second : Role::first;
+    candidate.role = role_in(placed, feature, candidate);
+  }
+  const std::size_t shown = std::min(candidates.size(), options.most_facets);
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown),
+                    candidates.end(), is_nearer);
+  Scene scene;
+  scene.hidden_facets = candidates.size() - shown;
+  std::size_t corners = 0;
+  for (std::size_t i = 0; i < shown && corners < options.most_corners; ++i) {
+    scene.facets.push_back(facet_of(candidates[i], frame, options.most_corners - corners));
+    corners += corner_count(scene.facets.back());
+  }
+  const int code = placed.finding->code;
+  if (code == kShellNotClosed || code == kNonManifold) {
+    add_bad_edges(*here, frame, options.most_facets, scene);
+  }
+  add_ring_line(here, placed.finding->place, frame, options.most_corners, scene);
+  if (placed.finding->other) {
+    add_ring_line(there, *placed.finding->other, frame, options.most_corners, scene);
+  }
+  if (point) scene.witness = frame(*point);
+  const double reach = shown == 0 ? 0 : std::sqrt(candidates[shown - 1].distance);
+  if (!fit(scene, reach)) return std::nullopt;
+  return scene;
+}
+
+std::optional<Picture> picture_of(const InspectedFeature& feature, const PlacedFinding& placed,
+                                  const PictureOptions& options) {
+  const auto scene = scene_of(feature, placed, options);
+  if (!scene) return std::nullopt;
+  const View view = best_view(*scene);
+  return Picture{svg_of(*scene, view), json_of(*scene, view)};
+}
+
+}  // namespace watertight

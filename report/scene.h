@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a picture of a finding shows, in whole thousandths of its radius around its centre. Internal
+// to report/.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/picture.h"
+
+namespace watertight {
+
+using Triple = std::array<double, 3>;
+
+enum class Role : std::uint8_t { other_facet, first, second };
+
+struct SceneFacet {
+  Role role = Role::other_facet;
+  std::vector<std::vector<Triple>> rings;  // the exterior ring is the first
+};
+
+struct Scene {
+  std::vector<SceneFacet> facets;
+  std::vector<std::vector<Triple>> lines;  // open edges, rings concerned
+  std::optional<Triple> witness;
+  std::size_t hidden_facets = 0;  // of the solids, farther away
+};
+
+/// Nothing when there is no facet to show.
+std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFinding& placed,
+                              const PictureOptions& options);
+
+/// Where a picture is seen from, degrees: azimuth from east, elevation above the horizon.
+struct View {
+  double azimuth = 0;
+  double elevation = 0;
+};
+
+/// A view in which the facets concerned face the viewer, from above where both are as good.
+View best_view(const Scene& scene);
+
+/// The <svg> element, painted from the back to the front.
+std::string svg_of(const Scene& scene, const View& view);
+
+/// {"f": [[role, ring, ...], ...], "l": [line, ...], "w": point, "v": [azimuth, elevation]} with
+/// rings as flat arrays of whole numbers.
+std::string json_of(const Scene& scene, const View& view);
+
+}  // namespace watertight

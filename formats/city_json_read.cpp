@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "formats/city_json.h"
+#include "formats/feature_reader.h"
 
 namespace watertight {
 namespace {
@@ -160,37 +161,6 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   return feature;
 }
 
-// Cuts the next line that is not blank; `offset` is where it starts.
-struct Line {
-  std::string_view text;
-  std::size_t offset = 0;
-};
-bool next_line(std::string_view text, std::size_t& at, Line& line) {
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    line = {text.substr(at, end - at), at};
-    at = end + 1;
-    // RFC 8142 puts a record separator before each text.
-    while (!line.text.empty() &&
-           (line.text.front() == '\x1E' || line.text.front() == ' ' || line.text.front() == '\t')) {
-      line.text.remove_prefix(1);
-      ++line.offset;
-    }
-    if (line.text.find_first_not_of(" \t\r") != std::string_view::npos) return true;
-  }
-  return false;
-}
-
-Error in_line(Error error, std::size_t number, const Line& line) {
-  error.message = "line " + std::to_string(number) + ": " + error.message;
-  const bool is_syntax = error.byte_offset.has_value();
-  if (is_syntax && *error.byte_offset + 1 >= line.text.size()) {
-    error.message += "; each line of a CityJSONSeq must be one complete JSON text";
-  }
-  error.byte_offset = line.offset + error.byte_offset.value_or(0);
-  return error;
-}
-
 }  // namespace
 
 Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits) {
@@ -263,33 +233,25 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
 }
 
 Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& options) {
-  Document document;
-  document.format = Format::city_json_seq;
-  if (text.size() > options.limits.bytes) {
-    return Error{ErrorCode::limit_exceeded, std::to_string(text.size()) + " bytes; the limit is " +
-                                                std::to_string(options.limits.bytes)};
+  const auto rest_of_text = [&text](std::span<std::uint8_t> bytes) -> Result<std::size_t> {
+    const std::size_t count = std::min(text.size(), bytes.size());
+    std::copy_n(text.begin(), count, bytes.begin());
+    text.remove_prefix(count);
+    return count;
+  };
+  auto reader = FeatureReader::open(rest_of_text, ".jsonl", options);
+  if (!reader) return std::move(reader).error();
+  std::vector<Feature> features;
+  for (;;) {
+    auto found = reader->next();
+    if (!found) return std::move(found).error();
+    if (!*found) break;
+    auto feature = reader->read(**std::move(found));
+    if (!feature) return std::move(feature).error();
+    features.push_back(*std::move(feature));
   }
-  std::size_t at = 0;
-  if (text.starts_with(kByteOrderMark)) {
-    at = kByteOrderMark.size();
-    document.notes.push_back("byte order mark skipped");
-  }
-  Line line;
-  std::size_t number = 1;
-  if (!next_line(text, at, line)) return Error{ErrorCode::malformed, "the sequence is empty", 0};
-  auto header = read_city_json_header(line.text, options.limits);
-  if (!header) return in_line(std::move(header).error(), number, line);
-  if (!header->transform) {
-    return in_line({ErrorCode::malformed, "a CityJSONSeq needs a transform", {}, "/transform"},
-                   number, line);
-  }
-  document.header = header->text;
-  while (next_line(text, at, line)) {
-    ++number;
-    auto feature = read_city_json_feature(*header, line.text, options.limits);
-    if (!feature) return in_line(std::move(feature).error(), number, line);
-    document.features.push_back(std::move(*feature));
-  }
+  Document document = reader->document();
+  document.features = std::move(features);
   return document;
 }
 

@@ -17,40 +17,63 @@ namespace watertight {
 /// Fills the span from the input and returns how many bytes; 0 at the end of the input.
 using ByteSource = std::function<Result<std::size_t>(std::span<std::uint8_t>)>;
 
+/// A feature found but not yet read: a line of a sequence, or a feature of a document that was read
+/// whole.
+struct FeatureText {
+  std::string line;
+  std::uint64_t line_number = 0;  // from 1
+  std::uint64_t offset = 0;       // of the line in the input, bytes
+  std::optional<Feature> ready;
+};
+
 class FeatureReader {
  public:
   /// Looks at the start of the input. `file_name` helps to tell the format, as in detect_format().
-  /// A lone CityJSONFeature line has no header and is refused.
   /// Errors: those of detect_format(), of the source, and of the header of a sequence; for other
   /// formats those of read_document().
   static Result<FeatureReader> open(ByteSource source, std::string_view file_name,
                                     const ReadOptions& options = {});
+  /// A reader of a document that is in memory already.
+  static FeatureReader of(Document document);
 
-  /// The next feature; nothing at the end. After an error that concerns one line of a sequence the
-  /// next call goes on with the next line; messages name the line. After an error of the source
-  /// the next call gives the end.
-  Result<std::optional<Feature>> next();
+  /// Finds the next feature; nothing at the end. After an error the input is at its end.
+  /// Errors: those of the source; limit_exceeded for a line longer than Limits::bytes.
+  /// Cost: linear in the line. Not thread-safe.
+  Result<std::optional<FeatureText>> next();
 
-  /// Format, header and notes; without features.
+  /// Reads what next() found. Thread-safe, also beside next().
+  /// Errors: as read_city_json_feature(), naming the line; byte offsets are those of the input.
+  Result<Feature> read(FeatureText text) const;
+
+  /// Format, header and notes; its features are the reader's.
   const Document& document() const { return document_; }
   std::uint64_t bytes_read() const { return bytes_read_; }
+  /// Features in all; unknown for a sequence.
+  std::optional<std::size_t> feature_count() const {
+    if (is_sequence_) return std::nullopt;
+    return document_.features.size();
+  }
 
  private:
   FeatureReader() = default;
-  Result<std::optional<std::string>> next_line();
   Status fill();
+  Status fill_to_line_end();
+  Status read_whole(std::string_view file_name);
+  Status read_header();
+  Result<std::optional<FeatureText>> next_line();
 
   ByteSource source_;
   ReadOptions options_;
   Document document_;
   CityHeader header_;
-  std::string buffer_;  // bytes read and not yet used: [used_, size)
+  std::string buffer_;  // bytes read and not used yet: from used_ on
   std::size_t used_ = 0;
-  bool is_at_end_ = false;  // of the source
-  bool is_whole_ = false;   // not a sequence: document_.features hold what is left
-  std::size_t given_ = 0;   // features of a whole document
-  std::uint64_t line_ = 0;  // number of the last line, from 1
+  std::size_t searched_ = 0;       // there is no line end in buffer_ before it
+  std::uint64_t line_number_ = 0;  // of the last line, from 1
   std::uint64_t bytes_read_ = 0;
+  std::size_t given_ = 0;  // features of a document that was read whole
+  bool is_sequence_ = false;
+  bool is_at_end_ = false;  // of the source
 };
 
 }  // namespace watertight

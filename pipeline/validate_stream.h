@@ -12,11 +12,10 @@
 
 namespace watertight {
 
-/// A feature with everything that is known of it: `outcome` for reports, `inspected` for pictures.
+/// A feature with everything that is known of it.
 struct ValidatedFeature {
-  std::size_t number = 0;  // in the document, from 0
+  std::uint64_t number = 0;  // in the document, from 0
   InspectedFeature inspected;
-  FeatureOutcome outcome;
 };
 
 /// Takes features in document order, from one thread at a time. An error ends the run.

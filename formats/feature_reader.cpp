@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/feature_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace watertight {
+namespace {
+
+constexpr std::size_t kChunk = std::size_t{1} << 18U;
+/// Bytes after the first line that tell a sequence from a document written over several lines.
+constexpr std::size_t kGlimpse = 4096;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// Without the record separator of RFC 8142 and the blanks before the text.
+std::size_t text_start(std::string_view line) {
+  return std::min(line.find_first_not_of("\x1E \t\r"), line.size());
+}
+
+Error in_line(Error error, const FeatureText& text) {
+  const bool is_cut_off = error.byte_offset && *error.byte_offset + 1 >= text.line.size();
+  error.message = "line " + std::to_string(text.line_number) + ": " + error.message;
+  if (is_cut_off) {
+    error.message += "; each line of a CityJSONSeq must be one complete JSON text";
+  }
+  error.byte_offset = text.offset + error.byte_offset.value_or(0);
+  return error;
+}
+
+}  // namespace
+
+/// Appends what the source gives next.
+Status FeatureReader::fill() {
+  if (used_ > 0) {
+    buffer_.erase(0, used_);
+    searched_ -= used_;
+    used_ = 0;
+  }
+  if (buffer_.size() > options_.limits.bytes) {
+    return Error{ErrorCode::limit_exceeded,
+                 "longer than " + std::to_string(options_.limits.bytes) + " bytes without an end",
+                 bytes_read_};
+  }
+  const std::size_t size = buffer_.size();
+  buffer_.resize(size + kChunk);
+  auto count = source_({reinterpret_cast<std::uint8_t*>(buffer_.data()) + size, kChunk});
+  buffer_.resize(size + (count ? std::min(*count, kChunk) : 0));
+  if (!count || *count == 0) is_at_end_ = true;
+  if (!count) return std::move(count).error();
+  bytes_read_ += *count;
+  return Done{};
+}
+
+/// Until the buffer has a line end or the source is at its end.
+Status FeatureReader::fill_to_line_end() {
+  for (;;) {
+    const std::size_t end = buffer_.find('\n', std::max(searched_, used_));
+    searched_ = std::min(end, buffer_.size());
+    if (end != std::string::npos || is_at_end_) return Done{};
+    if (Status status = fill(); !status) return status;
+  }
+}
+
+Result<FeatureReader> FeatureReader::open(ByteSource source, std::string_view file_name,
+                                          const ReadOptions& options) {
+  FeatureReader reader;
+  reader.source_ = std::move(source);
+  reader.options_ = options;
+  Status status = reader.fill_to_line_end();
+  while (status && !reader.is_at_end_ && reader.buffer_.size() < reader.searched_ + kGlimpse) {
+    status = reader.fill();
+  }
+  if (!status) return std::move(status).error();
+  const auto format = detect_format(file_name, as_bytes(reader.buffer_));
+  reader.is_sequence_ = format && *format == Format::city_json_seq;
+  status = reader.is_sequence_ ? reader.read_header() : reader.read_whole(file_name);
+  if (!status) return std::move(status).error();
+  return reader;
+}
+
+FeatureReader FeatureReader::of(Document document) {
+  FeatureReader reader;
+  reader.document_ = std::move(document);
+  reader.is_at_end_ = true;
+  return reader;
+}
+
+Status FeatureReader::read_whole(std::string_view file_name) {
+  while (!is_at_end_) {
+    if (Status status = fill(); !status) return status;
+  }
+  const auto format = detect_format(file_name, as_bytes(buffer_));
+  if (!format) return format.error();
+  auto document = read_document(as_bytes(buffer_), *format, options_);
+  if (!document) return std::move(document).error();
+  document_ = *std::move(document);
+  buffer_ = {};
+  return Done{};
+}
+
+Status FeatureReader::read_header() {
+  document_.format = Format::city_json_seq;
+  if (buffer_.starts_with(kByteOrderMark)) {
+    used_ = kByteOrderMark.size();
+    document_.notes.emplace_back("byte order mark skipped");
+  }
+  auto text = next_line();
+  if (!text) return std::move(text).error();
+  if (!*text) return Error{ErrorCode::malformed, "the sequence is empty", 0};
+  auto header = read_city_json_header((*text)->line, options_.limits);
+  if (!header) return in_line(std::move(header).error(), **text);
+  if (!header->transform) {
+    return in_line({ErrorCode::malformed, "a CityJSONSeq needs a transform", {}, "/transform"},
+                   **text);
+  }
+  header_ = *std::move(header);
+  document_.header = header_.text;
+  return Done{};
+}
+
+Result<std::optional<FeatureText>> FeatureReader::next_line() {
+  for (;;) {
+    if (Status status = fill_to_line_end(); !status) {
+      is_at_end_ = true;
+      buffer_.clear();
+      used_ = searched_ = 0;
+      return std::move(status).error();
+    }
+    if (used_ == buffer_.size()) return std::optional<FeatureText>{};
+    const std::string_view rest = std::string_view(buffer_).substr(used_);
+    std::string_view line = rest.substr(0, searched_ - used_);
+    const std::size_t start = text_start(line);
+    const std::uint64_t offset = bytes_read_ - rest.size() + start;
+    line.remove_prefix(start);
+    FeatureText text{std::string(line), ++line_number_, offset, {}};
+    used_ = std::min(searched_ + 1, buffer_.size());
+    searched_ = used_;
+    if (line.empty()) continue;
+    return std::optional(std::move(text));
+  }
+}
+
+Result<std::optional<FeatureText>> FeatureReader::next() {
+  if (is_sequence_) return next_line();
+  if (given_ == document_.features.size()) return std::optional<FeatureText>{};
+  FeatureText text;
+  text.ready = std::move(document_.features[given_++]);
+  return std::optional(std::move(text));
+}
+
+Result<Feature> FeatureReader::read(FeatureText text) const {
+  if (text.ready) return *std::move(text.ready);
+  auto feature = read_city_json_feature(header_, text.line, options_.limits);
+  if (!feature) return in_line(std::move(feature).error(), text);
+  return feature;
+}
+
+}  // namespace watertight

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/validate_stream.h"
+
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "pipeline/parallel.h"
+
+namespace watertight {
+namespace {
+
+/// Features between reading and handing on, per thread: enough that a slow one does not hold up
+/// the others for long.
+constexpr std::uint64_t kFeaturesInFlight = 32;
+/// Lines between reading and handing on; more only when one line is longer.
+constexpr std::uint64_t kBytesInFlight = std::uint64_t{32} << 20U;
+
+/// A feature on its way through: numbered, then validated or found unreadable.
+struct Passage {
+  std::uint64_t bytes = 0;
+  std::optional<ValidatedFeature> feature;
+  std::optional<Error> error;
+};
+
+class Stream {
+ public:
+  Stream(FeatureReader& reader, EngineWorkers* workers, const StreamOptions& options,
+         const FeatureSink& on_feature, const ErrorSink& on_error)
+      : reader_(reader),
+        workers_(workers),
+        options_(options),
+        on_feature_(on_feature),
+        on_error_(on_error) {}
+
+  Result<StreamOutcome> run() {
+    const std::size_t threads = std::max<std::size_t>(options_.threads, 1);
+    most_in_flight_ = kFeaturesInFlight * threads;
+    parallel_for(threads, threads, [this](std::size_t) { work(); });
+    if (failure_) return *std::move(failure_);
+    return outcome_;
+  }
+
+ private:
+  struct Found {
+    std::uint64_t number = 0;
+    FeatureText text;
+  };
+
+  /// What every thread does until the document ends.
+  void work() {
+    try {
+      for (auto found = take_next(); found; found = take_next()) {
+        put_back(found->number, validate(std::move(*found)));
+      }
+    } catch (...) {
+      stop(Error{ErrorCode::unavailable, "a thread failed"});
+      throw;
+    }
+  }
+
+  std::optional<Found> take_next();
+  Passage validate(Found found) const;
+  void put_back(std::uint64_t number, Passage passage);
+  void hand_on_in_order(std::unique_lock<std::mutex>& lock);
+  Status hand_on(Passage passage);
+  void stop(Error error);
+  bool has_room() const {
+    return passages_.empty() || (taken_ - handed_on_ < most_in_flight_ && bytes_ < kBytesInFlight);
+  }
+
+  FeatureReader& reader_;
+  EngineWorkers* workers_;
+  const StreamOptions& options_;
+  const FeatureSink& on_feature_;
+  const ErrorSink& on_error_;
+  std::uint64_t most_in_flight_ = 0;
+
+  std::mutex mutex_;  // guards all below, and reader_.next()
+  std::condition_variable room_;
+  std::map<std::uint64_t, Passage> passages_;  // in flight; without both members while validated
+  std::uint64_t taken_ = 0;
+  std::uint64_t handed_on_ = 0;
+  std::uint64_t bytes_ = 0;  // of the lines in flight
+  bool is_handing_on_ = false;
+  bool is_over_ = false;  // nothing more is taken
+  std::optional<Error> failure_;
+  StreamOutcome outcome_;
+};
+
+std::optional<Stream::Found> Stream::take_next() {
+  std::unique_lock lock(mutex_);
+  room_.wait(lock, [this] { return is_over_ || has_room(); });
+  if (is_over_) return std::nullopt;
+  if (options_.is_cancelled && options_.is_cancelled()) {
+    lock.unlock();
+    stop(Error{ErrorCode::cancelled, "stopped before all features were validated"});
+    return std::nullopt;
+  }
+  auto text = reader_.next();
+  if (text && *text) {
+    Found found{taken_++, **std::move(text)};
+    Passage& passage = passages_[found.number];
+    passage.bytes = found.text.line.size();
+    bytes_ += passage.bytes;
+    return found;
+  }
+  is_over_ = true;
+  if (!text) {  // the rest cannot be read: said in its place
+    passages_[taken_++].error = std::move(text).error();
+    hand_on_in_order(lock);
+  }
+  room_.notify_all();
+  return std::nullopt;
+}
+
+Passage Stream::validate(Found found) const {
+  Passage passage;
+  passage.bytes = found.text.line.size();
+  auto feature = reader_.read(std::move(found.text));
+  if (feature) {
+    passage.feature =
+        ValidatedFeature{found.number, inspect(*std::move(feature), workers_, options_.certify)};
+  } else {
+    passage.error = std::move(feature).error();
+  }
+  return passage;
+}
+
+void Stream::put_back(std::uint64_t number, Passage passage) {
+  std::unique_lock lock(mutex_);
+  passages_[number] = std::move(passage);
+  hand_on_in_order(lock);
+}
+
+/// Hands on what is complete, in order; one thread at a time, without the lock during calls.
+void Stream::hand_on_in_order(std::unique_lock<std::mutex>& lock) {
+  if (is_handing_on_) return;
+  is_handing_on_ = true;
+  while (!failure_) {
+    const auto first = passages_.find(handed_on_);
+    if (first == passages_.end() || !(first->second.feature || first->second.error)) break;
+    Passage passage = std::move(first->second);
+    const std::uint64_t bytes_read = reader_.bytes_read();
+    const std::uint64_t bytes = passage.bytes;
+    lock.unlock();
+    Status status = hand_on(std::move(passage));
+    if (status && options_.progress) options_.progress(outcome_.features, bytes_read);
+    lock.lock();
+    passages_.erase(handed_on_++);
+    bytes_ -= bytes;
+    if (!status) {
+      if (!failure_) failure_ = std::move(status).error();
+      is_over_ = true;
+    }
+    room_.notify_all();
+  }
+  is_handing_on_ = false;
+}
+
+/// Only the thread that hands on changes outcome_.
+Status Stream::hand_on(Passage passage) {
+  if (passage.error) {
+    ++outcome_.unreadable;
+    return on_error_(*passage.error);
+  }
+  ++outcome_.features;
+  outcome_.verdict = worse(outcome_.verdict, passage.feature->inspected.verdict());
+  return on_feature_(*std::move(passage.feature));
+}
+
+void Stream::stop(Error error) {
+  const std::lock_guard lock(mutex_);
+  if (!failure_) failure_ = std::move(error);
+  is_over_ = true;
+  room_.notify_all();
+}
+
+}  // namespace
+
+Result<StreamOutcome> validate_stream(FeatureReader& reader, EngineWorkers* workers,
+                                      const StreamOptions& options, const FeatureSink& on_feature,
+                                      const ErrorSink& on_error) {
+  return Stream(reader, workers, options, on_feature, on_error).run();
+}
+
+}  // namespace watertight

@@ -266,15 +266,19 @@ class GmlBuilder : public XmlHandler {
     frame.node = static_cast<Index>(model_.nodes.size());
     GmlNode node;
     node.kind = kind;
-    node.is_reversed = kind == GmlKind::orientable &&
-                       trimmed(element.attribute("", "orientation").value_or("+")) == "-";
     node.name = keep(element.name);
     node.id = keep(gml_id(element));
     node.positions.at = model_.positions.size();
     node.system = frame.system;
     node.place = element.place;
+    const std::string_view orientation =
+        trimmed(element.attribute("", "orientation").value_or("+"));
+    node.is_reversed = kind == GmlKind::orientable && orientation == "-";
     model_.nodes.push_back(node);
     frames_.push_back(frame);
+    if (kind == GmlKind::orientable && orientation != "-" && orientation != "+") {
+      add_defect(frame.node, element.place, ErrorCode::malformed, "orientation must be + or -");
+    }
     if (parent.has_reference) {
       add_defect(frame.node, element.place, ErrorCode::malformed,
                  "a property has both an xlink:href and a value");

@@ -98,6 +98,12 @@ TEST_CASE("GML: a reference by way of others keeps every turn") {
   CHECK(is_closed(document.features.at(0).solids.at(0).solid));
 }
 
+TEST_CASE("GML: an orientation is + or -") {
+  CHECK(says(solid_error(member("<g:OrientableSurface orientation=\"minus\"><g:baseSurface>" +
+                                kBase + "</g:baseSurface></g:OrientableSurface>")),
+             "orientation must be + or -"));
+}
+
 TEST_CASE("GML: geometry that contains itself by reference is refused") {
   CHECK(says(solid_error(member("<g:CompositeSurface g:id=\"a\">" + member_of("a") +
                                 "</g:CompositeSurface>")),

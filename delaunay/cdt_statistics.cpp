@@ -11,6 +11,7 @@ void CdtStatistics::add(std::span<const RungAttempt> attempts_of_solid) {
     if (rung < kRungs) ++attempts[rung][static_cast<std::size_t>(attempt.result)];
     seconds += attempt.seconds;
     cpu_seconds += attempt.cpu_seconds;
+    worker_seconds += attempt.worker_seconds;
     engine_seconds += attempt.engine_seconds;
   }
   const RungAttempt& last = attempts_of_solid.back();
@@ -36,6 +37,7 @@ CdtStatistics& CdtStatistics::operator+=(const CdtStatistics& other) {
   }
   seconds += other.seconds;
   cpu_seconds += other.cpu_seconds;
+  worker_seconds += other.worker_seconds;
   engine_seconds += other.engine_seconds;
   return *this;
 }

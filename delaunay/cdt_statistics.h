@@ -22,7 +22,8 @@ struct CdtStatistics {
   /// attempts[rung][RungOutcome]; a solid can have several attempts.
   std::array<std::array<std::uint64_t, kRungOutcomes>, kRungs> attempts{};
   double seconds = 0;         // wall, of all attempts
-  double cpu_seconds = 0;     // of the callers' threads and of the workers
+  double cpu_seconds = 0;     // of the callers' threads
+  double worker_seconds = 0;  // CPU time of the worker processes
   double engine_seconds = 0;  // CPU time of the engines' own calls
 
   /// Counts one solid. No attempts (an invalid solid, another proof) = not counted.

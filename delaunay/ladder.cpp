@@ -177,7 +177,7 @@ class Climb {
       const double cpu_start = thread_seconds();
       rung == Rung::delaunay ? try_delaunay() : try_engine(rung);
       attempt_.seconds = seconds_since(start);
-      attempt_.cpu_seconds += thread_seconds() - cpu_start;
+      attempt_.cpu_seconds = thread_seconds() - cpu_start;
       result_.attempts.push_back(std::move(attempt_));
       if (result_.certificate || result_.property != CertificateRefusal::none) break;
       if (result_.attempts.back().result == RungOutcome::cancelled) break;
@@ -193,15 +193,42 @@ class Climb {
       case Rung::patch:
         return options_.engine != Engine::tetgen && !options_.strict && !is_anisotropic();
       case Rung::patch_scaled:
-        return options_.engine != Engine::tetgen && !options_.strict;
+        return options_.engine != Engine::tetgen && !options_.strict && is_new(rung);
       case Rung::triangles_scaled:
-        return options_.engine != Engine::tetgen;
+        return options_.engine != Engine::tetgen && is_new(rung);
       case Rung::tetgen:
         return options_.engine != Engine::cgal;
       case Rung::none:
         break;
     }
     return false;
+  }
+
+  static Constraints constraints_of(Rung rung) {
+    return rung == Rung::patch || rung == Rung::patch_scaled ? Constraints::patches
+                                                             : Constraints::triangles;
+  }
+
+  /// Scaling bends the angles that decide where Steiner points go: only where it must be.
+  std::array<double, 3> scale_of(Rung rung) const {
+    const bool keeps_coordinates =
+        rung == Rung::patch || (rung == Rung::tetgen && !is_anisotropic());
+    if (keeps_coordinates) return {1, 1, 1};
+    return unit_scale(solid_.vertices());
+  }
+
+  /// False if CGAL had the same task on a rung before: the same constraints, because every facet is
+  /// one triangle, on the same points but for one power of two for all axes.
+  bool is_new(Rung rung) const {
+    const auto same = [&](const RungAttempt& attempt) {
+      if (attempt.rung == Rung::delaunay) return false;
+      const bool has_same_constraints = constraints_of(attempt.rung) == constraints_of(rung) ||
+                                        canonical_.triangles.size() == solid_.facet_count();
+      const std::array<double, 3> a = scale_of(attempt.rung);
+      const std::array<double, 3> b = scale_of(rung);
+      return has_same_constraints && a[1] / a[0] == b[1] / b[0] && a[2] / a[0] == b[2] / b[0];
+    };
+    return std::none_of(result_.attempts.begin(), result_.attempts.end(), same);
   }
 
   bool is_anisotropic() const {
@@ -267,18 +294,13 @@ class Climb {
       return conclude(RungOutcome::not_started, "not-started: the rungs before took all the time");
     }
     if (input_.facet_at.empty()) input_ = engine_input(solid_, canonical_);
-    // Scaling bends the angles that decide where Steiner points go: only where it must be.
-    const bool keeps_coordinates =
-        rung == Rung::patch || (rung == Rung::tetgen && !is_anisotropic());
-    const std::array<double, 3> scale =
-        keeps_coordinates ? std::array<double, 3>{1, 1, 1} : unit_scale(solid_.vertices());
+    const std::array<double, 3> scale = scale_of(rung);
     CdtJob job;
-    job.constraints = rung == Rung::patch || rung == Rung::patch_scaled ? Constraints::patches
-                                                                        : Constraints::triangles;
+    job.constraints = constraints_of(rung);
     job.complex = input_.complex;
     for (Point& p : job.complex.vertices) p = scaled(p, scale);
     const JobResult reply = pool->run(write_job(job), limits, options_.cancel);
-    attempt_.cpu_seconds += reply.cpu_seconds;
+    attempt_.worker_seconds = reply.cpu_seconds;
     engines_seconds_ += reply.cpu_seconds;
     if (reply.outcome != JobOutcome::ok) {
       return conclude(outcome_of(reply.outcome),
@@ -300,7 +322,8 @@ class Climb {
   /// what sleeps.
   WorkerLimits limits(Rung rung) const {
     const double triangles = static_cast<double>(canonical_.triangles.size());
-    double seconds = rung == Rung::patch ? 2 + triangles * 0.5e-3 : 10 + triangles * 1e-3;
+    double seconds = rung == Rung::patch ? 2 : 6;
+    seconds += triangles * (rung == Rung::tetgen ? 1e-3 : 0.5e-3);
     if (options_.seconds_per_rung > 0) seconds = options_.seconds_per_rung;
     const double in_all = options_.seconds_in_all > 0
                               ? options_.seconds_in_all
@@ -308,7 +331,7 @@ class Climb {
     seconds = std::min(seconds, in_all - engines_seconds_);
     WorkerLimits limits;
     limits.cpu_seconds = seconds;
-    limits.wall_seconds = options_.seconds_per_rung > 0 ? seconds : 4 * seconds + 5;
+    limits.wall_seconds = options_.seconds_per_rung > 0 ? seconds : 20 * seconds + 10;
     limits.memory_bytes = (std::uint64_t{512} << 20) + canonical_.triangles.size() * (16U << 10);
     return limits;
   }
@@ -367,7 +390,7 @@ std::unique_ptr<WorkerPool> make_pool(const std::string& executable, const std::
 }  // namespace
 
 double default_ladder_seconds(std::size_t triangles) {
-  return 20 + static_cast<double>(triangles) * 1e-3;
+  return 20 + static_cast<double>(triangles) * 2.5e-3;
 }
 
 std::string_view to_string(RungOutcome outcome) {

@@ -46,7 +46,10 @@ struct LadderOptions {
 };
 
 /// CPU seconds of engines that a solid with this many boundary triangles may cost by default:
-/// 20 s and 1 ms a triangle. Wall-clock time is at most four times that and 5 s a rung.
+/// 20 s and 2.5 ms a triangle. That is the sum of the rungs' own limits, in which TetGen's share
+/// cannot be used up by CGAL's; the time in this process (the Delaunay tetrahedralization and the
+/// certificates) is near linear and not counted. Wall-clock time is at most twenty times that and
+/// 10 s a rung, and a worker that uses no CPU time is ended after WorkerLimits::sleep_seconds.
 double default_ladder_seconds(std::size_t triangles);
 
 /// What became of one rung's attempt: the classes that statistics count.
@@ -72,8 +75,11 @@ struct RungAttempt {
   double seconds = 0;   // wall
   RungOutcome result = RungOutcome::not_started;
   CertificateRefusal refusal = CertificateRefusal::none;  // when refused_by_certificate
-  double cpu_seconds = 0;     // of the calling thread and of the worker process
-  double engine_seconds = 0;  // CPU time of the engine's own call; 0 when it did not answer
+  /// CPU times: of the calling thread, of the worker process, and of the engine's own call within
+  /// that (0 when it did not answer).
+  double cpu_seconds = 0;
+  double worker_seconds = 0;
+  double engine_seconds = 0;
 };
 
 struct LadderResult {

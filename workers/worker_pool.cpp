@@ -74,6 +74,8 @@ class Conversation {
         finish(JobOutcome::timed_out, "wall-clock limit");
       } else if (cpu_of_job() >= limits_.cpu_seconds) {
         finish(JobOutcome::timed_out, "CPU limit");
+      } else if (sleeps()) {
+        finish(JobOutcome::timed_out, "no CPU time used for too long");
       } else {
         wait();
         if (!is_sent() && !transmit()) return false;
@@ -89,6 +91,17 @@ class Conversation {
   /// So far, with the start of a new process; 0 once it has ended.
   double cpu_of_job() const {
     return std::max(process_.cpu_seconds().value_or(0) - process_.accounted(), 0.0);
+  }
+
+  /// True if the process has used no CPU time for so long that it is not just waiting for a busy
+  /// machine.
+  bool sleeps() {
+    const double used = cpu_of_job();
+    if (used != last_used_) {
+      last_used_ = used;
+      last_progress_ = Clock::now();
+    }
+    return seconds_since(last_progress_) >= limits_.sleep_seconds;
   }
 
   void finish(JobOutcome outcome, std::string detail) {
@@ -189,6 +202,8 @@ class Conversation {
   const WorkerLimits& limits_;
   const CancelPoll& cancel_;
   Bytes received_;
+  double last_used_ = -1;  // CPU time of the job when it was last seen to grow
+  Clock::time_point last_progress_;
   std::optional<JobResult> result_;
   bool was_idle_end_ = false;
 };
@@ -249,13 +264,14 @@ struct WorkerPool::State {
     returned.notify_one();
   }
 
-  /// A process that waits, or a new one. Also reaps the waiting ones that ended by themselves.
+  /// A process that waits, or a new one. Also reaps the idle ones that ended or spoke by
+  /// themselves.
   Result<WorkerProcess> take() {
     std::vector<WorkerProcess> ended;
     {
       const std::lock_guard lock(mutex);
       const auto gone = std::stable_partition(
-          idle.begin(), idle.end(), [](const WorkerProcess& p) { return !p.has_ended(); });
+          idle.begin(), idle.end(), [](const WorkerProcess& p) { return p.is_waiting(); });
       std::move(gone, idle.end(), std::back_inserter(ended));
       idle.erase(gone, idle.end());
       if (!idle.empty()) {

@@ -18,6 +18,7 @@ namespace watertight {
 struct WorkerLimits {
   double wall_seconds = 20;
   double cpu_seconds = 15;                  // kept to about 10 ms
+  double sleep_seconds = 10;                // without any CPU time used
   std::uint64_t memory_bytes = 2ULL << 30;  // RLIMIT_AS of the process
   std::uint64_t reply_bytes = 1ULL << 30;
 };

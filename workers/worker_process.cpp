@@ -226,6 +226,13 @@ bool WorkerProcess::has_ended() const {
   return found != 0 ? errno == ECHILD : info.si_pid == process_;
 }
 
+bool WorkerProcess::is_waiting() const {
+  if (has_ended()) return false;
+  std::uint8_t byte = 0;
+  const ssize_t got = recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+  return got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+}
+
 Ending WorkerProcess::end() {
   Ending ending;
   if (process_ > 0) {

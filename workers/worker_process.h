@@ -49,6 +49,8 @@ class WorkerProcess {
   }
   /// True if the process has ended (and waits to be reaped).
   bool has_ended() const;
+  /// True if it waits for a job: it runs, and said nothing that nobody asked for.
+  bool is_waiting() const;
   /// Kills the whole group if it still runs, and reaps the process.
   Ending end();
 

@@ -35,9 +35,8 @@ struct Settings {
 struct Totals {
   std::size_t files = 0, unreadable = 0, solids = 0, valid = 0, invalid = 0;
   double seconds = 0;  // of certify(), wall
-  /// Only solids that an engine was asked about.
-  double engine_step_seconds = 0;
-  double engine_seconds = 0;
+  /// Of the solids that an engine was asked about.
+  CdtStatistics with_engine;
   CdtStatistics cdt;
   std::vector<std::string> undecided;
 };
@@ -58,10 +57,10 @@ void print_attempts(const std::string& name, const Report& report) {
   for (const RungAttempt& attempt : report.attempts) {
     const bool is_usual =
         attempt.result == RungOutcome::accepted || attempt.result == RungOutcome::not_delaunay;
-    if (is_usual && attempt.cpu_seconds < kSlow) continue;
-    std::printf("attempt %s: %s: %s: %.2f s CPU, engine %.2f s\n", name.c_str(),
+    if (is_usual && attempt.cpu_seconds + attempt.worker_seconds < kSlow) continue;
+    std::printf("attempt %s: %s: %s: %.2f s CPU, worker %.2f s, engine %.2f s\n", name.c_str(),
                 std::string(to_string(attempt.rung)).c_str(), attempt.outcome.c_str(),
-                attempt.cpu_seconds, attempt.engine_seconds);
+                attempt.cpu_seconds, attempt.worker_seconds, attempt.engine_seconds);
   }
 }
 
@@ -75,16 +74,10 @@ void decide(const std::string& name, const SubmittedSolid& submitted, EngineWork
   ++totals.solids;
   totals.seconds += report.seconds;
   totals.cdt.add(report.attempts);
-  double engine = 0;
-  double step = 0;
-  for (const RungAttempt& attempt : report.attempts) {
-    engine += attempt.engine_seconds;
-    step += attempt.cpu_seconds;
-  }
-  if (engine > 0) {
-    totals.engine_seconds += engine;
-    totals.engine_step_seconds += step;
-  }
+  const bool has_engine =
+      std::any_of(report.attempts.begin(), report.attempts.end(),
+                  [](const RungAttempt& attempt) { return attempt.worker_seconds > 0; });
+  if (has_engine) totals.with_engine.add(report.attempts);
   if (settings.prints_attempts) print_attempts(name, report);
   if (report.verdict == Verdict::valid) ++totals.valid;
   if (report.verdict == Verdict::invalid) ++totals.invalid;
@@ -115,6 +108,15 @@ void decide_file(const std::string& file, EngineWorkers& workers, const Settings
   }
 }
 
+void print_cost(const char* what, const CdtStatistics& cdt) {
+  const double step = cdt.cpu_seconds + cdt.worker_seconds;
+  std::printf(
+      "CPU of the CDT step, %s: %.3f s (own %.3f s, workers %.3f s), engine's own calls "
+      "%.3f s: ratio %.3f\n",
+      what, step, cdt.cpu_seconds, cdt.worker_seconds, cdt.engine_seconds,
+      step / std::max(cdt.engine_seconds, 1e-9));
+}
+
 void print_totals(const Totals& totals) {
   const CdtStatistics& cdt = totals.cdt;
   std::printf("\n%zu files, %zu unreadable, %zu solids: %zu valid, %zu invalid, %zu undecided\n",
@@ -132,12 +134,9 @@ void print_totals(const Totals& totals) {
                   static_cast<unsigned long long>(cdt.attempts[rung][outcome]));
     }
   }
-  std::printf("certify: %.2f s wall; CDT step: %.2f s wall, %.2f s CPU\n", totals.seconds,
-              cdt.seconds, cdt.cpu_seconds);
-  std::printf("engine's own calls: %.2f s CPU; step CPU / engine CPU = %.3f over all solids, ",
-              cdt.engine_seconds, cdt.cpu_seconds / std::max(cdt.engine_seconds, 1e-9));
-  std::printf("%.3f over those that reached an engine\n",
-              totals.engine_step_seconds / std::max(totals.engine_seconds, 1e-9));
+  std::printf("certify: %.2f s wall; CDT step: %.2f s wall\n", totals.seconds, cdt.seconds);
+  print_cost("all solids", cdt);
+  print_cost("those that reached an engine", totals.with_engine);
   for (const std::string& text : totals.undecided) std::printf("undecided %s\n", text.c_str());
 }
 
@@ -159,6 +158,7 @@ int main(int argument_count, char** arguments) {
     return 2;
   }
   std::sort(settings.files.begin(), settings.files.end());
+  std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16);
   EngineWorkers workers;
   Totals totals;
   for (const std::string& file : settings.files) decide_file(file, workers, settings, totals);

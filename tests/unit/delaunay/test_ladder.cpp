@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <string>
 
+#include "delaunay/cdt_statistics.h"
 #include "delaunay/ladder.h"
 #include "unit/delaunay/sample_solids.h"
 
@@ -98,8 +100,10 @@ TEST_CASE("without engines a solid that needs Steiner points is undecided") {
   const LadderResult result = climb_ladder(solid, triangulate_facets(solid), nullptr, {});
   CHECK_FALSE(result.certificate.has_value());
   CHECK(result.property == CertificateRefusal::none);
-  REQUIRE(result.attempts.size() == 5);
+  REQUIRE(result.attempts.size() == 4);  // all facets are triangles: no rung for them alone
   CHECK(result.attempts[0].outcome.starts_with("refused: 4 of 8"));
+  CHECK(result.attempts[0].result == RungOutcome::not_delaunay);
+  CHECK(result.attempts[1].result == RungOutcome::not_started);
   CHECK(result.attempts[1].outcome == "not-started: no engine executable");
 }
 
@@ -202,7 +206,12 @@ TEST_CASE("an engine that crashes, answers nonsense or is missing leaves a solid
     INFO(executable << " " << attempts(result));
     CHECK_FALSE(result.certificate.has_value());
     CHECK(result.property == CertificateRefusal::none);
-    CHECK(result.attempts.size() == 5);
+    REQUIRE(result.attempts.size() == 4);
+    const bool is_missing = executable == "/nonexistent/engine";
+    for (std::size_t i = 1; i < 4; ++i) {
+      CHECK(result.attempts[i].result ==
+            (is_missing ? RungOutcome::not_started : RungOutcome::crashed));
+    }
   }
 }
 
@@ -218,6 +227,89 @@ TEST_CASE("an engine that takes too long is stopped") {
   REQUIRE(result.attempts.size() == 2);
   CHECK(result.attempts[1].outcome.starts_with("timed-out"));
   CHECK(result.attempts[1].seconds < 5);
+}
+
+TEST_CASE("rungs that would give an engine the same task again are left out") {
+  EngineWorkers workers = broken_engines("/bin/false");
+  const auto rungs = [&](const Shape& shape, bool is_strict) {
+    LadderOptions options = only(Engine::cgal);
+    options.strict = is_strict;
+    const Solid solid = samples::make_solid(shape);
+    std::vector<Rung> tried;
+    for (const RungAttempt& attempt :
+         climb_ladder(solid, triangulate_facets(solid), &workers, options).attempts) {
+      tried.push_back(attempt.rung);
+    }
+    return tried;
+  };
+  using enum Rung;
+  // Extents of one size: scaling changes nothing but the unit.
+  const Shape cube = samples::box({0, 0, 0}, {64, 64, 64});
+  CHECK(rungs(cube, false) == std::vector{patch, triangles_scaled});
+  CHECK(rungs(cube, true) == std::vector{triangles_scaled});
+  const Shape flat = samples::box({0, 0, 0}, {64, 64, 10});
+  CHECK(rungs(flat, false) == std::vector{patch, patch_scaled, triangles_scaled});
+  // Facets that are triangles.
+  CHECK(rungs(samples::schoenhardt(), false) == std::vector{patch, patch_scaled});
+  CHECK(rungs(torus(4, 3), true) == std::vector{triangles_scaled});
+}
+
+TEST_CASE("all rungs together keep to the time for all") {
+  EngineWorkers workers = broken_engines("/usr/bin/yes");  // writes for ever, and uses CPU time
+  LadderOptions options;
+  options.seconds_in_all = 0.2;
+  const Solid solid = samples::make_solid(samples::box({0, 0, 0}, {64, 64, 10}));
+  options.first_rung = Rung::patch;
+  const LadderResult result = climb_ladder(solid, triangulate_facets(solid), &workers, options);
+  INFO(attempts(result));
+  CHECK_FALSE(result.certificate.has_value());
+  REQUIRE(result.attempts.size() == 4);
+  double used = 0;
+  for (const RungAttempt& attempt : result.attempts) used += attempt.worker_seconds;
+  CHECK(used < 2);
+  CHECK(default_ladder_seconds(0) == 20);
+  CHECK(default_ladder_seconds(1000) == 22.5);
+}
+
+TEST_CASE("statistics count solids by what became of them and attempts by class") {
+  const Solid needs_steiner = samples::make_solid(samples::schoenhardt());
+  const Solid simple = samples::make_solid(samples::box({0, 0, 0}, {5, 6, 7}));
+  Shape two_bodies = samples::box({0, 0, 0}, {8, 8, 8});
+  samples::add_box_facets(two_bodies, {20, 0, 0}, {30, 7, 8}, false);
+  const Solid disconnected = samples::make_solid(two_bodies);
+  CdtStatistics statistics;
+  for (const Solid* solid : {&needs_steiner, &simple, &disconnected}) {
+    CdtStatistics one;
+    one.add(climb_ladder(*solid, triangulate_facets(*solid), nullptr, {}).attempts);
+    statistics += one;
+  }
+  statistics.add({});  // never climbed
+  CHECK(statistics.solids == 3);
+  CHECK(statistics.accepted == 1);
+  CHECK(statistics.refuted == 1);
+  CHECK(statistics.undecided == 1);
+  CHECK(statistics.count(Rung::delaunay, RungOutcome::accepted) == 1);
+  CHECK(statistics.count(Rung::delaunay, RungOutcome::not_delaunay) == 1);
+  CHECK(statistics.count(Rung::delaunay, RungOutcome::refused_by_certificate) == 1);
+  CHECK(statistics.count(Rung::tetgen, RungOutcome::not_started) == 1);
+  CHECK(statistics.count(Rung::none, RungOutcome::accepted) == 0);
+  std::set<std::string_view> names;
+  for (std::size_t i = 0; i < kRungOutcomes; ++i) {
+    names.insert(to_string(static_cast<RungOutcome>(i)));
+  }
+  CHECK(names.size() == kRungOutcomes);
+  CHECK_FALSE(names.contains(""));
+}
+
+TEST_CASE("a climb is cancelled within the Delaunay rung, and says so") {
+  LadderOptions options;
+  int asked = 0;
+  options.cancel = [&] { return ++asked > 1; };  // the first question is before the rung
+  const LadderResult result = climb(torus(90, 60), options);
+  CHECK_FALSE(result.certificate.has_value());
+  REQUIRE(result.attempts.size() == 1);
+  CHECK(result.attempts[0].result == RungOutcome::cancelled);
+  CHECK(asked == 2);
 }
 
 TEST_CASE("a cancelled climb stops") {

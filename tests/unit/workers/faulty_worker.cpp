@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -77,6 +78,13 @@ void send_header(std::uint32_t length, std::uint32_t checksum, std::uint8_t stat
   send_raw(header.bytes());
 }
 
+/// Never returns: each call keeps a page.
+int overflow_the_stack(int depth) {
+  volatile char page[4096];
+  page[depth % 4096] = static_cast<char>(depth);
+  return depth > 0 ? overflow_the_stack(depth + 1) + page[0] : 0;
+}
+
 void misbehave_on_the_wire(const std::string& fault) {
   if (fault == "garbage") {
     send_raw(text_bytes("this is no frame at all, but long enough to look like one"));
@@ -94,6 +102,35 @@ void misbehave_on_the_wire(const std::string& fault) {
   if (fault == "half-reply") {
     send_header(1000, 0, 0);
     _exit(0);
+  }
+  if (fault == "killed-mid-frame") {
+    send_header(1000, 0, 0);
+    send_raw(text_bytes("the first of a thousand bytes"));
+    raise(SIGKILL);
+  }
+  if (fault == "half-header") {
+    send_raw(text_bytes("abc"));
+    sleep_for_ever();
+  }
+  if (fault == "too-long") {
+    send_header(4, 0, 0);
+    send_raw(text_bytes("more than the four bytes announced"));
+    sleep_for_ever();
+  }
+  if (fault == "flood") {
+    send_header(1'000'000, 0, 0);
+    const std::string chunk(1 << 16, 'x');
+    while (true) send_raw(text_bytes(chunk));
+  }
+  if (fault == "unknown-status") {
+    send_header(0, 0, 77);
+    sleep_for_ever();
+  }
+  if (fault == "second-reply") {
+    // The job itself is answered as usual; another answer follows that nobody asked for.
+    send_header(0, 0, 0);
+    send_header(0, 0, 0);
+    sleep_for_ever();
   }
   if (fault == "slow-drip") {
     send_header(100000, 0, 0);
@@ -116,6 +153,12 @@ Bytes handle(ByteView request) {
     while (getpid() > 0) {
     }
   }
+  if (fault == "burn") {
+    const std::clock_t start = std::clock();
+    while (std::clock() - start < CLOCKS_PER_SEC / 10) {
+    }
+    return text_bytes("burnt");
+  }
   if (fault == "orphan") {
     // The child keeps the socket open and lives on, unless the whole group is killed.
     if (fork() == 0) sleep_for_ever();
@@ -127,6 +170,11 @@ Bytes handle(ByteView request) {
     return text_bytes(std::to_string(child));
   }
   if (fault == "memory") return Bytes(std::size_t{8} << 30);
+  if (fault == "memory-bit-by-bit") {
+    std::vector<Bytes> kept;
+    while (true) kept.emplace_back(std::size_t{1} << 20, std::uint8_t{1});
+  }
+  if (fault == "stack") std::_Exit(overflow_the_stack(1));
   if (fault == "exception") throw std::runtime_error("thrown on purpose");
   if (fault == "surroundings") return surroundings();
   if (fault == "process") return text_bytes(std::to_string(getpid()));

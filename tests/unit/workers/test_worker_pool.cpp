@@ -10,6 +10,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <mutex>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -99,6 +102,42 @@ TEST_CASE("every fault of a worker has its own outcome and costs only its job") 
   check("garbage", JobOutcome::garbage, "");
   check("wrong-checksum", JobOutcome::garbage, "checksum");
   check("huge-reply", JobOutcome::garbage, "4294967295 bytes");
+  check("stack", JobOutcome::crashed, "signal 11");
+  check("killed-mid-frame", JobOutcome::crashed, "signal 9");
+  check("half-header", JobOutcome::timed_out, "wall");
+  check("too-long", JobOutcome::garbage, "bytes after the reply");
+  check("flood", JobOutcome::garbage, "bytes after the reply");
+  check("unknown-status", JobOutcome::garbage, "unknown status");
+}
+
+TEST_CASE("a reply longer than its limit is refused by its header") {
+  WorkerPool pool(faulty());
+  WorkerLimits limits;
+  limits.reply_bytes = 500'000;
+  const JobResult result = run(pool, "flood", limits);
+  CHECK(result.outcome == JobOutcome::garbage);
+  CHECK(result.detail == "reply of 1000000 bytes");
+  CHECK(run(pool, "next").outcome == JobOutcome::ok);
+}
+
+TEST_CASE("the CPU time of a job is counted, also when it is stopped or crashes") {
+  WorkerPool pool(faulty());
+  WorkerLimits limits;
+  limits.wall_seconds = 120;
+  limits.cpu_seconds = 0.3;
+  const JobResult spun = run(pool, "spin", limits);
+  CHECK(spun.outcome == JobOutcome::timed_out);
+  CHECK(spun.detail == "CPU limit");
+  CHECK(spun.cpu_seconds >= 0.3);
+  CHECK(run(pool, "next").outcome == JobOutcome::ok);
+  // A process's second job does not pay for its first: the limit is for each job.
+  limits.cpu_seconds = 0.5;
+  for (int i = 0; i < 8; ++i) {
+    const JobResult result = run(pool, "burn", limits);
+    REQUIRE(to_string(result.outcome) == "ok");
+    CHECK(result.cpu_seconds >= 0.1);
+    CHECK(result.cpu_seconds < 0.5);
+  }
 }
 
 #if !defined(__SANITIZE_ADDRESS__)
@@ -121,6 +160,17 @@ TEST_CASE("a worker that burns CPU is stopped by its CPU limit") {
   CHECK(result.detail == "CPU limit");
 }
 
+TEST_CASE("a worker that sleeps is stopped long before its wall-clock limit") {
+  WorkerPool pool(faulty());
+  WorkerLimits limits = seconds(1e6);
+  limits.sleep_seconds = 0.1;
+  for (const std::string fault : {"hang", "half-header"}) {
+    const JobResult result = run(pool, fault, limits);
+    CHECK(result.outcome == JobOutcome::timed_out);
+    CHECK(result.detail == "no CPU time used for too long");
+  }
+}
+
 TEST_CASE("a job can be cancelled while it runs and while it waits for a process") {
   WorkerPool pool(faulty());
   std::atomic<bool> stop = false;
@@ -141,6 +191,20 @@ TEST_CASE("a job can be cancelled while it runs and while it waits for a process
   CHECK(first.outcome == JobOutcome::cancelled);
   CHECK(first.seconds < 10);
   CHECK(run(pool, "next").outcome == JobOutcome::ok);
+}
+
+TEST_CASE("a worker that is killed between two jobs is replaced") {
+  WorkerPool pool(faulty());
+  for (const int signal : {SIGKILL, SIGSEGV, SIGTERM}) {
+    const std::string first = reply(run(pool, "process"));
+    const pid_t process = std::stoi(first);
+    kill(process, signal);
+    siginfo_t info{};  // waits until it has ended, and leaves it to the pool to reap
+    REQUIRE(waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOWAIT) == 0);
+    const JobResult next = run(pool, "process");
+    CHECK(next.outcome == JobOutcome::ok);
+    CHECK(reply(next) != first);
+  }
 }
 
 TEST_CASE("a missing executable is not started") {
@@ -232,6 +296,112 @@ TEST_CASE("a pool leaves no process behind, not even a worker's children") {
   CHECK_FALSE(exists(worker));
   CHECK(disappears(child));
   CHECK_FALSE(has_children());
+}
+
+std::size_t open_descriptors() {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    count += entry.is_symlink() ? 1U : 0U;
+  }
+  return count;
+}
+
+/// A fault, what becomes of the job, and its limits.
+struct Fault {
+  std::string request;
+  JobOutcome outcome = JobOutcome::ok;
+  double wall_seconds = 120;
+  double cpu_seconds = 60;
+};
+
+std::vector<Fault> faults() {
+  std::vector<Fault> list = {{"crash", JobOutcome::crashed},
+                             {"abort", JobOutcome::crashed},
+                             {"exit", JobOutcome::crashed},
+                             {"orphan", JobOutcome::crashed},
+                             {"half-reply", JobOutcome::crashed},
+                             {"killed-mid-frame", JobOutcome::crashed},
+                             {"stack", JobOutcome::crashed},
+                             {"exception", JobOutcome::failed},
+                             {"garbage", JobOutcome::garbage},
+                             {"wrong-checksum", JobOutcome::garbage},
+                             {"huge-reply", JobOutcome::garbage},
+                             {"too-long", JobOutcome::garbage},
+                             {"unknown-status", JobOutcome::garbage},
+                             {"hang", JobOutcome::timed_out, 0.05},
+                             {"half-header", JobOutcome::timed_out, 0.05},
+                             {"slow-drip", JobOutcome::timed_out, 0.05},
+                             {"spin", JobOutcome::timed_out, 120, 0.02}};
+#if !defined(__SANITIZE_ADDRESS__)
+  list.push_back({"memory", JobOutcome::out_of_memory});
+  list.push_back({"memory-bit-by-bit", JobOutcome::out_of_memory});
+#endif
+  return list;
+}
+
+/// Runs jobs from several threads, every second one with a random fault, until `goes_on` is false.
+/// Returns what went otherwise than it must. `done` counts jobs.
+std::vector<std::string> run_random_faults(unsigned seed,
+                                           const std::function<bool(std::size_t)>& goes_on,
+                                           std::atomic<std::size_t>& done) {
+  const std::vector<Fault> list = faults();
+  std::vector<std::string> wrong;
+  std::mutex mutex;
+  WorkerPool pool(faulty(4));
+  std::vector<std::thread> threads;
+  for (unsigned t = 0; t < 6; ++t) {
+    threads.emplace_back([&, t] {
+      std::mt19937 generator(seed * 100 + t);
+      while (goes_on(done++)) {
+        const auto number = generator();
+        Fault job{"thread " + std::to_string(t) + " job " + std::to_string(number)};
+        if (generator() % 2 == 0) job = list[number % list.size()];
+        WorkerLimits limits;
+        limits.wall_seconds = job.wall_seconds;
+        limits.cpu_seconds = job.cpu_seconds;
+        limits.memory_bytes = std::uint64_t{256} << 20;
+        const JobResult result = pool.run(as_bytes(job.request), limits);
+        const std::string expected = job.outcome == JobOutcome::ok ? job.request : "";
+        if (result.outcome == job.outcome && reply(result) == expected) continue;
+        const std::lock_guard lock(mutex);
+        wrong.push_back(job.request + ": " + std::string(to_string(result.outcome)) + ": " +
+                        result.detail);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return wrong;
+}
+
+/// Returns how many jobs there were.
+std::size_t check_random_faults(unsigned seed, const std::function<bool(std::size_t)>& goes_on) {
+  std::atomic<std::size_t> done = 0;
+  run_random_faults(
+      seed, [](std::size_t number) { return number < 8; }, done);
+  done = 0;
+  const std::size_t before = open_descriptors();
+  for (const std::string& wrong : run_random_faults(seed, goes_on, done)) {
+    INFO(wrong);
+    CHECK(false);
+  }
+  CHECK(open_descriptors() == before);
+  CHECK_FALSE(has_children());
+  return done - 6;  // each thread counts one more when it ends
+}
+
+TEST_CASE("random faults of concurrent jobs cost their own jobs only and leak nothing") {
+  CHECK(check_random_faults(1, [](std::size_t number) { return number < 250; }) == 250);
+}
+
+// Not run by default: WATERTIGHT_SOAK_SECONDS=180 test_workers "[soak]".
+TEST_CASE("random faults for a long time", "[.soak]") {
+  const char* text = std::getenv("WATERTIGHT_SOAK_SECONDS");
+  const auto end = std::chrono::steady_clock::now() +
+                   std::chrono::seconds(text != nullptr ? std::strtol(text, nullptr, 10) : 60);
+  const unsigned seed = std::random_device{}();
+  const std::size_t jobs = check_random_faults(
+      seed, [end](std::size_t) { return std::chrono::steady_clock::now() < end; });
+  WARN(jobs << " jobs, seed " << seed);
 }
 
 /// Tells the worker's number through the pipe, then waits for ever with a job running.

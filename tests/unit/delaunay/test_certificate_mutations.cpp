@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Certificates of many solids, damaged at many positions: each damage must be refused, and for the
+// reason that it is.
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <random>
+#include <set>
+#include <string>
+
+#include "delaunay/canonical_delaunay.h"
+#include "delaunay/ladder.h"
+#include "geometry/predicates.h"
+#include "unit/delaunay/sample_solids.h"
+
+namespace watertight {
+namespace {
+
+using samples::Shape;
+using Refusals = std::set<CertificateRefusal>;
+
+constexpr CertificateRefusal kNonconforming = CertificateRefusal::facet_not_conforming;
+constexpr CertificateRefusal kNoComplex = CertificateRefusal::not_a_complex;
+constexpr CertificateRefusal kNotConvex = CertificateRefusal::not_convex;
+constexpr CertificateRefusal kVertex = CertificateRefusal::vertex_missing;
+
+/// Positions tried in each list.
+constexpr std::size_t kPositions = 60;
+
+struct Proof {
+  std::string name;
+  Shape shape;
+  Solid solid;
+  FacetTriangles canonical;
+  Tetrahedralization data;
+
+  CertificateRefusal judge(const Tetrahedralization& other) const {
+    return check_certificate(solid, canonical, other, Rung::patch).refusal;
+  }
+};
+
+EngineWorkers& engines() {
+  static EngineWorkers workers;
+  return workers;
+}
+
+Shape schoenhardt_in_a_cavity() {
+  // Schoenhardt's prism as a cavity of a box: Steiner points and an inner shell.
+  Shape shape = samples::box({-2000, -2000, -1000}, {2000, 2000, 2000});
+  const Shape prism = samples::schoenhardt();
+  const auto first = Index(shape.vertices.size());
+  shape.vertices.insert(shape.vertices.end(), prism.vertices.begin(), prism.vertices.end());
+  samples::Shell shell = prism.shells[0];
+  for (samples::Facet& facet : shell) {
+    std::reverse(facet[0].begin(), facet[0].end());
+    for (Index& v : facet[0]) v += first;
+  }
+  shape.shells.push_back(shell);
+  return shape;
+}
+
+Shape boxes_in_a_box(int cavities) {
+  Shape shape = samples::box({0, 0, 0}, {60.0 * cavities + 20, 90, 90});
+  for (int i = 0; i < cavities; ++i) {
+    samples::add_box(shape, {60.0 * i + 20, 25, 25}, {60.0 * i + 60, 65, 60}, true);
+  }
+  return shape;
+}
+
+/// A certificate made by the ladder, from the given rung on.
+void add(std::vector<Proof>& proofs, const std::string& name, const Shape& shape, Rung first) {
+  Proof proof{name, shape, samples::make_solid(shape), {}, {}};
+  proof.canonical = triangulate_facets(proof.solid);
+  LadderOptions options;
+  options.first_rung = first;
+  LadderResult result = climb_ladder(proof.solid, proof.canonical, &engines(), options);
+  INFO(name);
+  REQUIRE(result.certificate.has_value());
+  proof.data = std::move(result.certificate->tetrahedralization);
+  REQUIRE(proof.judge(proof.data) == CertificateRefusal::none);
+  proofs.push_back(std::move(proof));
+}
+
+const std::vector<Proof>& proofs() {
+  static const std::vector<Proof> made = [] {
+    std::vector<Proof> list;
+    add(list, "cube", samples::box({0, 0, 0}, {64, 64, 64}), Rung::delaunay);
+    add(list, "tunnel", samples::tunnelled_box(), Rung::delaunay);
+    add(list, "cavities", boxes_in_a_box(3), Rung::delaunay);
+    add(list, "prism", samples::prism({{0, 0}, {90, 10}, {40, 80}}, 50), Rung::delaunay);
+    if (engines().cgal() == nullptr) return list;
+    add(list, "tunnel by CGAL", samples::tunnelled_box(), Rung::patch);
+    add(list, "Schoenhardt", samples::schoenhardt(), Rung::patch);
+    add(list, "Schoenhardt by triangles", samples::schoenhardt(), Rung::triangles_scaled);
+    add(list, "Schoenhardt in a cavity", schoenhardt_in_a_cavity(), Rung::patch);
+    add(list, "stairs", samples::stairs(6), Rung::patch);
+    return list;
+  }();
+  return made;
+}
+
+/// Calls `change` with a copy of each proof's data and each of some positions below count(data).
+/// What it makes must be refused for one of the reasons. `change` returns false to leave one out.
+template <class Count, class Change>
+void check_refused(const Refusals& reasons, Count count, Change change) {
+  std::size_t changes = 0;
+  for (const Proof& proof : proofs()) {
+    const std::size_t size = count(proof.data);
+    const std::size_t step = std::max<std::size_t>(1, size / kPositions);
+    for (std::size_t i = 0; i < size; i += step) {
+      Tetrahedralization damaged = proof.data;
+      if (!change(damaged, i, proof)) continue;
+      ++changes;
+      const CertificateRefusal refusal = proof.judge(damaged);
+      INFO(proof.name << ", position " << i << ": " << to_string(refusal));
+      CHECK(reasons.contains(refusal));
+    }
+  }
+  CHECK(changes > 10);
+}
+
+std::size_t face_count(const Tetrahedralization& data) { return data.constrained.size(); }
+std::size_t tetrahedron_count(const Tetrahedralization& data) { return data.tetrahedra.size(); }
+std::size_t input_count(const Tetrahedralization& data) { return data.input_count; }
+std::size_t steiner_count(const Tetrahedralization& data) {
+  return data.points.size() - data.input_count;
+}
+
+TEST_CASE("mutated certificate: a dropped face is refused") {
+  check_refused({kNonconforming}, face_count, [](auto& data, std::size_t i, const Proof&) {
+    data.constrained.erase(data.constrained.begin() + long(i));
+    return true;
+  });
+}
+
+TEST_CASE("mutated certificate: a wrong facet number is refused") {
+  for (const Index shift : {Index{1}, Index{2}, Index{5}}) {
+    check_refused({kNonconforming}, face_count,
+                  [shift](auto& data, std::size_t i, const Proof& proof) {
+                    const Index count = proof.solid.facet_count();
+                    const Index facet = data.constrained[i].facet;
+                    data.constrained[i].facet = (facet + shift) % count;
+                    return data.constrained[i].facet != facet;
+                  });
+  }
+  check_refused({CertificateRefusal::foreign_face}, face_count,
+                [](auto& data, std::size_t i, const Proof& proof) {
+                  data.constrained[i].facet = proof.solid.facet_count() + Index(i);
+                  return true;
+                });
+}
+
+TEST_CASE("mutated certificate: two facets that change numbers are refused") {
+  check_refused({kNonconforming}, face_count, [](auto& data, std::size_t i, const Proof& proof) {
+    const Index a = data.constrained[i].facet;
+    const Index b = (a + 1) % proof.solid.facet_count();
+    for (ConstrainedFace& face : data.constrained) {
+      face.facet = face.facet == a ? b : face.facet == b ? a : face.facet;
+    }
+    return true;
+  });
+}
+
+TEST_CASE("mutated certificate: a face that names no face of a tetrahedron is refused") {
+  check_refused({kNonconforming}, face_count, [](auto& data, std::size_t i, const Proof&) {
+    // All corners of a constrained face stay in the boundary; one of them becomes a stranger's.
+    auto& corners = data.constrained[i].vertices;
+    const Index other =
+        data.constrained[(i + data.constrained.size() / 2) % data.constrained.size()].vertices[1];
+    if (std::find(corners.begin(), corners.end(), other) != corners.end()) return false;
+    corners[0] = other;
+    return true;
+  });
+}
+
+TEST_CASE("mutated certificate: a flipped tetrahedron is refused") {
+  check_refused({kNoComplex}, tetrahedron_count, [](auto& data, std::size_t i, const Proof&) {
+    std::swap(data.tetrahedra[i][i % 3], data.tetrahedra[i][3]);
+    return true;
+  });
+}
+
+TEST_CASE("mutated certificate: a dropped tetrahedron is refused") {
+  check_refused({kNotConvex, kVertex}, tetrahedron_count,
+                [](auto& data, std::size_t i, const Proof&) {
+                  data.tetrahedra.erase(data.tetrahedra.begin() + long(i));
+                  return true;
+                });
+}
+
+TEST_CASE("mutated certificate: a tetrahedron with another corner is refused") {
+  check_refused({kNoComplex, kNotConvex, kVertex}, tetrahedron_count,
+                [](auto& data, std::size_t i, const Proof&) {
+                  Tetrahedron& t = data.tetrahedra[i];
+                  const Index other = Index((t[0] + 1 + i) % data.points.size());
+                  if (std::find(t.begin(), t.end(), other) != t.end()) return false;
+                  t[i % 4] = other;
+                  return true;
+                });
+}
+
+TEST_CASE("mutated certificate: a double cover is refused") {
+  for (const Proof& proof : proofs()) {
+    Tetrahedralization twice = proof.data;
+    const auto count = long(twice.tetrahedra.size());
+    twice.tetrahedra.reserve(2 * std::size_t(count));
+    std::copy_n(proof.data.tetrahedra.begin(), count, std::back_inserter(twice.tetrahedra));
+    CHECK(proof.judge(twice) == kNoComplex);
+
+    // The second sheet on points of its own, at the same places or aside.
+    for (const double aside : {0.0, 0.25, 1e6}) {
+      twice = proof.data;
+      const auto first = Index(twice.points.size());
+      for (const Point& p : proof.data.points) twice.points.push_back({p.x + aside, p.y, p.z});
+      for (const Tetrahedron& t : proof.data.tetrahedra) {
+        twice.tetrahedra.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+      }
+      INFO(proof.name << " " << aside);
+      CHECK(proof.judge(twice) == (aside == 0 ? kVertex : kNotConvex));
+    }
+  }
+}
+
+/// Replaces tetrahedron i by the four that its centre makes with its faces. False if rounding
+/// makes one of them flat.
+bool split(Tetrahedralization& data, std::size_t i) {
+  const Tetrahedron t = data.tetrahedra[i];
+  Point centre{};
+  for (const Index v : t) {
+    for (int axis = 0; axis < 3; ++axis) centre[axis] += data.points[v][axis] / 4;
+  }
+  const auto number = Index(data.points.size());
+  data.points.push_back(centre);
+  for (std::size_t k = 0; k < 4; ++k) {
+    Tetrahedron part = t;
+    part[k] = number;
+    if (orient3d(data.points[part[0]], data.points[part[1]], data.points[part[2]],
+                 data.points[part[3]]) <= 0) {
+      return false;
+    }
+    k == 0 ? data.tetrahedra[i] = part : data.tetrahedra.emplace_back(part);
+  }
+  return true;
+}
+
+/// The four faces of a tetrahedron, each without one corner, sorted.
+std::array<Triangle, 4> faces_of(const Tetrahedron& t) {
+  std::array<Triangle, 4> faces{};
+  for (std::size_t f = 0; f < 4; ++f) {
+    for (std::size_t i = 0, used = 0; i < 4; ++i) {
+      if (i != f) faces[f][used++] = t[i];
+    }
+    std::sort(faces[f].begin(), faces[f].end());
+  }
+  return faces;
+}
+
+/// A constrained face among the faces of a tetrahedron, or the end.
+auto constrained_face(Tetrahedralization& data, const Tetrahedron& t) {
+  const auto faces = faces_of(t);
+  return std::find_if(data.constrained.begin(), data.constrained.end(), [&](const auto& face) {
+    return std::find(faces.begin(), faces.end(), face.vertices) != faces.end();
+  });
+}
+
+TEST_CASE("certificate accepts a needless Steiner point inside a tetrahedron") {
+  // What the bubbles below start from is no damage by itself.
+  for (const Proof& proof : proofs()) {
+    Tetrahedralization data = proof.data;
+    REQUIRE(split(data, data.tetrahedra.size() / 2));
+    CHECK(proof.judge(data) == CertificateRefusal::none);
+  }
+}
+
+TEST_CASE("mutated certificate: a bubble of new tetrahedra with a facet number is refused") {
+  // The facet is led around a new tetrahedron: the complex is sound, the boundary closed.
+  check_refused({kNonconforming}, tetrahedron_count, [](auto& data, std::size_t i, const Proof&) {
+    const auto at = constrained_face(data, data.tetrahedra[i]);
+    if (at == data.constrained.end() || !split(data, i)) return false;
+    const ConstrainedFace base = *at;
+    data.constrained.erase(at);
+    const auto tip = Index(data.points.size() - 1);
+    for (std::size_t k = 0; k < 3; ++k) {
+      data.constrained.push_back({{base.vertices[k], base.vertices[(k + 1) % 3], tip}, base.facet});
+    }
+    return true;
+  });
+  // All faces of a new tetrahedron beside the facet's own.
+  check_refused({kNonconforming}, tetrahedron_count, [](auto& data, std::size_t i, const Proof&) {
+    if (!split(data, i)) return false;
+    for (const Triangle& face : faces_of(data.tetrahedra.back())) {
+      data.constrained.push_back({face, Index(i % 3)});
+    }
+    return true;
+  });
+}
+
+TEST_CASE("mutated certificate: a displaced Steiner vertex is refused") {
+  if (engines().cgal() == nullptr) SKIP("watertight-worker is not built");
+  for (const double distance : {1e-8, 1e-3, 1.0, 1e6}) {
+    check_refused({kNonconforming, kNoComplex, kNotConvex}, steiner_count,
+                  [distance](auto& data, std::size_t i, const Proof&) {
+                    // In no plane that the samples have.
+                    Point& p = data.points[data.input_count + i];
+                    p = {p.x + 0.37 * distance, p.y - 0.61 * distance, p.z + 0.83 * distance};
+                    return true;
+                  });
+  }
+}
+
+TEST_CASE("mutated certificate: a moved input vertex is refused") {
+  for (const double distance : {0x1p-40, 1.0, std::nan("")}) {
+    check_refused({kVertex}, input_count, [distance](auto& data, std::size_t i, const Proof&) {
+      data.points[i][int(i % 3)] += distance;
+      return data.points[i] != Point{} || std::isnan(distance);
+    });
+  }
+}
+
+TEST_CASE("mutated certificate: a dropped input vertex is refused") {
+  // The Delaunay tetrahedralization of the others: sound, but for the one that is missing.
+  for (const Proof& proof : proofs()) {
+    for (Index v = 0; v < proof.data.input_count; ++v) {
+      std::vector<Point> others(proof.data.points);
+      others.erase(others.begin() + v);
+      auto delaunay = canonical_delaunay(others);
+      REQUIRE(delaunay.has_value());
+      Tetrahedralization damaged = proof.data;
+      damaged.tetrahedra = delaunay->tetrahedra;
+      for (Tetrahedron& t : damaged.tetrahedra) {
+        for (Index& corner : t) corner += corner >= v ? 1 : 0;
+      }
+      CHECK(proof.judge(damaged) == kVertex);
+
+      damaged = proof.data;  // its point is gone as well
+      damaged.points.erase(damaged.points.begin() + v);
+      --damaged.input_count;
+      CHECK(proof.judge(damaged) == kVertex);
+    }
+  }
+}
+
+TEST_CASE("mutated certificate: a duplicated vertex is refused") {
+  check_refused({kVertex}, tetrahedron_count, [](auto& data, std::size_t i, const Proof&) {
+    Index& corner = data.tetrahedra[i][i % 4];
+    data.points.push_back(data.points[corner]);
+    corner = Index(data.points.size() - 1);
+    return true;
+  });
+  check_refused({kVertex}, input_count, [](auto& data, std::size_t i, const Proof&) {
+    data.points.push_back(data.points[i]);  // in no tetrahedron
+    return true;
+  });
+}
+
+TEST_CASE("mutated certificate: a solid with a facet or a shell turned over is refused") {
+  for (const Proof& proof : proofs()) {
+    Index facet_number = 0;
+    for (std::size_t s = 0; s < proof.shape.shells.size(); ++s) {
+      Shape shell_turned = proof.shape;
+      for (samples::Facet& facet : shell_turned.shells[s]) {
+        for (samples::Ring& ring : facet) std::reverse(ring.begin(), ring.end());
+      }
+      const Solid turned = samples::make_solid(shell_turned);
+      CHECK(
+          check_certificate(turned, triangulate_facets(turned), proof.data, Rung::patch).refusal ==
+          CertificateRefusal::wrong_orientation);
+      for (std::size_t f = 0; f < proof.shape.shells[s].size(); ++f, ++facet_number) {
+        Shape facet_turned = proof.shape;
+        for (samples::Ring& ring : facet_turned.shells[s][f])
+          std::reverse(ring.begin(), ring.end());
+        const Solid other = samples::make_solid(facet_turned);
+        const CertificateResult result =
+            check_certificate(other, triangulate_facets(other), proof.data, Rung::patch);
+        INFO(proof.name << " facet " << facet_number);
+        CHECK(result.refusal == CertificateRefusal::wrong_orientation);
+        CHECK(result.facet == facet_number);
+      }
+    }
+  }
+}
+
+TEST_CASE("mutated certificate: random numbers in place of indices are never accepted") {
+  std::mt19937 generator(7);
+  for (const Proof& proof : proofs()) {
+    for (int round = 0; round < 120; ++round) {
+      Tetrahedralization damaged = proof.data;
+      const auto changes = 1 + generator() % 4;
+      for (auto i = changes; i > 0; --i) {
+        const bool is_face = generator() % 2 == 0;
+        const auto value = Index(generator() % (damaged.points.size() + 2));
+        auto& face = damaged.constrained[generator() % damaged.constrained.size()];
+        auto& tetrahedron = damaged.tetrahedra[generator() % damaged.tetrahedra.size()];
+        Index& place = is_face ? face.vertices[generator() % 3] : tetrahedron[generator() % 4];
+        place = value;
+      }
+      const bool is_changed = damaged.tetrahedra != proof.data.tetrahedra ||
+                              damaged.constrained != proof.data.constrained;
+      if (is_changed) CHECK(proof.judge(damaged) != CertificateRefusal::none);
+    }
+  }
+}
+
+TEST_CASE("a cancelled certificate says so and nothing else") {
+  for (const Proof& proof : proofs()) {
+    const CertificateResult result = check_certificate(proof.solid, proof.canonical, proof.data,
+                                                       Rung::patch, [] { return true; });
+    CHECK(result.refusal == CertificateRefusal::cancelled);
+    CHECK(result.certificate.tetrahedralization.tetrahedra.empty());
+  }
+}
+
+}  // namespace
+}  // namespace watertight

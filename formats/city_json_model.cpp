@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <charconv>
 #include <unordered_map>
 #include <utility>
 
@@ -16,22 +15,6 @@ Error wrong(std::string message, std::string pointer) {
 
 std::string geometry_pointer(std::string_view id, std::size_t geometry) {
   return "/CityObjects" + pointer_token(id) + "/geometry" + pointer_token(geometry);
-}
-
-// The EPSG code in "https://www.opengis.net/def/crs/EPSG/0/7415", "urn:ogc:def:crs:EPSG::7415",
-// "EPSG:7415": the last number of the first run of digits, dots, colons and slashes after "EPSG".
-std::uint32_t epsg_code(std::string_view text) {
-  std::size_t start = text.find("EPSG");
-  if (start == std::string_view::npos) start = text.find("epsg");
-  if (start == std::string_view::npos) return 0;
-  text.remove_prefix(start + 4);
-  text = text.substr(0, text.find_first_not_of("0123456789.:/"));
-  while (!text.empty() && (text.back() == '/' || text.back() == ':')) text.remove_suffix(1);
-  text.remove_prefix(
-      text.find_last_of(":/") == std::string_view::npos ? 0 : text.find_last_of(":/") + 1);
-  std::uint32_t code = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), code);
-  return status == std::errc() && end == text.data() + text.size() ? code : 0;
 }
 
 Status read_axes(const Json& transform, std::string_view name, std::array<GridNumber, 3>& axes) {
@@ -151,6 +134,22 @@ Index parent_of(const Json& object, const std::unordered_map<std::string_view, I
   return kNone;
 }
 
+// A child that the document does not hold is a solid that nobody would miss.
+Status check_children(const Json& object, std::string_view id,
+                      const std::unordered_map<std::string_view, Index>& by_id) {
+  const Json* children = find_member(object, "children");
+  if (children == nullptr) return Done{};
+  const std::string pointer = "/CityObjects" + pointer_token(id) + "/children";
+  if (!children->is_array()) return wrong("children must be an array", pointer);
+  for (std::size_t i = 0; i < children->size(); ++i) {
+    const Json& child = (*children)[i];
+    if (!child.is_string() || !by_id.contains(child.get_ref<const std::string&>())) {
+      return wrong("the child names none of the CityObjects", pointer + pointer_token(i));
+    }
+  }
+  return Done{};
+}
+
 // Follows the parents up to the top-level object, each chain once.
 Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
   index.root_of.assign(parent.size(), kNone);
@@ -255,6 +254,7 @@ Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t templa
   for (const auto& [id, object] : members) {
     if (auto status = index_object(object, number++, template_count, index); !status)
       return status.error();
+    if (auto status = check_children(object, id, by_id); !status) return status.error();
     parent.push_back(parent_of(object, by_id));
   }
   if (auto status = find_roots(parent, index); !status) return status.error();

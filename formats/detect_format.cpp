@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/document.h"
+#include "formats/mesh_text.h"
 
 namespace watertight {
 namespace {
@@ -25,7 +26,9 @@ struct Ending {
 constexpr std::array kEndings{
     Ending{".jsonl", Format::city_json_seq},
     Ending{".ndjson", Format::city_json_seq},
-    Ending{".json", Format::city_json},
+    Ending{".stl", Format::stl},
+    Ending{".ply", Format::ply},
+    Ending{".poly", Format::poly},
     Ending{".obj", Format::obj},
     Ending{".off", Format::off},
     Ending{".wkt", Format::wkt},
@@ -37,8 +40,45 @@ constexpr std::array kEndings{
     Ending{".xml", Format::gml},
 };
 
-// A sequence has a second JSON text after the line that ends the first.
+// Where the string that starts at `at` ends: the position of its closing quote, or npos.
+std::size_t string_end(std::string_view text, std::size_t at) {
+  for (++at; at < text.size(); ++at) {
+    if (text[at] == '\\') {
+      ++at;
+    } else if (text[at] == '"') {
+      return at;
+    }
+  }
+  return std::string_view::npos;
+}
+
+// The value of the top-level member "type", as written; "" when there is none in the text.
+std::string_view json_type(std::string_view text) {
+  std::size_t depth = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '{' || text[at] == '[') ++depth;
+    if ((text[at] == '}' || text[at] == ']') && depth > 0) --depth;
+    if (text[at] != '"') continue;
+    const std::size_t end = string_end(text, at);
+    if (end == std::string_view::npos) return {};
+    const bool is_type = depth == 1 && text.substr(at + 1, end - at - 1) == "type";
+    const std::size_t colon = text.find_first_not_of(" \t\r\n", end + 1);
+    at = end;
+    if (!is_type || colon == std::string_view::npos || text[colon] != ':') continue;
+    const std::size_t value = text.find_first_not_of(" \t\r\n", colon + 1);
+    if (value == std::string_view::npos || text[value] != '"') return {};
+    const std::size_t value_end = string_end(text, value);
+    if (value_end == std::string_view::npos) return {};
+    return text.substr(value + 1, value_end - value - 1);
+  }
+  return {};
+}
+
+// By the type, which CityJSON, its sequences and (JSON-FG as) GeoJSON have. A sequence has a second
+// JSON text after the line that ends the first.
 Format json_format(std::string_view text) {
+  const std::string_view type = json_type(text);
+  if (type == "Feature" || type == "FeatureCollection") return Format::json_fg;
   const std::size_t end = text.find('\n');
   if (end == std::string_view::npos) return Format::city_json;
   std::string_view first = text.substr(0, end);
@@ -63,6 +103,18 @@ bool is_obj_line(std::string_view text) {
   return false;
 }
 
+// "solid NAME" with "facet" or "endsolid" in the next line that is not blank; WKT goes on with a
+// bracket.
+bool is_text_stl_head(std::string_view text) {
+  if (lower_case(text.substr(0, 5)) != "solid") return false;
+  const std::size_t line_end = text.find('\n');
+  if (line_end == std::string_view::npos) return false;
+  const std::size_t next = text.find_first_not_of(" \t\r\n", line_end);
+  if (next == std::string_view::npos) return false;
+  const std::string word = lower_case(text.substr(next, 8));
+  return word.starts_with("facet") || word == "endsolid";
+}
+
 // By the first bytes of the first line that is neither blank nor a comment.
 Result<Format> format_of_text(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -75,6 +127,8 @@ Result<Format> format_of_text(std::string_view text) {
     text.remove_prefix(start);
     if (text.front() == '{') return json_format(text);
     if (text.front() == '<' || is_utf16_xml(text)) return Format::gml;
+    if (is_text_stl_head(text)) return Format::stl;
+    if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) return Format::ply;
     const std::string head = lower_case(text.substr(0, 24));
     for (const std::string_view word : {"srid=", "polyhedralsurface", "solid", "tin"}) {
       if (head.starts_with(word)) return Format::wkt;
@@ -96,6 +150,9 @@ Result<Format> detect_format(std::string_view file_name, ByteView bytes) {
   for (const Ending& ending : kEndings) {
     if (name.ends_with(ending.text)) return ending.format;
   }
+  if (name.ends_with(".geojson") || name.ends_with(".jsonfg")) return Format::json_fg;
+  if (name.ends_with(".json")) return json_format(as_text(bytes));
+  if (is_binary_stl(bytes)) return Format::stl;
   // EWKB: byte order 0 or 1, then a type whose bytes no text has.
   if (bytes.size() >= 9 && bytes[0] <= 1) return Format::ewkb;
   return format_of_text(as_text(bytes));

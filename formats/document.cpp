@@ -8,6 +8,7 @@
 #include "formats/city_json.h"
 #include "formats/ewkb.h"
 #include "formats/gml.h"
+#include "formats/json_fg.h"
 #include "formats/mesh_text.h"
 
 namespace watertight {
@@ -84,6 +85,14 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
       return read_obj(as_text(bytes), options.limits);
     case Format::off:
       return read_off(as_text(bytes), options.limits);
+    case Format::json_fg:
+      return read_json_fg(as_text(bytes), options);
+    case Format::stl:
+      return read_stl(bytes, options.limits);
+    case Format::ply:
+      return read_ply(bytes, options.limits);
+    case Format::poly:
+      return read_poly(as_text(bytes), options.limits);
     case Format::wkt:
       return read_wkt_document(as_text(bytes), options.limits);
     case Format::ewkb:

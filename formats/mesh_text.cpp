@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formats/mesh_text.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <utility>
 
 #include "formats/numbers.h"
@@ -14,8 +16,8 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' |
 
 }  // namespace
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
+void words_of(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
   for (std::size_t at = 0; at < line.size();) {
     if (is_blank(line[at])) {
       ++at;
@@ -26,7 +28,29 @@ std::vector<std::string_view> words_of(std::string_view line) {
     words.push_back(line.substr(at, end - at));
     at = end;
   }
-  return words;
+}
+
+bool TextLines::next() {
+  while (at_ < text_.size()) {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    const std::string_view text = text_.substr(at_, end - at_);
+    line_ = {text.substr(0, text.find('#')), at_, line_.number + 1};
+    at_ = end + 1;
+    words_of(line_.text, words_);
+    if (!words_.empty()) return true;
+  }
+  return false;
+}
+
+Error TextLines::ended(const std::string& what) const {
+  return Error{ErrorCode::malformed, "the file ends before " + what, text_.size(), {}};
+}
+
+std::optional<std::uint64_t> unsigned_word(std::string_view word) {
+  std::uint64_t value = 0;
+  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
 }
 
 Error error_at(const TextLine& line, std::string_view word, std::string message) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// OBJ, OFF, WKT and EWKB between bytes and documents. Internal to formats/; the public face is
-// formats/document.h and formats/ewkb.h.
+// OBJ, OFF, STL, PLY, POLY, WKT and EWKB between bytes and documents. Internal to formats/; the
+// public face is formats/document.h and formats/ewkb.h.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,11 @@ struct DecimalVertices;
 
 Result<Document> read_obj(std::string_view text, const Limits& limits);
 Result<Document> read_off(std::string_view text, const Limits& limits);
+/// Text or binary; corners with equal coordinates become one vertex.
+Result<Document> read_stl(ByteView bytes, const Limits& limits);
+bool is_binary_stl(ByteView bytes);
+Result<Document> read_ply(ByteView bytes, const Limits& limits);
+Result<Document> read_poly(std::string_view text, const Limits& limits);
 /// One geometry after the other; each is a feature.
 Result<Document> read_wkt_document(std::string_view text, const Limits& limits);
 Result<Document> read_ewkb_document(ByteView bytes, const Limits& limits);
@@ -34,7 +40,29 @@ struct TextLine {
 };
 
 /// The words of a line, separated by blanks.
-std::vector<std::string_view> words_of(std::string_view line);
+void words_of(std::string_view line, std::vector<std::string_view>& words);
+
+/// Goes through the lines of a text that have words besides a comment, which starts with '#'.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text) : text_(text) {}
+  /// False at the end.
+  bool next();
+  const TextLine& line() const { return line_; }
+  /// At least one.
+  std::span<const std::string_view> words() const { return words_; }
+  /// malformed: the file ends before `what`.
+  Error ended(const std::string& what) const;
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  TextLine line_;
+  std::vector<std::string_view> words_;
+};
+
+/// The word as an unsigned integer, if it is one.
+std::optional<std::uint64_t> unsigned_word(std::string_view word);
 
 /// malformed, with "line 7: " and the byte where `word`, a part of `line`, starts.
 Error error_at(const TextLine& line, std::string_view word, std::string message);

@@ -37,4 +37,18 @@ std::string plain_text(const GridNumber& number) {
   return is_negative ? '-' + digits : digits;
 }
 
+std::uint32_t epsg_code(std::string_view text) {
+  std::size_t start = text.find("EPSG");
+  if (start == std::string_view::npos) start = text.find("epsg");
+  if (start == std::string_view::npos) return 0;
+  text.remove_prefix(start + 4);
+  text = text.substr(0, text.find_first_not_of("0123456789.:/"));
+  while (!text.empty() && (text.back() == '/' || text.back() == ':')) text.remove_suffix(1);
+  text.remove_prefix(
+      text.find_last_of(":/") == std::string_view::npos ? 0 : text.find_last_of(":/") + 1);
+  std::uint32_t code = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), code);
+  return status == std::errc() && end == text.data() + text.size() ? code : 0;
+}
+
 }  // namespace watertight

@@ -3,6 +3,8 @@
 // Numbers of text formats as exact decimals. Internal to formats/.
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "base/result.h"
@@ -20,5 +22,10 @@ Result<ExactNumber> exact_number(std::string_view text);
 
 /// A number with its digits, without exponent where that is short: "-0.125".
 std::string plain_text(const GridNumber& number);
+
+/// The EPSG code in "https://www.opengis.net/def/crs/EPSG/0/7415", "urn:ogc:def:crs:EPSG::7415",
+/// "EPSG:7415", "[EPSG:7415]": the last number of the first run of digits, dots, colons and slashes
+/// after "EPSG". 0 when there is none.
+std::uint32_t epsg_code(std::string_view text);
 
 }  // namespace watertight

@@ -91,11 +91,11 @@ class ObjReader {
       return Done{};
     }
     if (keyword == "v" || keyword == "f") {
-      std::vector<std::string_view> words = words_of(line.text);
-      for (std::size_t i = 0; i < words.size(); ++i) {
-        if (words[i].front() == '#') words.resize(i);
+      words_of(line.text, words_);
+      for (std::size_t i = 0; i < words_.size(); ++i) {
+        if (words_[i].front() == '#') words_.resize(i);
       }
-      const std::span<const std::string_view> arguments(words.data() + 1, words.size() - 1);
+      const auto arguments = std::span<const std::string_view>(words_).subspan(1);
       return keyword == "v" ? vertex(line, arguments) : facet(line, arguments);
     }
     if (std::find(kIgnored.begin(), kIgnored.end(), keyword) != kIgnored.end()) return Done{};
@@ -210,8 +210,9 @@ class ObjReader {
   DecimalVertices vertices_;
   std::vector<ObjObject> objects_;
   std::string joined_;
-  std::size_t left_out_ = 0;        // objects without faces
-  std::uint64_t last_missing_ = 0;  // the largest index beyond the vertices so far, from 1
+  std::vector<std::string_view> words_;  // of the statement
+  std::size_t left_out_ = 0;             // objects without faces
+  std::uint64_t last_missing_ = 0;       // the largest index beyond the vertices so far, from 1
   std::size_t missing_line_ = 0;
   std::size_t missing_offset_ = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -12,80 +12,63 @@ namespace {
 
 class OffReader {
  public:
-  OffReader(std::string_view text, const Limits& limits) : text_(text), limits_(limits) {}
+  OffReader(std::string_view text, const Limits& limits)
+      : size_(text.size()), lines_(text), limits_(limits) {}
 
   Result<Document> read() {
     if (auto status = head(); !status) return status.error();
     for (std::uint64_t i = 0; i < vertex_count_; ++i) {
-      if (!next_line()) return ended("vertex " + std::to_string(i));
-      if (auto status = append_vertex(line_, words_, vertices_); !status) return status.error();
+      if (!lines_.next()) return lines_.ended("vertex " + std::to_string(i));
+      if (auto status = append_vertex(lines_.line(), lines_.words(), vertices_); !status)
+        return status.error();
     }
     for (std::uint64_t i = 0; i < facet_count_; ++i) {
-      if (!next_line()) return ended("face " + std::to_string(i));
+      if (!lines_.next()) return lines_.ended("face " + std::to_string(i));
       if (auto status = facet(); !status) return status.error();
     }
-    if (next_line()) document_.notes.push_back("text after the last face skipped");
+    if (lines_.next()) document_.notes.push_back("text after the last face skipped");
     return finish();
   }
 
  private:
-  // The next line that has words besides its comment.
-  bool next_line() {
-    while (at_ < text_.size()) {
-      const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-      const std::string_view text = text_.substr(at_, end - at_);
-      line_ = {text.substr(0, text.find('#')), at_, line_.number + 1};
-      at_ = end + 1;
-      words_ = words_of(line_.text);
-      if (!words_.empty()) return true;
-    }
-    return false;
-  }
-
-  Error ended(const std::string& what) const {
-    return Error{ErrorCode::malformed, "the file ends before " + what, text_.size(), {}};
-  }
-
-  std::optional<std::uint64_t> count_of(std::string_view word) const {
-    std::uint64_t value = 0;
-    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
-    return value;
-  }
-
   // "OFF" with prefixes for texture, colour and normal, then the counts, on the same line or not.
   Status head() {
-    if (!next_line()) return ended("its first word");
-    const std::string_view word = words_.front();
+    if (!lines_.next()) return lines_.ended("its first word");
+    const std::string_view word = lines_.words().front();
     if (word == "4OFF" || word == "nOFF" || word == "4nOFF") {
       return Error{
-          ErrorCode::unsupported, "only OFF of three dimensions is read", line_.offset, {}};
+          ErrorCode::unsupported, "only OFF of three dimensions is read", lines_.line().offset, {}};
     }
     for (const std::string_view known :
          {"OFF", "COFF", "NOFF", "CNOFF", "NCOFF", "STOFF", "STCOFF", "STNOFF", "STCNOFF"}) {
       if (word == known) return counts();
     }
-    return error_at(line_, word, "the first word is not OFF");
+    return error_at(lines_.line(), word, "the first word is not OFF");
   }
 
   Status counts() {
-    words_.erase(words_.begin());
-    if (!words_.empty() && words_.front() == "BINARY") {
-      return Error{ErrorCode::unsupported, "binary OFF is not read", line_.offset, {}};
+    std::span<const std::string_view> words = lines_.words().subspan(1);
+    if (!words.empty() && words.front() == "BINARY") {
+      return Error{ErrorCode::unsupported, "binary OFF is not read", lines_.line().offset, {}};
     }
-    if (words_.empty() && !next_line()) return ended("the counts");
-    const auto vertices = count_of(words_[0]);
-    const auto facets = words_.size() > 1 ? count_of(words_[1]) : std::nullopt;
+    if (words.empty()) {
+      if (!lines_.next()) return lines_.ended("the counts");
+      words = lines_.words();
+    }
+    const auto vertices = unsigned_word(words[0]);
+    const auto facets = words.size() > 1 ? unsigned_word(words[1]) : std::nullopt;
     if (!vertices || !facets) {
-      return error_at(line_, words_[0], "the numbers of vertices and faces are missing");
+      return error_at(lines_.line(), words[0], "the numbers of vertices and faces are missing");
     }
     // Every vertex and every face has a line of its own.
-    if (*vertices > text_.size() || *facets > text_.size()) {
-      return error_at(line_, words_[0], "more vertices or faces than the file has bytes");
+    if (*vertices > size_ || *facets > size_) {
+      return error_at(lines_.line(), words[0], "more vertices or faces than the file has bytes");
     }
     if (*vertices > limits_.vertices || *facets > limits_.facets) {
-      return Error{
-          ErrorCode::limit_exceeded, "more vertices or faces than the limit", line_.offset, {}};
+      return Error{ErrorCode::limit_exceeded,
+                   "more vertices or faces than the limit",
+                   lines_.line().offset,
+                   {}};
     }
     vertex_count_ = *vertices;
     facet_count_ = *facets;
@@ -94,15 +77,15 @@ class OffReader {
 
   // The number of corners, their vertices, and perhaps a colour.
   Status facet() {
-    const auto corners = count_of(words_[0]);
-    if (!corners || *corners > words_.size() - 1) {
-      return error_at(line_, words_[0], "the face has fewer vertices than it says");
+    const auto corners = unsigned_word(lines_.words()[0]);
+    if (!corners || *corners > lines_.words().size() - 1) {
+      return error_at(lines_.line(), lines_.words()[0], "the face has fewer vertices than it says");
     }
     for (std::uint64_t i = 1; i <= *corners; ++i) {
-      const auto vertex = count_of(words_[i]);
+      const auto vertex = unsigned_word(lines_.words()[i]);
       if (!vertex || *vertex >= vertex_count_) {
         return error_at(
-            line_, words_[i],
+            lines_.line(), lines_.words()[i],
             "vertex index is out of range (" + std::to_string(vertex_count_) + " vertices)");
       }
       arrays_.ring_vertices.push_back(static_cast<Index>(*vertex));
@@ -124,11 +107,9 @@ class OffReader {
     return std::move(document_);
   }
 
-  std::string_view text_;
+  std::size_t size_;  // of the file
+  TextLines lines_;
   const Limits& limits_;
-  std::size_t at_ = 0;
-  TextLine line_;
-  std::vector<std::string_view> words_;
   std::uint64_t vertex_count_ = 0;
   std::uint64_t facet_count_ = 0;
   DecimalVertices vertices_;

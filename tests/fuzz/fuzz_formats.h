@@ -57,4 +57,25 @@ inline void check_reader(ByteView bytes, Format format, bool is_split) {
   require_same_solids(*document, *again);
 }
 
+/// For formats that are read only: reading is deterministic, the document says what it is, and what
+/// WKT can hold of it comes back from there.
+inline void check_read_only(ByteView bytes, Format format) {
+  ReadOptions options;
+  options.limits = small_limits();
+  (void)detect_format("", bytes);
+  const auto document = read_document(bytes, format, options);
+  if (!document) {
+    require(!document.error().message.empty());
+    return;
+  }
+  require(document->format == format);
+  const auto again = read_document(bytes, format, options);
+  require(again.has_value());
+  require_same_solids(*document, *again);
+  const auto written = write_document(*document, format);
+  require(!written && written.error().code == ErrorCode::unsupported);
+  const auto text = write_document(*document, Format::wkt);
+  require(text.has_value() || !text.error().message.empty());
+}
+
 }  // namespace watertight::fuzz

@@ -115,6 +115,9 @@ Status FeatureReader::read_header() {
   }
   header_ = *std::move(header);
   document_.header = header_.text;
+  auto templates = read_geometry_templates(header_, options_.limits);
+  if (!templates) return in_line(std::move(templates).error(), **text);
+  document_.templates = *std::move(templates);
   return Done{};
 }
 

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Geometry templates, and city models that leave out what others have.
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+
+#include "formats/document.h"
+#include "samples.h"
+
+namespace watertight {
+namespace {
+
+using test::read;
+
+const std::string kTetrahedron = "[[[[0,2,1]],[[0,1,3]],[[1,2,3]],[[2,0,3]]]]";
+const std::string kVertices = "[[0.5,0.0,0.0],[1.0,0.0,0.0],[0.5,1.25,0.0],[0.5,0.0,1e0]]";
+
+std::string model(const std::string& section, const std::string& instance) {
+  return R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],)"
+         R"("translate":[0,0,0]},)" +
+         section + R"("CityObjects":{"tree":{"type":"SolitaryVegetationObject","geometry":[)" +
+         instance + R"(]}},"vertices":[[7,8,9]]})";
+}
+
+std::string section(const std::string& templates, const std::string& vertices = kVertices) {
+  return R"("geometry-templates":{"templates":[)" + templates + R"(],"vertices-templates":)" +
+         vertices + "},";
+}
+
+std::string geometry(const std::string& type, const std::string& boundaries) {
+  return R"({"type":")" + type + R"(","lod":"3","boundaries":)" + boundaries + "}";
+}
+
+std::string instance(const std::string& number, const std::string& boundaries = "[0]",
+                     const std::string& matrix = "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]") {
+  return R"({"type":"GeometryInstance","template":)" + number + R"(,"boundaries":)" + boundaries +
+         R"(,"transformationMatrix":)" + matrix + "}";
+}
+
+Error error_of(const std::string& text) {
+  const auto document = read(text, Format::city_json);
+  REQUIRE_FALSE(document);
+  CHECK_FALSE(document.error().message.empty());
+  return document.error();
+}
+
+TEST_CASE("templates of solids are read once, on lattices of their own, and written as they were") {
+  const std::string text = model(
+      section(geometry("MultiSurface", "[[[0,1,2]]]") + ',' + geometry("Solid", kTetrahedron) +
+              ',' + geometry("MultiSolid", '[' + kTetrahedron + ',' + kTetrahedron + ']')),
+      instance("1") + ',' + instance("2"));
+  for (const bool is_split : {true, false}) {
+    const auto document = read(text, Format::city_json, is_split);
+    REQUIRE(document);
+    REQUIRE(document->features.size() == 1);
+    CHECK(document->features[0].solids.empty());
+    REQUIRE(document->templates.size() == 3);
+    const SubmittedSolid& solid = document->templates[0];
+    CHECK(solid.source.geometry_type == "Solid");
+    CHECK(solid.source.geometry == 1);
+    CHECK(solid.source.lod == "3");
+    CHECK(solid.source.pointer == "/geometry-templates/templates/1/boundaries");
+    CHECK(solid.solid.srid() == 0);
+    CHECK(solid.solid.facet_count() == 4);
+    CHECK(solid.solid.world(1) == std::array<double, 3>{0.5, 1.25, 0});
+    CHECK(document->templates[2].source.pointer == "/geometry-templates/templates/2/boundaries/1");
+    const auto written = write_document(*document, Format::city_json);
+    REQUIRE(written);
+    CHECK(std::string(as_text(*written)).find(kVertices) != std::string::npos);
+  }
+}
+
+TEST_CASE("the header of a sequence gives its templates") {
+  const std::string text = model(section(geometry("Solid", kTetrahedron)), instance("0"));
+  const auto document = read(text, Format::city_json);
+  REQUIRE(document);
+  const auto header = read_city_json_header(document->header);
+  REQUIRE(header);
+  CHECK(header->template_count == 1);
+  const auto templates = read_geometry_templates(*header);
+  REQUIRE(templates);
+  REQUIRE(templates->size() == 1);
+  CHECK((*templates)[0].solid == document->templates[0].solid);
+  const auto sequence = write_document(*document, Format::city_json_seq);
+  REQUIRE(sequence);
+  const auto again = read(std::string(as_text(*sequence)), Format::city_json_seq);
+  REQUIRE(again);
+  CHECK(again->templates.size() == 1);
+  const std::string feature =
+      R"({"type":"CityJSONFeature","id":"t","CityObjects":{"t":{"type":"Tree","geometry":[)" +
+      instance("1") + R"(]}},"vertices":[[0,0,0]]})";
+  CHECK(read_city_json_feature(*header, feature).error().pointer ==
+        "/CityObjects/t/geometry/0/template");
+}
+
+TEST_CASE("errors in templates name the place") {
+  const std::string good = instance("0");
+  const std::string base = "/geometry-templates/templates";
+  CHECK(error_of(model(section(geometry("Solid", "[[[[0,2,4]]]]")), good)).pointer ==
+        base + "/0/boundaries/0/0/0/2");
+  CHECK(error_of(model(section(geometry("Solid", "[[[0,2,1]]]")), good)).pointer ==
+        base + "/0/boundaries/0/0/0");
+  CHECK(error_of(model(section(geometry("MultiSurface", "[[[0,1,4]]]")), good)).pointer ==
+        base + "/0/boundaries/0/0/2");
+  CHECK(error_of(model(section(geometry("Solid", "[[[[0,-2,1]]]]")), good)).pointer ==
+        base + "/0/boundaries/0/0/0/1");
+  CHECK(error_of(model(section(geometry("Solid", "5")), good)).pointer == base + "/0");
+  CHECK(error_of(model(section("5"), good)).pointer == base + "/0");
+  CHECK(error_of(model(section("{}"), good)).pointer == base + "/0");
+  CHECK(error_of(model(R"("geometry-templates":{},)", good)).pointer == base);
+  CHECK(error_of(model(R"("geometry-templates":{"templates":[{}]},)", good)).pointer ==
+        "/geometry-templates/vertices-templates");
+  CHECK(error_of(model(section(geometry("Solid", "[]"), "[[0,0]]"), good)).pointer ==
+        "/geometry-templates/vertices-templates/0");
+  CHECK(error_of(model(section(geometry("Solid", "[]"), "[[0,0,\"1\"]]"), good)).pointer ==
+        "/geometry-templates/vertices-templates/0/2");
+}
+
+TEST_CASE("errors in geometry instances name the place") {
+  const std::string templates = section(geometry("Solid", kTetrahedron));
+  const std::string base = "/CityObjects/tree/geometry/0";
+  CHECK(error_of(model(templates, instance("1"))).pointer == base + "/template");
+  CHECK(error_of(model(templates, instance("-1"))).pointer == base + "/template");
+  CHECK(error_of(model(templates, instance("\"0\""))).pointer == base + "/template");
+  CHECK(error_of(model("", instance("0"))).message.find("0 templates") != std::string::npos);
+  CHECK(error_of(model(templates, instance("0", "[1]"))).pointer == base + "/boundaries/0");
+  CHECK(error_of(model(templates, instance("0", "[0]", "[1,2,3]"))).pointer ==
+        base + "/transformationMatrix");
+  CHECK(error_of(model(templates, R"({"type":"GeometryInstance","template":0})")).pointer ==
+        base + "/boundaries");
+}
+
+TEST_CASE("a child that the document does not hold is an error") {
+  const auto with_children = [](const std::string& children) {
+    return R"({"type":"CityJSON","version":"1.1","transform":{"scale":[1,1,1],)"
+           R"("translate":[0,0,0]},"CityObjects":{"a":{"type":"Building","children":)" +
+           children + R"(},"b":{"type":"BuildingPart","parents":["a"]}},"vertices":[]})";
+  };
+  CHECK(read(with_children("[\"b\"]"), Format::city_json));
+  CHECK(error_of(with_children("[\"b\",\"c\"]")).pointer == "/CityObjects/a/children/1");
+  CHECK(error_of(with_children("[7]")).pointer == "/CityObjects/a/children/0");
+  CHECK(error_of(with_children("{}")).pointer == "/CityObjects/a/children");
+}
+
+TEST_CASE("empty boundaries and a missing lod are no errors of reading") {
+  for (const std::string boundaries : {"[]", "[[]]", "[[[]]]", "[[[[]]]]", "[[[[0]]]]"}) {
+    const auto document =
+        read(model("", R"({"type":"Solid","boundaries":)" + boundaries + "}"), Format::city_json);
+    REQUIRE(document);
+    REQUIRE(document->features[0].solids.size() == 1);
+    CHECK(document->features[0].solids[0].source.lod.empty());
+  }
+  CHECK(read(model("", R"({"type":"MultiSolid","boundaries":[]})"), Format::city_json)
+            ->features[0]
+            .solids.empty());
+}
+
+TEST_CASE("a lone CityJSONFeature is refused by name") {
+  const std::string text = R"({"type":"CityJSONFeature","id":"a","CityObjects":{},"vertices":[]})";
+  CHECK(error_of(text).message.find("transform") != std::string::npos);
+  CHECK_FALSE(read(text, Format::city_json_seq));
+}
+
+}  // namespace
+}  // namespace watertight

@@ -17,7 +17,10 @@ namespace watertight {
 enum class GroupKind : std::uint8_t { composite_solid, building_parts };
 
 struct GroupOptions {
-  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact).
+  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact). An overlap reaches
+  /// no deeper if each part of it that hangs together fits between two parallel planes that far
+  /// apart. Looked at are planes across the axes and along the facets that meet the part, so the
+  /// depth is never too small, and of a slab between two facets it is the thickness.
   double overlap_metres = 0;
   Limits limits;
   CancelPoll cancel = {};
@@ -25,17 +28,26 @@ struct GroupOptions {
 
 /// What a comparison of solids found. Places name a member by Place::solid, its index in `members`.
 struct GroupReport {
-  Verdict verdict = Verdict::valid;  // undecided when it was cancelled
-  std::vector<Finding> findings;     // ordered by code, then by pair
-  std::uint64_t findings_omitted = 0;
+  /// undecided when it was cancelled, or the members' coordinates have no exact common grid.
+  Verdict verdict = Verdict::valid;
+  std::vector<Finding> findings;       // ordered by code, then by pair
+  std::uint64_t findings_omitted = 0;  // found beyond Limits::findings
   std::vector<SkippedRule> not_run;
 };
 
 /// Compares valid solids of one coordinate reference system pair by pair; a null entry is a member
-/// that is not valid: the rules are not run for it, and not_run says so.
+/// that is not valid: it is not compared, and not_run says so.
+///
+/// 501, 601: the interiors of two solids have a point in common; both facets, the depth in metres
+/// (GroupOptions::overlap_metres) and, where one was found, a point inside both. 502: two members
+/// are the same points, however their facets are divided. 503: not all members hang together over
+/// areas that two have in common; one finding for each part beside that of the first member.
+///
+/// Members with the same entry in `unit_of` are not compared with each other; empty: all are.
 /// Never fails. Deterministic, independent of threads. Cost: pairs of overlapping boxes, then near
-/// linear in the triangles inside the overlap of their boxes.
+/// linear in the triangles inside the overlap of their boxes. It ends soon after Limits::findings
+/// overlaps, and not_run says so.
 GroupReport check_group(std::span<const ValidSolid* const> members, GroupKind kind,
-                        const GroupOptions& options = {});
+                        const GroupOptions& options = {}, std::span<const Index> unit_of = {});
 
 }  // namespace watertight

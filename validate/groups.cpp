@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validate/groups.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "geometry/common_lattice.h"
+#include "geometry/crs.h"
+#include "tessellate/facets.h"
+#include "validate/edge_table.h"
+#include "validate/finding_kinds.h"
+#include "validate/solid_overlap.h"
+
+namespace watertight {
+namespace {
+
+using Pair = std::pair<Index, Index>;
+
+/// Members named in a reason; more are counted.
+constexpr std::size_t kMostNamed = 8;
+
+class GroupExaminer {
+ public:
+  GroupExaminer(std::span<const ValidSolid* const> members, GroupKind kind,
+                const GroupOptions& options, std::span<const Index> unit_of)
+      : members_(members),
+        unit_of_(unit_of),
+        kind_(kind),
+        options_(options),
+        surfaces_(members.size()),
+        boxes_(members.size()),
+        connected_(members.size()) {}
+
+  GroupReport run();
+
+ private:
+  bool is_composite() const { return kind_ == GroupKind::composite_solid; }
+  std::string_view noun() const { return is_composite() ? "member" : "solid"; }
+  std::vector<int> codes() const {
+    if (!is_composite()) return {kBuildingPartsOverlap};
+    return {kIntersectionSolids, kDuplicatedSolids, kDisconnectedSolids};
+  }
+  void skip(std::vector<int> codes, std::string reason) {
+    report_.not_run.push_back({std::move(codes), std::move(reason)});
+  }
+  void give_up(std::string reason) {
+    skip(codes(), std::move(reason));
+    report_.verdict = Verdict::undecided;
+  }
+  void name_invalid_members();
+  bool find_grid();
+  std::vector<Pair> pairs() const;
+  bool may_meet(Index a, Index b) const;
+  const SolidSurface* surface(Index member);
+  bool compare(const Pair& pair);
+  void report_overlap(const Pair& pair, const SolidRelation& relation);
+  void check_connected();
+  Place place(Index member, Index facet) const;
+  std::string named(Index member) const;
+  std::string overlap_detail(const Pair& pair, const SolidRelation& relation) const;
+
+  std::span<const ValidSolid* const> members_;
+  std::span<const Index> unit_of_;
+  GroupKind kind_;
+  const GroupOptions& options_;
+  std::vector<Index> present_;  // members that are valid, ascending
+  std::optional<CommonLattice> grid_;
+  std::array<double, 3> metres_per_step_{1, 1, 1};
+  std::vector<std::unique_ptr<SolidSurface>> surfaces_;
+  std::vector<Box> boxes_;
+  DisjointSets connected_;
+  std::vector<Finding> duplicates_;
+  GroupReport report_;
+};
+
+void GroupExaminer::name_invalid_members() {
+  std::string list;
+  std::size_t count = 0;
+  for (Index i = 0; i < members_.size(); ++i) {
+    if (members_[i] != nullptr) {
+      present_.push_back(i);
+    } else if (++count <= kMostNamed) {
+      if (count > 1) list += ", ";
+      list += std::to_string(i);
+    }
+  }
+  if (count == 0) return;
+  if (count > kMostNamed) {
+    list += " and ";
+    list += std::to_string(count - kMostNamed);
+    list += " more";
+  }
+  std::string reason(noun());
+  reason += count == 1 ? " " : "s ";
+  reason += list;
+  reason +=
+      count == 1 ? " is not valid and was not compared" : " are not valid and were not compared";
+  skip(codes(), std::move(reason));
+}
+
+/// One exact grid, and its unit; the members' boxes on it.
+bool GroupExaminer::find_grid() {
+  std::vector<Lattice> lattices;
+  for (const Index i : present_) {
+    const Solid& solid = members_[i]->solid();
+    if (solid.srid() != members_[present_.front()]->solid().srid()) {
+      give_up("the solids are in different coordinate reference systems");
+      return false;
+    }
+    if (lattices.empty() || lattices.back() != solid.lattice()) lattices.push_back(solid.lattice());
+  }
+  grid_ = CommonLattice::of(lattices);
+  Box all;
+  for (std::size_t at = 0; at < present_.size() && grid_; ++at) {
+    const Solid& solid = members_[present_[at]]->solid();
+    const Box own = solid.box();
+    const auto low = grid_->moved(own.min, solid.lattice());
+    const auto high = grid_->moved(own.max, solid.lattice());
+    if (!low || !high) {
+      grid_.reset();
+      break;
+    }
+    boxes_[present_[at]] = Box{*low, *high};
+    all.include(*low);
+    all.include(*high);
+  }
+  if (!grid_) {
+    give_up("the coordinates of the solids have no exact grid in common");
+    return false;
+  }
+  const Lattice& lattice = grid_->lattice();
+  const std::array<double, 3> low = lattice.world(all.min);
+  const std::array<double, 3> high = lattice.world(all.max);
+  std::array<double, 3> centre{};
+  for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = low[axis] / 2 + high[axis] / 2;
+  const AxisUnits units = axis_units(members_[present_.front()]->solid().srid(), centre);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    metres_per_step_[at] = lattice.scale(axis) * units.metres_per_unit[at];
+  }
+  return true;
+}
+
+/// Boxes that share a point (composites: contact matters) or some inside (building parts).
+bool GroupExaminer::may_meet(Index a, Index b) const {
+  if (!unit_of_.empty() && unit_of_[a] == unit_of_[b]) return false;
+  if (is_composite()) return boxes_[a].overlaps(boxes_[b]);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (boxes_[a].min[axis] >= boxes_[b].max[axis] || boxes_[b].min[axis] >= boxes_[a].max[axis]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A sweep along the longest axis; ordered by first, then second member.
+std::vector<Pair> GroupExaminer::pairs() const {
+  Box all;
+  for (const Index i : present_) {
+    all.include(boxes_[i].min);
+    all.include(boxes_[i].max);
+  }
+  int along = 0;
+  const auto length = [&](int axis) {
+    return (all.max[axis] - all.min[axis]) * metres_per_step_[static_cast<std::size_t>(axis)];
+  };
+  for (const int axis : {1, 2}) {
+    if (length(axis) > length(along)) along = axis;
+  }
+  std::vector<Index> order = present_;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::pair(boxes_[a].min[along], a) < std::pair(boxes_[b].min[along], b);
+  });
+  std::vector<Pair> pairs;
+  std::vector<Index> active;
+  for (const Index i : order) {
+    std::erase_if(active, [&](Index a) { return boxes_[a].max[along] < boxes_[i].min[along]; });
+    for (const Index other : active) {
+      if (may_meet(i, other)) pairs.emplace_back(std::min(i, other), std::max(i, other));
+    }
+    active.push_back(i);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+/// Made when first asked for; null if the solid cannot be brought onto the grid.
+const SolidSurface* GroupExaminer::surface(Index member) {
+  if (surfaces_[member]) return surfaces_[member].get();
+  const Solid& solid = members_[member]->solid();
+  std::vector<Point> points;
+  points.reserve(solid.vertex_count());
+  for (const Point& p : solid.vertices()) {
+    const auto moved = grid_->moved(p, solid.lattice());
+    if (!moved) return nullptr;
+    points.push_back(*moved);
+  }
+  FacetTriangles facets = triangulate_facets(solid);
+  surfaces_[member] = std::make_unique<SolidSurface>(std::move(points), std::move(facets.triangles),
+                                                     std::move(facets.facet_of));
+  return surfaces_[member].get();
+}
+
+Place GroupExaminer::place(Index member, Index facet) const {
+  Place place;
+  place.solid = member;
+  if (facet != kNone) {
+    place.facet = facet;
+    place.shell = members_[member]->solid().shell_of(facet);
+  }
+  return place;
+}
+
+std::string GroupExaminer::named(Index member) const {
+  std::string name(noun());
+  name += ' ';
+  name += std::to_string(member);
+  return name;
+}
+
+std::string GroupExaminer::overlap_detail(const Pair& pair, const SolidRelation& relation) const {
+  std::string detail;
+  if (relation.are_equal) {
+    detail += named(pair.first);
+    detail += " and ";
+    detail += named(pair.second);
+    detail += " are the same points";
+  } else if (relation.facet != kNone && relation.other_facet != kNone) {
+    detail += "the interiors of ";
+    detail += named(pair.first);
+    detail += " and ";
+    detail += named(pair.second);
+    detail += " overlap";
+  } else {
+    const bool is_first = relation.facet != kNone;
+    detail += "facet ";
+    detail += std::to_string(is_first ? relation.facet : relation.other_facet);
+    detail += " of ";
+    detail += named(is_first ? pair.first : pair.second);
+    detail += " lies inside ";
+    detail += named(is_first ? pair.second : pair.first);
+  }
+  return detail;
+}
+
+void GroupExaminer::report_overlap(const Pair& pair, const SolidRelation& relation) {
+  const bool is_duplicate = relation.are_equal && is_composite();
+  const OverlapExtent extent =
+      measure_overlap(*surfaces_[pair.first], *surfaces_[pair.second], metres_per_step_);
+  const bool is_allowed = options_.overlap_metres > 0 && extent.depth <= options_.overlap_metres;
+  if (is_allowed && !is_duplicate) return;
+  report_.verdict = Verdict::invalid;
+  Finding finding;
+  finding.code = is_duplicate     ? kDuplicatedSolids
+                 : is_composite() ? kIntersectionSolids
+                                  : kBuildingPartsOverlap;
+  finding.place = place(pair.first, is_duplicate ? kNone : relation.facet);
+  finding.other = place(pair.second, is_duplicate ? kNone : relation.other_facet);
+  if (extent.witness) finding.witness = grid_->lattice().world(*extent.witness);
+  if (!is_duplicate) {
+    finding.measured = extent.depth;
+    finding.limit = options_.overlap_metres;
+    finding.unit = std::string("m");
+  }
+  finding.detail = overlap_detail(pair, relation);
+  (is_duplicate ? duplicates_ : report_.findings).push_back(std::move(finding));
+}
+
+/// False when no more pairs are to be compared.
+bool GroupExaminer::compare(const Pair& pair) {
+  if (options_.cancel && options_.cancel()) {
+    give_up("the comparison was cancelled");
+    return false;
+  }
+  const SolidSurface* first = surface(pair.first);
+  const SolidSurface* second = surface(pair.second);
+  if (first == nullptr || second == nullptr) {
+    give_up("the coordinates of the solids have no exact grid in common");
+    return false;
+  }
+  const SolidRelation relation = relate(*first, *second, options_.cancel);
+  if (relation.is_cancelled) {
+    give_up("the comparison was cancelled");
+    return false;
+  }
+  if (relation.do_overlap) report_overlap(pair, relation);
+  if (relation.do_overlap || relation.share_area) connected_.join(pair.first, pair.second);
+  return true;
+}
+
+void GroupExaminer::check_connected() {
+  std::vector<Index> first;  // the first member of each part is its root
+  for (const Index i : present_) {
+    if (connected_.root(i) == i) first.push_back(i);
+  }
+  for (std::size_t part = 1; part < first.size(); ++part) {
+    report_.verdict = Verdict::invalid;
+    Finding finding;
+    finding.code = kDisconnectedSolids;
+    finding.place = place(first[part], kNone);
+    finding.other = place(first[0], kNone);
+    finding.witness = members_[first[part]]->solid().world(0);
+    finding.measured = static_cast<double>(first.size());
+    finding.limit = 1;
+    finding.unit = "parts";
+    finding.detail = "no facets connect ";
+    finding.detail += named(first[part]);
+    finding.detail += " with ";
+    finding.detail += named(first[0]);
+    report_.findings.push_back(std::move(finding));
+  }
+}
+
+GroupReport GroupExaminer::run() {
+  name_invalid_members();
+  if (present_.size() < 2 || !find_grid()) return std::move(report_);
+  bool is_complete = true;
+  const std::uint64_t most = std::max<std::uint64_t>(options_.limits.findings, 1);
+  for (const Pair& pair : pairs()) {
+    if (report_.findings.size() + duplicates_.size() >= most) {
+      skip(codes(),
+           "only the pairs up to the last reported one were compared: there are more "
+           "findings than are kept");
+      is_complete = false;
+      break;
+    }
+    if (!compare(pair)) {
+      is_complete = false;
+      break;
+    }
+  }
+  report_.findings.insert(report_.findings.end(), std::make_move_iterator(duplicates_.begin()),
+                          std::make_move_iterator(duplicates_.end()));
+  if (is_composite() && is_complete && present_.size() == members_.size()) check_connected();
+  if (report_.findings.size() > options_.limits.findings) {
+    report_.findings_omitted = report_.findings.size() - options_.limits.findings;
+    report_.findings.resize(options_.limits.findings);
+  }
+  return std::move(report_);
+}
+
+}  // namespace
+
+GroupReport check_group(std::span<const ValidSolid* const> members, GroupKind kind,
+                        const GroupOptions& options, std::span<const Index> unit_of) {
+  return GroupExaminer(members, kind, options, unit_of).run();
+}
+
+}  // namespace watertight

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The corners of the overlap of two solids are corners of one that are not outside the other, and
+// points where an edge of one meets a triangle of the other. Triangles with a corner in common
+// belong to one part of the overlap. The convex hull of a part's corners contains the part, so its
+// extent along any direction bounds the part's: the depth is never too small.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "geometry/predicates.h"
+#include "validate/edge_table.h"
+#include "validate/solid_overlap.h"
+
+namespace watertight {
+namespace {
+
+/// Beyond this many corners the extent of the common box bounds the depth.
+constexpr std::size_t kMostCorners = 100'000;
+/// Normals looked at per part.
+constexpr std::size_t kMostNormals = 64;
+/// Pairs of corners between which a witness is looked for.
+constexpr std::size_t kMostTries = 64;
+
+using Metres = std::array<double, 3>;
+
+double dot(const Metres& a, const Metres& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Metres unit_normal(const Metres& a, const Metres& b, const Metres& c) {
+  Metres u{};
+  Metres v{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    u[axis] = b[axis] - a[axis];
+    v[axis] = c[axis] - a[axis];
+  }
+  Metres normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  const double length = std::sqrt(dot(normal, normal));
+  for (double& part : normal) part = length > 0 ? part / length : 0;
+  return normal;
+}
+
+/// Where the segment pq meets the triangle, if it crosses its plane.
+std::optional<Point> crossing(const Point& p, const Point& q, const std::array<Point, 3>& t) {
+  const int at_p = orient3d(t[0], t[1], t[2], p);
+  if (at_p == 0 || at_p * orient3d(t[0], t[1], t[2], q) >= 0) return std::nullopt;
+  std::array<int, 3> turns{};
+  for (std::size_t i = 0; i < 3; ++i) turns[i] = orient3d(p, q, t[i], t[(i + 1) % 3]);
+  const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
+  if (*least < 0 && *most > 0) return std::nullopt;
+  const auto from_p = [&](const Point& r) { return Metres{r.x - p.x, r.y - p.y, r.z - p.z}; };
+  const Metres normal = unit_normal(from_p(t[0]), from_p(t[1]), from_p(t[2]));
+  const double along = dot(normal, from_p(q));
+  const double share = along == 0 ? 0.5 : std::clamp(dot(normal, from_p(t[0])) / along, 0.0, 1.0);
+  return Point{p.x + share * (q.x - p.x), p.y + share * (q.y - p.y), p.z + share * (q.z - p.z)};
+}
+
+class OverlapMeasurer {
+ public:
+  OverlapMeasurer(const SolidSurface& first, const SolidSurface& second,
+                  const std::array<double, 3>& metres_per_step)
+      : surfaces_{&first, &second}, metres_per_step_(metres_per_step), parts_(0) {
+    for (int axis = 0; axis < 3; ++axis) {
+      common_.min[axis] = std::max(first.box().min[axis], second.box().min[axis]);
+      common_.max[axis] = std::min(first.box().max[axis], second.box().max[axis]);
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      triangles_[side] = surfaces_[side]->triangles_in(common_);
+    }
+    parts_ = DisjointSets(triangles_[0].size() + triangles_[1].size());
+  }
+
+  OverlapExtent run() {
+    add_vertices(0);
+    add_vertices(1);
+    add_crossings(0);
+    add_crossings(1);
+    OverlapExtent extent;
+    extent.depth = corners_.size() < kMostCorners ? largest_depth(extent) : depth_of_box();
+    return extent;
+  }
+
+ private:
+  struct Corner {
+    Point at;
+    Index triangle;  // one that has it, by number
+  };
+  /// Triangles of the first come before those of the second.
+  Index number(std::size_t side, std::size_t i) const {
+    return static_cast<Index>(side * triangles_[0].size() + i);
+  }
+  std::array<Point, 3> triangle(Index number) const {
+    const std::size_t count = triangles_[0].size();
+    return number < count ? surfaces_[0]->corners(triangles_[0][number])
+                          : surfaces_[1]->corners(triangles_[1][number - count]);
+  }
+  Metres metres(const Point& p) const {
+    return {(p.x - common_.min.x) * metres_per_step_[0],
+            (p.y - common_.min.y) * metres_per_step_[1],
+            (p.z - common_.min.z) * metres_per_step_[2]};
+  }
+  void add_vertices(std::size_t side);
+  void add_crossings(std::size_t side);
+  double largest_depth(OverlapExtent& extent);
+  double depth_of(std::span<const Corner> corners, std::span<const Index> members) const;
+  std::optional<Point> witness(std::span<const Corner> corners) const;
+  double depth_of_box() const {
+    const Metres size = metres(common_.max);
+    return *std::min_element(size.begin(), size.end());
+  }
+
+  std::array<const SolidSurface*, 2> surfaces_;
+  std::array<double, 3> metres_per_step_;
+  Box common_;
+  std::array<std::vector<Index>, 2> triangles_;
+  DisjointSets parts_;  // of triangles, by number
+  std::vector<Corner> corners_;
+};
+
+void OverlapMeasurer::add_vertices(std::size_t side) {
+  const SolidSurface& own = *surfaces_[side];
+  const SolidSurface& other = *surfaces_[1 - side];
+  std::map<Index, std::pair<bool, Index>> seen;  // vertex -> not outside, first triangle
+  for (std::size_t i = 0; i < triangles_[side].size() && corners_.size() < kMostCorners; ++i) {
+    for (const Index vertex : own.triangles()[triangles_[side][i]]) {
+      const Point& p = own.vertices()[vertex];
+      const auto [entry, is_new] = seen.try_emplace(vertex, false, number(side, i));
+      auto& [is_corner, holder] = entry->second;
+      if (is_new) {
+        is_corner = common_.overlaps(Box{p, p}) && other.locate(p) != Location::outside;
+        if (is_corner) corners_.push_back({p, holder});
+      } else if (is_corner) {
+        parts_.join(holder, number(side, i));
+      }
+    }
+  }
+}
+
+/// Edges of one side with triangles of the other.
+void OverlapMeasurer::add_crossings(std::size_t side) {
+  const SolidSurface& own = *surfaces_[side];
+  const SolidSurface& other = *surfaces_[1 - side];
+  std::map<Index, std::size_t> position;  // triangle of the other -> in its list
+  for (std::size_t j = 0; j < triangles_[1 - side].size(); ++j) {
+    position.emplace(triangles_[1 - side][j], j);
+  }
+  for (std::size_t i = 0; i < triangles_[side].size(); ++i) {
+    const std::array<Point, 3> corners = own.corners(triangles_[side][i]);
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      const Point& p = corners[edge];
+      const Point& q = corners[(edge + 1) % 3];
+      Box box;
+      box.include(p);
+      box.include(q);
+      if (!box.overlaps(common_)) continue;
+      for (const Index found : other.triangles_in(box)) {
+        if (corners_.size() >= kMostCorners) return;
+        const auto at = position.find(found);
+        if (at == position.end()) continue;
+        const auto point = crossing(p, q, other.corners(found));
+        if (!point) continue;
+        const Index holder = number(side, i);
+        corners_.push_back({*point, holder});
+        parts_.join(holder, number(1 - side, at->second));
+      }
+    }
+  }
+}
+
+double OverlapMeasurer::depth_of(std::span<const Corner> corners,
+                                 std::span<const Index> members) const {
+  std::vector<Metres> points;
+  points.reserve(corners.size());
+  for (const Corner& corner : corners) points.push_back(metres(corner.at));
+  std::vector<Metres> directions{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (std::size_t i = 0; i < members.size() && directions.size() < kMostNormals; ++i) {
+    const std::array<Point, 3> t = triangle(members[i]);
+    const Metres normal = unit_normal(metres(t[0]), metres(t[1]), metres(t[2]));
+    if (dot(normal, normal) < 0.5) continue;
+    if (std::find(directions.begin(), directions.end(), normal) == directions.end()) {
+      directions.push_back(normal);
+    }
+  }
+  double depth = std::numeric_limits<double>::infinity();
+  for (const Metres& direction : directions) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Metres& point : points) {
+      const double at = dot(direction, point);
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    depth = std::min(depth, high - low);
+  }
+  return std::min(depth, depth_of_box());
+}
+
+/// A point that is exactly inside both solids: the mean of the corners, or of two of them.
+std::optional<Point> OverlapMeasurer::witness(std::span<const Corner> corners) const {
+  const auto is_inside = [&](const Point& p) {
+    return surfaces_[0]->locate(p) == Location::inside &&
+           surfaces_[1]->locate(p) == Location::inside;
+  };
+  Point mean;
+  for (const Corner& corner : corners) {
+    for (int axis = 0; axis < 3; ++axis) {
+      mean[axis] += corner.at[axis] / static_cast<double>(corners.size());
+    }
+  }
+  if (is_inside(mean)) return mean;
+  std::size_t tries = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t j = i + 1; j < corners.size() && tries < kMostTries; ++j, ++tries) {
+      Point middle;
+      for (int axis = 0; axis < 3; ++axis) {
+        middle[axis] = corners[i].at[axis] / 2 + corners[j].at[axis] / 2;
+      }
+      if (is_inside(middle)) return middle;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Over all parts; the witness is of the deepest part that gives one.
+double OverlapMeasurer::largest_depth(OverlapExtent& extent) {
+  const auto root_of = [&](const Corner& corner) { return parts_.root(corner.triangle); };
+  std::stable_sort(corners_.begin(), corners_.end(),
+                   [&](const Corner& a, const Corner& b) { return root_of(a) < root_of(b); });
+  std::map<Index, std::vector<Index>> members;
+  const std::size_t count = triangles_[0].size() + triangles_[1].size();
+  for (Index i = 0; i < count; ++i) members[parts_.root(i)].push_back(i);
+  double largest = 0;
+  double witnessed = -1;
+  for (std::size_t begin = 0; begin < corners_.size();) {
+    const Index root = root_of(corners_[begin]);
+    std::size_t end = begin + 1;
+    while (end < corners_.size() && root_of(corners_[end]) == root) ++end;
+    const std::span<const Corner> part =
+        std::span<const Corner>(corners_).subspan(begin, end - begin);
+    const double depth = depth_of(part, members[root]);
+    largest = std::max(largest, depth);
+    if (depth > witnessed) {
+      if (const auto found = witness(part)) {
+        extent.witness = found;
+        witnessed = depth;
+      }
+    }
+    begin = end;
+  }
+  return largest;
+}
+
+}  // namespace
+
+OverlapExtent measure_overlap(const SolidSurface& first, const SolidSurface& second,
+                              const std::array<double, 3>& metres_per_step) {
+  return OverlapMeasurer(first, second, metres_per_step).run();
+}
+
+}  // namespace watertight

@@ -28,6 +28,8 @@ struct IntersectionOptions {
   std::uint64_t limit = 10'000;
   /// Asked about every 2^16 box comparisons; true ends the search with ErrorCode::cancelled.
   std::function<bool()> cancel = {};
+  /// Threads that share the search, the caller's among them; the result does not depend on it.
+  unsigned threads = 1;
 };
 
 /// All pairs whose contact is an intersection (is_intersection), sorted by first, then second. If

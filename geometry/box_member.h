@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Boxes of triangles in single precision, rounded so that triangles that meet have boxes that
+// overlap: what the box partition splits and compares. Private to geometry/.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "geometry/point.h"
+
+namespace watertight {
+
+inline constexpr float kFloatStep = std::numeric_limits<float>::epsilon();
+
+/// A triangle and its bounds along D directions.
+template <std::size_t D>
+struct BoxMember {
+  std::array<float, D> low;
+  std::array<float, D> high;
+  Index triangle;
+};
+
+/// Below `value` by at most two units in the last place of a float. Requires |value| < 2^120.
+inline float rounded_down(double value) {
+  const auto nearest = static_cast<float>(value);
+  return nearest - std::abs(nearest) * kFloatStep - std::numeric_limits<float>::min();
+}
+
+inline float rounded_up(double value) {
+  const auto nearest = static_cast<float>(value);
+  return nearest + std::abs(nearest) * kFloatStep + std::numeric_limits<float>::min();
+}
+
+template <std::size_t D>
+bool do_overlap(const BoxMember<D>& a, const BoxMember<D>& b) {
+  bool result = true;
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    result = result && a.low[axis] <= b.high[axis] && b.low[axis] <= a.high[axis];
+  }
+  return result;
+}
+
+/// Half-open bounds in D directions. Parts of one partition do not overlap and leave no gap, so
+/// that every point, the low corner of a pair's overlap among them, lies in exactly one.
+template <std::size_t D>
+struct PartBounds {
+  std::array<float, D> low;
+  std::array<float, D> high;
+
+  static PartBounds everything() {
+    PartBounds bounds;
+    bounds.low.fill(-std::numeric_limits<float>::infinity());
+    bounds.high.fill(std::numeric_limits<float>::infinity());
+    return bounds;
+  }
+  /// True if the low corner of the overlap of two boxes lies here. A may have more directions.
+  template <std::size_t A>
+  bool owns(const BoxMember<A>& a, const BoxMember<A>& b) const {
+    static_assert(A >= D);
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      const float corner = std::max(a.low[axis], b.low[axis]);
+      if (corner < low[axis] || corner >= high[axis]) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace watertight

@@ -70,7 +70,7 @@ struct HtmlOptions {
   std::size_t most_rows = 5000;     // findings in the table; the page says how many there are
   std::size_t most_pictures = 500;  // findings with a picture
   std::size_t most_pictures_per_code = 100;
-  std::size_t most_facets = 240;  // of one picture, the nearest ones
+  std::size_t most_facets = 160;  // of one picture, the nearest ones
 };
 
 /// One page of HTML for all documents that needs nothing but itself. Written by finish(): what it

@@ -27,7 +27,7 @@ header{display:flex;flex-wrap:wrap;gap:6px 24px;align-items:baseline;justify-con
 .banner{display:flex;gap:16px;align-items:center;border-radius:14px;padding:18px 22px;color:#fff;font-size:1.2rem;font-weight:600}
 .banner.valid{background:#1d7a4b}.banner.invalid{background:#b3243a}.banner.undecided{background:#946200}
 .banner svg{width:38px;height:38px;flex:none}
-.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(270px,1fr));gap:16px;margin-top:16px}
+.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(300px,1fr));gap:16px;margin-top:16px}
 .card{background:var(--card);border:1px solid var(--line);border-radius:14px;padding:16px 18px}
 .card h3{margin:0 0 8px;font-size:.8rem;letter-spacing:.06em;text-transform:uppercase;color:var(--soft)}
 .big{font-size:1.9rem;font-weight:650;line-height:1.1}

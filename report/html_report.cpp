@@ -413,7 +413,7 @@ std::string HtmlReport::cards() const {
   html += verdict_card("Features", tally_.all_features());
   html += verdict_card("Solids", tally_.all_solids());
   html += settings_card();
-  const std::string map = footprints_.svg();
+  const std::string map = documents_ == 1 ? footprints_.svg() : "";
   if (!map.empty()) {
     append(html, {"<section class=\"card map\" style=\"grid-column:1/-1\"><h3>Map</h3>", map});
     html += "<div class=\"legend\"><span>each feature is a dot; those that are not valid are ";

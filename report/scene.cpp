@@ -38,7 +38,14 @@ struct Candidate {
   Index facet = kNone;
   Role role = Role::other_facet;
   double distance = 0;  // from the centre to the facet's box, squared
+  double size = 0;      // diagonal of the facet's box, squared
 };
+
+double squared_diagonal(const Triple& low, const Triple& high) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) sum += (high[i] - low[i]) * (high[i] - low[i]);
+  return sum;
+}
 
 double squared_distance_to_box(const Triple& low, const Triple& high) {
   double sum = 0;
@@ -82,7 +89,8 @@ void add_candidates(const Solid& solid, const Frame& frame, Role role_of_all,
       }
     }
     if (low[0] > high[0]) continue;
-    candidates.push_back({&solid, facet, role_of_all, squared_distance_to_box(low, high)});
+    candidates.push_back({&solid, facet, role_of_all, squared_distance_to_box(low, high),
+                          squared_diagonal(low, high)});
   }
 }
 
@@ -93,6 +101,20 @@ bool is_nearer(const Candidate& a, const Candidate& b) {
   if (a_first != b_first) return a_first;
   if (a.distance != b.distance) return a.distance < b.distance;
   return a.facet < b.facet;
+}
+
+/// How many of the sorted candidates to show: all that fit; of a large solid those within a few
+/// times the size of the facets concerned, so that these can be seen.
+std::size_t count_shown(const std::vector<Candidate>& sorted, std::size_t total,
+                        std::size_t concerned) {
+  constexpr std::size_t kFewest = 32;
+  constexpr double kReach = 4;
+  if (sorted.size() == total || concerned == 0 || concerned >= sorted.size()) return sorted.size();
+  double size = 0;
+  for (std::size_t i = 0; i < concerned; ++i) size = std::max(size, sorted[i].size);
+  std::size_t shown = std::min(std::max(kFewest, concerned), sorted.size());
+  while (shown < sorted.size() && sorted[shown].distance <= kReach * kReach * size) ++shown;
+  return shown;
 }
 
 std::vector<Triple> ring_points(const Solid& solid, Index ring, const Frame& frame,
@@ -245,11 +267,17 @@ std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFindi
     if (is_pair_of_solids) candidate.role = is_of_second ? Role::second : Role::first;
     candidate.role = role_in(placed, feature, candidate);
   }
-  const std::size_t shown = std::min(candidates.size(), options.most_facets);
-  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown),
+  const std::size_t total = candidates.size();
+  const auto concerned = static_cast<std::size_t>(
+      std::count_if(candidates.begin(), candidates.end(),
+                    [](const Candidate& c) { return c.role != Role::other_facet; }));
+  const std::size_t most = std::min(total, options.most_facets);
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(most),
                     candidates.end(), is_nearer);
+  candidates.resize(most);
+  const std::size_t shown = count_shown(candidates, total, concerned);
   Scene scene;
-  scene.hidden_facets = candidates.size() - shown;
+  scene.hidden_facets = total - shown;
   std::size_t corners = 0;
   for (std::size_t i = 0; i < shown && corners < options.most_corners; ++i) {
     scene.facets.push_back(facet_of(candidates[i], frame, options.most_corners - corners));

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/unit/report/samples.h"
+
+using namespace watertight;
+using namespace watertight::test;
+
+namespace {
+
+std::string page_of(const std::vector<ValidatedFeature>& features, const HtmlOptions& options = {},
+                    const std::string& name = "a.city.json") {
+  Written written;
+  const auto report = html_report(written.sink(), head_without_times(), options);
+  write_document(*report, name, features);
+  REQUIRE(report->finish());
+  return written.text;
+}
+
+std::size_t count_of(std::string_view part, std::string_view text) {
+  std::size_t count = 0;
+  for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("the page has the counts, a row and a picture for each finding") {
+  const std::string page =
+      page_of({feature_of("a", {}), feature_of("b", {finding_of(306, 1, 4), finding_of(203, 2)})});
+  CHECK(page.find("1 of 2 features is not valid.") != page.npos);
+  CHECK(count_of("<tr class=\"error\" data-code=", page) == 2);
+  CHECK(count_of("data-scene='{", page) == 2);
+  CHECK(count_of("class=\"a\"", page) == 2);  // the facet concerned
+  CHECK(count_of("class=\"b\"", page) == 1);  // the other of the pair
+}
+
+TEST_CASE("the page loads nothing from elsewhere") {
+  const std::string page = page_of({feature_of("b", {finding_of(306, 1, 4)})});
+  CHECK(count_of("http", page) ==
+        count_of("http-equiv", page) + count_of("http://www.w3.org", page));
+  CHECK(page.find("src=") == page.npos);
+  CHECK(page.find("@import") == page.npos);
+}
+
+TEST_CASE("text of hostile documents stays text") {
+  const std::string evil = "\"'><script>alert(1)</script><img src=x onerror=y>\xff";
+  Finding finding = finding_of(203, 0);
+  finding.detail = evil;
+  finding.unit = evil;
+  finding.measured = 1;
+  ValidatedFeature feature = feature_of(evil, {finding});
+  for (SolidSource* source :
+       {&feature.inspected.feature.solids[0].source, &feature.inspected.solids[0].source}) {
+    source->lod = evil;
+    source->pointer = "/" + evil;
+  }
+  const std::string page = page_of({feature}, {}, evil);
+  CHECK(page.find("<script>alert") == page.npos);
+  CHECK(page.find("<img") == page.npos);
+  CHECK(page.find('\xff') == page.npos);
+  CHECK(count_of("<script>", page) == 1);
+}
+
+TEST_CASE("rows and pictures are capped and the page says so") {
+  HtmlOptions options;
+  options.most_rows = 5;
+  options.most_pictures = 3;
+  const std::string page =
+      page_of(std::vector<ValidatedFeature>(10, feature_of("b", {finding_of(306, 1, 4)})), options);
+  CHECK(count_of("<tr class=\"error\" data-code=", page) == 5);
+  CHECK(count_of("data-scene='{", page) == 3);
+  CHECK(page.find("The first 5 of 10 findings") != page.npos);
+  options.most_pictures_per_code = 1;
+  CHECK(count_of(
+            "data-scene='{",
+            page_of({feature_of("b", {finding_of(306, 1), finding_of(306, 2), finding_of(203, 2)})},
+                    options)) == 2);
+}
+
+TEST_CASE("a picture of two solids colours both") {
+  const std::string page = page_of({overlapping_parts()});
+  CHECK(count_of("class=\"a\"", page) == 6);
+  CHECK(count_of("class=\"b\"", page) == 6);
+  CHECK(count_of("class=\"w\"", page) == 1);
+}
+
+TEST_CASE("open edges are drawn as lines") {
+  ValidatedFeature feature = feature_of("b", {finding_of(302, 0)});
+  SolidArrays arrays = feature.inspected.feature.solids[0].solid.arrays();
+  arrays.facet_offsets.pop_back();
+  arrays.ring_offsets.pop_back();
+  arrays.ring_vertices.resize(arrays.ring_offsets.back());
+  arrays.shell_offsets.back() = static_cast<Index>(arrays.facet_offsets.size() - 1);
+  auto open = Solid::make(std::move(arrays), Lattice{}, 0);
+  REQUIRE(open);
+  feature.inspected.feature.solids[0].solid = *open;
+  const std::string page = page_of({feature});
+  const auto at = page.find("<path class=\"l\" d=\"");
+  REQUIRE(at != page.npos);
+  CHECK(count_of("M", std::string_view(page).substr(at, page.find("/>", at) - at)) == 4);
+}
+
+TEST_CASE("places that are out of range give no picture and no failure") {
+  Finding finding = finding_of(306, 1000, 2000);
+  finding.place.shell = 7;
+  finding.place.ring = 9;
+  finding.place.vertex = 1'000'000;
+  CHECK(count_of("<tr class=\"error\" data-code=", page_of({feature_of("b", {finding})})) == 1);
+}
+
+TEST_CASE("a page without findings says that all is valid") {
+  const std::string page = page_of({feature_of("a", {})});
+  CHECK(page.find("All 1 feature is valid.") != page.npos);
+  CHECK(page.find("No findings") != page.npos);
+}
+
+TEST_CASE("equal input gives an equal page") {
+  const std::vector<ValidatedFeature> features{feature_of("b", {finding_of(306, 1, 4)})};
+  CHECK(page_of(features) == page_of(features));
+}

@@ -2,6 +2,7 @@
 #include "formats/gml.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -22,10 +23,7 @@ struct Draft {
 class GmlReader {
  public:
   GmlReader(const GmlModel& model, std::uint64_t byte_count, const Limits& limits)
-      : model_(model),
-        limits_(limits),
-        shapes_(model, byte_count, limits),
-        geometries_of_(model.objects.size(), 0) {}
+      : model_(model), limits_(limits), shapes_(model, byte_count, limits) {}
 
   Result<Document> read() {
     document_.format = Format::gml;
@@ -65,6 +63,7 @@ class GmlReader {
   Status feature_of(const std::vector<Index>& geometries, const GmlGeometry& first) {
     drafts_.clear();
     positions_ = {};
+    geometries_of_.clear();
     for (const Index geometry : geometries) {
       auto status = add_geometry(model_.geometries[geometry]);
       if (!status) return status;
@@ -99,8 +98,8 @@ class GmlReader {
     SolidSource source;
     source.object_id = id_of(geometry, *target);
     if (geometry.lod != '\0') source.lod = geometry.lod;
-    source.geometry = next_geometry(geometry.object);
-    auto status = add_solids(*target, geometry.object, source);
+    source.geometry = next_geometry(geometry.is_template, source.object_id);
+    auto status = add_solids(*target, geometry.is_template, source);
     if (!status) return in_object(std::move(status).error(), source.object_id);
     return status;
   }
@@ -110,14 +109,16 @@ class GmlReader {
     return node == kNone ? "" : std::string(model_.name(model_.nodes[node].id));
   }
 
-  std::uint32_t next_geometry(Index object) {
-    return object == kNone ? 0 : geometries_of_[object]++;
+  // Objects of one feature that have no gml:id, or the same, are counted on together, so that id
+  // and number name one geometry.
+  std::uint32_t next_geometry(bool is_template, const std::string& object_id) {
+    return is_template ? templates_++ : geometries_of_[object_id]++;
   }
 
   // The solids of a geometry: itself, or those of a collection and of the collections in it. A
   // CompositeSolid within another collection is a geometry of its own: its members must fit
   // together, the collection's need not.
-  Status add_solids(Index root, Index object, SolidSource source) {
+  Status add_solids(Index root, bool is_template, SolidSource source) {
     const GmlKind kind = model_.nodes[root].kind;
     if (kind == GmlKind::solid) return add_solid(root, source);
     if (kind != GmlKind::solids && kind != GmlKind::mixed) {
@@ -126,7 +127,7 @@ class GmlReader {
     }
     std::vector<Index> composites{root};
     for (std::size_t i = 0; i < composites.size(); ++i) {
-      if (i > 0) source.geometry = next_geometry(object);
+      if (i > 0) source.geometry = next_geometry(is_template, source.object_id);
       source.ordinal = 0;
       if (auto status = add_members(composites[i], composites, source); !status) return status;
     }
@@ -256,7 +257,8 @@ class GmlReader {
   const GmlModel& model_;
   const Limits& limits_;
   GmlShapes shapes_;
-  std::vector<std::uint32_t> geometries_of_;  // object -> geometries met
+  std::map<std::string, std::uint32_t> geometries_of_;  // object id -> geometries of this feature
+  std::uint32_t templates_ = 0;
   std::uint64_t passed_over_ = 0;
   std::set<std::string> unknown_systems_;
   std::vector<Draft> drafts_;

@@ -55,8 +55,9 @@ Result<StoredSolid> store_solid(const InspectedSolid& solid, const Solid& submit
 }
 
 Result<Format> format_named(std::string_view name) {
-  for (const Format format : {Format::city_json, Format::city_json_seq, Format::obj, Format::off,
-                              Format::wkt, Format::ewkb}) {
+  for (const Format format :
+       {Format::city_json, Format::city_json_seq, Format::obj, Format::off, Format::wkt,
+        Format::ewkb, Format::gml, Format::json_fg, Format::stl, Format::ply, Format::poly}) {
     if (to_string(format) == name) return format;
   }
   return Error{ErrorCode::malformed, "stored in an unknown format '" + std::string(name) + "'"};

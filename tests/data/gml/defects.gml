@@ -117,7 +117,7 @@
 </gml:CompositeSurface></gml:exterior></gml:Solid></bldg:lod1Solid></bldg:Building></cityObjectMember>
 <cityObjectMember><bldg:Building gml:id="b-205"><bldg:lod1Solid><gml:Solid><gml:exterior><gml:CompositeSurface>
   <gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 0 10 0 10 10 0 10 0 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>
-  <gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 10 10 0 10 10 10 10 0 10 10 0 0 10</gml:posList></gml:LinearRing></gml:exterior><gml:interior><gml:LinearRing><gml:posList>0 5 10 5 10 10 10 5 10 5 0 10 0 5 10</gml:posList></gml:LinearRing></gml:interior></gml:Polygon></gml:surfaceMember>
+  <gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 10 10 0 10 10 10 10 0 10 10 0 0 10</gml:posList></gml:LinearRing></gml:exterior><gml:interior><gml:LinearRing><gml:posList>0 0 10 2 5 10 10 10 10 5 2 10 0 0 10</gml:posList></gml:LinearRing></gml:interior></gml:Polygon></gml:surfaceMember>
   <gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 10 0 0 10 0 10 0 0 10 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>
   <gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>10 0 0 10 10 0 10 10 10 10 0 10 10 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>
   <gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>10 10 0 0 10 0 0 10 10 10 10 10 10 10 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>

@@ -129,6 +129,20 @@ TEST_CASE("GML: a CompositeSolid in a MultiSolid is a geometry of its own") {
   CHECK(solids[3].source.ordinal == 1);
 }
 
+TEST_CASE("GML: object id and geometry number name one geometry, also of objects without gml:id") {
+  const std::string part =
+      "<part><BuildingPart><lod1Solid>" + kTetrahedron + "</lod1Solid></BuildingPart></part>";
+  const Document document = gml_of(model("<member><Building g:id=\"b\">" + part + part +
+                                         "</Building></member>" + building(kTetrahedron)));
+  REQUIRE(document.features.size() == 2);
+  const auto& solids = document.features[0].solids;
+  REQUIRE(solids.size() == 2);
+  CHECK(solids[0].source.object_id.empty());
+  CHECK(solids[0].source.geometry == 0);
+  CHECK(solids[1].source.geometry == 1);
+  CHECK(document.features[1].solids.at(0).source.geometry == 0);
+}
+
 TEST_CASE("GML: features come in any collection and need no gml:id") {
   const std::string features =
       R"(<w:FeatureCollection xmlns:w="http://www.opengis.net/wfs/2.0" )"

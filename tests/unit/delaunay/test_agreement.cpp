@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// For one closed orientable shell the exact tests are a proof by themselves (Jordan-Brouwer), and
+// the certificate is another that shares nothing with them but predicates: they must always agree.
+// Generated solids, sound ones and such that meet themselves, go through both.
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+
+#include "delaunay/canonical_delaunay.h"
+#include "unit/delaunay/sample_solids.h"
+#include "validate/certify.h"
+
+namespace watertight {
+namespace {
+
+using samples::Shape;
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : generator_(seed) {}
+  int below(int limit) { return int(generator_() % std::uint64_t(limit)); }
+  double between(int low, int high) { return low + below(high - low + 1); }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// A prism over a polygon that is star-shaped around the origin, with integer corners.
+Shape random_prism(Random& random) {
+  const int corners = 3 + random.below(14);
+  std::vector<std::array<double, 2>> polygon;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / corners;
+    const double radius = random.between(60, 1000);
+    polygon.push_back({std::round(radius * std::cos(angle)), std::round(radius * std::sin(angle))});
+  }
+  return samples::prism(polygon, random.between(1, 900));
+}
+
+/// Triangles of a grid of around x across vertices that closes both ways (a torus) or, with caps,
+/// one way (a sphere whose last two vertices are the poles).
+void add_grid(Shape& shape, int around, int across, bool is_torus) {
+  shape.shells.emplace_back();
+  const auto at = [&](int i, int j) { return Index((i % around) * across + j % across); };
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j + (is_torus ? 0 : 1) < across; ++j) {
+      shape.shells[0].push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1)}});
+      shape.shells[0].push_back({{at(i, j), at(i + 1, j + 1), at(i, j + 1)}});
+    }
+    if (is_torus) continue;
+    const auto low = Index(around * across);
+    shape.shells[0].push_back({{at(i + 1, 0), at(i, 0), low}});
+    shape.shells[0].push_back({{at(i, across - 1), at(i + 1, across - 1), low + 1}});
+  }
+}
+
+Shape random_torus(Random& random) {
+  const int around = 3 + random.below(8);
+  const int across = 3 + random.below(5);
+  const int tube = 300 + random.below(800);  // more than 1000: it meets itself
+  Shape shape;
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const double u = 2 * 3.14159265358979 * i / around;
+      const double v = 2 * 3.14159265358979 * j / across;
+      const double radius = 1000 + tube * std::cos(v);
+      shape.vertices.push_back({std::round(radius * std::cos(u)), std::round(radius * std::sin(u)),
+                                std::round(tube * std::sin(v)) + random.between(-40, 40)});
+    }
+  }
+  add_grid(shape, around, across, true);
+  return shape;
+}
+
+/// Star-shaped around the origin, spiky.
+Shape random_star(Random& random) {
+  const int around = 3 + random.below(7);
+  const int across = 1 + random.below(5);
+  Shape shape;
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const double u = 2 * 3.14159265358979 * i / around;
+      const double v = 3.14159265358979 * ((j + 1.0) / (across + 1) - 0.5);
+      const double radius = random.between(300, 3000);
+      shape.vertices.push_back({std::round(radius * std::cos(u) * std::cos(v)),
+                                std::round(radius * std::sin(u) * std::cos(v)),
+                                std::round(radius * std::sin(v))});
+    }
+  }
+  shape.vertices.push_back({0, 0, -random.between(300, 3000)});
+  shape.vertices.push_back({0, 0, random.between(300, 3000)});
+  add_grid(shape, around, across, false);
+  return shape;
+}
+
+/// The boundary of some tetrahedra of a Delaunay tetrahedralization of points on a small lattice:
+/// many cospherical and coplanar points. Vertices that no facet uses are left out.
+Shape random_union(Random& random, int extent) {
+  std::set<Point> chosen;
+  const int count = 5 + random.below(14);
+  for (int i = 0; i < count; ++i) {
+    chosen.insert(
+        {double(random.below(extent)), double(random.below(extent)), double(random.below(extent))});
+  }
+  const std::vector<Point> points(chosen.begin(), chosen.end());
+  const auto delaunay = canonical_delaunay(points);
+  Shape shape;
+  if (!delaunay || delaunay->tetrahedra.empty()) return shape;
+  std::set<Triangle> boundary;  // directed, smallest corner first
+  const auto add_face = [&](Triangle face) {
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    if (boundary.erase({face[0], face[2], face[1]}) == 0) boundary.insert(face);
+  };
+  const int share = 2 + random.below(4);
+  for (const auto& [a, b, c, d] : delaunay->tetrahedra) {
+    if (random.below(share) == 0) continue;
+    // The normals of these turn away from the fourth corner.
+    for (const Triangle& face :
+         {Triangle{a, c, b}, Triangle{a, b, d}, Triangle{b, c, d}, Triangle{c, a, d}}) {
+      add_face(face);
+    }
+  }
+  std::map<Index, Index> number;
+  shape.shells.emplace_back();
+  for (const Triangle& face : boundary) {
+    samples::Ring ring;
+    for (const Index v : face) {
+      const auto [at, is_new] = number.try_emplace(v, Index(shape.vertices.size()));
+      if (is_new) shape.vertices.push_back(points[v]);
+      ring.push_back(at->second);
+    }
+    shape.shells[0].push_back({ring});
+  }
+  return shape;
+}
+
+Shape random_shape(Random& random) {
+  Shape shape;
+  switch (random.below(5)) {
+    case 0:
+      shape = random_prism(random);
+      break;
+    case 1:
+      shape = random_torus(random);
+      break;
+    case 2:
+      shape = random_star(random);
+      break;
+    case 3:
+      shape = random_union(random, 3 + random.below(2));
+      break;
+    default:
+      shape = random_union(random, 8 + random.below(1000));
+      break;
+  }
+  // Some meet themselves, or nearly.
+  for (int moves = random.below(3); moves > 0 && !shape.vertices.empty(); --moves) {
+    if (random.below(3) != 0) continue;
+    const int vertex = random.below(int(shape.vertices.size()));
+    const int target = random.below(int(shape.vertices.size()));
+    Point& p = shape.vertices[std::size_t(vertex)];
+    const Point& q = shape.vertices[std::size_t(target)];
+    // Half the way to another vertex, or a step.
+    if (random.below(2) == 0) {
+      p = {std::floor((p.x + q.x) / 2), std::floor((p.y + q.y) / 2), std::floor((p.z + q.z) / 2)};
+    } else {
+      p.x += random.between(-3, 3);
+      p.z += random.between(-300, 300);
+    }
+  }
+  return shape;
+}
+
+CertifyOptions exact_options(Proof proof) {
+  CertifyOptions options;
+  options.tolerances.planarity_metres = 1e9;
+  options.tolerances.planarity_degrees = 180;
+  options.proof = proof;
+  return options;
+}
+
+struct Counts {
+  int sound = 0;
+  int meeting = 0;  // themselves
+  int other = 0;    // findings that the certificate does not judge (pinches, several components)
+};
+
+/// True if the exact tests find self-intersections and nothing else.
+bool only_meets_itself(const Report& report) {
+  return report.verdict == Verdict::invalid &&
+         std::all_of(report.findings.begin(), report.findings.end(), [](const Finding& finding) {
+           return finding.severity != Severity::error || finding.code == 306;
+         });
+}
+
+void check_agreement(const Solid& solid, EngineWorkers& workers, bool asks_engine, Counts& counts) {
+  const Inspection exact = certify(solid, nullptr, exact_options(Proof::boundary));
+  if (exact.report.verdict == Verdict::valid) {
+    ++counts.sound;
+    const Report report = certify(solid, &workers, exact_options(Proof::tetrahedralization)).report;
+    INFO(report.undecided_reason);
+    CHECK(to_string(report.verdict) == "valid");
+    return;
+  }
+  if (!only_meets_itself(exact.report)) {
+    ++counts.other;
+    return;
+  }
+  ++counts.meeting;
+  // What the exact tests spare the engines: whatever they make of it, no certificate accepts it.
+  const Solid merged = merge_equal_vertices(solid).solid;
+  LadderOptions options;
+  options.seconds_per_rung = 0.5;
+  options.last_rung = asks_engine ? Rung::patch : Rung::delaunay;
+  const LadderResult result = climb_ladder(merged, triangulate_facets(merged), &workers, options);
+  CHECK_FALSE(result.certificate.has_value());
+}
+
+Counts check_many(std::uint64_t first_seed, int count) {
+  EngineWorkers workers;
+  Counts counts;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t seed = first_seed + std::uint64_t(i);
+    Random random(seed);
+    const Shape shape = random_shape(random);
+    if (shape.shells.empty() || shape.shells[0].empty()) continue;
+    INFO("seed " << seed);
+    check_agreement(samples::make_solid(shape), workers, i % 16 == 0, counts);
+  }
+  return counts;
+}
+
+TEST_CASE("certificate and exact tests agree on generated shells") {
+  const Counts counts = check_many(1, 400);
+  CHECK(counts.sound > 100);
+  CHECK(counts.meeting > 10);
+}
+
+// Not run by default: WATERTIGHT_AGREEMENT_SOLIDS=100000 test_agreement "[long]".
+TEST_CASE("certificate and exact tests agree on very many generated shells", "[.long]") {
+  const char* text = std::getenv("WATERTIGHT_AGREEMENT_SOLIDS");
+  const Counts counts =
+      check_many(1'000'000, text != nullptr ? int(std::strtol(text, nullptr, 10)) : 5000);
+  WARN(counts.sound << " sound, " << counts.meeting << " meet themselves, " << counts.other
+                    << " others");
+}
+
+}  // namespace
+}  // namespace watertight

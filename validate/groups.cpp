@@ -20,6 +20,9 @@ using Pair = std::pair<Index, Index>;
 
 /// Members named in a reason; more are counted.
 constexpr std::size_t kMostNamed = 8;
+/// Pairs of overlapping boxes, and looks at boxes to find them: bounds of memory and time.
+constexpr std::size_t kMostPairs = 10'000'000;
+constexpr std::uint64_t kMostLooks = 2'000'000'000;
 
 class GroupExaminer {
  public:
@@ -51,7 +54,7 @@ class GroupExaminer {
   }
   void name_invalid_members();
   bool find_grid();
-  std::vector<Pair> pairs() const;
+  std::optional<std::vector<Pair>> pairs() const;
   bool may_meet(Index a, Index b) const;
   const SolidSurface* surface(Index member);
   bool compare(const Pair& pair);
@@ -155,8 +158,9 @@ bool GroupExaminer::may_meet(Index a, Index b) const {
   return true;
 }
 
-/// A sweep along the longest axis; ordered by first, then second member.
-std::vector<Pair> GroupExaminer::pairs() const {
+/// A sweep along the longest axis; ordered by first, then second member. Nothing if there are too
+/// many.
+std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
   Box all;
   for (const Index i : present_) {
     all.include(boxes_[i].min);
@@ -175,12 +179,15 @@ std::vector<Pair> GroupExaminer::pairs() const {
   });
   std::vector<Pair> pairs;
   std::vector<Index> active;
+  std::uint64_t looks = 0;
   for (const Index i : order) {
     std::erase_if(active, [&](Index a) { return boxes_[a].max[along] < boxes_[i].min[along]; });
     for (const Index other : active) {
       if (may_meet(i, other)) pairs.emplace_back(std::min(i, other), std::max(i, other));
     }
     active.push_back(i);
+    looks += active.size();
+    if (looks > kMostLooks || pairs.size() > kMostPairs) return std::nullopt;
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -316,9 +323,14 @@ void GroupExaminer::check_connected() {
 GroupReport GroupExaminer::run() {
   name_invalid_members();
   if (present_.size() < 2 || !find_grid()) return std::move(report_);
+  const auto candidates = pairs();
+  if (!candidates) {
+    give_up("there are too many solids whose boxes overlap");
+    return std::move(report_);
+  }
   bool is_complete = true;
   const std::uint64_t most = std::max<std::uint64_t>(options_.limits.findings, 1);
-  for (const Pair& pair : pairs()) {
+  for (const Pair& pair : *candidates) {
     if (report_.findings.size() + duplicates_.size() >= most) {
       skip(codes(),
            "only the pairs up to the last reported one were compared: there are more "

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Handlers that validate: POST items (and store), POST /validate.
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "pipeline/outcome_json.h"
+#include "pipeline/validate_stream.h"
+#include "report/feature_report.h"
 #include "server/handlers.h"
 #include "server/submission.h"
 
@@ -83,6 +87,50 @@ Status read_certify_options(const Target& target, CertifyOptions& options) {
   return Done{};
 }
 
+constexpr std::string_view kGeoJson = "application/geo+json";
+constexpr std::string_view kHtml = "text/html";
+
+std::unique_ptr<FeatureReport> make_report(std::size_t kind, TextSink sink, ReportHead head) {
+  if (kind == 1) return geojson_report(std::move(sink), std::move(head));
+  if (kind == 2) return html_report(std::move(sink), std::move(head));
+  return json_report(std::move(sink), std::move(head));
+}
+
+/// Validates a document and answers with its report: 0 JSON, 1 GeoJSON, 2 HTML. Equal documents
+/// get equal answers, so it says no times.
+Response report_of(Document document, const RoutedRequest& request, const IngestOptions& options,
+                   std::size_t kind) {
+  constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};
+  Response response{200, std::string(kTypes[kind]), {}, {}};
+  ReportHead head;
+  head.program_version = WATERTIGHT_VERSION;
+  head.acceptance = {options.certify.tolerances, options.certify.proof, kRuleSet};
+  head.is_strict = options.certify.ladder.strict;
+  const auto report = make_report(
+      kind,
+      [&response](std::string_view text) -> Status {
+        response.body += text;
+        return Done{};
+      },
+      std::move(head));
+  StreamOptions stream;
+  stream.certify = options.certify;
+  stream.groups.limits = options.certify.limits;
+  stream.groups.cancel = options.certify.ladder.cancel;
+  stream.threads = options.threads;
+  stream.is_cancelled = options.is_cancelled;
+  Status status = report->begin_document({"request body", document.format});
+  FeatureReader reader = FeatureReader::of(std::move(document));
+  const auto outcome = validate_stream(
+      reader, request.service.workers, stream,
+      [&](ValidatedFeature&& feature) { return report->add(feature); },
+      [&](const Error& error) { return report->add_error(error); });
+  if (!outcome) return to_response(to_problem(outcome.error()));
+  if (status) status = report->end_document({reader.document().notes, 0});
+  if (status) status = report->finish();
+  return status ? std::move(response) : to_response(to_problem(status.error()));
+}
+
 /// The header that a bare feature needs: that of the collection it goes into.
 Result<std::string> header_for(const RoutedRequest& request) {
   if (!is_bare_feature(request)) return std::string();
@@ -126,12 +174,14 @@ Response post_validate(const RoutedRequest& request) {
   IngestOptions options = ingest_options(request);
   const Status status = read_certify_options(request.target, options.certify);
   if (!status) return to_response(to_problem(status.error()));
+  const auto kind = negotiate(request.request.header("accept"), {kJson, kGeoJson, kHtml});
+  if (!kind) {
+    return refuse(406, "not-acceptable",
+                  "application/json, application/geo+json and text/html are what there is here");
+  }
   Submission submission = read_submission(request, AcceptedFormats::all, "");
   if (submission.problem) return to_response(*submission.problem);
-  auto outcome =
-      validate_document(*std::move(submission.document), request.service.workers, options);
-  if (!outcome) return to_response(to_problem(outcome.error()));
-  return Response{200, std::string(kJson), outcome_json(*outcome) + "\n", {}};
+  return report_of(*std::move(submission.document), request, options, *kind);
 }
 
 }  // namespace watertight

@@ -140,6 +140,26 @@ TEST_CASE_METHOD(Fixture, "validate gives verdicts of any format and stores noth
   CHECK(get("/collections").body.find("town") == std::string::npos);
 }
 
+TEST_CASE_METHOD(Fixture, "validate answers with the report, a layer or a page, by Accept") {
+  const auto answer = [&](const std::string& accept) {
+    return send({"POST",
+                 "/validate",
+                 {{"content-type", "application/city+json-seq"}, {"accept", accept}},
+                 kOneOpen});
+  };
+  const Json report = Json::parse(answer("*/*").body);
+  CHECK(report["type"] == "val3dity_report");
+  CHECK(report["schema"] == 2);
+  CHECK(report["all_errors"] == Json{302});
+  const Response layer = answer("application/geo+json");
+  CHECK(layer.content_type == "application/geo+json");
+  CHECK(Json::parse(layer.body)["features"][0]["properties"]["code"] == 302);
+  const Response page = answer("text/html,application/xhtml+xml");
+  CHECK(page.content_type == "text/html; charset=utf-8");
+  CHECK(page.body.find("SHELL_NOT_CLOSED") != std::string::npos);
+  CHECK(answer("image/png").status == 406);
+}
+
 TEST_CASE_METHOD(Fixture, "a malformed body is answered with its place") {
   const Response response = post("/validate", "{\"type\":\"CityJSON\",", "application/json");
   CHECK(response.status == 400);

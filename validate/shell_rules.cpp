@@ -9,6 +9,7 @@
 #include "validate/edge_table.h"
 #include "validate/open_edges.h"
 #include "validate/rules.h"
+#include "validate/wedges.h"
 
 namespace watertight {
 namespace {
@@ -36,6 +37,7 @@ class ShellExaminer {
   void check_open();
   void report_junction(const TJunction& junction);
   void report_border(const Border& border);
+  void link_wedges(DisjointSets& fans, Index first_corner, Index last_corner);
   void check_umbrellas();
   void report_pinch(Index vertex, Index facet, std::size_t umbrellas);
   std::string_view interior_connected();
@@ -177,17 +179,39 @@ void ShellExaminer::check_open() {
   }
 }
 
-/// Corners of the rings around a vertex, linked over edges, form one fan or umbrella or several.
+/// Links the two edges of each facet that bound its inside at a vertex: those of one corner, but
+/// where several rings of a facet pass the vertex.
+void ShellExaminer::link_wedges(DisjointSets& fans, Index first_corner, Index last_corner) {
+  std::vector<Wedge> shared;
+  for (Index facet = facets_.begin; facet < facets_.end; ++facet) {
+    const std::vector<Wedge> wedges = shared_wedges(solid_, examined_.triangles(), facet);
+    shared.insert(shared.end(), wedges.begin(), wedges.end());
+  }
+  std::sort(shared.begin(), shared.end(),
+            [](const Wedge& a, const Wedge& b) { return a.from < b.from; });
+  auto wedge = shared.begin();
+  for (Index corner = first_corner; corner < last_corner; ++corner) {
+    Index to = corner;
+    if (wedge != shared.end() && wedge->from == corner) to = (wedge++)->to;
+    fans.join(2 * (corner - first_corner) + 1, 2 * (to - first_corner));
+  }
+}
+
+/// Ring edges around a vertex, linked by the facets between them, form one umbrella or several. The
+/// edge that leaves corner c is number 2 c + 1, the one that arrives there 2 c.
 void ShellExaminer::check_umbrellas() {
   const auto& offsets = solid_.arrays().ring_offsets;
   const auto& ring_vertices = solid_.arrays().ring_vertices;
   const Index first_corner = offsets[solid_.arrays().facet_offsets[facets_.begin]];
   const Index last_corner = offsets[solid_.arrays().facet_offsets[facets_.end]];
-  DisjointSets fans(last_corner - first_corner);
-  const auto ends = [&](const EdgeUse& use) {  // corners at the low and the high vertex
+  DisjointSets fans(2 * std::size_t{last_corner - first_corner});
+  const auto arriving = [&](Index corner) { return 2 * (corner - first_corner); };
+  const auto leaving = [&](Index corner) { return arriving(corner) + 1; };
+  link_wedges(fans, first_corner, last_corner);
+  const auto ends = [&](const EdgeUse& use) {  // the edge at its low and at its high vertex
     const Index next = place_of_corner(solid_, use.facet, use.corner).next;
-    return edges_.is_forward(use) ? std::pair(use.corner - first_corner, next - first_corner)
-                                  : std::pair(next - first_corner, use.corner - first_corner);
+    return edges_.is_forward(use) ? std::pair(leaving(use.corner), arriving(next))
+                                  : std::pair(arriving(next), leaving(use.corner));
   };
   for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
     const auto [low_of_a, high_of_a] = ends(a);
@@ -201,9 +225,9 @@ void ShellExaminer::check_umbrellas() {
     Index facet = kNone;  // the first
   };
   std::vector<Around> around(edges_.vertices().size());
-  std::vector<bool> is_seen(last_corner - first_corner, false);
+  std::vector<bool> is_seen(2 * std::size_t{last_corner - first_corner}, false);
   for (const EdgeUse& use : uses_) {
-    const Index root = fans.root(use.corner - first_corner);
+    const Index root = fans.root(leaving(use.corner));
     Around& here = around[number_of(ring_vertices[use.corner])];
     here.facet = std::min(here.facet, use.facet);
     if (is_seen[root]) continue;

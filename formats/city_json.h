@@ -42,6 +42,8 @@ struct GeometryRef {
 struct ModelIndex {
   std::vector<std::string> ids;         // of the city objects, in document order
   std::vector<std::uint32_t> root_of;   // object -> its top-level object
+  /// Object -> the Building that it is or is a part of, by number; kNone for others and templates.
+  std::vector<std::uint32_t> building_of;
   std::vector<GeometryRef> geometries;  // by object, then geometry
   std::vector<std::string> notes;
   bool are_templates = false;  // the "objects" are geometry templates without ids, one each

@@ -176,6 +176,22 @@ Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
   return Done{};
 }
 
+// Buildings, and the parts of which the parents, up to a Building, are parts. Requires parents
+// without cycles.
+std::vector<std::uint32_t> buildings_of(const std::vector<Index>& parent,
+                                        const Json::object_t& objects) {
+  std::vector<std::string> types;
+  for (const auto& [id, object] : objects) types.push_back(string_member(object, "type"));
+  std::vector<std::uint32_t> building(parent.size(), kNone);
+  for (Index start = 0; start < parent.size(); ++start) {
+    Index at = start;
+    std::size_t steps = 0;  // deeper nesting of parts is not looked into
+    while (at != kNone && types[at] == "BuildingPart" && ++steps <= 16) at = parent[at];
+    if (at != kNone && types[at] == "Building") building[start] = at;
+  }
+  return building;
+}
+
 std::optional<std::int64_t> as_integer(const GridNumber& number) {
   std::int64_t value = number.mantissa;
   if (number.exponent < 0) return std::nullopt;
@@ -258,6 +274,7 @@ Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t templa
     parent.push_back(parent_of(object, by_id));
   }
   if (auto status = find_roots(parent, index); !status) return status.error();
+  index.building_of = buildings_of(parent, members);
   return index;
 }
 

@@ -131,6 +131,8 @@ Result<std::vector<CutSolid>> cut_solids(const CityModel& model, const ModelInde
                     ref.geometry,
                     ordinal,
                     ref.is_solid() ? pointer : pointer + pointer_token(ordinal)};
+      const Index building = index.are_templates ? kNone : index.building_of[ref.object];
+      if (building != kNone) cut.source.building_id = index.ids[building];
       cut.object = ref.object;
       cut.boundary = ref.boundary;
       ++ordinal;

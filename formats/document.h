@@ -45,6 +45,8 @@ struct SolidSource {
   std::uint32_t geometry = 0;  // index of the geometry within its object
   std::uint32_t ordinal = 0;   // index of the solid within its geometry
   std::string pointer;         // JSON Pointer to the solid's array of shells; "" when not JSON
+  /// The Building that the object is or is a part of (rule 601), "" for other objects.
+  std::string building_id = {};
 };
 
 struct SubmittedSolid {

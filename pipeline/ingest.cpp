@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "pipeline/groups.h"
 #include "pipeline/parallel.h"
 #include "pipeline/pipeline.h"
 #include "validate/report_json.h"
@@ -36,7 +37,8 @@ struct Processed {
 Processed process(Feature feature, const Document& document, EngineWorkers* workers,
                   const IngestOptions& options, bool stores) {
   Processed processed;
-  InspectedFeature inspected = inspect(std::move(feature), workers, options.certify);
+  InspectedFeature inspected =
+      inspect(std::move(feature), workers, options.certify, options.groups);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   if (stores && processed.outcome.verdict == Verdict::valid) {
@@ -60,6 +62,7 @@ Processed process(Feature feature, const Document& document, EngineWorkers* work
     if (processed.stored) outcome.blob_bytes = processed.stored->solids[i].blob.size();
     processed.outcome.solids.push_back(std::move(outcome));
   }
+  processed.outcome.groups = std::move(inspected.groups);
   return processed;
 }
 
@@ -148,19 +151,26 @@ Verdict InspectedFeature::verdict() const {
   for (const InspectedSolid& solid : solids) {
     verdict = worse(verdict, solid.inspection.report.verdict);
   }
+  for (const InspectedGroup& group : groups) verdict = worse(verdict, group.report.verdict);
   return verdict;
 }
 
-InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options) {
+InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,
+                         const GroupOptions& groups) {
   InspectedFeature inspected;
   inspected.solids.reserve(feature.solids.size());
   for (const SubmittedSolid& submitted : feature.solids) {
     CertifyOptions with_rounding = options;
     with_rounding.rounded = submitted.rounded;
+    with_rounding.unclosed_rings = submitted.unclosed_rings;
     inspected.solids.push_back(
         {submitted.source, certify(submitted.solid, workers, with_rounding)});
   }
   inspected.feature = std::move(feature);
+  GroupOptions own = groups;
+  own.limits.findings = std::min(own.limits.findings, options.limits.findings);
+  if (!own.cancel) own.cancel = options.ladder.cancel;
+  inspected.groups = inspect_groups(inspected, own);
   return inspected;
 }
 

@@ -17,6 +17,51 @@ void write_solid(JsonText& json, const SolidOutcome& solid) {
   json.key("report").raw(solid.report_json).close('}');
 }
 
+void write_place(JsonText& json, const InspectedGroup& group, const Place& place) {
+  json.open('{');
+  if (place.solid < group.members.size()) {
+    json.key("solid").value(std::uint64_t{group.members[place.solid]});
+  }
+  if (place.facet != kNone) json.key("facet").value(place.facet);
+  json.close('}');
+}
+
+void write_finding(JsonText& json, const InspectedGroup& group, const Finding& finding) {
+  json.open('{').key("code").value(std::int64_t{finding.code});
+  json.key("name").value(finding_name(finding.code));
+  json.key("severity").value(to_string(finding.severity)).key("place");
+  write_place(json, group, finding.place);
+  if (finding.other) {
+    json.key("other");
+    write_place(json, group, *finding.other);
+  }
+  if (finding.witness) json.key("witness").value(*finding.witness);
+  if (finding.measured) json.key("measured").value(*finding.measured);
+  if (finding.limit) json.key("limit").value(*finding.limit);
+  if (!finding.unit.empty()) json.key("unit").value(finding.unit);
+  json.key("detail").value(finding.detail).close('}');
+}
+
+void write_group(JsonText& json, const InspectedGroup& group) {
+  const bool is_composite = group.kind == GroupKind::composite_solid;
+  json.open('{').key("kind").value(is_composite ? "composite_solid" : "building_parts");
+  json.key("object").value(group.object_id);
+  if (!group.lod.empty()) json.key("lod").value(group.lod);
+  json.key("solids").open('[');
+  for (const std::size_t member : group.members) json.value(std::uint64_t{member});
+  json.close(']').key("verdict").value(to_string(group.report.verdict));
+  json.key("findings").open('[');
+  for (const Finding& finding : group.report.findings) write_finding(json, group, finding);
+  json.close(']').key("findingsOmitted").value(group.report.findings_omitted);
+  json.key("notRun").open('[');
+  for (const SkippedRule& rule : group.report.not_run) {
+    json.open('{').key("codes").open('[');
+    for (const int code : rule.codes) json.value(std::int64_t{code});
+    json.close(']').key("reason").value(rule.reason).close('}');
+  }
+  json.close(']').close('}');
+}
+
 }  // namespace
 
 std::string measures_json(const Measures& measures) {
@@ -39,7 +84,13 @@ std::string outcome_json(const IngestOutcome& outcome) {
     json.key("verdict").value(to_string(feature.verdict));
     json.key("stored").value(feature.is_stored).key("solids").open('[');
     for (const SolidOutcome& solid : feature.solids) write_solid(json, solid);
-    json.close(']').close('}');
+    json.close(']');
+    if (!feature.groups.empty()) {
+      json.key("groups").open('[');
+      for (const InspectedGroup& group : feature.groups) write_group(json, group);
+      json.close(']');
+    }
+    json.close('}');
   }
   json.close(']').close('}');
   return json.take();

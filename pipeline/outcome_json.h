@@ -15,7 +15,9 @@ namespace watertight {
 std::string measures_json(const Measures& measures);
 
 /// {"verdict", "stored", "features": [{"id", "verdict", "stored", "solids": [{"object",
-/// "geometryType", "lod", "geometry", "ordinal", "pointer", "blobBytes", "report"}]}]}
+/// "geometryType", "lod", "geometry", "ordinal", "pointer", "blobBytes", "report"}], "groups":
+/// [{"kind", "object", "lod", "solids", "verdict", "findings", "findingsOmitted", "notRun"}]}]}
+/// "groups" only where there are any; "solid" in their findings is a position in "solids".
 std::string outcome_json(const IngestOutcome& outcome);
 
 }  // namespace watertight

@@ -46,8 +46,9 @@ Verdict worse(Verdict a, Verdict b);
 
 /// Validates every solid of a feature, then its groups. Guarantees one InspectedSolid per solid. A
 /// solid with vertices that the reader rounded, or rings that the source left open, gets the
-/// findings for them.
-InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options);
+/// findings for them. Groups keep no more findings than solids, and are cancelled like them.
+InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,
+                         const GroupOptions& groups = {});
 
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };
@@ -90,6 +91,7 @@ using Progress = std::function<void(std::size_t, std::size_t)>;
 struct IngestOptions {
   std::string collection;
   CertifyOptions certify;
+  GroupOptions groups;
   EncodeOptions encode;
   SteinerVertices steiner = SteinerVertices::leave_out;
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;

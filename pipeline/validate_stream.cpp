@@ -121,8 +121,8 @@ Passage Stream::validate(Found found) const {
   passage.bytes = found.text.line.size();
   auto feature = reader_.read(std::move(found.text));
   if (feature) {
-    passage.feature =
-        ValidatedFeature{found.number, inspect(*std::move(feature), workers_, options_.certify)};
+    passage.feature = ValidatedFeature{
+        found.number, inspect(*std::move(feature), workers_, options_.certify, options_.groups)};
   } else {
     passage.error = std::move(feature).error();
   }

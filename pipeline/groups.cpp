@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/groups.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace watertight {
+namespace {
+
+const SolidSource& source_of(const InspectedFeature& feature, std::size_t solid) {
+  return feature.solids[solid].source;
+}
+
+bool are_of_one_geometry(const SolidSource& a, const SolidSource& b) {
+  return a.object_id == b.object_id && a.geometry == b.geometry &&
+         a.geometry_type == b.geometry_type && a.lod == b.lod;
+}
+
+/// Geometries are runs of solids whose ordinals ascend: first solid of each, and the end.
+std::vector<std::size_t> geometry_starts(const InspectedFeature& feature) {
+  std::vector<std::size_t> starts;
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const bool continues = i > 0 &&
+                           are_of_one_geometry(source_of(feature, i - 1), source_of(feature, i)) &&
+                           source_of(feature, i - 1).ordinal < source_of(feature, i).ordinal;
+    if (!continues) starts.push_back(i);
+  }
+  starts.push_back(feature.solids.size());
+  return starts;
+}
+
+struct DraftGroup {
+  InspectedGroup group;
+  std::vector<Index> unit_of;  // the geometry of each member
+};
+
+void add(DraftGroup& draft, std::size_t begin, std::size_t end, std::size_t geometry) {
+  for (std::size_t i = begin; i < end; ++i) {
+    draft.group.members.push_back(i);
+    draft.unit_of.push_back(static_cast<Index>(geometry));
+  }
+}
+
+std::vector<DraftGroup> draft_groups(const InspectedFeature& feature) {
+  std::vector<DraftGroup> drafts;
+  std::map<std::pair<std::string, std::string>, DraftGroup> buildings;  // building, lod
+  const std::vector<std::size_t> starts = geometry_starts(feature);
+  for (std::size_t geometry = 0; geometry + 1 < starts.size(); ++geometry) {
+    const std::size_t begin = starts[geometry];
+    const std::size_t end = starts[geometry + 1];
+    const SolidSource& source = source_of(feature, begin);
+    if (source.geometry_type == "CompositeSolid") {
+      DraftGroup& draft = drafts.emplace_back();
+      draft.group = {GroupKind::composite_solid, source.object_id, source.lod, {}, {}};
+      for (std::size_t i = begin; i < end; ++i) draft.group.members.push_back(i);
+    }
+    if (source.building_id.empty()) continue;
+    DraftGroup& building = buildings[{source.building_id, source.lod}];
+    building.group.kind = GroupKind::building_parts;
+    building.group.object_id = source.building_id;
+    building.group.lod = source.lod;
+    add(building, begin, end, geometry);
+  }
+  for (auto& [key, building] : buildings) {
+    if (building.unit_of.front() != building.unit_of.back()) drafts.push_back(std::move(building));
+  }
+  std::sort(drafts.begin(), drafts.end(), [](const DraftGroup& a, const DraftGroup& b) {
+    return std::pair(a.group.members.front(), a.group.kind) <
+           std::pair(b.group.members.front(), b.group.kind);
+  });
+  return drafts;
+}
+
+}  // namespace
+
+std::vector<InspectedGroup> inspect_groups(const InspectedFeature& feature,
+                                           const GroupOptions& options) {
+  std::vector<InspectedGroup> groups;
+  if (feature.solids.size() < 2) return groups;
+  for (DraftGroup& draft : draft_groups(feature)) {
+    std::vector<const ValidSolid*> solids;
+    for (const std::size_t member : draft.group.members) {
+      const auto& certified = feature.solids[member].inspection.certified;
+      solids.push_back(certified ? &certified->solid : nullptr);
+    }
+    draft.group.report = check_group(solids, draft.group.kind, options, draft.unit_of);
+    groups.push_back(std::move(draft.group));
+  }
+  return groups;
+}
+
+}  // namespace watertight

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Which solids of a feature are compared with each other, and what the comparison says.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/pipeline.h"
+
+namespace watertight {
+
+/// One group for each CompositeSolid geometry (rules 501 to 503), and one for the solids of a
+/// building with its parts in each level of detail (601) that come from two geometries or more;
+/// solids of one MultiSolid or CompositeSolid are not compared for 601. In order of first members.
+/// Solids that are not valid are members that are not compared. Never fails. Cost: check_group().
+std::vector<InspectedGroup> inspect_groups(const InspectedFeature& feature,
+                                           const GroupOptions& options);
+
+}  // namespace watertight

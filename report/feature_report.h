@@ -69,7 +69,7 @@ std::unique_ptr<FeatureReport> geojson_report(TextSink sink, ReportHead head);
 struct HtmlOptions {
   std::size_t most_rows = 5000;     // findings in the table; the page says how many there are
   std::size_t most_pictures = 500;  // findings with a picture
-  std::size_t most_pictures_per_code = 100;
+  std::size_t most_pictures_per_code = 300;
   std::size_t most_facets = 160;  // of one picture, the nearest ones
 };
 

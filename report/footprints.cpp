@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMostDots = 20'000;
 constexpr std::size_t kFewestDots = 8;
 constexpr double kWidth = 1160;
-constexpr double kHeight = 150;
+constexpr double kHeight = 300;
 constexpr double kMargin = 8;
 
 }  // namespace
@@ -45,13 +45,19 @@ std::string Footprints::svg() const {
   const double scale = std::min((kWidth - 2 * kMargin) / std::max(width, 1e-9),
                                 (kHeight - 2 * kMargin) / std::max(height, 1e-9));
   if (!std::isfinite(width) || !std::isfinite(height) || !std::isfinite(scale)) return "";
-  std::string html = "<svg viewBox=\"0 0 1160 150\" role=\"img\" aria-label=\"Map of features\">";
+  // As wide and high as the features are, so that the map is large on any screen.
+  const double shown_width = width * scale + 2 * kMargin;
+  const double shown_height = height * scale + 2 * kMargin;
+  std::string html = "<svg viewBox=\"0 0 ";
+  append(html,
+         {std::to_string(std::lround(shown_width)), " ", std::to_string(std::lround(shown_height)),
+          "\" role=\"img\" aria-label=\"Map of features\">"});
   for (const Verdict verdict : {Verdict::valid, Verdict::undecided, Verdict::invalid}) {
     std::string path;
     for (const Dot& dot : dots_) {
       if (dot.verdict != verdict) continue;
-      const double x = kWidth / 2 + ((dot.x - left) * metres[0] - width / 2) * scale;
-      const double y = kHeight / 2 - ((dot.y - low) * metres[1] - height / 2) * scale;
+      const double x = kMargin + (dot.x - left) * metres[0] * scale;
+      const double y = shown_height - kMargin - (dot.y - low) * metres[1] * scale;
       append(path,
              {"M", std::to_string(std::lround(x)), " ", std::to_string(std::lround(y)), "h0"});
     }

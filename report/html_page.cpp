@@ -36,7 +36,7 @@ header{display:flex;flex-wrap:wrap;gap:6px 24px;align-items:baseline;justify-con
 .bar .invalid,.dot.invalid{background:var(--bad)}.bar .undecided,.dot.undecided{background:var(--open)}
 .dot{display:inline-block;width:9px;height:9px;border-radius:50%;margin-right:6px}
 .legend{display:flex;flex-wrap:wrap;gap:2px 16px;color:var(--soft)}.legend b{color:var(--ink)}
-.map svg{width:100%;height:150px;display:block}
+.map svg{width:100%;height:min(300px,60vw);display:block;margin-bottom:8px}
 .map path{fill:none;stroke-linecap:round;stroke-width:5;vector-effect:non-scaling-stroke}
 .map .valid{stroke:var(--n2)}.map .invalid{stroke:var(--bad)}.map .undecided{stroke:var(--open)}
 table{border-collapse:collapse;width:100%}

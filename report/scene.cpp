@@ -287,9 +287,13 @@ std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFindi
   if (code == kShellNotClosed || code == kNonManifold) {
     add_bad_edges(*here, frame, options.most_facets, scene);
   }
-  add_ring_line(here, placed.finding->place, frame, options.most_corners, scene);
-  if (placed.finding->other) {
-    add_ring_line(there, *placed.finding->other, frame, options.most_corners, scene);
+  const bool is_about_rings = code < kNonPlanarDistance || finding_level(code) == 2;
+  const bool is_about_planes = code == kNonPlanarDistance || code == kNonPlanarNormals;
+  if (is_about_rings && !is_about_planes) {
+    add_ring_line(here, placed.finding->place, frame, options.most_corners, scene);
+    if (placed.finding->other) {
+      add_ring_line(there, *placed.finding->other, frame, options.most_corners, scene);
+    }
   }
   if (point) scene.witness = frame(*point);
   const double reach = shown == 0 ? 0 : std::sqrt(candidates[shown - 1].distance);

@@ -345,7 +345,13 @@ GroupReport GroupExaminer::run() {
   }
   report_.findings.insert(report_.findings.end(), std::make_move_iterator(duplicates_.begin()),
                           std::make_move_iterator(duplicates_.end()));
-  if (is_composite() && is_complete && present_.size() == members_.size()) check_connected();
+  if (is_composite() && is_complete && present_.size() == members_.size()) {
+    if (report_.findings.empty()) {
+      check_connected();
+    } else {
+      skip({kDisconnectedSolids}, "members overlap or are the same");
+    }
+  }
   if (report_.findings.size() > options_.limits.findings) {
     report_.findings_omitted = report_.findings.size() - options_.limits.findings;
     report_.findings.resize(options_.limits.findings);

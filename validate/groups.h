@@ -41,7 +41,8 @@ struct GroupReport {
 /// 501, 601: the interiors of two solids have a point in common; both facets, the depth in metres
 /// (GroupOptions::overlap_metres) and, where one was found, a point inside both. 502: two members
 /// are the same points, however their facets are divided. 503: not all members hang together over
-/// areas that two have in common; one finding for each part beside that of the first member.
+/// areas that two have in common; one finding for each part beside that of the first member; not
+/// looked at when members overlap or are the same, as by val3dity.
 ///
 /// Members with the same entry in `unit_of` are not compared with each other; empty: all are.
 /// Never fails. Deterministic, independent of threads. Cost: pairs of overlapping boxes, then near

@@ -82,7 +82,7 @@ dialog{border:0;border-radius:16px;padding:0;width:min(980px,96vw);max-height:94
 dialog::backdrop{background:#0009}
 dialog figure{border-radius:0;cursor:grab;touch-action:none}dialog figure:active{cursor:grabbing}
 dialog figure svg{max-height:64vh}
-dialog .text{padding:14px 20px 20px}dialog .close{position:absolute;top:10px;right:10px;font:inherit;border:1px solid var(--line);border-radius:9px;background:var(--card);color:inherit;padding:5px 12px;cursor:pointer}
+dialog .text{padding:14px 20px 20px}dialog .text p{margin:0 0 4px}dialog .close{position:absolute;top:10px;right:10px;font:inherit;border:1px solid var(--line);border-radius:9px;background:var(--card);color:inherit;padding:5px 12px;cursor:pointer}
 footer{margin-top:34px;color:var(--soft);font-size:.86rem}
 .key{display:inline-block;width:12px;height:12px;border-radius:3px;vertical-align:-1px;margin-right:5px}
 [hidden]{display:none!important}

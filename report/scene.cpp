@@ -107,8 +107,8 @@ bool is_nearer(const Candidate& a, const Candidate& b) {
 /// times the size of the facets concerned, so that these can be seen.
 std::size_t count_shown(const std::vector<Candidate>& sorted, std::size_t total,
                         std::size_t concerned) {
-  constexpr std::size_t kFewest = 32;
-  constexpr double kReach = 4;
+  constexpr std::size_t kFewest = 24;
+  constexpr double kReach = 2;
   if (sorted.size() == total || concerned == 0 || concerned >= sorted.size()) return sorted.size();
   double size = 0;
   for (std::size_t i = 0; i < concerned; ++i) size = std::max(size, sorted[i].size);

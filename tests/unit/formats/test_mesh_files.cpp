@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <catch2/catch_test_macros.hpp>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -328,6 +328,26 @@ TEST_CASE("interior shells are appended on a common grid") {
   limits.vertices = 7;
   CHECK(with_interior_shells(outer->features[0].solids[0], shells, limits).error().code ==
         ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("real STL, PLY and POLY files read as what they are") {
+  const auto solid_of = [](const std::string& name, Format format) {
+    return only_solid(test::file_text("meshes/" + name), format);
+  };
+  for (const char* name : {"stl_box_ascii.stl", "stl_box_binary.stl"}) {
+    const Solid box = solid_of(name, Format::stl);
+    CHECK(box.facet_count() == 12);
+    CHECK(box.vertex_count() == 8);
+  }
+  const Solid cube = solid_of("cube5.ply", Format::ply);
+  CHECK(cube.facet_count() == 28);
+  CHECK(cube.vertex_count() == 16);
+  const Solid holes = solid_of("207_2.poly", Format::poly);  // val3dity does not end on it
+  CHECK(holes.facet_count() == 8);
+  CHECK(holes.ring_count() == 10);
+  CHECK(holes.vertex_count() == 17);
+  CHECK(solid_of("401.poly", Format::poly).vertex_count() == 4);
+  CHECK(solid_of("empty_primitive.poly", Format::poly).facet_count() == 0);
 }
 
 TEST_CASE("mesh files are told by their names and by what they hold") {

@@ -4,7 +4,7 @@
 // files and prints how many were decided, by rung and class of outcome; what the CDT step cost
 // beside the engine's own CPU time; and every undecided solid with the reason. With --engine-only
 // rung 0 is left out, so that the engine's own CPU time is that of the whole set; with --attempts
-// every attempt that was not accepted is printed, and every one that took longer than a second.
+// every attempt that was not accepted is printed, and every one that took longer than 0.1 s.
 // Exit status 1 if a solid is undecided.
 #include <algorithm>
 #include <cstdio>
@@ -24,7 +24,7 @@ using namespace watertight;
 namespace {
 
 /// Attempts that took longer than this many seconds of CPU time are printed.
-constexpr double kSlow = 1;
+constexpr double kSlow = 0.1;
 
 struct Settings {
   bool is_engine_only = false;

@@ -27,7 +27,8 @@ hash_build() {
   directory="$work_directory/$1"
   if ! {
     cmake -S "$source_directory" -B "$directory" -G Ninja -DCMAKE_CXX_COMPILER="$2" \
-      -DCMAKE_C_COMPILER="$3" -DCMAKE_BUILD_TYPE="$4" -DWATERTIGHT_CORE_ONLY=ON &&
+      -DCMAKE_C_COMPILER="$3" -DCMAKE_BUILD_TYPE="$4" -DWATERTIGHT_CORE_ONLY=ON \
+      -DCMAKE_CXX_FLAGS_DEBUG=-O0 &&
       cmake --build "$directory" --target blob_hashes --parallel 2
   } >"$directory.log" 2>&1; then
     tail -n 40 "$directory.log"

@@ -330,26 +330,6 @@ TEST_CASE("interior shells are appended on a common grid") {
         ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("real STL, PLY and POLY files read as what they are") {
-  const auto solid_of = [](const std::string& name, Format format) {
-    return only_solid(test::file_text("meshes/" + name), format);
-  };
-  for (const char* name : {"stl_box_ascii.stl", "stl_box_binary.stl"}) {
-    const Solid box = solid_of(name, Format::stl);
-    CHECK(box.facet_count() == 12);
-    CHECK(box.vertex_count() == 8);
-  }
-  const Solid cube = solid_of("cube5.ply", Format::ply);
-  CHECK(cube.facet_count() == 28);
-  CHECK(cube.vertex_count() == 16);
-  const Solid holes = solid_of("207_2.poly", Format::poly);  // val3dity does not end on it
-  CHECK(holes.facet_count() == 8);
-  CHECK(holes.ring_count() == 10);
-  CHECK(holes.vertex_count() == 17);
-  CHECK(solid_of("401.poly", Format::poly).vertex_count() == 4);
-  CHECK(solid_of("empty_primitive.poly", Format::poly).facet_count() == 0);
-}
-
 TEST_CASE("mesh files are told by their names and by what they hold") {
   CHECK(*detect_format("a.STL", {}) == Format::stl);
   CHECK(*detect_format("a.ply", {}) == Format::ply);

@@ -299,12 +299,18 @@ Defect outer_cavity(Random& random) {
       "a cavity lies outside", {block.shell(), block.cavity({12, 3, 3}, {16, 6, 6})}, {403}, 403};
 }
 
-/// A bipyramid whose middle square touches all four walls along edges: a room above, one below.
+/// A bipyramid whose middle square runs around the walls, which are cut there: a room above, one
+/// below.
 Defect divided_interior(Random& random) {
   const Block block = random_block(random);
   const Ring middle{block.at(0, 0, 5), block.at(10, 0, 5), block.at(10, 10, 5), block.at(0, 10, 5)};
+  const Shell low = box(block.low, block.at(10, 10, 5));
+  const Shell high = box(block.at(0, 0, 5), block.high);
+  Shell outer{low[0], high[1]};
+  outer.insert(outer.end(), low.begin() + 2, low.end());
+  outer.insert(outer.end(), high.begin() + 2, high.end());
   const Shell cavity = inside_out(bipyramid(middle, block.at(5, 5, 7), block.at(5, 5, 3)));
-  Defect defect{"a cavity divides the interior", {block.shell(), cavity}, {404}, 404};
+  Defect defect{"a cavity divides the interior", {outer, cavity}, {404}, 404};
   defect.needs_tetrahedra = true;
   return defect;
 }

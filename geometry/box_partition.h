@@ -26,7 +26,8 @@ struct IntersectingPair {
 struct IntersectionOptions {
   /// The search ends when this many pairs are found; 1 answers whether there is any.
   std::uint64_t limit = 10'000;
-  /// Asked about every 2^16 box comparisons; true ends the search with ErrorCode::cancelled.
+  /// Asked about every 2^16 box comparisons, by the caller's thread only; true ends the search with
+  /// ErrorCode::cancelled.
   std::function<bool()> cancel = {};
   /// Threads that share the search, the caller's among them; the result does not depend on it.
   unsigned threads = 1;
@@ -37,10 +38,13 @@ struct IntersectionOptions {
 /// anything but the input. Degenerate triangles (a repeated index, or points on one line) belong to
 /// no pair: callers report them by themselves. Witnesses: contact_witness().
 /// Requires indices in range; equal indices mean equal vertices.
-/// Errors: cancelled. Cost: O(n log n) for surfaces whose triangles are small beside the whole,
-/// O(n^2) box comparisons at worst.
-/// Source: the paper, section 3.2. Departures: boxes are split in two along an axis; a pair is
-/// reported only in the box that owns the low corner of the overlap of the triangles' boxes.
+/// Errors: cancelled. Cost: O(n log n) for surfaces whose triangles are small beside the whole, for
+/// fans around common vertices and for needles that run alike; at worst O(n^2) box comparisons and
+/// classifications (docs/robustness.md). Memory: linear, beside the pairs.
+/// Source: the paper, section 3.2. Departures: boxes are cut into slabs along the axis that tells
+/// them apart best; a pair is reported only in the part that owns the low corner of the overlap of
+/// its boxes; what no cut takes apart is looked at by direction from a common vertex, or along axes
+/// that follow the triangles.
 Result<std::vector<IntersectingPair>> intersecting_pairs(std::span<const Point> points,
                                                          std::span<const Triangle> triangles,
                                                          const IntersectionOptions& options = {});

@@ -42,7 +42,7 @@ class PairTester {
     return result;
   }
 
-  /// True if the triangle is certainly one: three different corners, not on one line.
+  /// True if a vertex repeats or the corners lie on one line, exactly.
   bool is_degenerate(Index triangle) const {
     const auto [a, b, c] = triangles_[triangle];
     if (a == b || b == c || c == a) return true;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace watertight {
 namespace {
@@ -69,19 +69,20 @@ MergedSolid merge_equal_vertices(const Solid& solid) {
   std::vector<bool> is_used(vertices.size(), false);
   for (const Index vertex : solid.arrays().ring_vertices) is_used[vertex] = true;
 
-  std::vector<Index> by_point(vertices.size());
-  std::iota(by_point.begin(), by_point.end(), Index{0});
-  std::sort(by_point.begin(), by_point.end(), [&](Index a, Index b) {
-    return vertices[a] != vertices[b] ? vertices[a] < vertices[b] : a < b;
-  });
+  // Sorted with their points beside them: the sort reads memory in order.
+  std::vector<std::pair<Point, Index>> by_point;
+  by_point.reserve(vertices.size());
+  for (Index vertex = 0; vertex < vertices.size(); ++vertex) {
+    if (is_used[vertex]) by_point.emplace_back(vertices[vertex], vertex);
+  }
+  std::sort(by_point.begin(), by_point.end());
 
   // The first used vertex of each group of equal points stands for the group.
   std::vector<Index> first(vertices.size(), kNone);
-  Index current = kNone;
-  for (const Index vertex : by_point) {
-    if (!is_used[vertex]) continue;
-    if (current == kNone || vertices[current] != vertices[vertex]) current = vertex;
-    first[vertex] = current;
+  for (std::size_t i = 0; i < by_point.size(); ++i) {
+    const auto& [point, vertex] = by_point[i];
+    first[vertex] =
+        i > 0 && by_point[i - 1].first == point ? first[by_point[i - 1].second] : vertex;
   }
 
   SolidArrays arrays = solid.arrays();

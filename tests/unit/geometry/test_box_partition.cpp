@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
+#include <thread>
 #include <vector>
 
 #include "geometry/box_partition.h"
@@ -85,7 +86,161 @@ Soup sphere(int rings, int segments) {
   return soup;
 }
 
+/// A fan around vertex 0 whose far edges run along a line, or around a cone when `is_closed`.
+Soup fan(Index count, bool is_closed, Random& random) {
+  Soup soup;
+  soup.points.push_back({0, 0, 500});
+  for (Index i = 0; i < count; ++i) {
+    const double angle = 6.283185307179586 * i / count;
+    soup.points.push_back(is_closed ? Point{std::round(1e6 * std::cos(angle)),
+                                            std::round(1e6 * std::sin(angle)),
+                                            static_cast<double>(random.between(-9, 9))}
+                                    : Point{4.0 * i, 0, 0});
+  }
+  for (Index i = 0; i + 1 < count; ++i) soup.triangles.push_back({0, i + 1, i + 2});
+  if (is_closed) soup.triangles.push_back({0, count, 1});
+  return soup;
+}
+
+/// Needles in one direction, or in all when `is_random`.
+Soup needles(Index count, bool is_random, Random& random) {
+  Soup soup;
+  for (Index i = 0; i < count; ++i) {
+    const Point from{static_cast<double>(random.between(0, 3000)),
+                     static_cast<double>(random.between(0, 3000)), 0};
+    Point to{from.x + 100'000, from.y + 200'000, 300'000};
+    if (is_random) {
+      for (int axis = 0; axis < 3; ++axis) {
+        to[axis] = static_cast<double>(random.between(-3000, 3000));
+      }
+    }
+    const auto first = static_cast<Index>(soup.points.size());
+    soup.points.insert(soup.points.end(), {from, {from.x + 7, from.y + 3, 1}, to});
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+/// More triangles, of points of the soup and of others, so that fans and needles are hit.
+void add_random_triangles(Soup& soup, std::size_t count, Random& random) {
+  const std::size_t last = soup.points.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    Triangle triangle{};
+    for (Index& vertex : triangle) {
+      vertex = static_cast<Index>(random.below(last));
+      if (random.below(3) == 0) continue;
+      Point p = soup.points[vertex];
+      for (int axis = 0; axis < 3; ++axis) p[axis] += static_cast<double>(random.between(-40, 40));
+      vertex = static_cast<Index>(soup.points.size());
+      soup.points.push_back(p);
+    }
+    soup.triangles.push_back(triangle);
+  }
+}
+
+/// Enough triangles for several pieces of work.
+Soup crossing_spheres() {
+  Soup soup = sphere(90, 110);
+  const Soup other = sphere(90, 110);
+  const auto first = static_cast<Index>(soup.points.size());
+  for (const Point& p : other.points) soup.points.push_back({p.x + 300'000, p.y + 7, p.z + 1});
+  for (const auto& [a, b, c] : other.triangles) {
+    soup.triangles.push_back({first + a, first + b, first + c});
+  }
+  return soup;
+}
+
+/// Soups whose boxes no axis-parallel plane takes apart, each with some defects.
+std::vector<Soup> hard_soups() {
+  Random random(11);
+  std::vector<Soup> soups;
+  for (const bool is_closed : {false, true}) {
+    soups.push_back(fan(600, is_closed, random));
+    add_random_triangles(soups.back(), 100, random);
+  }
+  // Two fans around different places at one point, and triangles through the common vertex.
+  Soup twins = fan(400, true, random);
+  const auto other = static_cast<Index>(twins.points.size());
+  twins.points.push_back(twins.points[0]);
+  for (Index i = 1; i < 400; ++i) twins.triangles.push_back({other, i, i + 1});
+  twins.points.insert(twins.points.end(), {{-100, -3, 500}, {100, -3, 500}, {0, 50, 500}});
+  twins.triangles.push_back({other + 1, other + 2, other + 3});
+  add_random_triangles(twins, 30, random);
+  soups.push_back(std::move(twins));
+  for (const bool is_random : {false, true}) {
+    soups.push_back(needles(400, is_random, random));
+    add_random_triangles(soups.back(), 50, random);
+  }
+  // A plane grid, every third square twice, and a fan over it in the same plane.
+  Soup grid;
+  for (int i = 0; i < 30; ++i) {
+    for (int j = 0; j < 30; ++j) grid.points.push_back({10.0 * i, 10.0 * j, 5.0 * i + 5.0 * j});
+  }
+  for (Index i = 0; i + 31 < 900; ++i) {
+    if (i % 30 == 29) continue;
+    grid.triangles.push_back({i, i + 30, i + 31});
+    grid.triangles.push_back({i, i + 31, i + 1});
+    if (i % 3 == 0) grid.triangles.push_back({i + 31, i + 30, i});
+  }
+  soups.push_back(std::move(grid));
+  return soups;
+}
+
 }  // namespace
+
+TEST_CASE("fans, needles and coplanar grids give the pairs that comparing all triangles gives") {
+  for (const Soup& soup : hard_soups()) {
+    const auto expected = all_pairs(soup);
+    INFO(soup.triangles.size() << " triangles, " << expected.size() << " pairs");
+    CHECK(!expected.empty());
+    CHECK(found_pairs(soup) == expected);
+  }
+}
+
+TEST_CASE("any number of threads finds the same pairs, also those up to a limit") {
+  std::vector<Soup> soups = hard_soups();
+  soups.push_back(crossing_spheres());
+  for (const Soup& soup : soups) {
+    for (const std::uint64_t limit : {std::uint64_t{100}, std::uint64_t{1} << 40U}) {
+      const auto one = intersecting_pairs(soup.points, soup.triangles, {.limit = limit});
+      REQUIRE(one.has_value());
+      CHECK(one->size() <= limit);
+      for (const unsigned threads : {2U, 5U}) {
+        const auto several =
+            intersecting_pairs(soup.points, soup.triangles, {.limit = limit, .threads = threads});
+        REQUIRE(several.has_value());
+        CHECK(*several == *one);
+      }
+    }
+  }
+}
+
+TEST_CASE("only the caller's thread is asked whether to end a search with threads") {
+  const Soup soup = crossing_spheres();
+  const auto caller = std::this_thread::get_id();
+  bool is_other = false;
+  IntersectionOptions options;
+  options.threads = 4;
+  options.cancel = [&] {
+    is_other = is_other || std::this_thread::get_id() != caller;
+    return true;
+  };
+  const auto pairs = intersecting_pairs(soup.points, soup.triangles, options);
+  CHECK((pairs.has_value() || pairs.error().code == ErrorCode::cancelled));
+  CHECK_FALSE(is_other);
+}
+
+TEST_CASE("fans of many triangles end after few comparisons") {
+  // Comparing all boxes would take billions of steps: the search asks often enough to tell.
+  Random random(8);
+  for (const Soup& soup : {fan(60'000, true, random), fan(30'000, false, random)}) {
+    std::uint64_t asked = 0;
+    const auto pairs =
+        intersecting_pairs(soup.points, soup.triangles, {.cancel = [&] { return ++asked > 500; }});
+    REQUIRE(pairs.has_value());
+    CHECK(pairs->empty());
+  }
+}
 
 TEST_CASE("the box partition finds the pairs that comparing all triangles finds") {
   Random random(5);

@@ -32,8 +32,13 @@ struct Contact {
 
 class RingExaminer {
  public:
-  RingExaminer(const Solid& solid, Index facet, std::size_t most)
-      : solid_(solid), vertices_(solid.vertices()), rings_(solid.rings_of(facet)), most_(most) {}
+  RingExaminer(const Solid& solid, Index facet, std::size_t most,
+               const std::function<bool()>& cancel)
+      : solid_(solid),
+        vertices_(solid.vertices()),
+        rings_(solid.rings_of(facet)),
+        most_(most),
+        cancel_(cancel) {}
 
   RingProblems examine(Index facet);
 
@@ -54,6 +59,7 @@ class RingExaminer {
   std::optional<bool> is_within(Index inner, Index outer, bool& is_mixed) const;
   int side_of_ring(const Point& p, std::span<const Index> around) const;
   void add(RingProblem problem);
+  bool goes_on(std::size_t steps);
 
   double u(Index vertex) const { return vertices_[vertex][(axis_ + 1) % 3]; }
   double v(Index vertex) const { return vertices_[vertex][(axis_ + 2) % 3]; }
@@ -72,6 +78,8 @@ class RingExaminer {
   std::span<const Point> vertices_;
   IndexRange rings_;
   std::size_t most_;
+  const std::function<bool()>& cancel_;
+  std::size_t steps_ = 0;  // since `cancel` was asked
   int axis_ = 2;
   struct Box {
     std::array<double, 2> min{};
@@ -107,6 +115,17 @@ void RingExaminer::add(RingProblem problem) {
   } else {
     result_.is_complete = false;
   }
+}
+
+/// False if the search is to end; then it is not complete.
+bool RingExaminer::goes_on(std::size_t steps) {
+  constexpr std::size_t kAskInterval = std::size_t{1} << 16U;
+  steps_ += steps;
+  if (steps_ < kAskInterval) return true;
+  steps_ = 0;
+  if (!cancel_ || !cancel_()) return true;
+  result_.is_complete = false;
+  return false;
 }
 
 void RingExaminer::find_collapsed() {
@@ -179,6 +198,7 @@ void RingExaminer::find_contacts() {
     std::erase_if(active, [&](std::size_t a) { return edges_[a].max[0] < edge.min[0]; });
     pairs += active.size();
     if (pairs > kMostPairs) result_.is_complete = false;
+    if (!goes_on(active.size() + 1)) return;
     for (const std::size_t a : active) {
       // Exact witnesses of problems that nobody will see could take hours.
       if (!result_.is_complete) return;
@@ -339,7 +359,9 @@ void RingExaminer::find_nesting() {
     const Point& witness = vertices_[ring(inner).front()];
     for (Index outer = 0; outer < rings_.size(); ++outer) {
       if (outer == inner || is_left_out_[outer]) continue;
+      if (!goes_on(1)) return;
       if (outer != 0 && are_apart(inner, outer)) continue;
+      if (!goes_on(ring(inner).size() * ring(outer).size())) return;
       bool is_mixed = false;
       const std::optional<bool> within = is_within(inner, outer, is_mixed);
       if (is_mixed) {
@@ -390,8 +412,9 @@ RingProblems RingExaminer::examine(Index facet) {
 
 }  // namespace
 
-RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most) {
-  return RingExaminer(solid, facet, most).examine(facet);
+RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most,
+                           const std::function<bool()>& cancel) {
+  return RingExaminer(solid, facet, most, cancel).examine(facet);
 }
 
 int ring_turn(const Solid& solid, Index ring, int axis) {

@@ -5,6 +5,7 @@
 // projection. For validate, on facets that triangulate_facets() did not triangulate.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "geometry/solid.h"
@@ -32,12 +33,14 @@ struct RingProblem {
 
 struct RingProblems {
   std::vector<RingProblem> problems;  // ordered by ring, edge, other ring, other edge
-  bool is_complete = true;            // false: more than `most`, or too many pairs to look at
+  bool is_complete = true;  // false: more than `most`, too many pairs to look at, or cancelled
 };
 
 /// Requires merged vertices. Rings below 3 vertices are left out and edges of no length ignored.
+/// `cancel` is asked about every 2^16 steps; true ends the search with what was found.
 /// Cost: O(n log n + pairs of edges that overlap in one axis), bounded; nesting O(rings x n).
-RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most);
+RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most,
+                           const std::function<bool()>& cancel = {});
 
 /// +1 if a simple ring turns left in the projection along `axis`, -1 right, 0 if it has a spike at
 /// its smallest vertex. Requires at least 3 vertices. Exact.

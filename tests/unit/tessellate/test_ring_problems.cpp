@@ -169,3 +169,19 @@ TEST_CASE("the turn of a ring is exact and independent of its start") {
   std::reverse(rings[0].begin(), rings[0].end());
   CHECK(ring_turn(facet_solid(rings), 0, 2) == -1);
 }
+
+TEST_CASE("the search for ring problems can be cancelled") {
+  Ring ring;  // a comb: its teeth overlap in one axis
+  for (int i = 0; i < 2000; ++i) {
+    ring.push_back({0.0, 2.0 * i, 0});
+    ring.push_back({1000.0, 2.0 * i + 1, 0});
+  }
+  ring.push_back({-10, 4000, 0});
+  ring.push_back({-10, 0, 0});
+  const Solid solid = facet_solid({ring});
+  int asked = 0;
+  const RingProblems result = ring_problems(solid, 0, 100, [&] { return ++asked == 2; });
+  CHECK_FALSE(result.is_complete);
+  CHECK(asked == 2);
+  CHECK(ring_problems(solid, 0, 100, [] { return false; }).is_complete);
+}

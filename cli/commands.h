@@ -13,14 +13,22 @@ namespace watertight {
 
 struct ValidateCommand {
   std::vector<std::string> files;
-  std::string report;  // file to write the JSON report to, "" for none
+  std::string report;                        // files to write the reports to, "" for none: JSON,
+  std::string geojson;                       // a layer of the findings,
+  std::string html;                          // a page
+  std::vector<std::string> interior_shells;  // files with cavities of the one solid of the one file
   double planarity_metres = 0.01;
   double planarity_degrees = 20;
+  double overlap_metres = 0;
+  double seconds_per_solid = 0;  // of engines, 0: by size
   std::string proof = "tetrahedralization";
   std::string engine = "auto";  // "auto", "cgal" or "tetgen"
   bool is_strict = false;
+  bool also_tolerant = false;
+  bool leaves_times_out = false;
   bool is_quiet = false;  // no line per finding
   std::size_t jobs = 1;
+  std::string program_version;
 };
 Exit run(const ValidateCommand& command);
 
@@ -78,7 +86,9 @@ Exit run(const IngestCommand& command);
 /// "watertight: <file>: <what> (at <place>)" on standard error.
 void complain(const std::string& file, const Error& error);
 
-/// The findings of a document's solids that are not valid, as lines on standard output.
+/// The findings of a feature's solids and groups, as lines on standard output.
+void print_findings(const std::string& file, const InspectedFeature& feature);
+/// The same of all features of a document.
 void print_findings(const std::string& file, const IngestOutcome& outcome);
 
 }  // namespace watertight

@@ -142,7 +142,9 @@ Exit run(const EncodeCommand& command) {
   options.steiner = command.keeps_steiner ? SteinerVertices::keep : SteinerVertices::leave_out;
   auto encoded = [&] {
     ProgressBar bar(command.input);
-    options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    options.progress = [&bar](std::size_t done, std::size_t total) {
+      bar.show(done, static_cast<double>(done) / static_cast<double>(total));
+    };
     return encode_document(std::move(input->document), &workers, options);
   }();
   if (!encoded) return fail(command.input, encoded.error());

@@ -71,7 +71,9 @@ Result<IngestOutcome> ingest_file(const IngestCommand& command, const std::strin
   options.invalid_features =
       command.invalid == "skip" ? InvalidFeatures::skip : InvalidFeatures::refuse_document;
   ProgressBar bar(file);
-  options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+  options.progress = [&bar](std::size_t done, std::size_t total) {
+    bar.show(done, static_cast<double>(done) / static_cast<double>(total));
+  };
   return ingest(std::move(input->document), store, &workers, options);
 }
 

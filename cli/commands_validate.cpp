@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/progress.h"
-#include "pipeline/outcome_json.h"
+#include "formats/interior_shells.h"
+#include "pipeline/validate_stream.h"
+#include "report/feature_report.h"
 #include "validate/report_json.h"
 
 namespace watertight {
@@ -16,15 +20,38 @@ Engine engine_of(const std::string& name) {
   return name == "tetgen" ? Engine::tetgen : Engine::automatic;
 }
 
-IngestOptions options_of(const ValidateCommand& command) {
-  IngestOptions options;
+StreamOptions options_of(const ValidateCommand& command) {
+  StreamOptions options;
   options.threads = command.jobs;
+  options.groups.overlap_metres = command.overlap_metres;
   options.certify.tolerances.planarity_metres = command.planarity_metres;
   options.certify.tolerances.planarity_degrees = command.planarity_degrees;
   options.certify.proof = command.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
+  options.certify.also_tolerant = command.also_tolerant;
   options.certify.ladder.engine = engine_of(command.engine);
   options.certify.ladder.strict = command.is_strict;
+  options.certify.ladder.seconds_in_all = command.seconds_per_solid;
   return options;
+}
+
+std::string time_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  const std::size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return std::string(text.data(), size);
+}
+
+ReportHead head_of(const ValidateCommand& command, const StreamOptions& options) {
+  ReportHead head;
+  head.program_version = command.program_version;
+  if (!command.leaves_times_out) head.time = time_now();
+  head.acceptance = {options.certify.tolerances, options.certify.proof, kRuleSet};
+  head.is_strict = command.is_strict;
+  head.overlap_metres = command.overlap_metres;
+  head.also_tolerant = command.also_tolerant;
+  return head;
 }
 
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
@@ -34,17 +61,212 @@ std::string place_of(const SolidSource& source) {
   return source.object_id.empty() ? "solid " + std::to_string(source.ordinal) : source.object_id;
 }
 
-/// Appends {"file": file, member: value} to the elements of an array; `value` is JSON.
-void append_file(std::string& elements, const std::string& file, std::string_view member,
-                 std::string_view value) {
-  if (!elements.empty()) elements += ',';
-  elements += "{\"file\":";
-  elements += json_string(file);
-  elements += ',';
-  elements += json_string(member);
-  elements += ':';
-  elements += value;
-  elements += '}';
+void print_solid(const std::string& file, const SolidSource& source, const Report& report) {
+  if (report.verdict == Verdict::valid && report.findings.empty()) return;
+  print(file + ": " + place_of(source) + "\n");
+  for (const std::string& line : report_text(report)) print("  " + line + "\n");
+}
+
+/// `source_of(i)` is where the feature's solid i stands.
+template <class SourceOf>
+void print_groups(const std::string& file, const std::vector<InspectedGroup>& groups,
+                  const SourceOf& source_of) {
+  for (const InspectedGroup& group : groups) {
+    for (const Finding& finding : group.report.findings) {
+      std::string line = file + ": " + group.object_id;
+      if (!group.lod.empty()) line += " (LoD " + group.lod + ")";
+      line += "\n  " + finding_text(finding);
+      for (const auto& place : {std::optional(finding.place), finding.other}) {
+        if (!place || place->solid >= group.members.size()) continue;
+        line += "\n    " + place_of(source_of(group.members[place->solid]));
+      }
+      print(line + "\n");
+    }
+  }
+}
+
+/// One of the files that a run writes beside its output.
+struct OpenReport {
+  std::unique_ptr<FileWriter> file;
+  std::unique_ptr<FeatureReport> report;
+  std::string path;
+};
+
+using ReportMaker = std::unique_ptr<FeatureReport> (*)(TextSink, ReportHead);
+
+std::unique_ptr<FeatureReport> page_report(TextSink sink, ReportHead head) {
+  return html_report(std::move(sink), std::move(head), {});
+}
+
+/// A run of `watertight validate`: all files, one after the other.
+class Validation {
+ public:
+  explicit Validation(const ValidateCommand& command)
+      : command_(command),
+        options_(options_of(command)),
+        workers_(EngineWorkers::Options{{}, {}, command.jobs}),
+        is_output_taken_(command.report == "-" || command.geojson == "-" || command.html == "-"),
+        is_quiet_(command.is_quiet || is_output_taken_) {}
+
+  Exit run();
+
+ private:
+  bool open_reports();
+  void validate_file(const std::string& file);
+  Result<OpenedInput> open_file(const std::string& file);
+  Result<FeatureReader> with_cavities(const std::string& file);
+  Result<StreamOutcome> stream(const std::string& file, OpenedInput& input);
+  template <class Call>
+  Status tell_reports(const Call& call);
+  void fail(const std::string& file, const Error& error) {
+    complain(file, error);
+    exit_ = Exit::error;
+  }
+
+  const ValidateCommand& command_;
+  StreamOptions options_;
+  EngineWorkers workers_;
+  bool is_output_taken_ = false;  // by a report
+  bool is_quiet_ = false;
+  std::vector<OpenReport> reports_;
+  Summary summary_;
+  Exit exit_ = Exit::valid;
+};
+
+bool Validation::open_reports() {
+  const std::array<std::pair<const std::string*, ReportMaker>, 3> wanted{
+      {{&command_.report, json_report},
+       {&command_.geojson, geojson_report},
+       {&command_.html, page_report}}};
+  for (const auto& [path, make] : wanted) {
+    if (path->empty()) continue;
+    auto file = FileWriter::open(*path);
+    if (!file) {
+      fail(*path, file.error());
+      return false;
+    }
+    auto writer = std::make_unique<FileWriter>(*std::move(file));
+    auto sink = [to = writer.get()](std::string_view text) { return to->write(text); };
+    auto report = make(std::move(sink), head_of(command_, options_));
+    reports_.push_back({std::move(writer), std::move(report), *path});
+  }
+  return true;
+}
+
+/// Errors: the first report's, naming its file.
+template <class Call>
+Status Validation::tell_reports(const Call& call) {
+  for (OpenReport& open : reports_) {
+    Status status = call(*open.report);
+    if (status) continue;
+    Error error = std::move(status).error();
+    error.message.insert(0, open.path + ": ");
+    return error;
+  }
+  return Done{};
+}
+
+Result<FeatureReader> Validation::with_cavities(const std::string& file) {
+  const auto one_solid = [&](const std::string& path) -> Result<Document> {
+    auto bytes = read_file(path, options_.certify.limits);
+    auto input = bytes ? load_input(path, *bytes, {}) : Result<Input>(bytes.error());
+    if (!input) return std::move(input).error();
+    std::vector<Feature>& features = input->document.features;
+    if (features.size() == 1 && features[0].solids.size() == 1) return std::move(input->document);
+    return Error{ErrorCode::invalid_argument,
+                 path + ": --interior-shell takes files with one solid each"};
+  };
+  auto document = one_solid(file);
+  if (!document) return std::move(document).error();
+  std::vector<SubmittedSolid> cavities;
+  for (const std::string& path : command_.interior_shells) {
+    auto cavity = one_solid(path);
+    if (!cavity) return std::move(cavity).error();
+    cavities.push_back(std::move(cavity->features[0].solids[0]));
+  }
+  SubmittedSolid& exterior = document->features[0].solids[0];
+  auto solid = with_interior_shells(exterior, cavities, options_.certify.limits);
+  if (!solid) return std::move(solid).error();
+  exterior = *std::move(solid);
+  return FeatureReader::of(*std::move(document));
+}
+
+Result<OpenedInput> Validation::open_file(const std::string& file) {
+  if (command_.interior_shells.empty()) return open_input(file, {});
+  auto reader = with_cavities(file);
+  if (!reader) return std::move(reader).error();
+  return OpenedInput{*std::move(reader), std::nullopt};
+}
+
+Result<StreamOutcome> Validation::stream(const std::string& file, OpenedInput& input) {
+  ProgressBar bar(file);
+  const auto count = input.reader.feature_count();
+  options_.progress = [&](std::uint64_t features, std::uint64_t bytes) {
+    std::optional<double> share;
+    if (count && *count > 0) {
+      share = static_cast<double>(features) / static_cast<double>(*count);
+    } else if (!count && input.bytes && *input.bytes > 0) {
+      share = static_cast<double>(bytes) / static_cast<double>(*input.bytes);
+    }
+    bar.show(features, share);
+  };
+  return validate_stream(
+      input.reader, &workers_, options_,
+      [&](ValidatedFeature&& feature) -> Status {
+        if (!is_quiet_) print_findings(file, feature.inspected);
+        summary_.add(feature.inspected);
+        return tell_reports([&](FeatureReport& report) { return report.add(feature); });
+      },
+      [&](const Error& error) -> Status {
+        summary_.add_unreadable();
+        fail(file, error);
+        return tell_reports([&](FeatureReport& report) { return report.add_error(error); });
+      });
+}
+
+void Validation::validate_file(const std::string& file) {
+  const auto start = std::chrono::steady_clock::now();
+  auto input = open_file(file);
+  DocumentHead head{file, {}};
+  if (input) head.format = input->reader.document().format;
+  Status status = tell_reports([&](FeatureReport& report) { return report.begin_document(head); });
+  DocumentEnd end;
+  if (status && input) {
+    const auto outcome = stream(file, *input);
+    if (outcome) {
+      exit_ = worse(exit_, exit_of(outcome->verdict));
+    } else {
+      status = outcome.error();
+    }
+    end.notes = input->reader.document().notes;
+    summary_.add_file_bytes(input->reader.bytes_read());
+  } else if (status) {
+    fail(file, input.error());
+    status = tell_reports([&](FeatureReport& report) { return report.add_error(input.error()); });
+  }
+  end.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (status) {
+    status = tell_reports([&](FeatureReport& report) { return report.end_document(end); });
+  }
+  if (!status) {
+    fail(file, status.error());
+    reports_.clear();
+  }
+}
+
+Exit Validation::run() {
+  const auto start = std::chrono::steady_clock::now();
+  if (!open_reports()) return exit_;
+  for (const std::string& file : command_.files) validate_file(file);
+  for (OpenReport& open : reports_) {
+    Status status = open.report->finish();
+    if (status) status = open.file->commit();
+    if (!status) fail(open.path, status.error());
+  }
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!is_output_taken_) print(summary_.table(seconds));
+  return exit_;
 }
 
 }  // namespace
@@ -55,55 +277,20 @@ void complain(const std::string& file, const Error& error) {
                text.c_str());
 }
 
+void print_findings(const std::string& file, const InspectedFeature& feature) {
+  for (const InspectedSolid& solid : feature.solids) {
+    print_solid(file, solid.source, solid.inspection.report);
+  }
+  print_groups(file, feature.groups, [&](std::size_t i) { return feature.solids[i].source; });
+}
+
 void print_findings(const std::string& file, const IngestOutcome& outcome) {
   for (const FeatureOutcome& feature : outcome.features) {
-    for (const SolidOutcome& solid : feature.solids) {
-      if (solid.report.verdict == Verdict::valid && solid.report.findings.empty()) continue;
-      print(file + ": " + place_of(solid.source) + "\n");
-      for (const std::string& line : report_text(solid.report)) print("  " + line + "\n");
-    }
+    for (const SolidOutcome& solid : feature.solids) print_solid(file, solid.source, solid.report);
+    print_groups(file, feature.groups, [&](std::size_t i) { return feature.solids[i].source; });
   }
 }
 
-Exit run(const ValidateCommand& command) {
-  const auto start = std::chrono::steady_clock::now();
-  EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
-  Summary summary;
-  Exit exit = Exit::valid;
-  std::string json;
-  for (const std::string& file : command.files) {
-    IngestOptions options = options_of(command);
-    ProgressBar bar(file);
-    options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    const auto bytes = read_file(file, options.certify.limits);
-    auto input = bytes ? load_input(file, *bytes, {}) : Result<Input>(bytes.error());
-    auto outcome = input ? validate_document(std::move(input->document), &workers, options)
-                         : Result<IngestOutcome>(input.error());
-    if (!outcome) {
-      complain(file, outcome.error());
-      exit = Exit::error;
-      append_file(json, file, "error", json_string(to_string(outcome.error())));
-      continue;
-    }
-    if (!command.is_quiet) print_findings(file, *outcome);
-    summary.add(*outcome, bytes->size());
-    exit = worse(exit, exit_of(outcome->verdict));
-    if (command.report.empty()) continue;
-    append_file(json, file, "outcome", outcome_json(*outcome));
-  }
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (command.report != "-") print(summary.table(seconds));
-  if (command.report.empty()) return exit;
-  std::string report = "{\"summary\":";
-  report += summary.json(seconds);
-  report += ",\"files\":[";
-  report += json;
-  report += "]}\n";
-  const Status status = write_file(command.report, as_bytes(report));
-  if (status) return exit;
-  complain(command.report, status.error());
-  return Exit::error;
-}
+Exit run(const ValidateCommand& command) { return Validation(command).run(); }
 
 }  // namespace watertight

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -18,9 +19,8 @@ namespace {
 
 constexpr std::size_t kChunk = 1 << 16;
 
-Error file_error(const std::string& path, int error) {
-  return Error{ErrorCode::unavailable, path + ": " + std::strerror(error)};
-}
+/// Callers name the file.
+Error file_error(int error) { return Error{ErrorCode::unavailable, std::strerror(error)}; }
 
 /// A descriptor that closes itself.
 class Descriptor {
@@ -67,48 +67,109 @@ bool is_special(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
 }
 
-Status write_special(const std::string& path, ByteView bytes) {
-  const Descriptor file(path == "-" ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (file.number() < 0) return file_error(path, errno);
-  const int error = write_all(file.number(), bytes);
-  if (error != 0) return file_error(path == "-" ? "standard output" : path, error);
-  return Done{};
+/// Opens a file or standard input for reading.
+int open_to_read(const std::string& path) {
+  return path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
+/// Bytes read, or the error number.
+Result<std::size_t> read_some(int descriptor, std::span<std::uint8_t> bytes) {
+  for (;;) {
+    const ssize_t count = ::read(descriptor, bytes.data(), bytes.size());
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno != EINTR) return file_error(errno);
+  }
+}
+
+/// Errors: those of the source; limit_exceeded.
+Result<Bytes> read_all(const ByteSource& source, const Limits& limits) {
+  Bytes bytes;
+  for (;;) {
+    if (bytes.size() > limits.bytes) {
+      return Error{ErrorCode::limit_exceeded,
+                   "larger than " + std::to_string(limits.bytes) + " bytes"};
+    }
+    const std::size_t size = bytes.size();
+    bytes.resize(size + kChunk);
+    const auto count = source(std::span<std::uint8_t>(bytes).subspan(size, kChunk));
+    bytes.resize(size + (count ? *count : 0));
+    if (!count) return count.error();
+    if (*count == 0) return bytes;
+  }
 }
 
 }  // namespace
 
 Result<Bytes> read_file(const std::string& path, const Limits& limits) {
-  const Descriptor file(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.number() < 0) return file_error(path, errno);
-  Bytes bytes;
-  for (;;) {
-    if (bytes.size() > limits.bytes) {
-      return Error{ErrorCode::limit_exceeded,
-                   path + ": larger than " + std::to_string(limits.bytes) + " bytes"};
-    }
-    const std::size_t size = bytes.size();
-    bytes.resize(size + kChunk);
-    const ssize_t count = ::read(file.number(), bytes.data() + size, kChunk);
-    bytes.resize(size + (count > 0 ? static_cast<std::size_t>(count) : 0));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return file_error(path, errno);
-    if (count == 0) return bytes;
+  const Descriptor file(open_to_read(path));
+  if (file.number() < 0) return file_error(errno);
+  return read_all([&](std::span<std::uint8_t> bytes) { return read_some(file.number(), bytes); },
+                  limits);
+}
+
+struct FileWriter::State {
+  std::string path;
+  std::string temporary;  // "" when the target itself is written: standard output, a device, a pipe
+  Descriptor file;
+  std::string buffer;
+  bool is_committed = false;
+
+  State(std::string target, std::string name, int descriptor)
+      : path(std::move(target)), temporary(std::move(name)), file(descriptor) {}
+  ~State() {
+    if (!temporary.empty() && !is_committed) ::unlink(temporary.c_str());
   }
+  Status flush() {
+    const int error = write_all(file.number(), as_bytes(buffer));
+    buffer.clear();
+    if (error != 0) return file_error(error);
+    return Done{};
+  }
+};
+
+FileWriter::FileWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+FileWriter::FileWriter(FileWriter&&) noexcept = default;
+FileWriter::~FileWriter() = default;
+
+Result<FileWriter> FileWriter::open(const std::string& path) {
+  const bool is_direct = path == "-" || is_special(path);
+  std::string temporary = is_direct ? "" : path + ".XXXXXX";
+  int descriptor = STDOUT_FILENO;
+  if (!is_direct) {
+    descriptor = ::mkstemp(temporary.data());
+  } else if (path != "-") {
+    descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  }
+  if (descriptor < 0) return file_error(errno);
+  return FileWriter(std::make_unique<State>(path, std::move(temporary), descriptor));
+}
+
+Status FileWriter::write(std::string_view text) {
+  state_->buffer += text;
+  if (state_->buffer.size() < kChunk) return Done{};
+  return state_->flush();
+}
+
+Status FileWriter::commit() {
+  State& state = *state_;
+  if (Status status = state.flush(); !status) return status;
+  state.is_committed = true;
+  if (state.temporary.empty()) return Done{};
+  const int number = state.file.number();
+  int error = ::fchmod(number, permissions_for(state.path)) == 0 ? 0 : errno;
+  if (error == 0 && ::fsync(number) != 0) error = errno;
+  if (state.file.close() != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(state.temporary.c_str(), state.path.c_str()) != 0) error = errno;
+  if (error == 0) return Done{};
+  ::unlink(state.temporary.c_str());
+  return file_error(error);
 }
 
 Status write_file(const std::string& path, ByteView bytes) {
-  if (path == "-" || is_special(path)) return write_special(path, bytes);
-  std::string temporary = path + ".XXXXXX";
-  Descriptor file(::mkstemp(temporary.data()));
-  if (file.number() < 0) return file_error(path, errno);
-  int error = write_all(file.number(), bytes);
-  if (error == 0 && ::fchmod(file.number(), permissions_for(path)) != 0) error = errno;
-  if (error == 0 && ::fsync(file.number()) != 0) error = errno;
-  if (file.close() != 0 && error == 0) error = errno;
-  if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-  if (error == 0) return Done{};
-  ::unlink(temporary.c_str());
-  return file_error(path, error);
+  auto writer = FileWriter::open(path);
+  if (!writer) return std::move(writer).error();
+  Status status = writer->write(as_text(bytes));
+  return status ? writer->commit() : status;
 }
 
 Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options) {
@@ -138,6 +199,46 @@ Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOpti
   if (!document) return std::move(document).error();
   input.document = *std::move(document);
   return input;
+}
+
+Result<OpenedInput> open_input(const std::string& path, const ReadOptions& options) {
+  auto file = std::make_shared<Descriptor>(open_to_read(path));
+  if (file->number() < 0) return file_error(errno);
+  struct stat status {};
+  std::optional<std::uint64_t> size;
+  if (::fstat(file->number(), &status) == 0 && S_ISREG(status.st_mode)) {
+    size = static_cast<std::uint64_t>(status.st_size);
+  }
+  // Watertight files and blobs are told by their first bytes, which are then given again.
+  std::array<std::uint8_t, 8> first{};
+  std::size_t count = 0;
+  while (count < first.size()) {
+    const auto more = read_some(file->number(), std::span(first).subspan(count));
+    if (!more) return more.error();
+    if (*more == 0) break;
+    count += *more;
+  }
+  std::size_t given = 0;
+  ByteSource source = [file, first, count,
+                       given](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
+    if (given == count) return read_some(file->number(), bytes);
+    const std::size_t part = std::min(bytes.size(), count - given);
+    std::copy_n(first.begin() + static_cast<std::ptrdiff_t>(given), part, bytes.begin());
+    given += part;
+    return part;
+  };
+  const ByteView start = ByteView(first).first(count);
+  const bool is_ours = is_container(start) || (count > 1 && start[0] == 'W' && start[1] == 'T');
+  if (!is_ours) {
+    auto reader = FeatureReader::open(std::move(source), path == "-" ? "" : path, options);
+    if (!reader) return std::move(reader).error();
+    return OpenedInput{*std::move(reader), size};
+  }
+  auto bytes = read_all(source, options.limits);
+  if (!bytes) return std::move(bytes).error();
+  auto input = load_input(path, *bytes, options);
+  if (!input) return std::move(input).error();
+  return OpenedInput{FeatureReader::of(std::move(input->document)), size};
 }
 
 Result<Format> format_of_name(const std::string& path) {

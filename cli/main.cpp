@@ -58,7 +58,24 @@ void require_store(const StoreChoice& store) {
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("validate", "Say which solids are valid, and why not");
   sub->add_option("FILE", command.files, "documents; - for standard input")->required();
-  sub->add_option("--report", command.report, "write all reports as JSON to this file");
+  sub->add_option("--report", command.report, "write the reports as JSON, a line per document");
+  sub->add_option("--geojson", command.geojson, "write the findings as a GeoJSON layer");
+  sub->add_option("--html", command.html, "write the report as a page with pictures");
+  sub->add_option("--interior-shell", command.interior_shells,
+                  "file with a cavity of the file's one solid; can be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--overlap", command.overlap_metres,
+                  "overlaps of building parts and composite members allowed, metres deep")
+      ->check(in_range(0, 1000, "from 0 to 1000"))
+      ->capture_default_str();
+  sub->add_option("--seconds", command.seconds_per_solid,
+                  "CPU time of engines for a solid; 0: by its size")
+      ->check(in_range(0, 86400, "from 0 to 86400"))
+      ->capture_default_str();
+  sub->add_flag("--tolerant", command.also_tolerant,
+                "also say what a snap tolerance of 1 mm would give");
+  sub->add_flag("--no-times", command.leaves_times_out,
+                "reports without times: same input, same bytes");
   sub->add_option("--planarity", command.planarity_metres, "largest distance from a plane, metres")
       ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
       ->capture_default_str();
@@ -75,6 +92,7 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   sub->add_flag("--strict", command.is_strict, "only the canonical triangles of facets count");
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
   add_jobs(*sub, command.jobs);
+  command.program_version = WATERTIGHT_VERSION;
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 

@@ -3,13 +3,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <utility>
 
 namespace watertight {
 namespace {
 
-constexpr std::size_t kWidth = 30;
+constexpr double kWidthOfBar = 30;
 constexpr std::chrono::milliseconds kInterval{100};
 
 }  // namespace
@@ -24,17 +26,41 @@ ProgressBar::~ProgressBar() {
   if (is_drawn_) std::fputs("\r\033[K", stderr);
 }
 
-void ProgressBar::show(std::size_t done, std::size_t total) {
+void ProgressBar::show(std::uint64_t features, std::optional<double> share) {
   const auto now = std::chrono::steady_clock::now();
-  if (!is_terminal_ || total == 0 || (now - drawn_ < kInterval && done < total)) return;
+  if (!is_terminal_ || now - drawn_ < kInterval) return;
   drawn_ = now;
   is_drawn_ = true;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
-  const std::size_t filled = kWidth * done / total;
-  const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
-  std::fprintf(stderr, "\r\033[K%s [%s] %zu/%zu  %.0f/s", label_.c_str(), bar.c_str(), done, total,
-               rate);
+  std::fprintf(stderr, "\r\033[K%s", progress_line(label_, features, share, seconds).c_str());
+}
+
+std::string progress_line(const std::string& label, std::uint64_t features,
+                          std::optional<double> share, double seconds) {
+  std::array<char, 96> text{};
+  std::string line = label;
+  if (share) {
+    const double part = std::clamp(*share, 0.0, 1.0);
+    const auto filled = static_cast<std::size_t>(kWidthOfBar * part);
+    line += " [" + std::string(filled, '#') +
+            std::string(static_cast<std::size_t>(kWidthOfBar) - filled, '.') + "]";
+  }
+  const double rate = seconds > 0 ? static_cast<double>(features) / seconds : 0;
+  std::snprintf(text.data(), text.size(), " %llu features  %.0f/s",
+                static_cast<unsigned long long>(features), rate);
+  line += text.data();
+  if (share && *share > 0 && *share < 1 && seconds >= 1) {
+    const double left = seconds / *share * (1 - *share);
+    const auto whole = static_cast<unsigned long long>(std::min(left, 359'999.0) + 0.5);
+    if (whole >= 3600) {
+      std::snprintf(text.data(), text.size(), "  %llu:%02llu:%02llu left", whole / 3600,
+                    whole / 60 % 60, whole % 60);
+    } else {
+      std::snprintf(text.data(), text.size(), "  %llu:%02llu left", whole / 60, whole % 60);
+    }
+    line += text.data();
+  }
+  return line;
 }
 
 }  // namespace watertight

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A progress bar with rate on standard error; silent when that is no terminal.
+// A progress bar with rate and time left on standard error; silent when that is no terminal.
 #pragma once
 
 #include <chrono>
-#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace watertight {
@@ -16,8 +17,9 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws at most ten times a second. Not for several threads at once.
-  void show(std::size_t done, std::size_t total);
+  /// `share` of the whole that is done, 0 to 1, when that is known. Draws at most ten times a
+  /// second. Not for several threads at once.
+  void show(std::uint64_t features, std::optional<double> share);
 
  private:
   std::string label_;
@@ -26,5 +28,9 @@ class ProgressBar {
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point drawn_;
 };
+
+/// The line that is shown, e.g. "x.jsonl [###...] 12000 features  850/s  2:05 left".
+std::string progress_line(const std::string& label, std::uint64_t features,
+                          std::optional<double> share, double seconds);
 
 }  // namespace watertight

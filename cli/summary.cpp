@@ -28,9 +28,9 @@ std::string decimals(double value, int digits) {
   return std::string(buffer.data(), static_cast<std::size_t>(std::max(length, 0)));
 }
 
-std::set<int> error_codes(const Report& report) {
+std::set<int> error_codes(const std::vector<Finding>& findings) {
   std::set<int> codes;
-  for (const Finding& finding : report.findings) {
+  for (const Finding& finding : findings) {
     if (finding.severity == Severity::error) codes.insert(finding.code);
   }
   return codes;
@@ -49,32 +49,53 @@ Exit exit_of(Verdict verdict) {
   return verdict == Verdict::invalid ? Exit::invalid : Exit::undecided;
 }
 
-void Summary::add(const IngestOutcome& outcome, std::size_t file_bytes) {
+void Summary::add(const IngestOutcome& outcome, std::uint64_t file_bytes) {
   file_bytes_ += file_bytes;
   features_ += outcome.features.size();
   stored_ += outcome.stored;
   for (const FeatureOutcome& feature : outcome.features) {
     for (const SolidOutcome& solid : feature.solids) {
-      const Report& report = solid.report;
-      if (report.verdict == Verdict::valid) {
-        ++valid_;
-        if (!report.findings.empty()) ++with_warnings_;
-        ++by_rung_[report.rung];
-      } else if (report.verdict == Verdict::invalid) {
-        ++invalid_;
-        for (const int code : error_codes(report)) ++by_code_[code];
-      } else {
-        ++undecided_;
-      }
+      add(solid.report);
       if (solid.blob_bytes == 0) continue;
       plain_bytes_ += solid.source_bytes;
       blob_bytes_ += solid.blob_bytes;
     }
+    add(feature.groups);
+  }
+}
+
+void Summary::add(const InspectedFeature& feature) {
+  ++features_;
+  for (const InspectedSolid& solid : feature.solids) add(solid.inspection.report);
+  add(feature.groups);
+}
+
+void Summary::add(const Report& report) {
+  if (report.verdict == Verdict::valid) {
+    ++valid_;
+    if (!report.findings.empty()) ++with_warnings_;
+    ++by_rung_[report.rung];
+  } else if (report.verdict == Verdict::invalid) {
+    ++invalid_;
+    for (const int code : error_codes(report.findings)) ++by_code_[code];
+  } else {
+    ++undecided_;
+  }
+}
+
+void Summary::add(const std::vector<InspectedGroup>& groups) {
+  for (const InspectedGroup& group : groups) {
+    for (const int code : error_codes(group.report.findings)) ++groups_by_code_[code];
   }
 }
 
 std::string Summary::table(double seconds) const {
-  std::string text = row("features", features_) + row("solids", solids()) + row("  valid", valid_);
+  std::string text = row("features", features_);
+  for (const auto& [code, count] : groups_by_code_) {
+    text += row("  with " + std::to_string(code) + " " + std::string(finding_name(code)), count);
+  }
+  if (unreadable_ > 0) text += row("  that could not be read", unreadable_);
+  text += row("solids", solids()) + row("  valid", valid_);
   if (with_warnings_ > 0) text += row("    with warnings", with_warnings_);
   for (const auto& [rung, count] : by_rung_) {
     text += row("    proven by " + std::string(to_string(rung)), count);
@@ -96,18 +117,18 @@ std::string Summary::table(double seconds) const {
 }
 
 std::string Summary::json(double seconds) const {
-  nlohmann::ordered_json json{{"features", features_},
-                              {"solids", solids()},
-                              {"valid", valid_},
-                              {"validWithWarnings", with_warnings_},
-                              {"invalid", invalid_},
-                              {"undecided", undecided_},
-                              {"stored", stored_},
-                              {"fileBytes", file_bytes_},
-                              {"plainBytes", plain_bytes_},
+  nlohmann::ordered_json json{{"features", features_},     {"solids", solids()},
+                              {"valid", valid_},           {"validWithWarnings", with_warnings_},
+                              {"invalid", invalid_},       {"undecided", undecided_},
+                              {"unreadable", unreadable_}, {"stored", stored_},
+                              {"fileBytes", file_bytes_},  {"plainBytes", plain_bytes_},
                               {"blobBytes", blob_bytes_}};
   json["invalidByCode"] = nlohmann::ordered_json::object();
   for (const auto& [code, count] : by_code_) json["invalidByCode"][std::to_string(code)] = count;
+  json["featuresByCode"] = nlohmann::ordered_json::object();
+  for (const auto& [code, count] : groups_by_code_) {
+    json["featuresByCode"][std::to_string(code)] = count;
+  }
   json["validByRung"] = nlohmann::ordered_json::object();
   for (const auto& [rung, count] : by_rung_) {
     json["validByRung"][std::string(to_string(rung))] = count;

@@ -21,7 +21,10 @@ Exit exit_of(Verdict verdict);
 /// Counts over all files of a run.
 class Summary {
  public:
-  void add(const IngestOutcome& outcome, std::size_t file_bytes);
+  void add(const IngestOutcome& outcome, std::uint64_t file_bytes);
+  void add(const InspectedFeature& feature);
+  void add_file_bytes(std::uint64_t bytes) { file_bytes_ += bytes; }
+  void add_unreadable() { ++unreadable_; }
 
   /// The table as text.
   std::string table(double seconds) const;
@@ -30,16 +33,21 @@ class Summary {
   std::uint64_t solids() const { return valid_ + invalid_ + undecided_; }
 
  private:
+  void add(const Report& report);
+  void add(const std::vector<InspectedGroup>& groups);
+
   std::uint64_t valid_ = 0;
   std::uint64_t with_warnings_ = 0;  // of the valid ones
   std::uint64_t invalid_ = 0;
   std::uint64_t undecided_ = 0;
   std::uint64_t features_ = 0;
+  std::uint64_t unreadable_ = 0;  // features, or rests of documents
   std::uint64_t stored_ = 0;
   std::uint64_t file_bytes_ = 0;
   std::uint64_t plain_bytes_ = 0;  // of the encoded solids
   std::uint64_t blob_bytes_ = 0;
   std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; one solid, several codes
+  std::map<int, std::uint64_t> groups_by_code_;  // the same of composite solids and buildings
   std::map<Rung, std::uint64_t> by_rung_;
 };
 

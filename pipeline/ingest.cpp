@@ -35,13 +35,13 @@ struct Processed {
 };
 
 Processed process(Feature feature, const Document& document, EngineWorkers* workers,
-                  const IngestOptions& options, bool stores) {
+                  const IngestOptions& options) {
   Processed processed;
   InspectedFeature inspected =
       inspect(std::move(feature), workers, options.certify, options.groups);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
-  if (stores && processed.outcome.verdict == Verdict::valid) {
+  if (processed.outcome.verdict == Verdict::valid) {
     auto stored =
         to_stored(inspected, document, options.collection, options.encode, options.steiner);
     if (stored) {
@@ -67,14 +67,14 @@ Processed process(Feature feature, const Document& document, EngineWorkers* work
 }
 
 Result<std::vector<Processed>> process_all(Document& document, EngineWorkers* workers,
-                                           const IngestOptions& options, bool stores) {
+                                           const IngestOptions& options) {
   std::vector<Feature> features = std::move(document.features);
   std::vector<Processed> processed(features.size());
   std::size_t done = 0;
   std::mutex mutex;
   parallel_for(features.size(), options.threads, [&](std::size_t i) {
     if (is_cancelled(options)) return;
-    processed[i] = process(std::move(features[i]), document, workers, options, stores);
+    processed[i] = process(std::move(features[i]), document, workers, options);
     const std::lock_guard lock(mutex);
     ++done;
     if (options.progress) options.progress(done, features.size());
@@ -176,7 +176,7 @@ InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyO
 
 Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,
                                         const IngestOptions& options) {
-  auto processed = process_all(document, workers, options, true);
+  auto processed = process_all(document, workers, options);
   if (!processed) return std::move(processed).error();
   EncodedDocument encoded;
   for (Processed& feature : *processed) {
@@ -188,19 +188,12 @@ Result<EncodedDocument> encode_document(Document document, EngineWorkers* worker
   return encoded;
 }
 
-Result<IngestOutcome> validate_document(Document document, EngineWorkers* workers,
-                                        const IngestOptions& options) {
-  auto processed = process_all(document, workers, options, false);
-  if (!processed) return std::move(processed).error();
-  return summarize(*processed);
-}
-
 Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers* workers,
                              const IngestOptions& options) {
   Status status = check_ids(document);
   if (status) status = check_crs(document, store, options.collection);
   if (!status) return std::move(status).error();
-  auto processed = process_all(document, workers, options, true);
+  auto processed = process_all(document, workers, options);
   if (!processed) return std::move(processed).error();
   for (Processed& feature : *processed) {
     if (feature.error) return *std::move(feature.error);

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +50,10 @@ Verdict worse(Verdict a, Verdict b);
 /// findings for them. Groups keep no more findings than solids, and are cancelled like them.
 InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,
                          const GroupOptions& groups = {});
+
+/// The solids of a document's geometry templates as a feature of their own, of type
+/// "GeometryTemplates", for validation; nothing for a document without any.
+std::optional<Feature> template_feature(const Document& document);
 
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };
@@ -114,11 +119,6 @@ struct EncodedDocument {
 
 /// Validates and encodes. Errors: cancelled; those of encode().
 Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,
-                                        const IngestOptions& options);
-
-/// Validates all features without storing anything.
-/// Errors: cancelled. Cost: features are spread over `threads`.
-Result<IngestOutcome> validate_document(Document document, EngineWorkers* workers,
                                         const IngestOptions& options);
 
 /// Validates, encodes and stores a document in one transaction: all features if all are valid,

@@ -33,7 +33,8 @@ class Stream {
         workers_(workers),
         options_(options),
         on_feature_(on_feature),
-        on_error_(on_error) {}
+        on_error_(on_error),
+        templates_(template_feature(reader.document())) {}
 
   Result<StreamOutcome> run() {
     const std::size_t threads = std::max<std::size_t>(options_.threads, 1);
@@ -62,6 +63,7 @@ class Stream {
   }
 
   std::optional<Found> take_next();
+  Result<std::optional<FeatureText>> next_text();
   Passage validate(Found found) const;
   void put_back(std::uint64_t number, Passage passage);
   void hand_on_in_order(std::unique_lock<std::mutex>& lock);
@@ -77,6 +79,7 @@ class Stream {
   const FeatureSink& on_feature_;
   const ErrorSink& on_error_;
   std::uint64_t most_in_flight_ = 0;
+  std::optional<Feature> templates_;  // until they are taken
 
   std::mutex mutex_;  // guards all below, and reader_.next()
   std::condition_variable room_;
@@ -99,7 +102,7 @@ std::optional<Stream::Found> Stream::take_next() {
     stop(Error{ErrorCode::cancelled, "stopped before all features were validated"});
     return std::nullopt;
   }
-  auto text = reader_.next();
+  auto text = next_text();
   if (text && *text) {
     Found found{taken_++, **std::move(text)};
     Passage& passage = passages_[found.number];
@@ -114,6 +117,14 @@ std::optional<Stream::Found> Stream::take_next() {
   }
   room_.notify_all();
   return std::nullopt;
+}
+
+/// The geometry templates come first.
+Result<std::optional<FeatureText>> Stream::next_text() {
+  if (!templates_) return reader_.next();
+  FeatureText text;
+  text.ready = std::exchange(templates_, std::nullopt);
+  return std::optional(std::move(text));
 }
 
 Passage Stream::validate(Found found) const {
@@ -179,6 +190,15 @@ void Stream::stop(Error error) {
 }
 
 }  // namespace
+
+std::optional<Feature> template_feature(const Document& document) {
+  if (document.templates.empty()) return std::nullopt;
+  Feature feature;
+  feature.id = "geometry-templates";
+  feature.type = "GeometryTemplates";
+  feature.solids = document.templates;
+  return feature;
+}
 
 Result<StreamOutcome> validate_stream(FeatureReader& reader, EngineWorkers* workers,
                                       const StreamOptions& options, const FeatureSink& on_feature,

@@ -67,7 +67,9 @@ std::string geometry(const std::string& type, const std::string& lod,
 
 std::string object(const std::string& id, const std::string& type, const std::string& family,
                    const std::string& geometries) {
-  return '"' + id + R"(":{"type":")" + type + '"' + family + R"(,"geometry":[)" + geometries + "]}";
+  std::string text(1, '"');
+  return text + id + R"(":{"type":")" + type + '"' + family + R"(,"geometry":[)" + geometries +
+         "]}";
 }
 
 InspectedFeature inspected(const std::string& objects, const std::vector<int>& positions) {
@@ -86,7 +88,8 @@ std::string building(const std::vector<std::string>& part_geometries, const std:
   std::string children;
   std::string parts;
   for (std::size_t i = 0; i < part_geometries.size(); ++i) {
-    const std::string id = "p" + std::to_string(i);
+    std::string id(1, 'p');
+    id += std::to_string(i);
     children += (i == 0 ? "\"" : ",\"") + id + '"';
     parts += ',' + object(id, part_type, R"(,"parents":["a"])", part_geometries[i]);
   }
@@ -187,10 +190,11 @@ TEST_CASE("the outcome's JSON tells of groups") {
       "},\"vertices\":" + vertices_of({0, 900}) + "}\n";
   auto document = read_document(as_bytes(text), Format::city_json_seq);
   REQUIRE(document);
-  const auto outcome = validate_document(*std::move(document), nullptr, {});
-  REQUIRE(outcome);
-  CHECK(outcome->verdict == Verdict::invalid);
-  const std::string json = outcome_json(*outcome);
+  const auto encoded = encode_document(*std::move(document), nullptr, {});
+  REQUIRE(encoded);
+  CHECK(encoded->features.empty());
+  CHECK(encoded->outcome.verdict == Verdict::invalid);
+  const std::string json = outcome_json(encoded->outcome);
   CHECK(json.find(R"("groups":[{"kind":"building_parts","object":"a","lod":"2","solids":[0,1])") !=
         std::string::npos);
   CHECK(json.find(R"("code":601,"name":"BUILDINGPARTS_OVERLAP")") != std::string::npos);

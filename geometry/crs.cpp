@@ -66,6 +66,10 @@ double length_of(CrsUnit unit) {
   return 1.0;
 }
 
+/// Codes first .. last, inclusive, of geographic systems whose first axis is longitude.
+constexpr std::array<std::array<std::uint32_t, 2>, 6> kLongitudeFirst{
+    {{7034, 7042}, {7084, 7088}, {7133, 7133}, {8901, 8902}, {9778, 9779}, {9783, 9784}}};
+
 double height_unit_of(CrsUnit angle) {
   if (angle == CrsUnit::degree_foot) return kFoot;
   return angle == CrsUnit::degree_us_survey_foot ? kUsSurveyFoot : 1.0;
@@ -128,6 +132,15 @@ AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre) {
                  std::to_string(length) + " metres; heights taken in the same unit";
   }
   return units;
+}
+
+double pole_of_first_axis(std::uint32_t srid) {
+  const auto unit = unit_of(srid);
+  if (!unit || length_of(*unit) != 0) return 0;
+  for (const auto& [first, last] : kLongitudeFirst) {
+    if (srid >= first && srid <= last) return 0;
+  }
+  return *unit == CrsUnit::grad ? 100 : 90;
 }
 
 }  // namespace watertight

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Metres per unit of a coordinate reference system's axes: for tolerances and measures only.
+// Metres per unit of a coordinate reference system's axes, for tolerances and measures only, and
+// which systems put latitude first.
 #pragma once
 
 #include <array>
@@ -24,5 +25,10 @@ struct AxisUnits {
 /// is not. A geographic code over coordinates that cannot be degrees (|value| above 360) counts as
 /// metres, with a note. Cost: logarithmic.
 AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre);
+
+/// Where the authority's first axis is latitude: the angle of the pole, 90 (degrees) or 100
+/// (grads). 0 for other systems, among them the geographic ones of France that EPSG names
+/// "(lon-lat)", and for unknown codes. Cost: logarithmic.
+double pole_of_first_axis(std::uint32_t srid);
 
 }  // namespace watertight

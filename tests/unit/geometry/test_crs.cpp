@@ -58,6 +58,18 @@ TEST_CASE("a geographic code over coordinates that cannot be angles counts as me
   CHECK(axis_units(4326, {std::nan(""), 0, 0}).metres_per_unit == Units{1, 1, 1});
 }
 
+TEST_CASE("geographic systems put latitude first, but for those named after the other order") {
+  for (const std::uint32_t code : {4326U, 4979U, 4258U, 6668U, 6697U, 4937U}) {
+    INFO(code);
+    CHECK(pole_of_first_axis(code) == 90);
+  }
+  CHECK(pole_of_first_axis(4807) == 100);  // NTF (Paris), in grads
+  for (const std::uint32_t code : {0U, 1U, 4978U, 7415U, 25832U, 31467U, 7034U, 7042U, 7084U}) {
+    INFO(code);
+    CHECK(pole_of_first_axis(code) == 0);
+  }
+}
+
 TEST_CASE("the table of codes is sorted without overlap") {
   std::uint32_t last = 0;
   for (const CrsRun& run : crs_runs()) {

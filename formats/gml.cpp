@@ -2,6 +2,8 @@
 #include "formats/gml.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -77,7 +79,7 @@ class GmlReader {
     } else {
       feature.id = drafts_.front().source.object_id;
     }
-    auto status = finish(feature);
+    auto status = finish(feature, first.is_template);
     if (!status) return in_object(std::move(status).error(), feature.id);
     if (first.is_template) {
       for (SubmittedSolid& solid : feature.solids) {
@@ -97,6 +99,9 @@ class GmlReader {
     if (!target) return in_object(std::move(target).error(), id_of(geometry, kNone));
     SolidSource source;
     source.object_id = id_of(geometry, *target);
+    if (geometry.object != kNone && !geometry.is_template) {
+      source.building_id = model_.objects[geometry.object].building_id;
+    }
     if (geometry.lod != '\0') source.lod = geometry.lod;
     source.geometry = next_geometry(geometry.is_template, source.object_id);
     auto status = add_solids(*target, geometry.is_template, source);
@@ -193,9 +198,8 @@ class GmlReader {
     return Done{};
   }
 
-  // Puts the drafts on their common lattice.
-  Status finish(Feature& feature) {
-    const Draft& first = drafts_.front();
+  // The reference system of the drafts.
+  Result<Index> common_system() const {
     Index system = kNone;
     for (const Draft& draft : drafts_) {
       if (system == kNone) system = draft.solid.system;
@@ -205,8 +209,37 @@ class GmlReader {
                             "' beside solids in '" + model_.systems[system] + "'");
       }
     }
-    feature.srid = shapes_.srid(system);
-    if (system != kNone && feature.srid == 0) unknown_systems_.insert(model_.systems[system]);
+    return system;
+  }
+
+  // Latitude, longitude, height are left-handed axes: as x, y, z they would turn solids inside out.
+  void put_longitude_first(Index system) {
+    const double pole = shapes_.pole_of_first_axis(system);
+    if (pole == 0) return;
+    const auto can_be_latitude = [&](const std::array<GridNumber, 3>& position) {
+      const double size = std::abs(static_cast<double>(position[0].mantissa));
+      return size * std::pow(10.0, position[0].exponent) <= pole;
+    };
+    auto& values = positions_.values;
+    if (!std::all_of(values.begin(), values.end(), can_be_latitude)) {
+      wrongly_ordered_.insert(model_.systems[system]);
+      return;
+    }
+    latitude_first_.insert(model_.systems[system]);
+    for (auto& position : values) std::swap(position[0], position[1]);
+  }
+
+  // Puts the drafts on their common lattice.
+  Status finish(Feature& feature, bool is_template) {
+    const Draft& first = drafts_.front();
+    // Templates have axes of their own, whatever the system of the document.
+    if (!is_template) {
+      const auto system = common_system();
+      if (!system) return system.error();
+      feature.srid = shapes_.srid(*system);
+      if (*system != kNone && feature.srid == 0) unknown_systems_.insert(model_.systems[*system]);
+      put_longitude_first(*system);
+    }
     auto points = lattice_of_decimals(positions_.values);
     if (!points) return error_at(first.solid.place, points.error().code, points.error().message);
     std::vector<bool> is_rounded(points->points.size(), false);
@@ -248,6 +281,15 @@ class GmlReader {
     for (const std::string& system : unknown_systems_) {
       document_.notes.push_back("reference system '" + system + "' has no known EPSG code");
     }
+    for (const std::string& system : latitude_first_) {
+      document_.notes.push_back("positions in '" + system +
+                                "' are latitude, longitude; read as longitude, latitude");
+    }
+    for (const std::string& system : wrongly_ordered_) {
+      document_.notes.push_back("positions in '" + system +
+                                "' should be latitude, longitude, but some begin beyond the poles; "
+                                "read in the order written");
+    }
     if (document_.features.empty() && document_.templates.empty()) {
       document_.notes.push_back("the document has no solids; " + std::to_string(passed_over_) +
                                 " other geometries are passed over");
@@ -261,6 +303,8 @@ class GmlReader {
   std::uint32_t templates_ = 0;
   std::uint64_t passed_over_ = 0;
   std::set<std::string> unknown_systems_;
+  std::set<std::string> latitude_first_;
+  std::set<std::string> wrongly_ordered_;
   std::vector<Draft> drafts_;
   GmlPositions positions_;
   Document document_;

@@ -25,4 +25,9 @@ Result<Document> read_gml(ByteView bytes, const Limits& limits);
 /// ("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH").
 std::uint32_t srid_of_srs_name(std::string_view name);
 
+/// Whether positions under this srsName have their axes in the order of the authority: a URN or URL
+/// of the OGC's definitions, or one of the German survey, whose names of geographic systems state
+/// it. Other forms ("EPSG:4326", ".../gml/srs/epsg.xml#4326") mean x, y.
+bool is_in_order_of_authority(std::string_view name);
+
 }  // namespace watertight

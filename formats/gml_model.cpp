@@ -12,6 +12,9 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
+// Every solid and facet has a copy.
+constexpr std::size_t kLongestId = 1024;
+
 std::size_t count_words(std::string_view text) {
   std::size_t count = 0;
   bool is_in_word = false;
@@ -41,6 +44,10 @@ class GmlBuilder : public XmlHandler {
     if (skipped_ > 0) {
       ++skipped_;
       return Done{};
+    }
+    if (gml_id(element).size() > kLongestId) {
+      return error_at(element.place, ErrorCode::limit_exceeded,
+                      "a gml:id of more than " + std::to_string(kLongestId) + " bytes");
     }
     const Frame parent = frames_.empty() ? Frame{} : frames_.back();
     switch (parent.kind) {
@@ -229,6 +236,12 @@ class GmlBuilder : public XmlHandler {
     objects_.push_back(std::move(object));
   }
 
+  // The id of the Building that the open object is, or is a part (of parts) of.
+  std::string building_of(std::size_t object) const {
+    while (object > 0 && objects_[object].type == "BuildingPart") --object;
+    return objects_[object].type == "Building" ? objects_[object].id : "";
+  }
+
   // The number of the innermost open object that can own geometry, kNone outside of such.
   Index owner() {
     if (objects_.empty() || objects_.back().is_container) return kNone;
@@ -238,13 +251,14 @@ class GmlBuilder : public XmlHandler {
     OpenObject& feature = objects_[top];
     if (feature.feature == kNone) {
       feature.number = feature.feature = static_cast<Index>(model_.objects.size());
-      model_.objects.push_back({feature.id, feature.type, feature.feature});
+      model_.objects.push_back({feature.id, feature.type, building_of(top), feature.feature});
       model_.features.push_back(feature.feature);
     }
     OpenObject& object = objects_.back();
     if (object.number == kNone) {
       object.number = static_cast<Index>(model_.objects.size());
-      model_.objects.push_back({object.id, object.type, feature.feature});
+      const std::string building = building_of(objects_.size() - 1);
+      model_.objects.push_back({object.id, object.type, building, feature.feature});
     }
     return object.number;
   }

@@ -66,6 +66,7 @@ struct GmlNode {
 struct GmlObject {
   std::string id;
   std::string type;
+  std::string building_id;  // as SolidSource::building_id
   Index feature = 0;
 };
 

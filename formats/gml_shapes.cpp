@@ -6,6 +6,7 @@
 
 #include "formats/gml.h"
 #include "formats/numbers.h"
+#include "geometry/crs.h"
 
 namespace watertight {
 namespace {
@@ -38,7 +39,11 @@ GmlShapes::GmlShapes(const GmlModel& model, std::uint64_t byte_count, const Limi
     if (!id.empty()) by_id_.emplace_back(id, node);
   }
   std::sort(by_id_.begin(), by_id_.end());
-  for (const std::string& name : model.systems) srids_.push_back(srid_of_srs_name(name));
+  for (const std::string& name : model.systems) {
+    srids_.push_back(srid_of_srs_name(name));
+    const bool is_ordered = is_in_order_of_authority(name);
+    poles_.push_back(is_ordered ? watertight::pole_of_first_axis(srids_.back()) : 0);
+  }
 }
 
 Error GmlShapes::wrong(XmlPlace place, std::string message) const {
@@ -54,7 +59,8 @@ std::string GmlShapes::title(Index node) const {
 
 bool GmlShapes::is_same_system(Index a, Index b) const {
   if (a == b || a == kNone || b == kNone) return true;
-  return srids_[a] != 0 ? srids_[a] == srids_[b] : model_.systems[a] == model_.systems[b];
+  if (srids_[a] == 0) return model_.systems[a] == model_.systems[b];
+  return srids_[a] == srids_[b] && poles_[a] == poles_[b];
 }
 
 Status GmlShapes::spend(std::uint64_t steps, XmlPlace place) {

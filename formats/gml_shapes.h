@@ -58,6 +58,9 @@ class GmlShapes {
 
   /// EPSG code of a system; 0 for kNone.
   std::uint32_t srid(Index system) const { return system == kNone ? 0 : srids_[system]; }
+  /// Where a system's positions have latitude first: the angle of the pole in its unit, else 0.
+  double pole_of_first_axis(Index system) const { return system == kNone ? 0 : poles_[system]; }
+  /// The same code and order of axes; kNone is the same as any.
   bool is_same_system(Index a, Index b) const;
 
   /// "Solid 'id'", "Solid" without gml:id.
@@ -87,6 +90,7 @@ class GmlShapes {
   std::vector<std::pair<std::string_view, Index>> by_id_;  // sorted
   std::vector<bool> is_entered_;
   std::vector<std::uint32_t> srids_;
+  std::vector<double> poles_;
 };
 
 }  // namespace watertight

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
@@ -53,6 +54,20 @@ std::uint32_t srid_of_srs_name(std::string_view name) {
   name.remove_prefix(at + 4);
   if (name.starts_with(".xml")) name.remove_prefix(4);
   return last_number(name);
+}
+
+bool is_in_order_of_authority(std::string_view name) {
+  for (const std::string_view form :
+       {"urn:ogc:def:crs", "urn:x-ogc:def:crs", "urn:adv:crs:", "http://www.opengis.net/def/crs",
+        "https://www.opengis.net/def/crs"}) {
+    const bool is_form =
+        name.size() > form.size() &&
+        std::equal(form.begin(), form.end(), name.begin(), [](char a, char b) {
+          return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
+        });
+    if (is_form) return true;
+  }
+  return false;
 }
 
 }  // namespace watertight

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <string>
+#include <vector>
 
 #include "formats/gml.h"
 #include "gml_samples.h"
@@ -258,6 +260,94 @@ TEST_CASE("GML: features can have reference systems of their own, a solid only o
                                                       " srsName=\"urn:ogc:def:crs:EPSG::25832\"")),
                                        " srsName=\"EPSG:25832\""))))
             .features.size() == 1);
+}
+
+TEST_CASE("GML: latitude first is read as longitude first where the srsName means so") {
+  // Outward as latitude, longitude, height.
+  const std::string tetrahedron = member(polygon("35 139 0 36 139 0 35 140 0 35 139 0")) +
+                                  member(polygon("36 139 0 35 139 0 35 139 1 36 139 0")) +
+                                  member(polygon("35 140 0 36 139 0 35 139 1 35 140 0")) +
+                                  member(polygon("35 139 0 35 140 0 35 139 1 35 139 0"));
+  const auto first_position = [](const Document& document) {
+    const Solid& solid = document.features.at(0).solids.at(0).solid;
+    return solid.lattice().world(solid.vertices()[solid.ring(1)[0]]);
+  };
+  const auto in = [&](const std::string& system, const std::string& members) {
+    return gml_of(model(building(solid_of(members, " srsName=\"" + system + "\""))));
+  };
+  using Position = std::array<double, 3>;
+  for (const std::string system : {"urn:ogc:def:crs:EPSG::6697", "URN:OGC:DEF:CRS:EPSG::6697",
+                                   "http://www.opengis.net/def/crs/EPSG/0/6697",
+                                   "urn:ogc:def:crs,crs:EPSG::6668,crs:EPSG::6695",
+                                   "urn:adv:crs:ETRS89_Lat-Lon", "urn:x-ogc:def:crs:EPSG:4326"}) {
+    INFO(system);
+    const Document document = in(system, tetrahedron);
+    CHECK(first_position(document) == Position{139, 36, 0});
+    CHECK(is_closed(document.features[0].solids[0].solid));
+    REQUIRE(document.notes.size() == 1);
+    CHECK(document.notes[0] ==
+          "positions in '" + system + "' are latitude, longitude; read as longitude, latitude");
+  }
+  for (const std::string system :
+       {"EPSG:6697", "http://www.opengis.net/gml/srs/epsg.xml#4326", "urn:ogc:def:crs:EPSG::31467",
+        "urn:ogc:def:crs:EPSG::7084", "urn:ogc:def:crs:EPSG::4978"}) {
+    INFO(system);
+    const Document document = in(system, tetrahedron);
+    CHECK(first_position(document) == Position{36, 139, 0});
+    CHECK(document.notes.empty());
+  }
+}
+
+TEST_CASE("GML: first positions beyond the poles are no latitudes; templates are on no system") {
+  const Document far =
+      gml_of(model(building(solid_of(member(polygon("139 35 0 140 35 0 139 36 0 139 35 0")),
+                                     " srsName=\"urn:ogc:def:crs:EPSG::6697\""))));
+  const Solid& solid = far.features.at(0).solids.at(0).solid;
+  CHECK(solid.lattice().world(solid.vertices()[1]) == std::array<double, 3>{140, 35, 0});
+  REQUIRE(far.notes.size() == 1);
+  CHECK(far.notes[0].find("in the order written") != std::string::npos);
+
+  const std::string content =
+      "<g:boundedBy><g:Envelope srsName=\"urn:ogc:def:crs:EPSG::6697\"/></g:boundedBy>"
+      "<cityObjectMember><Tree g:id=\"t\"><lod1ImplicitRepresentation><ImplicitGeometry>"
+      "<relativeGMLGeometry>" +
+      kTetrahedron +
+      "</relativeGMLGeometry></ImplicitGeometry></lod1ImplicitRepresentation></Tree>"
+      "</cityObjectMember>";
+  const Document trees = gml_of(model(content));
+  REQUIRE(trees.templates.size() == 1);
+  CHECK(trees.templates[0].solid.srid() == 0);
+  CHECK(trees.templates[0].solid.vertices()[1] == Point{0, 1, 0});
+  CHECK(trees.notes.empty());
+}
+
+TEST_CASE("GML: one solid cannot have latitude first and second") {
+  const Error error = gml_error(
+      model(building(solid_of(member(polygon("0 0 0 0 1 0 1 0 0 0 0 0", " srsName=\"EPSG:4326\"")),
+                              " srsName=\"urn:ogc:def:crs:EPSG::4326\""))));
+  CHECK(error.code == ErrorCode::unsupported);
+  CHECK(says(error, "is in 'EPSG:4326', its solid in 'urn:ogc:def:crs:EPSG::4326'"));
+}
+
+TEST_CASE("GML: parts of a building, and parts of parts, name the building") {
+  const auto part = [](const std::string& id, const std::string& more) {
+    return "<consistsOfBuildingPart><BuildingPart g:id=\"" + id + "\"><lod1Solid>" + kTetrahedron +
+           "</lod1Solid>" + more + "</BuildingPart></consistsOfBuildingPart>";
+  };
+  const std::string room =
+      "<room><Room g:id=\"r\"><lod4Solid>" + kTetrahedron + "</lod4Solid></Room></room>";
+  const Document document = gml_of(
+      model("<m><Building g:id=\"b\"><lod1Solid>" + kTetrahedron + "</lod1Solid>" +
+            part("p", part("q", room)) + "</Building></m><m><Tunnel g:id=\"t\"><lod1Solid>" +
+            kTetrahedron + "</lod1Solid></Tunnel></m><m><BuildingPart g:id=\"lone\"><lod1Solid>" +
+            kTetrahedron + "</lod1Solid></BuildingPart></m>"));
+  std::vector<std::string> buildings;
+  for (const Feature& feature : document.features) {
+    for (const SubmittedSolid& solid : feature.solids) {
+      buildings.push_back(solid.source.object_id + ":" + solid.source.building_id);
+    }
+  }
+  CHECK(buildings == std::vector<std::string>{"b:b", "p:b", "q:b", "r:", "t:", "lone:"});
 }
 
 TEST_CASE("GML: the format is told by name and by the first bytes") {

@@ -5,8 +5,12 @@
 // "b-valid-remark"; the code is the one of the first level.
 #include <catch2/catch_test_macros.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "gml_samples.h"
+#include "pipeline/groups.h"
+#include "pipeline/pipeline.h"
 #include "samples.h"
 #include "validate/certify.h"
 
@@ -35,6 +39,59 @@ TEST_CASE("GML: every defect of the quality experiment is found under its code")
     CHECK(report.first_level == expected);
     CHECK(report.verdict == (expected.empty() ? Verdict::valid : Verdict::invalid));
   }
+}
+
+/// Outward in axes of a right hand, from (x, y, 0) to (x + 2, y + 3, 4).
+std::string box(int x, int y, bool is_latitude_first) {
+  std::string members;
+  for (const std::string facet : {"0462", "1375", "0154", "2673", "0231", "4576"}) {
+    std::string positions;
+    for (const char digit : facet + facet[0]) {
+      const int corner = digit - '0';
+      std::string first = std::to_string(x + (corner & 1) * 2);
+      std::string second = std::to_string(y + (corner >> 1 & 1) * 3);
+      if (is_latitude_first) std::swap(first, second);
+      positions.append(first).append(" ").append(second).append(" ");
+      positions.append(std::to_string((corner >> 2) * 4)).append(" ");
+    }
+    members += test::member(test::polygon(positions));
+  }
+  return test::solid_of(members);
+}
+
+TEST_CASE("GML: outward facets are outward whatever the order of axes that the srsName means") {
+  const auto first_level = [](const std::string& system, bool is_latitude_first) {
+    const Document document = test::gml_of(
+        test::model("<g:boundedBy><g:Envelope srsName=\"" + system + "\"/></g:boundedBy>" +
+                    test::building(box(4, 50, is_latitude_first))));
+    CertifyOptions options;
+    options.proof = Proof::boundary;
+    return certify(document.features.at(0).solids.at(0).solid, nullptr, options).report.first_level;
+  };
+  CHECK(first_level("urn:ogc:def:crs:EPSG::4979", true).empty());
+  CHECK(first_level("urn:ogc:def:crs:EPSG::4979", false) == std::vector<int>{405});
+  CHECK(first_level("EPSG:4979", false).empty());
+}
+
+TEST_CASE("GML: overlapping parts of a building are finding 601") {
+  const auto part = [](int x) {
+    return "<part><BuildingPart><lod1Solid>" + box(x, 0, false) +
+           "</lod1Solid></BuildingPart></part>";
+  };
+  const auto codes = [&](int second) {
+    Document document = test::gml_of(
+        test::model("<m><Building g:id=\"b\">" + part(0) + part(second) + "</Building></m>"));
+    CertifyOptions options;
+    options.proof = Proof::boundary;
+    const InspectedFeature feature = inspect(std::move(document.features.at(0)), nullptr, options);
+    std::vector<int> all;
+    for (const InspectedGroup& group : feature.groups) {
+      for (const Finding& finding : group.report.findings) all.push_back(finding.code);
+    }
+    return all;
+  };
+  CHECK(codes(1) == std::vector<int>{601});
+  CHECK(codes(2).empty());
 }
 
 }  // namespace

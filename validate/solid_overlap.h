@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "delaunay/ladder.h"
 #include "geometry/point.h"
 #include "validate/box_tree.h"
 #include "validate/point_location.h"
-#include "workers/worker_pool.h"
 
 namespace watertight {
 

@@ -42,7 +42,10 @@ std::string text_of(const std::filesystem::path& path) {
 
 std::string text_of(const std::set<int>& codes) {
   std::string text;
-  for (const int code : codes) text += (text.empty() ? "" : " ") + std::to_string(code);
+  for (const int code : codes) {
+    if (!text.empty()) text += ' ';
+    text += std::to_string(code);
+  }
   return text;
 }
 

@@ -52,11 +52,11 @@ class TypeFinder : public nlohmann::json_sax<Json> {
 
 struct FormatName {
   std::string_view parameter;  // value of f=
-  std::string_view type;       // media type
+  std::string_view type;       // media type, "" without any
   Format format;
 };
 
-constexpr std::array<FormatName, 9> kNames{{
+constexpr auto kNames = std::to_array<FormatName>({
     {"cityjson", kCityJson, Format::city_json},
     {"json", kJson, Format::city_json},
     {"cityjsonseq", kCityJsonSeq, Format::city_json_seq},
@@ -66,7 +66,15 @@ constexpr std::array<FormatName, 9> kNames{{
     {"wkt", "text/wkt", Format::wkt},
     {"wkb", "application/wkb", Format::ewkb},
     {"ewkb", "application/ewkb", Format::ewkb},
-}};
+    {"gml", "application/gml+xml", Format::gml},
+    {"gml", "application/xml", Format::gml},
+    {"gml", "text/xml", Format::gml},
+    {"jsonfg", "application/vnd.ogc.fg+json", Format::json_fg},
+    {"jsonfg", "application/geo+json", Format::json_fg},
+    {"stl", "model/stl", Format::stl},
+    {"ply", "model/x-ply", Format::ply},
+    {"poly", "", Format::poly},
+});
 
 bool is_allowed(Format format, AcceptedFormats accepted) {
   return accepted == AcceptedFormats::all || format == Format::city_json ||
@@ -76,7 +84,7 @@ bool is_allowed(Format format, AcceptedFormats accepted) {
 Problem unsupported_type(AcceptedFormats accepted) {
   std::string known;
   for (const FormatName& name : kNames) {
-    if (!is_allowed(name.format, accepted)) continue;
+    if (!is_allowed(name.format, accepted) || name.type.empty()) continue;
     known += (known.empty() ? "" : ", ") + std::string(name.type);
   }
   return Problem{415, "unsupported", "send a body of one of these types: " + known, {}, {}, {}, {}};
@@ -88,7 +96,8 @@ std::optional<Format> stated_format(const RoutedRequest& request, AcceptedFormat
   const std::string* content_type = request.request.header("content-type");
   const std::string type = content_type == nullptr ? "" : media_type(*content_type);
   for (const FormatName& name : kNames) {
-    const bool is_named = parameter != nullptr ? name.parameter == *parameter : name.type == type;
+    const bool is_named =
+        parameter != nullptr ? name.parameter == *parameter : !type.empty() && name.type == type;
     if (is_named && is_allowed(name.format, accepted)) return name.format;
   }
   const bool says_nothing = type.empty() || type == "application/octet-stream";

@@ -140,6 +140,49 @@ TEST_CASE_METHOD(Fixture, "validate gives verdicts of any format and stores noth
   CHECK(get("/collections").body.find("town") == std::string::npos);
 }
 
+TEST_CASE_METHOD(Fixture,
+                 "each format has its media types and its name; only city models are stored") {
+  struct Sample {
+    std::string f;
+    std::vector<std::string> types;
+    std::string body;
+  };
+  const std::string solid =
+      R"(<g:Solid xmlns:g="http://www.opengis.net/gml/3.2"><g:exterior><g:Shell><g:surfaceMember>)"
+      "<g:Polygon><g:exterior><g:LinearRing><g:posList>0 0 0 0 1 0 1 0 0 0 0 0</g:posList>"
+      "</g:LinearRing></g:exterior></g:Polygon></g:surfaceMember></g:Shell></g:exterior></g:Solid>";
+  const std::string polyhedron =
+      R"({"type":"Feature","id":"a","geometry":null,"properties":{},"time":null,"place":)"
+      R"({"type":"Polyhedron","coordinates":[[[[[0,0,0],[0,1,0],[1,0,0],[0,0,0]]]]]}})";
+  const std::string stl =
+      "solid a\nfacet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\n"
+      "endloop\nendfacet\nendsolid a\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n0 1 0\n1 0 0\n3 0 1 2\n";
+  const std::string poly = "3 3 0 0\n0 0 0 0\n1 0 1 0\n2 1 0 0\n1 0\n1\n3 0 1 2\n0\n0\n";
+  const std::vector<Sample> samples{
+      {"gml", {"application/gml+xml; version=3.2", "application/xml", "text/xml"}, solid},
+      {"jsonfg", {"application/vnd.ogc.fg+json", "application/geo+json"}, polyhedron},
+      {"stl", {"model/stl"}, stl},
+      {"ply", {"model/x-ply"}, ply},
+      {"poly", {}, poly}};
+  for (const Sample& sample : samples) {
+    INFO(sample.f);
+    const auto is_read = [](const Response& response) {
+      INFO(response.body);
+      return response.status == 200 && Json::parse(response.body)["verdict"] == "invalid";
+    };
+    CHECK(is_read(post("/validate?f=" + sample.f, sample.body, "")));
+    CHECK(post("/collections/town/items?f=" + sample.f, sample.body, "").status == 415);
+    for (const std::string& type : sample.types) {
+      CHECK(is_read(post("/validate", sample.body, type)));
+      CHECK(post("/collections/town/items", sample.body, type).status == 415);
+    }
+  }
+}
+
 TEST_CASE_METHOD(Fixture, "validate answers with the report, a layer or a page, by Accept") {
   const auto answer = [&](const std::string& accept) {
     return send({"POST",

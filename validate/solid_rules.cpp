@@ -117,7 +117,8 @@ void SolidExaminer::check_orientation() {
     Finding finding;
     finding.code = kWrongOrientationShell;
     finding.place = examined_.at_shell(shell);
-    finding.detail = shell == 0 ? "the normals of the exterior shell point inward"
+    finding.detail = shell == 0 ? "the normals of the exterior shell point inward (or the axes are "
+                                  "in north, east order)"
                                 : "the normals of the inner shell point out of the cavity";
     finding.uncertain = is_uncertain();
     examined_.findings.add(std::move(finding));

@@ -226,6 +226,16 @@ TEST_CASE("GML: limits hold before memory is taken") {
   CHECK(vertices.error().code == ErrorCode::limit_exceeded);
 }
 
+TEST_CASE("GML: a gml:id that every solid would repeat at length is refused") {
+  const std::string longest(1024, 'i');
+  CHECK(gml_of(model(building(kTetrahedron, longest))).features.at(0).id == longest);
+  const Error object = gml_error(model(building(kTetrahedron, longest + "i")));
+  CHECK(object.code == ErrorCode::limit_exceeded);
+  CHECK(says(object, "a gml:id of more than 1024 bytes"));
+  const std::string id = " g:id=\"" + longest + "i\"";
+  CHECK(solid_error(member(polygon("", id))).code == ErrorCode::limit_exceeded);
+}
+
 TEST_CASE("GML: a million members, attributes and text that nobody reads cost their size") {
   std::string many = "<g:MultiSurface g:id=\"m\">";
   for (int i = 0; i < 100'000; ++i) many += "<g:surfaceMember/>";

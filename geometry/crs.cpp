@@ -66,6 +66,9 @@ double length_of(CrsUnit unit) {
   return 1.0;
 }
 
+/// 400 grads or 360 degrees.
+double full_turn_of(CrsUnit angle) { return angle == CrsUnit::grad ? 400.0 : 360.0; }
+
 /// Codes first .. last, inclusive, of geographic systems whose first axis is longitude.
 constexpr std::array<std::array<std::uint32_t, 2>, 6> kLongitudeFirst{
     {{7034, 7042}, {7084, 7088}, {7133, 7133}, {8901, 8902}, {9778, 9779}, {9783, 9784}}};
@@ -95,9 +98,8 @@ DegreeLengths degree_lengths(double latitude_degrees) {
 
 AxisUnits angular_units(std::uint32_t srid, CrsUnit unit, const std::array<double, 3>& centre) {
   const double degrees = unit == CrsUnit::grad ? 0.9 : 1.0;
-  constexpr double kLargestAngle = 360.0;
-  if (!(std::abs(centre[0]) <= kLargestAngle / degrees) ||
-      !(std::abs(centre[1]) <= kLargestAngle / degrees)) {
+  const double largest = full_turn_of(unit);
+  if (!(std::abs(centre[0]) <= largest) || !(std::abs(centre[1]) <= largest)) {
     return {{1, 1, 1},
             "EPSG:" + std::to_string(srid) +
                 " is geographic, but the coordinates cannot be angles: metres assumed"};
@@ -132,6 +134,11 @@ AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre) {
                  std::to_string(length) + " metres; heights taken in the same unit";
   }
   return units;
+}
+
+double largest_angle(std::uint32_t srid) {
+  const auto unit = unit_of(srid);
+  return unit && length_of(*unit) == 0 ? full_turn_of(*unit) : 0.0;
 }
 
 double pole_of_first_axis(std::uint32_t srid) {

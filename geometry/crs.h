@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Metres per unit of a coordinate reference system's axes, for tolerances and measures only, and
-// which systems put latitude first.
+// Metres per unit of a coordinate reference system's axes, for tolerances and measures only, which
+// systems are geographic, and which put latitude first.
 #pragma once
 
 #include <array>
@@ -25,6 +25,10 @@ struct AxisUnits {
 /// is not. A geographic code over coordinates that cannot be degrees (|value| above 360) counts as
 /// metres, with a note. Cost: logarithmic.
 AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre);
+
+/// Of a geographic system, the largest coordinate that can be an angle: a full turn, 360 (degrees)
+/// or 400 (grads). 0 for other systems and for unknown codes. Cost: logarithmic.
+double largest_angle(std::uint32_t srid);
 
 /// Where the authority's first axis is latitude: the angle of the pole, 90 (degrees) or 100
 /// (grads). 0 for other systems, among them the geographic ones of France that EPSG names

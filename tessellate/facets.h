@@ -13,7 +13,9 @@
 namespace watertight {
 
 /// The exact projection of a facet: the axis dropped is the one with the largest component of the
-/// exact doubled area vector (in world scale; ties x, y, z).
+/// exact doubled area vector (in world scale; ties x, y, z). World scale counts the lattice step of
+/// each axis and, where the solid's SRID is of a geographic system, a degree as 2^17 units of
+/// height.
 struct Projection {
   int axis = 2;  // 0 x, 1 y, 2 z: the dropped axis
   bool is_mirrored =

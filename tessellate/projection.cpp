@@ -6,6 +6,7 @@
 
 #include <CGAL/Exact_rational.h>
 
+#include "geometry/crs.h"
 #include "tessellate/facets.h"
 
 namespace watertight {
@@ -20,6 +21,10 @@ constexpr double kLargestInteger = 9007199254740992.0;  // 2^53
 // Steps whose exponents are further apart than this compare like steps this far apart: beyond it,
 // one axis decides whatever the coordinates are (finite doubles span fewer than 2^2100).
 constexpr std::int32_t kMostStepSpread = 5000;
+// Metres in a degree beside metres of height: 2 pi * 6,378,137 m / 360 = 111,320 m = 2^16.76 on the
+// equator, rounded to a power of two. One constant for all latitudes, both axes, grads (100,188 m)
+// and heights in feet: a factor of a few only moves the slope at which the axis changes.
+constexpr double kDegree = 131072.0;  // 2^17
 
 bool is_wide_enough(const Point& p) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,9 +86,21 @@ CGAL::Exact_rational power(int radix, std::int32_t exponent) {
   return result;
 }
 
-/// The component along an axis scales with the product of the two other steps, that is, up to a
-/// common factor, with one over its own step.
-std::array<CGAL::Exact_rational, 3> world_weights(const Lattice& lattice) {
+/// True if the horizontal axes of a ring are angles. As for measures, coordinates beyond a full
+/// turn cannot be angles; asked of each ring, so that the answer depends on nothing but its place.
+bool is_in_angles(const Solid& solid, std::span<const Index> ring) {
+  const double largest = largest_angle(solid.srid());
+  if (largest == 0) return false;
+  return std::all_of(ring.begin(), ring.end(), [&](Index vertex) {
+    const Point& p = solid.vertices()[vertex];
+    return std::fabs(solid.lattice().world(p.x, 0)) <= largest &&
+           std::fabs(solid.lattice().world(p.y, 1)) <= largest;
+  });
+}
+
+/// The component along an axis scales with the product of the two other units, that is, up to a
+/// common factor, with one over its own unit: its lattice step, times a degree where it is one.
+std::array<CGAL::Exact_rational, 3> world_weights(const Lattice& lattice, bool is_in_angles) {
   std::int32_t largest = lattice.step[0].exponent;
   for (const GridNumber& step : lattice.step) largest = std::max(largest, step.exponent);
   std::array<CGAL::Exact_rational, 3> weights;
@@ -96,6 +113,7 @@ std::array<CGAL::Exact_rational, 3> world_weights(const Lattice& lattice) {
     weights[axis] = power(lattice.kind == LatticeKind::decimal ? 10 : 2, exponent) /
                     CGAL::Exact_rational(static_cast<double>(mantissa));
   }
+  if (is_in_angles) weights[2] *= CGAL::Exact_rational(kDegree);
   return weights;
 }
 
@@ -109,14 +127,15 @@ Projection facet_projection(const Solid& solid, Index facet) {
   const std::span<const Index> ring = solid.ring(rings.begin);
   const std::span<const Point> vertices = solid.vertices();
 
+  const bool has_angles = is_in_angles(solid, ring);
   const auto& step = solid.lattice().step;
   const bool has_equal_steps = step[0] == step[1] && step[1] == step[2];
   const bool is_wide =
-      has_equal_steps && ring.size() < kMostWideTerms &&
+      !has_angles && has_equal_steps && ring.size() < kMostWideTerms &&
       std::all_of(ring.begin(), ring.end(), [&](Index v) { return is_wide_enough(vertices[v]); });
   if (is_wide) return largest_component<Wide>(doubled_area<Wide>(vertices, ring), {1, 1, 1});
   return largest_component<CGAL::Exact_rational>(doubled_area<CGAL::Exact_rational>(vertices, ring),
-                                                 world_weights(solid.lattice()));
+                                                 world_weights(solid.lattice(), has_angles));
 }
 
 }  // namespace watertight

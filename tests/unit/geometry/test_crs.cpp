@@ -58,6 +58,18 @@ TEST_CASE("a geographic code over coordinates that cannot be angles counts as me
   CHECK(axis_units(4326, {std::nan(""), 0, 0}).metres_per_unit == Units{1, 1, 1});
 }
 
+TEST_CASE("geographic systems have angles up to a full turn, others none") {
+  for (const std::uint32_t code : {4326U, 4979U, 6697U, 7034U, 7084U, 4937U}) {
+    INFO(code);
+    CHECK(largest_angle(code) == 360);
+  }
+  CHECK(largest_angle(4807) == 400);  // NTF (Paris), in grads
+  for (const std::uint32_t code : {0U, 1U, 4978U, 7415U, 25832U, 2263U, 4'294'967'295U}) {
+    INFO(code);
+    CHECK(largest_angle(code) == 0);
+  }
+}
+
 TEST_CASE("geographic systems put latitude first, but for those named after the other order") {
   for (const std::uint32_t code : {4326U, 4979U, 4258U, 6668U, 6697U, 4937U}) {
     INFO(code);

@@ -230,6 +230,54 @@ TEST_CASE("a facet is projected along the largest component of its world area, t
   CHECK(facet_projection(line, 0).is_degenerate);
 }
 
+TEST_CASE("in a geographic system a degree counts 2^17 metres of height") {
+  const auto axis = [](const Ring& ring, std::uint32_t srid, Lattice lattice = {}) {
+    auto solid = Solid::make(facet_solid({ring}).arrays(), lattice, srid);
+    REQUIRE(solid);
+    return facet_projection(*solid, 0).axis;
+  };
+  // Ten units wide, one corner three units up; then turned about, x for y.
+  const Ring along_x{{0, 0, 0}, {1, 0, 30}, {1, 1, 30}, {0, 1, 0}};
+  const Ring along_y{{0, 0, 0}, {1, 0, 0}, {1, 1, 30}, {0, 1, 30}};
+  for (const std::uint32_t srid : {0U, 7415U, 2263U, 4978U}) {
+    INFO(srid);
+    CHECK(axis(along_x, srid) == 0);
+    CHECK(axis(along_y, srid) == 1);
+  }
+  for (const std::uint32_t srid : {4326U, 4979U, 6697U, 4807U}) {
+    INFO(srid);
+    CHECK(axis(along_x, srid) == 2);
+    CHECK(axis(along_y, srid) == 2);
+  }
+  // The change is where the constant says, exactly: at a tie x goes before z.
+  const auto slope = [](double height) {
+    return Ring{{0, 0, 0}, {1, 0, height}, {1, 1, height}, {0, 1, 0}};
+  };
+  CHECK(axis(slope(131071), 4326) == 2);
+  CHECK(axis(slope(131072), 4326) == 0);
+  // Steps count too: 10^-7 degrees beside 10^-3 m, so 0.0131072 m are as long as a step along x.
+  Lattice lattice;
+  lattice.step = {GridNumber{1, -7}, GridNumber{1, -7}, GridNumber{1, -3}};
+  CHECK(axis(slope(13), 6697, lattice) == 2);
+  CHECK(axis(slope(14), 6697, lattice) == 0);
+  CHECK(axis(slope(14), 7415, lattice) == 0);
+  // A wall that leans a little stays a wall.
+  CHECK(axis({{0, 0, 0}, {0, 1, 0}, {0, 1, 1000000}, {1, 0, 1000000}}, 4326) == 0);
+}
+
+TEST_CASE("coordinates that cannot be angles count as metres in a geographic system") {
+  const Ring ring{{400, 0, 0}, {401, 0, 30}, {401, 1, 30}, {400, 1, 0}};
+  Ring near = ring;
+  for (Point& p : near) p.x -= 41;  // to 360
+  const auto axis = [](const Ring& r) {
+    auto solid = Solid::make(facet_solid({r}).arrays(), Lattice{}, 4326);
+    REQUIRE(solid);
+    return facet_projection(*solid, 0).axis;
+  };
+  CHECK(axis(ring) == 0);
+  CHECK(axis(near) == 2);
+}
+
 TEST_CASE("the projection of large and of fractional coordinates is exact") {
   const double large = 4503599627370496.0;  // 2^52
   // The two largest components differ by one part in 2^104.

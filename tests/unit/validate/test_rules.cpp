@@ -178,10 +178,10 @@ TEST_CASE("a cube of half a millimetre is valid, and collapses under the toleran
 
 TEST_CASE("tolerances are metres in degrees and in feet") {
   // 7.5 units off the fitted plane at one corner lifted by 30.
-  Shell shell = cube(100000);
+  Shell shell = cube(1000);
   for (Facet& facet : shell) {
     for (Point& p : facet[0]) {
-      if (p == Point{100000, 100000, 100000}) p.z = 100030;
+      if (p == Point{1000, 1000, 1000}) p.z = 1030;
     }
   }
   const auto codes = [&](std::uint32_t srid, double horizontal, double vertical) {
@@ -192,8 +192,11 @@ TEST_CASE("tolerances are metres in degrees and in feet") {
     options.proof = Proof::boundary;
     return error_codes(certify(solid_of({shell}, lattice, srid), nullptr, options).report);
   };
-  CHECK(codes(4979, 1e-6, 0.001).empty());         // degrees: 7.5 mm up
-  CHECK(codes(4979, 1e-6, 0.002) == Codes{203});   // 15 mm
+  for (const std::uint32_t srid : {4326U, 4979U, 6697U}) {
+    INFO(srid);
+    CHECK(codes(srid, 1e-7, 0.001).empty());        // a house 0.0001 degrees wide: 7.5 mm
+    CHECK(codes(srid, 1e-7, 0.002) == Codes{203});  // 15 mm
+  }
   CHECK(codes(2263, 0.0033, 0.0033).empty());      // US feet: 7.5 mm
   CHECK(codes(2263, 0.005, 0.005) == Codes{203});  // 11.4 mm
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -51,7 +52,7 @@ std::string progress_line(const std::string& label, std::uint64_t features,
   line += text.data();
   if (share && *share > 0 && *share < 1 && seconds >= 1) {
     const double left = seconds / *share * (1 - *share);
-    const auto whole = static_cast<unsigned long long>(std::min(left, 359'999.0) + 0.5);
+    const auto whole = static_cast<unsigned long long>(std::llround(std::min(left, 359'999.0)));
     if (whole >= 3600) {
       std::snprintf(text.data(), text.size(), "  %llu:%02llu:%02llu left", whole / 3600,
                     whole / 60 % 60, whole % 60);

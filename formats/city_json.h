@@ -40,8 +40,8 @@ struct GeometryRef {
 
 /// What refers to what in a city model.
 struct ModelIndex {
-  std::vector<std::string> ids;         // of the city objects, in document order
-  std::vector<std::uint32_t> root_of;   // object -> its top-level object
+  std::vector<std::string> ids;        // of the city objects, in document order
+  std::vector<std::uint32_t> root_of;  // object -> its top-level object
   /// Object -> the Building that it is or is a part of, by number; kNone for others and templates.
   std::vector<std::uint32_t> building_of;
   std::vector<GeometryRef> geometries;  // by object, then geometry

@@ -48,7 +48,7 @@ class GmlReader {
       const Index feature = model_.objects[geometry.object].feature;
       if (is_grouped[feature]) continue;
       is_grouped[feature] = true;
-      auto status = feature_of(std::move(of_object[feature]), geometry);
+      auto status = feature_of(of_object[feature], geometry);
       if (!status) return std::move(status).error();
     }
     add_notes();
@@ -265,7 +265,7 @@ class GmlReader {
     auto solid = solid_of_points(std::move(draft.solid.arrays), points, std::move(draft.source),
                                  feature.srid, limits_);
     if (!solid) {
-      return error_at(draft.solid.place, solid.error().code, std::move(solid).error().message);
+      return error_at(draft.solid.place, solid.error().code, solid.error().message);
     }
     solid->unclosed_rings = std::move(draft.solid.unclosed_rings);
     const auto& ids = draft.solid.facet_ids;

@@ -166,7 +166,10 @@ template <class Values>
 class PlyReader {
  public:
   PlyReader(const PlyHeader& header, Values values, const Limits& limits)
-      : header_(header), values_(std::move(values)), limits_(limits), vertex_count_(count_vertices()) {}
+      : header_(header),
+        values_(std::move(values)),
+        limits_(limits),
+        vertex_count_(count_vertices()) {}
 
   Result<Document> read() {
     for (const PlyElement& element : header_.elements) {

@@ -115,7 +115,7 @@ Error syntax_error(XML_Parser parser) {
 
 }  // namespace
 
-Error error_at(XmlPlace place, ErrorCode code, std::string message) {
+Error error_at(XmlPlace place, ErrorCode code, std::string_view message) {
   std::string text = "line ";
   text.append(std::to_string(place.line)).append(": ").append(message);
   return Error{code, std::move(text), place.byte, {}};

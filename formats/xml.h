@@ -23,7 +23,7 @@ struct XmlPlace {
 };
 
 /// "line 12: <message>" with the byte offset.
-Error error_at(XmlPlace place, ErrorCode code, std::string message);
+Error error_at(XmlPlace place, ErrorCode code, std::string_view message);
 
 /// A start tag; valid during the call that gets it.
 struct XmlElement {

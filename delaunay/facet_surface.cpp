@@ -5,8 +5,10 @@
 //   2. the faces are connected by edges and have the Euler characteristic of a disc with as many
 //      boundary components as there are rings, so there is no handle, bubble or pinch;
 //   3. turned consistently, the boundary runs along the rings: each ring edge is a chain of edges
-//      through Steiner points that lie on it, in order, but for rounding;
-//   4. vertices are the rings' or Steiner points in the facet's slab (the space between the two
+//      through points that lie on it, in order: Steiner points but for rounding, vertices of other
+//      shells exactly;
+//   4. vertices are the rings', or other shells' that lie exactly on a canonical triangle (shells
+//      may touch in points), or Steiner points in the facet's slab (the space between the two
 //      parallels of its fitted plane that hold the rings) but for rounding;
 //   5. in projection the faces cover no more area than the canonical triangles: with 3, no fold.
 #include "delaunay/facet_surface.h"
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <utility>
 
+#include "delaunay/shell_contacts.h"
 #include "geometry/predicates.h"
 
 namespace watertight {
@@ -118,10 +121,10 @@ class FacetSurfaces::Mesh {
            static_cast<long>(faces_.size());
   }
 
-  /// The vertices from `lowest` on that are joined to `vertex` by an edge of a face.
-  std::span<const std::pair<Index, Index>> neighbours(Index vertex, Index lowest) const {
+  /// The vertices that are joined to `vertex` by an edge of a face, as (vertex, other).
+  std::span<const std::pair<Index, Index>> neighbours(Index vertex) const {
     const auto begin =
-        std::lower_bound(by_vertex_.begin(), by_vertex_.end(), std::pair(vertex, lowest));
+        std::lower_bound(by_vertex_.begin(), by_vertex_.end(), std::pair(vertex, Index{0}));
     const auto end = std::upper_bound(begin, by_vertex_.end(), std::pair(vertex, kNone));
     return {begin, end};
   }
@@ -262,8 +265,10 @@ std::optional<std::string> FacetSurfaces::check_vertices(Index facet, const Plan
   surface.volume_slack = 6 * (plane.half_width + slack);
   for (const Index v : mesh.vertices()) {
     if (!is_steiner(v)) {
-      if (facet_stamp_[v] != facet) {
-        return "its faces use vertex " + std::to_string(v) + ", which is not on its rings";
+      if (facet_stamp_[v] != facet && !is_contact(facet, v)) {
+        return "its faces use vertex " + std::to_string(v) +
+               ", which is neither on its rings nor "
+               "exactly on the facet";
       }
       continue;
     }
@@ -310,6 +315,26 @@ bool FacetSurfaces::is_near_segment(Index vertex, Index from, Index to, double& 
   return place > 0 && place < 1;
 }
 
+/// True for an input vertex that lies exactly on the facet: on one of its canonical triangles.
+bool FacetSurfaces::is_contact(Index facet, Index vertex) const {
+  const int axis = facet_projection(solid_, facet).axis;
+  const std::span<const Triangle> canonical = canonical_of(facet);
+  return std::any_of(canonical.begin(), canonical.end(), [&](const Triangle& t) {
+    return is_on_triangle(data_.points, t, data_.points[vertex], axis);
+  });
+}
+
+/// Whether a chain along the segment may pass the vertex: a Steiner point near it, or another
+/// shell's vertex exactly on it. Requires stamped ring vertices.
+bool FacetSurfaces::may_pass(Index facet, Index vertex, Index from, Index to, double& place) const {
+  if (!is_steiner(vertex)) {
+    if (facet_stamp_[vertex] == facet) return false;
+    const auto& p = data_.points;
+    if (!is_on_segment(p[from], p[to], p[vertex])) return false;
+  }
+  return is_near_segment(vertex, from, to, place);
+}
+
 std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& mesh) const {
   const auto& boundary = mesh.boundary();
   for (std::size_t i = 0; i + 1 < boundary.size(); ++i) {
@@ -333,8 +358,7 @@ std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& m
         ++used;
         current = step->second;
         double place = 1;
-        if (current != to && (!is_steiner(current) ||
-                              !is_near_segment(current, ring[i], to, place) || place <= last)) {
+        if (current != to && (!may_pass(facet, current, ring[i], to, place) || place <= last)) {
           return "ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
                  ") is not straight";
         }
@@ -378,16 +402,16 @@ std::optional<std::string> FacetSurfaces::check_area(Index facet,
 }
 
 /// True if edges of the faces lead from `from` to `to` along the straight segment.
-bool FacetSurfaces::has_chain(const Mesh& mesh, Index from, Index to) const {
+bool FacetSurfaces::has_chain(Index facet, const Mesh& mesh, Index from, Index to) const {
   double reached = 0;
   Index current = from;
   for (std::size_t step = 0; step < mesh.vertices().size(); ++step) {
     if (mesh.has_edge(current, to)) return true;
     Index next = kNone;
     double nearest = 1;
-    for (const auto& [own, candidate] : mesh.neighbours(current, data_.input_count)) {
+    for (const auto& [own, candidate] : mesh.neighbours(current)) {
       double place = 0;
-      if (is_near_segment(candidate, from, to, place) && place > reached && place < nearest) {
+      if (may_pass(facet, candidate, from, to, place) && place > reached && place < nearest) {
         nearest = place;
         next = candidate;
       }
@@ -418,7 +442,7 @@ std::optional<std::string> FacetSurfaces::check(Index facet, std::span<const Con
   if (auto wrong = check_area(facet, surface)) return wrong;
   for (const Triangle& t : canonical_of(facet)) {
     for (std::size_t k = 0; k < 3 && surface.follows_canonical; ++k) {
-      surface.follows_canonical = has_chain(mesh, t[k], t[(k + 1) % 3]);
+      surface.follows_canonical = has_chain(facet, mesh, t[k], t[(k + 1) % 3]);
     }
   }
   return std::nullopt;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Whether the faces that a tetrahedralization gives to a facet really are that facet: a disc with
-// the facet's rings as its boundary, made of the facet's own vertices and of Steiner points that
-// differ from it by rounding only. For the certificate.
+// the facet's rings as its boundary, made of the facet's own vertices, of vertices of other shells
+// that lie on it exactly, and of Steiner points that differ from it by rounding only. For the
+// certificate.
 #pragma once
 
 #include <array>
@@ -53,8 +54,10 @@ class FacetSurfaces {
 
   Plane plane_of(Index facet) const;
   bool is_steiner(Index vertex) const { return vertex >= data_.input_count; }
-  bool has_chain(const Mesh& mesh, Index from, Index to) const;
+  bool has_chain(Index facet, const Mesh& mesh, Index from, Index to) const;
   bool is_near_segment(Index vertex, Index from, Index to, double& place) const;
+  bool is_contact(Index facet, Index vertex) const;
+  bool may_pass(Index facet, Index vertex, Index from, Index to, double& place) const;
   std::optional<std::string> check_vertices(Index facet, const Plane& plane, const Mesh& mesh,
                                             FacetSurface& surface);
   std::optional<std::string> check_rings(Index facet, const Mesh& mesh) const;

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -73,6 +74,7 @@ class DelaunayFaces {
 struct LocalFacet {
   std::vector<Index> global;  // local vertex -> vertex of the solid
   std::vector<std::vector<Index>> rings;
+  std::vector<Edge> boundary;  // directed: the ring edges, divided where other shells touch them
   std::vector<Triangle> canonical;
   std::span<const Point> points;
   Projection projection;
@@ -87,6 +89,20 @@ struct LocalFacet {
   }
 };
 
+/// The directed edges that have a triangle on one side only, sorted.
+std::vector<Edge> boundary_of(std::span<const Triangle> triangles) {
+  std::vector<Edge> edges;
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<Edge> boundary;
+  std::copy_if(edges.begin(), edges.end(), std::back_inserter(boundary), [&](const Edge& edge) {
+    return !std::binary_search(edges.begin(), edges.end(), Edge{edge.second, edge.first});
+  });
+  return boundary;
+}
+
 LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> canonical,
                     std::vector<Index>& local_of) {
   LocalFacet local;
@@ -94,12 +110,13 @@ LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> c
   local.projection = facet_projection(solid, facet);
   local.triangle_count = canonical.size();
   const IndexRange rings = solid.rings_of(facet);
-  for (Index ring = rings.begin; ring < rings.end; ++ring) {
-    local.global.insert(local.global.end(), solid.ring(ring).begin(), solid.ring(ring).end());
+  for (const Triangle& t : canonical) {
+    local.global.insert(local.global.end(), t.begin(), t.end());
   }
   std::sort(local.global.begin(), local.global.end(), [&](Index a, Index b) {
     return std::pair(local.points[a], a) < std::pair(local.points[b], b);
   });
+  local.global.erase(std::unique(local.global.begin(), local.global.end()), local.global.end());
   for (Index i = 0; i < local.global.size(); ++i) local_of[local.global[i]] = i;
   for (Index ring = rings.begin; ring < rings.end; ++ring) {
     std::vector<Index>& vertices = local.rings.emplace_back();
@@ -110,6 +127,7 @@ LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> c
   for (const Triangle& t : canonical) {
     local.canonical.push_back({local_of[t[0]], local_of[t[1]], local_of[t[2]]});
   }
+  local.boundary = boundary_of(local.canonical);
   return local;
 }
 
@@ -121,11 +139,7 @@ class Walk {
       : facet_(facet), faces_(faces), local_of_(local_of) {}
 
   std::optional<std::vector<Triangle>> run() {
-    for (const std::vector<Index>& ring : facet_.rings) {
-      for (std::size_t i = 0; i < ring.size(); ++i) {
-        open_.insert({ring[i], ring[(i + 1) % ring.size()]});
-      }
-    }
+    open_.insert(facet_.boundary.begin(), facet_.boundary.end());
     std::vector<Triangle> triangles;
     while (!open_.empty()) {
       if (triangles.size() == facet_.triangle_count) return std::nullopt;

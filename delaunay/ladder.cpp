@@ -21,6 +21,7 @@
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
 #include "delaunay/follow_delaunay.h"
+#include "delaunay/shell_contacts.h"
 
 namespace watertight {
 namespace {
@@ -81,7 +82,10 @@ std::vector<Index> sorted_vertices(std::span<const Point> vertices) {
   return order;
 }
 
-EngineInput engine_input(const Solid& solid, const FacetTriangles& canonical) {
+/// Facets that hold vertices or edges of other shells are given triangle by triangle: engines do
+/// not expect constraints inside a patch.
+EngineInput engine_input(const Solid& solid, const FacetTriangles& canonical,
+                         const std::vector<bool>& is_touched) {
   EngineInput input;
   input.vertex_at = sorted_vertices(solid.vertices());
   std::vector<Index> rank(input.vertex_at.size());
@@ -103,11 +107,12 @@ EngineInput engine_input(const Solid& solid, const FacetTriangles& canonical) {
   }
   std::sort(facets.begin(), facets.end());
   for (const auto& [triangles, facet] : facets) {
-    const auto number = static_cast<Index>(input.facet_at.size());
-    input.facet_at.push_back(facet);
-    input.complex.triangles.insert(input.complex.triangles.end(), triangles.begin(),
-                                   triangles.end());
-    input.complex.facet_of.resize(input.complex.triangles.size(), number);
+    const bool is_apart = !is_touched.empty() && is_touched[facet];
+    for (const Triangle& triangle : triangles) {
+      if (is_apart || &triangle == &triangles.front()) input.facet_at.push_back(facet);
+      input.complex.triangles.push_back(triangle);
+      input.complex.facet_of.push_back(static_cast<Index>(input.facet_at.size() - 1));
+    }
   }
   return input;
 }
@@ -166,6 +171,13 @@ class Climb {
       : solid_(solid), canonical_(canonical), workers_(workers), options_(options) {}
 
   LadderResult run() {
+    Result<ContactTriangles> contacts = divide_at_contacts(solid_, canonical_, options_.cancel);
+    if (!contacts) {
+      result_.obstacle = "contacts of shells: " + to_string(contacts.error());
+      return std::move(result_);
+    }
+    contacts_ = *std::move(contacts);
+    result_.obstacle = contacts_.obstacle;
     for (const Rung rung :
          {Rung::delaunay, Rung::patch, Rung::patch_scaled, Rung::triangles_scaled, Rung::tetgen}) {
       if (rung > options_.last_rung) break;
@@ -186,6 +198,11 @@ class Climb {
   }
 
  private:
+  /// What the constraints are made of.
+  const FacetTriangles& triangles() const {
+    return contacts_.has_contacts() ? contacts_.triangles : canonical_;
+  }
+
   bool applies(Rung rung) {
     switch (rung) {
       case Rung::delaunay:
@@ -262,7 +279,7 @@ class Climb {
         solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), options_.cancel);
     if (!delaunay) return conclude(delaunay.error());
     Result<FollowingTriangles> followed =
-        follow_delaunay(solid_, canonical_, *delaunay, options_.cancel);
+        follow_delaunay(solid_, triangles(), *delaunay, options_.cancel);
     if (!followed) return conclude(followed.error());
     const FollowingTriangles& following = *followed;
     if (following.missing_total > 0) {
@@ -293,7 +310,9 @@ class Climb {
     if (!(limits.cpu_seconds > 0)) {
       return conclude(RungOutcome::not_started, "not-started: the rungs before took all the time");
     }
-    if (input_.facet_at.empty()) input_ = engine_input(solid_, canonical_);
+    if (input_.facet_at.empty()) {
+      input_ = engine_input(solid_, triangles(), contacts_.is_touched);
+    }
     const std::array<double, 3> scale = scale_of(rung);
     CdtJob job;
     job.constraints = constraints_of(rung);
@@ -306,7 +325,8 @@ class Climb {
       return conclude(outcome_of(reply.outcome),
                       std::string(to_string(reply.outcome)) + ": " + reply.detail);
     }
-    Result<CdtAnswer> answer = read_answer(reply.reply, job.complex.vertices, solid_.facet_count());
+    Result<CdtAnswer> answer =
+        read_answer(reply.reply, job.complex.vertices, static_cast<Index>(input_.facet_at.size()));
     if (!answer) {
       return conclude(RungOutcome::garbage, "garbage: " + to_string(answer.error()));
     }
@@ -367,6 +387,7 @@ class Climb {
   const FacetTriangles& canonical_;
   EngineWorkers* workers_;
   const LadderOptions& options_;
+  ContactTriangles contacts_;
   EngineInput input_;
   RungAttempt attempt_;
   double engines_seconds_ = 0;  // CPU time of workers so far

@@ -89,6 +89,8 @@ struct LadderResult {
   CertificateRefusal property = CertificateRefusal::none;
   std::string detail;
   Index facet = kNone;
+  /// Why engines can hardly have an answer (shells whose edges cross in no vertex), or empty.
+  std::string obstacle;
   std::vector<RungAttempt> attempts;
 };
 

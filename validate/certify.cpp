@@ -142,6 +142,7 @@ void Certifier::climb(EngineWorkers* workers) {
     report_property(result);
   } else {
     report.undecided_reason = "no rung of the tetrahedralization ladder finished";
+    if (!result.obstacle.empty()) report.undecided_reason += " (" + result.obstacle + ")";
     if (!report.attempts.empty()) {
       report.undecided_reason += "; the last attempt: " + report.attempts.back().outcome;
     }

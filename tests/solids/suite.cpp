@@ -83,7 +83,7 @@ std::vector<SuiteCase> shell_cases() {
   cases.push_back(of("cavity-touches-edge", {outer, along_edge}, {}, {}, Ask::engines));
   const Shell tip_on_wall = inside_out(
       pyramid({{half, 5000, half}, {15000, half, half}, {half, 15000, half}}, {half, half, 20000}));
-  cases.push_back(of("cavity-touches-wall-in-a-point", {outer, tip_on_wall}, {}, {}, Ask::open));
+  cases.push_back(of("cavity-touches-wall-in-a-point", {outer, tip_on_wall}, {}, {}, Ask::engines));
   cases.push_back(
       of("cavity-shares-face", {outer, cavity({4000, 4000, 4000}, {8000, 8000, 20000})}, {401}));
   const Shell low = cavity({4000, 4000, 4000}, {8000, 8000, 8000});
@@ -99,7 +99,7 @@ std::vector<SuiteCase> shell_cases() {
   cases.push_back(
       of("cavity-divides-the-interior",
          {outer, inside_out(bipyramid(middle, {half, half, 14000}, {half, half, 6000}))}, {404}, {},
-         Ask::open));
+         Ask::engines));
   cases.push_back(of("bodies-touch-in-vertex",
                      {join(outer, box({20000, 20000, 20000}, {25000, 25000, 25000}))}, {303}));
   cases.push_back(of("bodies-touch-along-edge",

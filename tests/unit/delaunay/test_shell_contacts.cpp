@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Shells that touch inside each other's facets and edges: valid solids whose tetrahedralization
+// must have the contacts within the facets.
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <set>
+#include <string>
+
+#include "delaunay/ladder.h"
+#include "delaunay/shell_contacts.h"
+#include "geometry/measures.h"
+#include "geometry/triangle_triangle.h"
+#include "unit/delaunay/sample_solids.h"
+
+namespace watertight {
+namespace {
+
+using samples::Shape;
+
+EngineWorkers& engines() {
+  static EngineWorkers workers;
+  return workers;
+}
+
+/// Adds a cavity whose facets are given by the places of `points`, turned out of the cavity. A
+/// point that the shape has is used again.
+void add_cavity(Shape& shape, const std::vector<Point>& points,
+                const std::vector<std::vector<std::size_t>>& facets) {
+  std::vector<Index> number;
+  for (const Point& p : points) {
+    const auto place = std::find(shape.vertices.begin(), shape.vertices.end(), p);
+    number.push_back(Index(place - shape.vertices.begin()));
+    if (place == shape.vertices.end()) shape.vertices.push_back(p);
+  }
+  samples::Shell shell;
+  for (const std::vector<std::size_t>& facet : facets) {
+    samples::Ring ring;
+    for (const std::size_t v : facet) ring.push_back(number[v]);
+    std::reverse(ring.begin(), ring.end());
+    shell.push_back({ring});
+  }
+  shape.shells.push_back(shell);
+}
+
+/// A tetrahedron abcd, whichever way it turns.
+void add_tetrahedron(Shape& shape, const std::vector<Point>& p) {
+  std::vector<Point> points = p;
+  const std::vector<Triangle> facets{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  if (volume_sign(points, facets) < 0) std::swap(points[0], points[1]);
+  add_cavity(shape, points, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+}
+
+Shape block() { return samples::box({0, 0, 0}, {200, 200, 200}); }
+
+Shape tip_on_wall(const Point& tip) {
+  Shape shape = block();
+  add_tetrahedron(shape, {{100, 50, 100}, {150, 100, 90}, {50, 150, 100}, tip});
+  return shape;
+}
+
+Shape edge_on_wall(const Point& from, const Point& to) {
+  Shape shape = block();
+  add_tetrahedron(shape, {{90, 70, 100}, {110, 130, 110}, from, to});
+  return shape;
+}
+
+/// A cavity with a square rim that runs around the walls at half height.
+Shape divided() {
+  Shape shape = block();
+  add_cavity(
+      shape,
+      {{0, 0, 100}, {200, 0, 100}, {200, 200, 100}, {0, 200, 100}, {100, 100, 140}, {100, 100, 60}},
+      {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}});
+  return shape;
+}
+
+std::vector<Shape> touching() {
+  std::vector<Shape> shapes{
+      tip_on_wall({100, 100, 200}),                 // on the diagonal of a wall
+      tip_on_wall({100, 60, 200}),                  // beside it
+      tip_on_wall({110, 0, 200}),                   // in an edge of two walls
+      edge_on_wall({30, 50, 200}, {170, 90, 200}),  // inside a wall, over its diagonal
+      edge_on_wall({0, 50, 200}, {200, 90, 200}),   // from edge to edge
+      edge_on_wall({0, 0, 200}, {200, 200, 200}),   // one diagonal of a wall
+      edge_on_wall({0, 200, 200}, {200, 0, 200}),   // the other
+      edge_on_wall({40, 0, 200}, {160, 0, 200}),    // in an edge of two walls
+      edge_on_wall({0, 0, 200}, {100, 30, 200})};   // from a vertex
+  Shape two = tip_on_wall({100, 100, 200});         // a cavity on a wall ...
+  add_tetrahedron(two, {{60, 60, 60}, {130, 60, 60}, {90, 130, 50}, {100, 100, 10}});
+  add_tetrahedron(two, {{120, 30, 150}, {160, 30, 150}, {150, 10, 120}, {140, 25, 200}});
+  shapes.push_back(two);     // ... and another on the same
+  Shape cavities = block();  // a cavity's tip on a cavity
+  samples::add_box(cavities, {40, 40, 40}, {120, 120, 80}, true);
+  add_tetrahedron(cavities, {{60, 60, 120}, {100, 60, 130}, {80, 110, 120}, {70, 90, 80}});
+  shapes.push_back(cavities);
+  return shapes;
+}
+
+LadderResult climb(const Shape& shape, const LadderOptions& options) {
+  const Solid solid = samples::make_solid(shape);
+  return climb_ladder(solid, triangulate_facets(solid), &engines(), options);
+}
+
+std::string attempts(const LadderResult& result) {
+  std::string text;
+  for (const RungAttempt& attempt : result.attempts) {
+    text.append("[").append(to_string(attempt.rung)).append(": ");
+    text.append(attempt.outcome).append("]");
+  }
+  return text;
+}
+
+TEST_CASE("a cavity may touch a facet of another shell from within, on every rung") {
+  const std::vector<Shape> shapes = touching();
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    for (const Rung rung : {Rung::delaunay, Rung::patch, Rung::triangles_scaled, Rung::tetgen}) {
+      if (rung == Rung::tetgen && engines().tetgen() == nullptr) continue;
+      LadderOptions options;
+      options.first_rung = rung;
+      const LadderResult result = climb(shapes[i], options);
+      INFO("shape " << i << " from " << to_string(rung) << ": " << attempts(result));
+      CHECK(result.certificate.has_value());
+      CHECK(result.obstacle.empty());
+      if (rung != Rung::delaunay) CHECK(result.attempts.size() == 1);
+    }
+  }
+}
+
+TEST_CASE("the Delaunay tetrahedralization alone proves a contact where it has the faces") {
+  LadderOptions options;
+  options.last_rung = Rung::delaunay;
+  const LadderResult result = climb(tip_on_wall({100, 100, 200}), options);
+  INFO(attempts(result));
+  CHECK(result.certificate.has_value());
+}
+
+TEST_CASE("a cavity that touches the walls all around divides the interior") {
+  for (const Rung rung : {Rung::delaunay, Rung::patch, Rung::triangles_scaled, Rung::tetgen}) {
+    if (rung == Rung::tetgen && engines().tetgen() == nullptr) continue;
+    LadderOptions options;
+    options.first_rung = rung;
+    const LadderResult result = climb(divided(), options);
+    INFO(attempts(result));
+    CHECK(to_string(result.property) == "interior-disconnected");
+  }
+}
+
+TEST_CASE("edges of different shells that cross in no vertex are named") {
+  // The edge of a cavity leaves the upper floor of a step over the step's edge.
+  Shape shape =
+      samples::prism({{0, 0}, {200, 0}, {200, 200}, {100, 200}, {100, 100}, {0, 100}}, 200);
+  add_tetrahedron(shape, {{150, 40, 60}, {160, 40, 120}, {50, 100, 100}, {150, 100, 103}});
+  const LadderResult result = climb(shape, {});
+  INFO(attempts(result));
+  CHECK(result.obstacle.find("touch in a point that is no vertex") != std::string::npos);
+  CHECK(result.property == CertificateRefusal::none);
+}
+
+TEST_CASE("triangles divided at contacts are the same surface") {
+  int number = -1;
+  for (const Shape& shape : touching()) {
+    ++number;
+    const Solid solid = samples::make_solid(shape);
+    const FacetTriangles canonical = triangulate_facets(solid);
+    const auto divided = divide_at_contacts(solid, canonical);
+    REQUIRE(divided);
+    REQUIRE(divided->has_contacts());
+    CHECK(divided->triangles.first.size() == canonical.first.size());
+    CHECK(six_volume(solid.vertices(), divided->triangles.triangles) ==
+          six_volume(solid.vertices(), canonical.triangles));
+    // No triangle of one shell meets another's but in a common vertex or edge.
+    const auto& triangles = divided->triangles.triangles;
+    for (Index a = 0; a < triangles.size(); ++a) {
+      for (Index b = a + 1; b < triangles.size(); ++b) {
+        INFO(number << ": " << a << " " << b);
+        CHECK_FALSE(
+            is_intersection(classify_contact(solid.vertices(), triangles[a], triangles[b])));
+      }
+    }
+  }
+}
+
+TEST_CASE("shells without contacts, and single shells, are left as they are") {
+  Shape apart = block();
+  samples::add_box(apart, {50, 50, 50}, {100, 100, 100}, true);
+  for (const Shape& shape : {apart, block()}) {
+    const Solid solid = samples::make_solid(shape);
+    const auto divided = divide_at_contacts(solid, triangulate_facets(solid));
+    REQUIRE(divided);
+    CHECK_FALSE(divided->has_contacts());
+  }
+}
+
+TEST_CASE("a vertex that is not exactly on the facet is no contact") {
+  // The proof of a tip on the wall, for the solid whose tip is one unit (or the least double) off.
+  const LadderResult result = climb(tip_on_wall({100, 60, 200}), {});
+  REQUIRE(result.certificate.has_value());
+  const double below = 200 - 0x1p-45;
+  for (const Point tip : {Point{100, 60, 199}, Point{100, 60, below}}) {
+    const Solid off = samples::make_solid(tip_on_wall(tip));
+    Tetrahedralization data = result.certificate->tetrahedralization;
+    std::copy(off.vertices().begin(), off.vertices().end(), data.points.begin());
+    const CertificateResult checked =
+        check_certificate(off, triangulate_facets(off), std::move(data), Rung::patch);
+    CHECK(checked.refusal != CertificateRefusal::none);
+  }
+}
+
+TEST_CASE("a facet's faces must reach its own edge where another shell touches it") {
+  // A face of a wall given to the neighbour, at a contact in their common edge.
+  const Solid solid = samples::make_solid(tip_on_wall({110, 0, 200}));
+  const FacetTriangles canonical = triangulate_facets(solid);
+  const LadderResult result = climb_ladder(solid, canonical, &engines(), {});
+  REQUIRE(result.certificate.has_value());
+  const Tetrahedralization& proof = result.certificate->tetrahedralization;
+  for (std::size_t i = 0; i < proof.constrained.size(); ++i) {
+    Tetrahedralization damaged = proof;
+    damaged.constrained[i].facet = (damaged.constrained[i].facet + 1) % solid.facet_count();
+    CHECK(check_certificate(solid, canonical, damaged, Rung::patch).refusal ==
+          CertificateRefusal::facet_not_conforming);
+    damaged = proof;
+    damaged.constrained.erase(damaged.constrained.begin() + std::ptrdiff_t(i));
+    CHECK(check_certificate(solid, canonical, damaged, Rung::patch).refusal ==
+          CertificateRefusal::facet_not_conforming);
+  }
+}
+
+}  // namespace
+}  // namespace watertight

@@ -38,7 +38,9 @@ class WktReader {
       return Error{
           ErrorCode::unsupported, "only POLYHEDRALSURFACE Z, SOLID Z and TIN Z are read", at_, {}};
     }
-    if (!is_empty_) {
+    if (is_empty_) {
+      arrays_.end_shell();  // an empty exterior shell, as in every reader
+    } else {
       auto status = type == "SOLID" ? list([this] { return shell(); }) : shell();
       if (!status) return status.error();
     }

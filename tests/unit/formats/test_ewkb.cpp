@@ -157,6 +157,21 @@ TEST_CASE("EWKB that is not a closed solid of finite points is an error") {
   CHECK_FALSE(read_ewkb(longer));
 }
 
+// Found by fuzzing: a solid of zero shells was written as an empty surface, which has one.
+TEST_CASE("a solid without shells has an empty exterior shell and comes back as the same solid") {
+  const Bytes none{1, 0x65, 0, 0, 0x80, 0, 0, 0, 0};
+  const auto solid = read_ewkb(none);
+  REQUIRE(solid);
+  CHECK(solid->solid.shell_count() == 1);
+  CHECK(solid->solid.facet_count() == 0);
+  const auto again = read_ewkb(write_ewkb(solid->solid));
+  REQUIRE(again);
+  CHECK(again->solid == solid->solid);
+  const auto text = read_wkt("SOLID Z EMPTY");
+  REQUIRE(text);
+  CHECK(text->solid.shell_count() == 1);
+}
+
 TEST_CASE("EWKB rejects every truncated prefix and counts beyond the bytes") {
   const auto solid = read_wkt(kHollow);
   REQUIRE(solid);

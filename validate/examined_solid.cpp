@@ -132,7 +132,11 @@ bool ExaminedSolid::is_shell_faulty(Index shell) const {
 
 bool ExaminedSolid::is_cancelled() {
   constexpr std::uint32_t kInterval = 1U << 10U;
-  if (!was_cancelled_ && cancel_ && polls_++ % kInterval == 0) was_cancelled_ = cancel_();
+  return polls_++ % kInterval == 0 ? ask_cancelled() : was_cancelled_;
+}
+
+bool ExaminedSolid::ask_cancelled() {
+  if (!was_cancelled_ && cancel_) was_cancelled_ = cancel_();
   return was_cancelled_;
 }
 

@@ -53,6 +53,8 @@ class ExaminedSolid {
 
   /// For long loops: true once the caller wants an end. Asks now and then, and remembers.
   bool is_cancelled();
+  /// For searches that ask now and then themselves: asks each time.
+  bool ask_cancelled();
   bool was_cancelled() const { return was_cancelled_; }
 
   const Solid& submitted() const { return submitted_; }

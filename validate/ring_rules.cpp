@@ -106,7 +106,8 @@ void report_no_region(ExaminedSolid& examined, Index facet) {
 }
 
 void check_shape(ExaminedSolid& examined, Index facet) {
-  const RingProblems found = ring_problems(examined.solid(), facet, kMostProblemsPerFacet);
+  const RingProblems found = ring_problems(examined.solid(), facet, kMostProblemsPerFacet,
+                                           [&] { return examined.ask_cancelled(); });
   for (const RingProblem& problem : found.problems) {
     examined.findings.add(finding_of(examined, facet, problem));
   }

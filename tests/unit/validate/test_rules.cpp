@@ -358,6 +358,33 @@ TEST_CASE("T-junctions are found along edges with thousands of vertices") {
   for (const Finding& finding : report.findings) CHECK(finding.place.facet == 2);
 }
 
+TEST_CASE("the search for the problems of one large ring can be cancelled") {
+  Ring ring;  // a comb, whose teeth overlap in one axis, and a loop in its back
+  for (int i = 0; i < 2000; ++i) {
+    ring.push_back({0.0, 2.0 * i, 0});
+    ring.push_back({1000.0, 2.0 * i + 1, 0});
+  }
+  for (const auto& [x, y] :
+       std::vector<std::array<double, 2>>{{-10, 4000}, {-10, 5}, {-30, 0}, {-30, 5}, {-10, 0}}) {
+    ring.push_back({x, y, 0});
+  }
+  const Solid solid = solid_of({{{ring}}});
+  const auto skips_104 = [&](int after) {
+    int polls = 0;
+    CertifyOptions options;
+    options.ladder.cancel = [&] { return ++polls > after; };
+    const Report report = certify(solid, nullptr, options).report;
+    CHECK(error_codes(report).count(104) == 1);
+    return std::any_of(report.not_run.begin(), report.not_run.end(), [](const SkippedRule& rule) {
+      return rule.reason == "the search was cancelled" &&
+             std::count(rule.codes.begin(), rule.codes.end(), 104) == 1;
+    });
+  };
+  CHECK(skips_104(0));  // asked before the search
+  CHECK(skips_104(1));  // asked in the search
+  CHECK_FALSE(skips_104(1000000));
+}
+
 TEST_CASE("a cancelled validation is undecided whatever rule is at work") {
   std::vector<Shell> shells{cube(100)};
   for (int i = 0; i < 9; ++i) {

@@ -228,7 +228,8 @@ void RingExaminer::examine_pair(const Edge& a, const Edge& b) {
 
 /// Neighbours meet beyond their common vertex when they run over each other.
 std::optional<Contact> RingExaminer::neighbour_contact(const Edge& a, const Edge& b) const {
-  const Index joint = a.to == b.from ? a.to : a.from;
+  // By position: where a ring runs out to a point and back, both ends of the edges are common.
+  const Index joint = a.position + 1 == b.position ? a.to : a.from;
   const Index end_of_a = a.to == joint ? a.from : a.to;
   const Index end_of_b = b.to == joint ? b.from : b.to;
   if (turn(end_of_a, joint, end_of_b) != 0) return std::nullopt;

@@ -31,6 +31,20 @@ std::multiset<int> code_counts(const Report& report) {
   return codes;
 }
 
+/// A prism with a fin: floor and roof run out to a point and back, with a wall there and back.
+Shell finned_prism() {
+  const Ring floor{{9, 9, 0}, {6, 6, 0}, {6, 0, 0}, {3, -1, 0}, {0, 2, 0}, {1, 6, 0}, {6, 6, 0}};
+  Ring roof = floor;
+  for (Point& p : roof) p.z = 5;
+  std::reverse(roof.begin(), roof.end());
+  Shell shell{{floor}, {roof}};
+  for (std::size_t i = 0; i < floor.size(); ++i) {
+    const Point a = floor[i], b = floor[(i + 1) % floor.size()];
+    shell.push_back({{{b.x, b.y, 5}, b, a, {a.x, a.y, 5}}});
+  }
+  return shell;
+}
+
 std::vector<std::vector<Shell>> samples() {
   Shell open = cube(4);
   open.pop_back();
@@ -39,6 +53,7 @@ std::vector<std::vector<Shell>> samples() {
   Shell pierced = cube(9);
   pierced[1].push_back(Ring{{3, 3, 9}, {3, 6, 9}, {6, 6, 9}, {6, 3, 9}});
   return {{cube(4)},
+          {finned_prism()},
           {open},
           {flipped},
           {pierced},

@@ -16,8 +16,7 @@ namespace watertight::solids {
 enum class Ask : std::uint8_t {
   rung_zero,  // the exact tests and the canonical Delaunay tetrahedralization decide
   engines,    // needs the engines' rungs
-  boundary,   // proof by boundary: the exact tests alone
-  open        // the engines may leave it undecided, but never say otherwise
+  boundary    // proof by boundary: the exact tests alone
 };
 
 struct SuiteCase {

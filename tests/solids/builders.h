@@ -33,6 +33,8 @@ Shell terrain(Random& random, std::size_t size, double step);
 /// The boundary of the unit cubes (scaled by `size`) whose number is set, in an n x n x n grid;
 /// squares as facets, all of them in one shell.
 Shell voxels(const std::vector<bool>& is_filled, std::size_t n, double size);
+/// Schönhardt's polyhedron: the smallest that needs a Steiner point.
+Shell schoenhardt();
 /// Chazelle's polyhedron: 2 n notches from above and below; needs many Steiner points.
 Shell chazelle(int notches);
 /// A closed surface of triangles that has only one side: a Klein bottle with an immersion that

@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Surfaces with a name: Chazelle's polyhedron, a Klein bottle, a Moebius band.
+// Surfaces with a name: Schönhardt's and Chazelle's polyhedra, a Klein bottle, a Moebius band.
 #include <algorithm>
 
 #include "tests/solids/builders.h"
 
 namespace watertight::solids {
+
+Shell schoenhardt() {
+  // E. Schönhardt, 1928: the upper triangle of a prism turned by 30 degrees, the walls folded
+  // inward along their long diagonals.
+  const Ring low{{20000, 10000, 0}, {5000, 18660, 0}, {5000, 1340, 0}};
+  const Ring high{{18660, 15000, 9000}, {1340, 15000, 9000}, {10000, 0, 9000}};
+  Shell shell{{reversed(low)}, {high}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    shell.push_back({{low[i], low[next], high[next]}});
+    shell.push_back({{low[i], high[next], high[i]}});
+  }
+  return shell;
+}
 
 Shell chazelle(int notches) {
   // Based on: B. Chazelle, Convex partitions of polyhedra, 1984. Notches cut from above reach the

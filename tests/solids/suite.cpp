@@ -163,6 +163,7 @@ std::vector<SuiteCase> surface_cases() {
     }
   }
   cases.push_back(of("genus-20", {many}));
+  cases.push_back(of("schoenhardt", {schoenhardt()}, {}, {}, Ask::engines));
   for (int n = 1; n <= 5; ++n) {
     cases.push_back(of("chazelle-" + std::to_string(n), {chazelle(n)}, {}, {}, Ask::engines));
   }

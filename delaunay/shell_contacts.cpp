@@ -270,24 +270,34 @@ class ContactDivision {
       for (std::size_t k = 0; k < 3; ++k) {
         const Edge b = sorted(second[k], second[(k + 1) % 3]);
         if (!do_cross(points_, a, b)) continue;
-        const bool is_edge_of_first = is_ring_edge(a);
-        const bool is_edge_of_second = is_ring_edge(b);
-        if (!is_edge_of_first) touched_.insert(canonical_.facet_of[pair.first]);
-        if (!is_edge_of_second) touched_.insert(canonical_.facet_of[pair.second]);
-        if (is_edge_of_first && is_edge_of_second) report(a, b);
+        const Index facet_of_a = canonical_.facet_of[pair.first];
+        const Index facet_of_b = canonical_.facet_of[pair.second];
+        if (!is_ring_edge(a)) touched_.insert(facet_of_a);
+        if (!is_ring_edge(b)) touched_.insert(facet_of_b);
+        if (is_fixed(a, facet_of_a) && is_fixed(b, facet_of_b)) report(facet_of_a, facet_of_b);
       }
     }
   }
 
-  void report(const Edge& a, const Edge& b) {
+  /// An edge of the surface: of a ring, or a fold of a facet that is not planar.
+  bool is_fixed(const Edge& edge, Index facet) const {
+    if (is_ring_edge(edge)) return true;
+    std::vector<Index> apexes;
+    for (Index i = canonical_.first[facet]; i < canonical_.first[facet + 1]; ++i) {
+      const Triangle& t = canonical_.triangles[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (sorted(t[k], t[(k + 1) % 3]) == edge) apexes.push_back(t[(k + 2) % 3]);
+      }
+    }
+    return apexes.size() == 2 && orient3d(points_[edge.first], points_[edge.second],
+                                          points_[apexes[0]], points_[apexes[1]]) != 0;
+  }
+
+  void report(Index facet, Index other) {
     if (!result_.obstacle.empty()) return;
-    const auto text = [](const Edge& edge) {
-      std::string pair = "(";
-      pair += std::to_string(edge.first) + ", " + std::to_string(edge.second) + ")";
-      return pair;
-    };
-    result_.obstacle = "edges " + text(a) + " and " + text(b);
-    result_.obstacle += " of different shells touch in a point that is no vertex";
+    result_.obstacle = "facets " + std::to_string(std::min(facet, other)) + " and ";
+    result_.obstacle += std::to_string(std::max(facet, other)) + " of different shells touch where";
+    result_.obstacle += " two edges (or folds) cross in a point that is no vertex";
   }
 
   /// A diagonal of one facet that is an edge of another shell is no intersection of triangles.

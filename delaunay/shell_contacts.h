@@ -19,8 +19,9 @@ struct ContactTriangles {
   /// them. Grouped by facet and turned alike, as the canonical ones. Empty without contacts.
   FacetTriangles triangles;
   std::vector<bool> is_touched;  // facet -> holds a vertex or an edge of another shell
-  /// Not empty: two edges of different shells cross in a point that is no vertex of the solid, so
-  /// that no triangulation by its vertices exists. For people.
+  /// Not empty: two edges of different shells (or folds of facets that are not planar) cross in a
+  /// point that is no vertex of the solid, so that no triangulation by its vertices exists. For
+  /// people.
   std::string obstacle;
   bool has_contacts() const { return !is_touched.empty(); }
 };

@@ -153,8 +153,65 @@ TEST_CASE("edges of different shells that cross in no vertex are named") {
   add_tetrahedron(shape, {{150, 40, 60}, {160, 40, 120}, {50, 100, 100}, {150, 100, 103}});
   const LadderResult result = climb(shape, {});
   INFO(attempts(result));
-  CHECK(result.obstacle.find("touch in a point that is no vertex") != std::string::npos);
+  CHECK(result.obstacle.find("cross in a point that is no vertex") != std::string::npos);
   CHECK(result.property == CertificateRefusal::none);
+}
+
+Point mean(const std::vector<Point>& points) {
+  Point sum{0, 0, 0};
+  const double count = double(points.size());
+  for (const Point& p : points) sum = {sum.x + p.x, sum.y + p.y, sum.z + p.z};
+  return {sum.x / count, sum.y / count, sum.z / count};
+}
+
+TEST_CASE("a roof that is not planar may be touched on its triangles, but not across its fold") {
+  int valleys = 0;
+  for (const double corner : {260.0, 140.0}) {
+    Shape warped = block();
+    for (Point& p : warped.vertices) {
+      if (p == Point{200, 200, 200}) p.z = corner;
+    }
+    const Solid solid = samples::make_solid(warped);
+    const auto& points = solid.vertices();
+    std::vector<Triangle> roof;
+    for (const Triangle& t : triangulate_facets(solid).triangles) {
+      if (points[t[0]].z > 0 && points[t[1]].z > 0 && points[t[2]].z > 0) roof.push_back(t);
+    }
+    REQUIRE(roof.size() == 2);
+    std::vector<Point> fold;
+    std::vector<Point> apexes;
+    for (const Triangle& t : roof) {
+      const Point tip =
+          mean({points[t[0]], points[t[0]], points[t[1]], points[t[2]]});  // exact: quarters
+      Shape touched = warped;
+      add_tetrahedron(touched, {{100, 50, 90}, {150, 100, 80}, {50, 150, 90}, tip});
+      const LadderResult result = climb(touched, {});
+      INFO(attempts(result));
+      CHECK(result.certificate.has_value());
+      CHECK(result.obstacle.empty());
+      const Triangle& other = &t == &roof[0] ? roof[1] : roof[0];
+      for (const Index v : t) {
+        const bool is_common = std::find(other.begin(), other.end(), v) != other.end();
+        if (!is_common) apexes.push_back(points[v]);
+        if (is_common && &t == &roof[0]) fold.push_back(points[v]);
+      }
+    }
+    const Point middle = mean(fold);
+    if (middle.z > mean(apexes).z) continue;  // a ridge: an edge across it would leave the block
+    ++valleys;
+    const double dx = apexes[0].x > apexes[1].x ? 20 : -20;
+    const double dy = apexes[0].y > apexes[1].y ? 20 : -20;
+    Shape crossed = warped;
+    add_tetrahedron(crossed, {{100, 80, 90},
+                              {110, 120, 80},
+                              {middle.x + dx, middle.y + dy, middle.z},
+                              {middle.x - dx, middle.y - dy, middle.z}});
+    const LadderResult result = climb(crossed, {});
+    INFO(attempts(result));
+    CHECK(result.obstacle.find("(or folds) cross") != std::string::npos);
+    CHECK(result.property == CertificateRefusal::none);
+  }
+  CHECK(valleys == 1);
 }
 
 TEST_CASE("triangles divided at contacts are the same surface") {

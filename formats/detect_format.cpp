@@ -140,7 +140,7 @@ Result<Format> format_of_text(std::string_view text) {
   }
   return Error{ErrorCode::unsupported,
                "neither the name nor the first bytes tell the format; known are CityJSON, "
-               "CityJSONSeq, GML, OBJ, OFF, WKT and EWKB"};
+               "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, WKT and EWKB"};
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/progress.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {
@@ -74,6 +75,15 @@ const std::string kInvalid =
 const std::string kCubeObj =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST_CASE("a progress line tells the rate, and the time left where the whole is known") {
+  CHECK(progress_line("a", 100, 0.5, 10) ==
+        "a [###############...............] 100 features  10/s  0:10 left");
+  CHECK(progress_line("a", 100, 0.01, 100) ==
+        "a [..............................] 100 features  1/s  2:45:00 left");
+  CHECK(progress_line("a", 7, std::nullopt, 2) == "a 7 features  4/s");
+  CHECK(progress_line("a", 0, 0.0, 0) == "a [..............................] 0 features  0/s");
+}
 
 TEST_CASE_METHOD(Fixture, "the exit status tells valid, invalid and broken input apart") {
   write("good.city.jsonl", kValid);

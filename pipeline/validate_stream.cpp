@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/validate_stream.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -25,6 +26,15 @@ struct Passage {
   std::optional<Error> error;
 };
 
+/// Threads that no other feature can use work on the one there is.
+CertifyOptions certify_options(const FeatureReader& reader, const StreamOptions& options) {
+  CertifyOptions certify = options.certify;
+  if (reader.feature_count() == std::size_t{1}) {
+    certify.threads = static_cast<unsigned>(std::clamp<std::size_t>(options.threads, 1, 256));
+  }
+  return certify;
+}
+
 class Stream {
  public:
   Stream(FeatureReader& reader, EngineWorkers* workers, const StreamOptions& options,
@@ -32,6 +42,7 @@ class Stream {
       : reader_(reader),
         workers_(workers),
         options_(options),
+        certify_(certify_options(reader, options)),
         on_feature_(on_feature),
         on_error_(on_error),
         templates_(template_feature(reader.document())) {}
@@ -76,6 +87,7 @@ class Stream {
   FeatureReader& reader_;
   EngineWorkers* workers_;
   const StreamOptions& options_;
+  const CertifyOptions certify_;
   const FeatureSink& on_feature_;
   const ErrorSink& on_error_;
   std::uint64_t most_in_flight_ = 0;
@@ -133,7 +145,7 @@ Passage Stream::validate(Found found) const {
   auto feature = reader_.read(std::move(found.text));
   if (feature) {
     passage.feature = ValidatedFeature{
-        found.number, inspect(*std::move(feature), workers_, options_.certify, options_.groups)};
+        found.number, inspect(*std::move(feature), workers_, certify_, options_.groups)};
   } else {
     passage.error = std::move(feature).error();
   }

@@ -75,7 +75,7 @@ void Certifier::apply_exact_rules() {
   shells_ = check_shells(examined_);
   const std::vector<Index> duplicate_of = check_duplicate_shells(examined_);
   const ShellContacts contacts =
-      check_intersections(examined_, duplicate_of, options_.ladder.cancel);
+      check_intersections(examined_, duplicate_of, options_.ladder.cancel, options_.threads);
   incomplete_ = contacts.incomplete;
   check_diagonals(examined_, contacts);
   check_solid(examined_, shells_, duplicate_of, contacts);

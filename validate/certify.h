@@ -23,6 +23,8 @@ struct CertifyOptions {
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
   std::span<const Index> unclosed_rings = {};
   bool also_tolerant = false;  // fill Report::tolerant
+  /// Of the search for intersections within one solid; the report does not depend on it.
+  unsigned threads = 1;
 };
 
 /// A solid that passed, with what proves it.

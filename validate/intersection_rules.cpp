@@ -25,10 +25,11 @@ struct FacetPair {
 class IntersectionExaminer {
  public:
   IntersectionExaminer(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                       const CancelPoll& cancel)
+                       const CancelPoll& cancel, unsigned threads)
       : examined_(examined),
         duplicate_of_(duplicate_of),
         cancel_(cancel),
+        threads_(threads),
         vertices_(examined.solid().vertices()),
         triangles_(examined.triangles().triangles) {
     contacts_.is_touching.assign(examined.solid().shell_count(), false);
@@ -56,6 +57,7 @@ class IntersectionExaminer {
   ExaminedSolid& examined_;
   const std::vector<Index>& duplicate_of_;
   const CancelPoll& cancel_;
+  unsigned threads_;
   std::span<const Point> vertices_;
   std::span<const Triangle> triangles_;
   ShellContacts contacts_;
@@ -137,6 +139,7 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   IntersectionOptions options;
   options.limit = limit;
   options.cancel = cancel_;
+  options.threads = threads_;
   const auto found = intersecting_pairs(vertices_, triangles_, options);
   if (!found) {
     contacts_.incomplete = "the search for intersections was ended: " + to_string(found.error());
@@ -183,7 +186,7 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
 }  // namespace
 
 ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                                  const CancelPoll& cancel) {
+                                  const CancelPoll& cancel, unsigned threads) {
   const auto& states = examined.triangles().state;
   const auto place = std::find_if(states.begin(), states.end(), [](FacetState state) {
     return state != FacetState::triangulated;
@@ -193,7 +196,7 @@ ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Ind
                            "not for facets whose rings bound no region (first: facet " +
                                std::to_string(place - states.begin()) + ")");
   }
-  return IntersectionExaminer(examined, duplicate_of, cancel).examine();
+  return IntersectionExaminer(examined, duplicate_of, cancel, threads).examine();
 }
 
 }  // namespace watertight

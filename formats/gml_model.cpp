@@ -175,10 +175,10 @@ class GmlBuilder : public XmlHandler {
     }
   }
 
-  void add_defect(Index node, XmlPlace place, ErrorCode code, std::string message) {
+  void add_defect(Index node, XmlPlace place, ErrorCode code, std::string_view message) {
     if (model_.nodes[node].defect != kNone) return;
     model_.nodes[node].defect = static_cast<Index>(model_.defects.size());
-    model_.defects.push_back(error_at(place, code, std::move(message)));
+    model_.defects.push_back(error_at(place, code, message));
   }
 
   Status skip() {

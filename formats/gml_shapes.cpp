@@ -46,8 +46,8 @@ GmlShapes::GmlShapes(const GmlModel& model, std::uint64_t byte_count, const Limi
   }
 }
 
-Error GmlShapes::wrong(XmlPlace place, std::string message) const {
-  return error_at(place, ErrorCode::malformed, std::move(message));
+Error GmlShapes::wrong(XmlPlace place, std::string_view message) const {
+  return error_at(place, ErrorCode::malformed, message);
 }
 
 std::string GmlShapes::title(Index node) const {

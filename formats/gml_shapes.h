@@ -81,7 +81,7 @@ class GmlShapes {
   Status read_positions(const GmlNode& ring, GmlPositions& positions);
   Status close_ring(const GmlNode& ring, std::size_t first, GmlSolid& solid,
                     GmlPositions& positions);
-  Error wrong(XmlPlace place, std::string message) const;
+  Error wrong(XmlPlace place, std::string_view message) const;
 
   const GmlModel& model_;
   const Limits& limits_;

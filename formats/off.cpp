@@ -96,15 +96,8 @@ class OffReader {
   }
 
   Result<Document> finish() {
-    arrays_.end_shell();
-    auto solid = indexed_solid(std::move(arrays_), vertices_, SolidSource{"", "Mesh", "", 0, 0, ""},
-                               limits_);
-    if (!solid) return std::move(solid).error();
-    document_.format = Format::off;
-    if (facet_count_ == 0) document_.notes.push_back("the file has no faces");
-    document_.features.emplace_back();
-    document_.features.back().solids.push_back(std::move(*solid));
-    return std::move(document_);
+    return one_shell_document(std::move(document_), Format::off, "Mesh", std::move(arrays_),
+                              vertices_, limits_);
   }
 
   std::size_t size_;  // of the file

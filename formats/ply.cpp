@@ -347,15 +347,8 @@ class PlyReader {
   }
 
   Result<Document> finish() {
-    if (arrays_.facet_offsets.size() == 1) document_.notes.push_back("the file has no faces");
-    arrays_.end_shell();
-    auto solid = indexed_solid(std::move(arrays_), vertices_, SolidSource{"", "Mesh", "", 0, 0, ""},
-                               limits_);
-    if (!solid) return std::move(solid).error();
-    document_.format = Format::ply;
-    document_.features.emplace_back();
-    document_.features.back().solids.push_back(std::move(*solid));
-    return std::move(document_);
+    return one_shell_document(std::move(document_), Format::ply, "Mesh", std::move(arrays_),
+                              vertices_, limits_);
   }
 
   const PlyHeader& header_;

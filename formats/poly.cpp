@@ -154,15 +154,8 @@ class PolyReader {
   }
 
   Result<Document> finish() {
-    if (arrays_.ring_vertices.empty()) document_.notes.push_back("the file has no facets");
-    arrays_.end_shell();
-    auto solid = indexed_solid(std::move(arrays_), vertices_,
-                               SolidSource{"", "Polyhedron", "", 0, 0, ""}, limits_);
-    if (!solid) return std::move(solid).error();
-    document_.format = Format::poly;
-    document_.features.emplace_back();
-    document_.features.back().solids.push_back(std::move(*solid));
-    return std::move(document_);
+    return one_shell_document(std::move(document_), Format::poly, "Polyhedron", std::move(arrays_),
+                              vertices_, limits_);
   }
 
   std::size_t size_;  // of the file

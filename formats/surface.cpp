@@ -55,6 +55,20 @@ Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertic
   return solid;
 }
 
+Result<Document> one_shell_document(Document document, Format format, std::string geometry_type,
+                                    SolidArrays arrays, DecimalVertices& vertices,
+                                    const Limits& limits) {
+  if (arrays.facet_offsets.size() == 1) document.notes.push_back("the file has no faces");
+  arrays.end_shell();
+  auto solid = indexed_solid(std::move(arrays), vertices,
+                             SolidSource{"", std::move(geometry_type), "", 0, 0, ""}, limits);
+  if (!solid) return std::move(solid).error();
+  document.format = format;
+  document.features.emplace_back();
+  document.features.back().solids.push_back(std::move(*solid));
+  return document;
+}
+
 Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const LatticePoints& points,
                                        SolidSource source, std::uint32_t srid,
                                        const Limits& limits) {

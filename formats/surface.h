@@ -30,6 +30,12 @@ struct DecimalVertices {
 Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertices,
                                      SolidSource source, const Limits& limits);
 
+/// The document of a file that is one shell: `document`, which may have notes, with one feature of
+/// one solid. `arrays` has facets and no shell yet.
+Result<Document> one_shell_document(Document document, Format format, std::string geometry_type,
+                                    SolidArrays arrays, DecimalVertices& vertices,
+                                    const Limits& limits);
+
 /// A solid whose ring vertices are positions in `points`, one per vertex of a ring. Formats of this
 /// kind say that two vertices are the same only by equal coordinates: equal points become one.
 Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const LatticePoints& points,

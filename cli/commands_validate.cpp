@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/printable.h"
 #include "cli/progress.h"
 #include "formats/interior_shells.h"
 #include "pipeline/validate_stream.h"
@@ -63,8 +66,8 @@ std::string place_of(const SolidSource& source) {
 
 void print_solid(const std::string& file, const SolidSource& source, const Report& report) {
   if (report.verdict == Verdict::valid && report.findings.empty()) return;
-  print(file + ": " + place_of(source) + "\n");
-  for (const std::string& line : report_text(report)) print("  " + line + "\n");
+  print(printable(file + ": " + place_of(source)) + "\n");
+  for (const std::string& line : report_text(report)) print("  " + printable(line) + "\n");
 }
 
 /// `source_of(i)` is where the feature's solid i stands.
@@ -75,15 +78,31 @@ void print_groups(const std::string& file, const std::vector<InspectedGroup>& gr
     for (const Finding& finding : group.report.findings) {
       std::string line = file + ": " + group.object_id;
       if (!group.lod.empty()) line += " (LoD " + group.lod + ")";
-      line += "\n  " + finding_text(finding);
+      line = printable(line) + "\n  " + printable(finding_text(finding));
       for (const auto& place : {std::optional(finding.place), finding.other}) {
         if (!place || place->solid >= group.members.size()) continue;
-        line += "\n    " + place_of(source_of(group.members[place->solid]));
+        line += "\n    " + printable(place_of(source_of(group.members[place->solid])));
       }
       print(line + "\n");
     }
   }
 }
+
+/// Whether writing the one would destroy the other. Devices and pipes can be written many times.
+bool is_same_file(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  if (a == "-" || b == "-") return a == b;
+  std::error_code ignored;
+  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
+  if (a == b || fs::equivalent(a, b, ignored)) return true;
+  // Of a relative path without anything that exists, weakly_canonical() makes no absolute one.
+  const auto place = [&](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+  };
+  return place(a) == place(b);
+}
+
+std::string output_name(const std::string& path) { return path == "-" ? "standard output" : path; }
 
 /// One of the files that a run writes beside its output.
 struct OpenReport {
@@ -112,6 +131,7 @@ class Validation {
 
  private:
   bool open_reports();
+  bool is_in_use(const std::string& path) const;
   void validate_file(const std::string& file);
   Result<OpenedInput> open_file(const std::string& file);
   Result<FeatureReader> with_cavities(const std::string& file);
@@ -133,6 +153,17 @@ class Validation {
   Exit exit_ = Exit::valid;
 };
 
+/// By an input, or by a report that is open already.
+bool Validation::is_in_use(const std::string& path) const {
+  const auto is_it = [&](const std::string& other) { return is_same_file(path, other); };
+  const auto is_report = [&](const OpenReport& open) { return is_it(open.path); };
+  if (std::any_of(reports_.begin(), reports_.end(), is_report)) return true;
+  if (path == "-") return false;
+  const auto& cavities = command_.interior_shells;
+  return std::any_of(command_.files.begin(), command_.files.end(), is_it) ||
+         std::any_of(cavities.begin(), cavities.end(), is_it);
+}
+
 bool Validation::open_reports() {
   const std::array<std::pair<const std::string*, ReportMaker>, 3> wanted{
       {{&command_.report, json_report},
@@ -140,9 +171,14 @@ bool Validation::open_reports() {
        {&command_.html, page_report}}};
   for (const auto& [path, make] : wanted) {
     if (path->empty()) continue;
+    if (is_in_use(*path)) {
+      fail(output_name(*path), {ErrorCode::invalid_argument,
+                                "a report would replace an input or another report of this run"});
+      return false;
+    }
     auto file = FileWriter::open(*path);
     if (!file) {
-      fail(*path, file.error());
+      fail(output_name(*path), file.error());
       return false;
     }
     auto writer = std::make_unique<FileWriter>(*std::move(file));
@@ -160,7 +196,7 @@ Status Validation::tell_reports(const Call& call) {
     Status status = call(*open.report);
     if (status) continue;
     Error error = std::move(status).error();
-    error.message.insert(0, open.path + ": ");
+    error.message.insert(0, output_name(open.path) + ": ");
     return error;
   }
   return Done{};
@@ -261,7 +297,7 @@ Exit Validation::run() {
   for (OpenReport& open : reports_) {
     Status status = open.report->finish();
     if (status) status = open.file->commit();
-    if (!status) fail(open.path, status.error());
+    if (!status) fail(output_name(open.path), status.error());
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -272,9 +308,9 @@ Exit Validation::run() {
 }  // namespace
 
 void complain(const std::string& file, const Error& error) {
-  const std::string text = to_string(error);
-  std::fprintf(stderr, "watertight: %s: %s\n", file == "-" ? "standard input" : file.c_str(),
-               text.c_str());
+  const std::string name = file == "-" ? "standard input" : printable(file);
+  const std::string text = printable(to_string(error));
+  std::fprintf(stderr, "watertight: %s: %s\n", name.c_str(), text.c_str());
 }
 
 void print_findings(const std::string& file, const InspectedFeature& feature) {

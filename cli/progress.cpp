@@ -7,7 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <utility>
+
+#include "cli/printable.h"
 
 namespace watertight {
 namespace {
@@ -17,8 +18,8 @@ constexpr std::chrono::milliseconds kInterval{100};
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string label)
-    : label_(std::move(label)),
+ProgressBar::ProgressBar(const std::string& label)
+    : label_(printable(label)),
       is_terminal_(::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_ - kInterval) {}

@@ -209,15 +209,18 @@ Result<FeatureReader> Validation::with_cavities(const std::string& file) {
     if (!input) return std::move(input).error();
     std::vector<Feature>& features = input->document.features;
     if (features.size() == 1 && features[0].solids.size() == 1) return std::move(input->document);
-    return Error{ErrorCode::invalid_argument,
-                 path + ": --interior-shell takes files with one solid each"};
+    return Error{ErrorCode::invalid_argument, "--interior-shell takes files with one solid each"};
   };
   auto document = one_solid(file);
   if (!document) return std::move(document).error();
   std::vector<SubmittedSolid> cavities;
   for (const std::string& path : command_.interior_shells) {
     auto cavity = one_solid(path);
-    if (!cavity) return std::move(cavity).error();
+    if (!cavity) {
+      Error error = std::move(cavity).error();
+      error.message.insert(0, "--interior-shell " + path + ": ");
+      return error;
+    }
     cavities.push_back(std::move(cavity->features[0].solids[0]));
   }
   SubmittedSolid& exterior = document->features[0].solids[0];
@@ -262,6 +265,7 @@ Result<StreamOutcome> Validation::stream(const std::string& file, OpenedInput& i
 
 void Validation::validate_file(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
+  const std::uint64_t solids_before = summary_.solids();
   auto input = open_file(file);
   DocumentHead head{file, {}};
   if (input) head.format = input->reader.document().format;
@@ -275,6 +279,11 @@ void Validation::validate_file(const std::string& file) {
       status = outcome.error();
     }
     end.notes = input->reader.document().notes;
+    if (outcome && outcome->unreadable == 0 && summary_.solids() == solids_before) {
+      end.notes.emplace_back("the document has no solids; surfaces are not validated");
+      std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(),
+                   end.notes.back().c_str());
+    }
     summary_.add_file_bytes(input->reader.bytes_read());
   } else if (status) {
     fail(file, input.error());

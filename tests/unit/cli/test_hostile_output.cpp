@@ -88,5 +88,12 @@ TEST_CASE("a report that would replace an input or another report is refused") {
   CHECK(folder.run("validate in.obj --report r.json --html r.html") == 1);
 }
 
+TEST_CASE("an interior shell that cannot be read is named") {
+  const Folder folder;
+  CHECK(folder.run("validate in.obj --interior-shell missing.obj") == 2);
+  CHECK(folder.read("printed").find("--interior-shell missing.obj: No such file") !=
+        std::string::npos);
+}
+
 }  // namespace
 }  // namespace watertight

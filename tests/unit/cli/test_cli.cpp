@@ -187,6 +187,18 @@ TEST_CASE_METHOD(Fixture, "a line that cannot be read costs only itself") {
   CHECK(json["dataset_errors"][0]["code"] == 901);
 }
 
+TEST_CASE_METHOD(Fixture, "a document without solids is valid, and said to have none") {
+  write("none.city.json",
+        R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
+        R"("CityObjects":{"a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2",)"
+        R"("boundaries":[[[0,1,2]]]}]}},"vertices":[[0,0,0],[1,0,0],[0,1,0]]})");
+  const Ran ran = run("validate none.city.json --report r.json");
+  CHECK(ran.status == 0);
+  CHECK(ran.output.find("none.city.json: the document has no solids") != std::string::npos);
+  CHECK(nlohmann::json::parse(read("r.json"))["notes"].dump().find("no solids") !=
+        std::string::npos);
+}
+
 TEST_CASE_METHOD(Fixture, "a report on standard output is alone there") {
   write("bad.city.jsonl", kInvalid);
   const Ran ran = run("validate bad.city.jsonl --report -");

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -29,7 +30,11 @@ void parallel_for(std::size_t count, std::size_t threads,
   const std::size_t helper_count =
       count == 0 ? 0 : std::min(std::max<std::size_t>(threads, 1), count) - 1;
   helpers.reserve(helper_count);
-  for (std::size_t i = 0; i < helper_count; ++i) helpers.emplace_back(work);
+  try {
+    for (std::size_t i = 0; i < helper_count; ++i) helpers.emplace_back(work);
+  } catch (const std::system_error&) {
+    // No more threads are to be had: those there are do the work.
+  }
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);

@@ -95,5 +95,15 @@ TEST_CASE("an interior shell that cannot be read is named") {
         std::string::npos);
 }
 
+#ifndef __SANITIZE_ADDRESS__  // takes terabytes of address space
+TEST_CASE("more jobs than there is memory for threads are no crash") {
+  const Folder folder;
+  const int status = folder.run("--version && ulimit -v 600000 && " WATERTIGHT_EXECUTABLE
+                                " validate -j 256 in.obj");
+  INFO(folder.read("printed"));
+  CHECK((status == 1 || status == 2));
+}
+#endif
+
 }  // namespace
 }  // namespace watertight

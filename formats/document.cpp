@@ -121,7 +121,12 @@ Result<Bytes> write_document(const Document& document, Format format) {
   if (!is_city(document.format)) {
     auto model = as_city_model(document);
     if (!model) return std::move(model).error();
-    return write_document(*model, format);
+    auto written = write_document(*model, format);
+    if (written || written.error().code != ErrorCode::malformed) return written;
+    // Nothing is wrong with the document: its decimals span more digits than one grid has.
+    return Error{
+        ErrorCode::unsupported,
+        "a city model needs one decimal grid for all coordinates: " + written.error().message};
   }
   auto text =
       format == Format::city_json ? write_city_json(document) : write_city_json_seq(document);

@@ -373,5 +373,19 @@ TEST_CASE("GML: solids are written as CityJSON, OBJ and WKT; GML is not written"
   CHECK(gml.error().code == ErrorCode::unsupported);
 }
 
+// Found by fuzzing: writing it as CityJSON called the document malformed.
+TEST_CASE("GML whose decimals span too many digits for one grid is not written as CityJSON") {
+  const std::string text =
+      R"(<g:Solid xmlns:g="http://www.opengis.net/gml/3.2"><g:exterior><g:Polygon><g:exterior>)"
+      R"(<g:LinearRing><g:coordinates>0.5,0,0 1,0,0 0,1,1e-30 0.5,0,0</g:coordinates>)"
+      R"(</g:LinearRing></g:exterior></g:Polygon></g:exterior></g:Solid>)";
+  const auto document = read_document(as_bytes(text), Format::gml);
+  REQUIRE(document);
+  const auto written = write_document(*document, Format::city_json);
+  REQUIRE_FALSE(written);
+  CHECK(written.error().code == ErrorCode::unsupported);
+  CHECK(write_document(*document, Format::ewkb));
+}
+
 }  // namespace
 }  // namespace watertight

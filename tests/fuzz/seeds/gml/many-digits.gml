@@ -1,0 +1,1 @@
+<g:Solid xmlns:g="http://www.opengis.net/gml/3.2" xmlns:x="http://www.w3.org/1999/xlink"><g:exterior><g:Polygon><g:exterior><g:LinearRing><g:coordinates decimal="," cs=";" ts="|">0,5;0;0|1;0;0|0;1;1e-30|,5;0;0</g:coordinates></g:LinearRing></g:exterior></g:Polygon></g:exterior></g:Solid>

@@ -268,7 +268,7 @@ void measure_case(const std::string& name, std::size_t facets) {
   const auto shells = check_shells(examined);
   lap();
   const auto duplicates = check_duplicate_shells(examined);
-  const ShellContacts contacts = check_intersections(examined, duplicates, never);
+  const ShellContacts contacts = check_intersections(examined, duplicates, never, 1);
   lap();
   check_diagonals(examined, contacts);
   lap();

@@ -162,10 +162,10 @@ class EwkbReader {
       positions_.push_back(p);
     }
     if (reader_.failed()) return reader_.error("ring");
-    if (*point_count < 2 || positions_.back() != positions_[first]) {
+    if (*point_count == 1 || (*point_count > 1 && positions_.back() != positions_[first])) {
       return wrong("the ring is not closed: its last point must be its first");
     }
-    positions_.pop_back();
+    if (*point_count > 0) positions_.pop_back();  // an empty ring is a finding, not an error
     for (std::size_t i = first; i < positions_.size(); ++i) {
       arrays_.ring_vertices.push_back(static_cast<Index>(i));
     }

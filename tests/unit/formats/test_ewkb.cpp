@@ -172,6 +172,20 @@ TEST_CASE("a solid without shells has an empty exterior shell and comes back as 
   CHECK(text->solid.shell_count() == 1);
 }
 
+// Found by fuzzing: a ring of no points was written and then refused.
+TEST_CASE("EWKB with an empty ring comes back as the same solid") {
+  SolidArrays arrays;
+  arrays.end_ring();
+  arrays.end_facet();
+  arrays.end_shell();
+  const auto solid = Solid::make(arrays, Lattice{}, 0);
+  REQUIRE(solid);
+  const auto again = read_ewkb(write_ewkb(*solid));
+  REQUIRE(again);
+  CHECK(again->solid.ring_count() == 1);
+  CHECK(again->solid.ring(0).empty());
+}
+
 TEST_CASE("EWKB rejects every truncated prefix and counts beyond the bytes") {
   const auto solid = read_wkt(kHollow);
   REQUIRE(solid);

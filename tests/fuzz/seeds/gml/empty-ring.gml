@@ -1,0 +1,1 @@
+<g:Solid xmlns:g="http://www.opengis.net/gml/3.2"><g:exterior><g:Polygon><g:exterior><g:LinearRing></g:LinearRing></g:exterior></g:Polygon></g:exterior></g:Solid>

@@ -186,9 +186,16 @@ std::variant<std::unique_ptr<Connection>, Connection::OpenFailure> Connection::o
   if (!opened->connection_) {
     return OpenFailure{{ErrorCode::limit_exceeded, "no memory for a database connection"}};
   }
-  pg_conn* const raw = opened->connection_.get();
+  pg_conn* raw = opened->connection_.get();
+  PGPing ping = PQPING_OK;
   if (PQstatus(raw) != CONNECTION_OK) {
-    const PGPing ping = PQpingParams(keywords.data(), values.data(), 1);
+    ping = PQpingParams(keywords.data(), values.data(), 1);
+    if (ping == PQPING_OK) {  // a server that was starting may have become ready since
+      opened->connection_.reset(PQconnectdbParams(keywords.data(), values.data(), 1));
+      raw = opened->connection_.get();
+    }
+  }
+  if (PQstatus(raw) != CONNECTION_OK) {
     return OpenFailure{{ErrorCode::unavailable, trimmed(PQerrorMessage(raw))},
                        ping == PQPING_REJECT || ping == PQPING_NO_RESPONSE};
   }

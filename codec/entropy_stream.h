@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One stream of binary decisions through an arithmetic coder, in one of three directions: written,
+// read, or only measured. A part of the format is one function for all three: it codes each
+// decision with the value it has when writing, and goes on with the value that comes back.
+// Integers only. Source: the carry-less coder of M. Mahoney's lpaq (32-bit interval).
+#pragma once
+
+#include <cstdint>
+
+#include "base/bytes.h"
+
+namespace watertight {
+
+/// log2 of the cost unit of a measuring stream: costs are in 1/65536 bit.
+inline constexpr int kCostBits = 16;
+
+class EntropyStream {
+ public:
+  static EntropyStream writer() { return EntropyStream(Direction::write, {}); }
+  static EntropyStream meter() { return EntropyStream(Direction::measure, {}); }
+  /// `bytes` must outlive the stream.
+  static EntropyStream reader(ByteView bytes) { return EntropyStream(Direction::read, bytes); }
+
+  bool is_reading() const { return direction_ == Direction::read; }
+
+  /// Codes one decision whose probability of being 1 is `ones_of_65536` / 65536, 1 to 65535.
+  /// Returns `value` when writing or measuring, else what was read.
+  bool code(bool value, std::uint32_t ones_of_65536);
+  /// A number below `size` with all values equally likely (truncated binary). Requires size > 0
+  /// and, unless reading, value < size.
+  std::uint64_t code_uniform(std::uint64_t value, std::uint64_t size);
+  /// The `count` low bits of a number, high ones first, all equally likely. Requires count <= 64.
+  std::uint64_t code_bits(std::uint64_t value, int count);
+
+  /// What was read cannot be: reading yields zeros from now on. A reader that runs past the end of
+  /// its bytes fails by itself. Callers bound their loops and ask wherever one could be long.
+  void fail() { failed_ = true; }
+  bool failed() const { return failed_; }
+
+  /// Measured so far, in 1/65536 bit.
+  std::uint64_t cost() const { return cost_; }
+  /// Written so far, to the byte: for reports on the size of parts.
+  std::size_t bytes_written() const { return bytes_.size(); }
+  /// Ends a written stream: the shortest bytes, and of those the smallest.
+  Bytes finish() &&;
+  /// True if nothing failed and the bytes end exactly as a writer would have ended them.
+  bool is_finished() const;
+
+ private:
+  enum class Direction : std::uint8_t { write, read, measure };
+  EntropyStream(Direction direction, ByteView source);
+  void shift_out();
+  std::uint32_t next_byte();
+
+  Direction direction_;
+  bool failed_ = false;
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = 0xFFFFFFFFU;
+  std::uint32_t window_ = 0;  // reading: the next four bytes of the source
+  std::size_t position_ = 0;  // reading: bytes taken, counting those past the end
+  ByteView source_;
+  Bytes bytes_;
+  std::uint64_t cost_ = 0;
+};
+
+}  // namespace watertight

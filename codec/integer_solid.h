@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the entropy coded modes code: a solid whose coordinates are whole numbers of lattice steps
+// in the frame of its page, as flat arrays like those of Solid.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// Lattice steps from the origin of the page. Magnitudes are below 2^53.
+using GridPoint = std::array<std::int64_t, 3>;
+
+/// Shell 0 is the exterior one, the first ring of a facet its exterior one. To be coded it is in
+/// canonical form (geometry/canonical_form.h); decoded, any order of all else will do: the caller
+/// brings it into canonical form.
+struct IntegerSolid {
+  std::vector<GridPoint> vertices;
+  std::vector<Index> ring_vertices;  // of all rings, one after the other
+  std::vector<Index> ring_offsets{0};
+  std::vector<Index> facet_offsets{0};  // into the rings
+  std::vector<Index> shell_offsets{0};  // into the facets
+
+  Index ring_count() const { return static_cast<Index>(ring_offsets.size() - 1); }
+  Index facet_count() const { return static_cast<Index>(facet_offsets.size() - 1); }
+  Index shell_count() const { return static_cast<Index>(shell_offsets.size() - 1); }
+  std::span<const Index> ring(Index number) const {
+    return std::span(ring_vertices)
+        .subspan(ring_offsets[number], ring_offsets[number + 1] - ring_offsets[number]);
+  }
+};
+
+/// What the solids of a page before this one have left behind for it; empty in a blob of its own.
+struct PageMemory {
+  GridPoint last_position{};                         // the first vertex coded of the solid before
+  std::vector<std::array<std::int64_t, 2>> columns;  // (x, y) of all vertices so far, each once
+  bool is_first() const { return columns.empty(); }
+};
+
+}  // namespace watertight

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The adaptive models of a part of the format: for each family of decisions some tables of counters
+// indexed by context, mixed in the logistic domain by weights that learn too. Integers only, so
+// that every machine computes the same probabilities. A bank starts neutral or from a prior, the
+// state that training left behind (docs/format.md, "Models").
+// Source: M. Mahoney, "Adaptive weighing of context models for lossless data compression" (2005).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "base/bytes.h"
+#include "codec/entropy_stream.h"
+
+namespace watertight {
+
+/// At most this many contexts of a decision are mixed.
+inline constexpr std::size_t kMaxInputs = 8;
+
+/// The shape of a family: one weight set per selector, one table of `contexts[i]` counters per
+/// input; inputs end at the first 0.
+struct FamilyShape {
+  std::uint32_t selectors = 1;
+  std::array<std::uint32_t, kMaxInputs> contexts{};
+};
+
+/// The shape of a family of numbers (code_number), with at most kMaxInputs - 1 inputs. Takes about
+/// 160 counters per context.
+struct NumberShape {
+  std::uint32_t selectors = 1;
+  std::array<std::uint32_t, kMaxInputs> contexts{};
+};
+
+/// Families and numbers are each numbered in the order of the layout.
+struct ModelLayout {
+  std::span<const FamilyShape> families;
+  std::span<const NumberShape> numbers;
+};
+
+class ModelBank {
+ public:
+  explicit ModelBank(const ModelLayout& layout);
+
+  /// Codes one decision of `family`, then learns from it. Requires selector and contexts below
+  /// what the shape says, and as many contexts as it has tables. Cost: linear in the contexts.
+  bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
+            std::initializer_list<std::uint32_t> contexts, bool value);
+
+  /// A number from 0 on: its bit length in unary and the three bits after the first by mixed
+  /// models, the rest plain. Requires value < 2^62. Bit lengths above `max_length` fail the stream.
+  std::uint64_t code_number(EntropyStream& stream, std::uint32_t number, std::uint32_t selector,
+                            std::initializer_list<std::uint32_t> contexts, std::uint64_t value,
+                            int max_length = 62);
+  /// The same for magnitude and sign, the sign under the same contexts.
+  std::int64_t code_signed(EntropyStream& stream, std::uint32_t number, std::uint32_t selector,
+                           std::initializer_list<std::uint32_t> contexts, std::int64_t value,
+                           int max_length = 62);
+
+  /// The state as bytes, and back. Confidence in counters is capped at `max_count` observations,
+  /// so that a trained bank still adapts. load() is false (and the bank neutral) if the bytes are
+  /// no state of this layout.
+  Bytes save(std::uint32_t max_count) const;
+  bool load(ByteView state);
+
+  /// Sizes, for reports.
+  std::size_t counter_count() const { return counters_.size(); }
+
+ private:
+  struct Family {
+    std::uint32_t inputs = 0;
+    std::uint32_t first_weight = 0;
+    std::uint32_t first_rate = 0;
+    std::array<std::uint32_t, kMaxInputs> first_counter{};
+    std::array<std::uint32_t, kMaxInputs> sizes{};
+  };
+  void add_family(const FamilyShape& shape);
+  bool code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
+               const std::uint32_t* contexts, bool value);
+
+  std::vector<Family> families_;
+  std::size_t number_base_ = 0;          // first family of numbers
+  std::vector<std::uint32_t> counters_;  // 22 bits of probability, 10 of count
+  std::vector<std::int32_t> weights_;    // 16.16
+  std::vector<std::uint32_t> mixed_;     // decisions seen by each weight set
+};
+
+}  // namespace watertight

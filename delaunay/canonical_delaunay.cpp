@@ -17,12 +17,13 @@
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "delaunay/cancellation.h"
+#include "delaunay/canonical_order.h"
 
 namespace watertight {
 namespace {
@@ -80,19 +81,6 @@ Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
   return Done{};
 }
 
-/// The same orientation with the smallest index first and the second smallest second: an even
-/// permutation, which exists and is unique.
-Tetrahedron canonical_tetrahedron(Tetrahedron t) {
-  const auto smallest = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
-  if (smallest != 0) {
-    // Two disjoint swaps keep the orientation.
-    std::swap(t[0], t[smallest]);
-    std::swap(t[smallest == 1 ? 2 : 1], t[smallest == 3 ? 2 : 3]);
-  }
-  std::rotate(t.begin() + 1, std::min_element(t.begin() + 1, t.end()), t.end());
-  return t;
-}
-
 }  // namespace
 
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
@@ -101,34 +89,22 @@ Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
   if (points.size() >= kNone) {
     return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
   }
+  max_tetrahedra = std::min(max_tetrahedra, kMostTetrahedra);
   Delaunay delaunay;
   if (Status inserted = insert_all(points, max_tetrahedra, is_cancelled, delaunay); !inserted) {
     return std::move(inserted).error();
   }
-  CanonicalDelaunay result;
-  if (delaunay.dimension() < 3) return result;
+  if (delaunay.dimension() < 3) return CanonicalDelaunay{};
+  std::vector<Tetrahedron> tetrahedra;
   for (auto cell = delaunay.finite_cells_begin(); cell != delaunay.finite_cells_end(); ++cell) {
-    result.tetrahedra.push_back(
-        canonical_tetrahedron({cell->vertex(0)->info(), cell->vertex(1)->info(),
-                               cell->vertex(2)->info(), cell->vertex(3)->info()}));
+    tetrahedra.push_back({cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(),
+                          cell->vertex(3)->info()});
   }
-  if (result.tetrahedra.size() > max_tetrahedra) {
+  if (tetrahedra.size() > max_tetrahedra) {
     return Error{ErrorCode::limit_exceeded, "the Delaunay tetrahedralization has more than " +
                                                 std::to_string(max_tetrahedra) + " tetrahedra"};
   }
-  for (auto facet = delaunay.finite_facets_begin(); facet != delaunay.finite_facets_end();
-       ++facet) {
-    Triangle face{};
-    std::size_t used = 0;
-    for (int corner = 0; corner < 4; ++corner) {
-      if (corner != facet->second) face[used++] = facet->first->vertex(corner)->info();
-    }
-    std::sort(face.begin(), face.end());
-    result.faces.push_back(face);
-  }
-  std::sort(result.tetrahedra.begin(), result.tetrahedra.end());
-  std::sort(result.faces.begin(), result.faces.end());
-  return result;
+  return list_canonically(std::move(tetrahedra), static_cast<Index>(points.size()));
 }
 
 }  // namespace watertight

@@ -7,6 +7,7 @@
 // Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations" (2011), section 3.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -22,6 +23,9 @@ struct CanonicalDelaunay {
   std::vector<Tetrahedron> tetrahedra;
   /// All faces as sorted vertex triples, in lexicographic order: the order of the bitmap.
   std::vector<Triangle> faces;
+  /// Per face, the fourth vertices of its tetrahedra: first on its positive side (orient3d(face,
+  /// apex) > 0), then on the negative one; kNone where the face is on the hull.
+  std::vector<std::array<Index, 2>> apexes;
 };
 
 /// Requires distinct points. Guarantees the same result for every insertion order, compiler and

@@ -188,6 +188,32 @@ TEST_CASE("canonical Delaunay lists positive tetrahedra and sorted faces") {
   CHECK(std::is_sorted(delaunay.tetrahedra.begin(), delaunay.tetrahedra.end()));
 }
 
+TEST_CASE("canonical Delaunay lists the vertices opposite to a face by side") {
+  for (const NamedSet& set : golden_sets()) {
+    INFO(set.name);
+    const CanonicalDelaunay delaunay = build(set.points);
+    REQUIRE(delaunay.apexes.size() == delaunay.faces.size());
+    std::size_t apex_count = 0;
+    for (std::size_t f = 0; f < delaunay.faces.size(); ++f) {
+      const auto& [a, b, c] = delaunay.faces[f];
+      for (const std::size_t side : {0, 1}) {
+        const Index apex = delaunay.apexes[f][side];
+        if (apex == kNone) continue;
+        ++apex_count;
+        const int sign = orient3d(set.points[a], set.points[b], set.points[c], set.points[apex]);
+        REQUIRE(sign == (side == 0 ? 1 : -1));
+        Tetrahedron t{a, b, c, apex};
+        std::sort(t.begin(), t.end());
+        REQUIRE(std::any_of(delaunay.tetrahedra.begin(), delaunay.tetrahedra.end(), [&](auto u) {
+          std::sort(u.begin(), u.end());
+          return t == u;
+        }));
+      }
+    }
+    CHECK(apex_count == 4 * delaunay.tetrahedra.size());
+  }
+}
+
 /// Sign of the in-sphere determinant of a positively oriented tetrahedron, in integers: positive
 /// if `q` is strictly inside. Exact for coordinates below 2^8.
 std::int64_t in_sphere(const std::array<Point, 4>& t, const Point& q) {

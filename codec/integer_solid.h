@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,31 @@ struct IntegerSolid {
         .subspan(ring_offsets[number], ring_offsets[number + 1] - ring_offsets[number]);
   }
 };
+
+/// The grid that the solids of a page share: their steps, and an origin below one step on each axis
+/// (0 unless the source's origin was no multiple of its step).
+struct PageGrid {
+  LatticeKind kind = LatticeKind::decimal;
+  std::array<GridNumber, 3> step{};
+  std::array<GridNumber, 3> phase{};
+  friend auto operator<=>(const PageGrid&, const PageGrid&) = default;
+};
+
+/// A solid on the grid of its page. Its lattice has its origin at the grid point `origin`: the
+/// minimum of its feature's box.
+struct GriddedSolid {
+  PageGrid grid;
+  GridPoint origin{};
+  IntegerSolid solid;
+};
+
+/// Nothing if a coordinate of the page would be no integer of magnitude below 2^53: such a solid
+/// is stored raw. Requires a canonical solid. Cost: linear.
+std::optional<GriddedSolid> grid_solid(const Solid& canonical);
+
+/// The inverse, in whatever order the arrays are. Requires indices in range.
+/// Errors: malformed if a coordinate or the lattice leaves its range; limit_exceeded.
+Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, const Limits& limits);
 
 /// What the solids of a page before this one have left behind for it; empty in a blob of its own.
 struct PageMemory {

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/integer_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace watertight {
+namespace {
+
+__extension__ using Wide = __int128;
+
+constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
+// Below 2^63 times 2^60: products and sums of scaled mantissas stay within 128 bits.
+constexpr Wide kScaleLimit = Wide{1} << 60;
+
+/// radix^exponent, or 0 where it would pass kScaleLimit.
+Wide power(int radix, std::int32_t exponent) {
+  Wide result = 1;
+  for (; exponent > 0; --exponent) {
+    result *= radix;
+    if (result > kScaleLimit) return 0;
+  }
+  return result;
+}
+
+/// Both as multiples of the same power of the radix.
+struct Aligned {
+  Wide origin = 0;
+  Wide step = 0;  // 0: they are too far apart
+  std::int32_t exponent = 0;
+};
+
+Aligned align(const GridNumber& origin, const GridNumber& step, int radix) {
+  Aligned aligned;
+  aligned.exponent =
+      origin.mantissa == 0 ? step.exponent : std::min(origin.exponent, step.exponent);
+  const Wide origin_scale =
+      origin.mantissa == 0 ? 1 : power(radix, origin.exponent - aligned.exponent);
+  const Wide step_scale = power(radix, step.exponent - aligned.exponent);
+  if (origin_scale == 0 || step_scale == 0) return aligned;
+  aligned.origin = origin.mantissa * origin_scale;
+  aligned.step = step.mantissa * step_scale;
+  return aligned;
+}
+
+/// Nothing if the mantissa would not fit.
+std::optional<GridNumber> normalized(Wide mantissa, std::int32_t exponent, int radix) {
+  if (mantissa == 0) return GridNumber{};
+  while (mantissa % radix == 0) {
+    mantissa /= radix;
+    ++exponent;
+  }
+  if (mantissa > INT64_MAX || mantissa < -INT64_MAX) return std::nullopt;
+  return GridNumber{static_cast<std::int64_t>(mantissa), exponent};
+}
+
+int radix_of(LatticeKind kind) { return kind == LatticeKind::decimal ? 10 : 2; }
+
+/// Splits a lattice's origin into whole steps and the rest.
+bool split_origin(const Lattice& lattice, int axis, GriddedSolid& result) {
+  const auto a = static_cast<std::size_t>(axis);
+  const int radix = radix_of(lattice.kind);
+  const Aligned aligned = align(lattice.origin[a], lattice.step[a], radix);
+  if (aligned.step <= 0) return false;
+  Wide steps = aligned.origin / aligned.step;
+  Wide rest = aligned.origin % aligned.step;
+  if (rest < 0) {
+    rest += aligned.step;
+    --steps;
+  }
+  const auto phase = normalized(rest, aligned.exponent, radix);
+  if (!phase || steps >= kCoordinateLimit || steps <= -kCoordinateLimit) return false;
+  result.grid.phase[a] = *phase;
+  result.origin[a] = static_cast<std::int64_t>(steps);
+  return true;
+}
+
+}  // namespace
+
+std::optional<GriddedSolid> grid_solid(const Solid& canonical) {
+  const Lattice& lattice = canonical.lattice();
+  if (lattice.kind == LatticeKind::float64) return std::nullopt;
+  GriddedSolid result;
+  result.grid.kind = lattice.kind;
+  result.grid.step = lattice.step;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!split_origin(lattice, axis, result)) return std::nullopt;
+  }
+  const SolidArrays& arrays = canonical.arrays();
+  result.solid.vertices.reserve(arrays.vertices.size());
+  for (const Point& point : arrays.vertices) {
+    GridPoint grid_point{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double value = point[axis];
+      if (!(std::abs(value) < static_cast<double>(kCoordinateLimit)) ||
+          value != std::trunc(value)) {
+        return std::nullopt;
+      }
+      const auto a = static_cast<std::size_t>(axis);
+      grid_point[a] = static_cast<std::int64_t>(value) + result.origin[a];
+      if (grid_point[a] >= kCoordinateLimit || grid_point[a] <= -kCoordinateLimit) {
+        return std::nullopt;
+      }
+    }
+    result.solid.vertices.push_back(grid_point);
+  }
+  result.solid.ring_vertices = arrays.ring_vertices;
+  result.solid.ring_offsets = arrays.ring_offsets;
+  result.solid.facet_offsets = arrays.facet_offsets;
+  result.solid.shell_offsets = arrays.shell_offsets;
+  return result;
+}
+
+Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, const Limits& limits) {
+  Lattice lattice;
+  lattice.kind = gridded.grid.kind;
+  lattice.step = gridded.grid.step;
+  const int radix = radix_of(lattice.kind);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Aligned aligned = align(gridded.grid.phase[a], gridded.grid.step[a], radix);
+    std::optional<GridNumber> origin;
+    if (aligned.step > 0) {
+      origin =
+          normalized(aligned.origin + gridded.origin[a] * aligned.step, aligned.exponent, radix);
+    }
+    if (!origin) return Error{ErrorCode::malformed, "the origin of the lattice is out of range"};
+    lattice.origin[a] = *origin;
+  }
+  SolidArrays arrays;
+  arrays.vertices.reserve(gridded.solid.vertices.size());
+  for (const GridPoint& grid_point : gridded.solid.vertices) {
+    Point point;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const Wide value = Wide{grid_point[a]} - gridded.origin[a];
+      if (value >= kCoordinateLimit || value <= -kCoordinateLimit) {
+        return Error{ErrorCode::malformed, "a coordinate is out of range"};
+      }
+      point[axis] = static_cast<double>(static_cast<std::int64_t>(value));
+    }
+    arrays.vertices.push_back(point);
+  }
+  arrays.ring_vertices = gridded.solid.ring_vertices;
+  arrays.ring_offsets = gridded.solid.ring_offsets;
+  arrays.facet_offsets = gridded.solid.facet_offsets;
+  arrays.shell_offsets = gridded.solid.shell_offsets;
+  return Solid::make(std::move(arrays), lattice, srid, limits);
+}
+
+}  // namespace watertight

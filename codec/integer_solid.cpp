@@ -57,11 +57,10 @@ std::optional<GridNumber> normalized(Wide mantissa, std::int32_t exponent, int r
 
 int radix_of(LatticeKind kind) { return kind == LatticeKind::decimal ? 10 : 2; }
 
-/// Splits a lattice's origin into whole steps and the rest.
-bool split_origin(const Lattice& lattice, int axis, GriddedSolid& result) {
-  const auto a = static_cast<std::size_t>(axis);
+/// Splits a lattice's origin into whole steps and the rest. False if that cannot be done.
+bool split_origin(const Lattice& lattice, std::size_t axis, GriddedSolid& result) {
   const int radix = radix_of(lattice.kind);
-  const Aligned aligned = align(lattice.origin[a], lattice.step[a], radix);
+  const Aligned aligned = align(lattice.origin[axis], lattice.step[axis], radix);
   if (aligned.step <= 0) return false;
   Wide steps = aligned.origin / aligned.step;
   Wide rest = aligned.origin % aligned.step;
@@ -71,8 +70,29 @@ bool split_origin(const Lattice& lattice, int axis, GriddedSolid& result) {
   }
   const auto phase = normalized(rest, aligned.exponent, radix);
   if (!phase || steps >= kCoordinateLimit || steps <= -kCoordinateLimit) return false;
-  result.grid.phase[a] = *phase;
-  result.origin[a] = static_cast<std::int64_t>(steps);
+  result.grid.phase[axis] = *phase;
+  result.origin[axis] = static_cast<std::int64_t>(steps);
+  return true;
+}
+
+/// Coordinates from `origin` on. False if one is no integer of a magnitude below 2^53.
+bool place_vertices(std::span<const Point> points, GriddedSolid& result) {
+  result.solid.vertices.clear();
+  result.solid.vertices.reserve(points.size());
+  for (const Point& point : points) {
+    GridPoint grid_point{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double value = point[axis];
+      if (!(std::abs(value) < static_cast<double>(kCoordinateLimit)) ||
+          value != std::trunc(value)) {
+        return false;
+      }
+      const auto a = static_cast<std::size_t>(axis);
+      grid_point[a] = static_cast<std::int64_t>(value) + result.origin[a];
+      if (grid_point[a] >= kCoordinateLimit || grid_point[a] <= -kCoordinateLimit) return false;
+    }
+    result.solid.vertices.push_back(grid_point);
+  }
   return true;
 }
 
@@ -81,29 +101,18 @@ bool split_origin(const Lattice& lattice, int axis, GriddedSolid& result) {
 std::optional<GriddedSolid> grid_solid(const Solid& canonical) {
   const Lattice& lattice = canonical.lattice();
   if (lattice.kind == LatticeKind::float64) return std::nullopt;
+  const SolidArrays& arrays = canonical.arrays();
   GriddedSolid result;
   result.grid.kind = lattice.kind;
   result.grid.step = lattice.step;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!split_origin(lattice, axis, result)) return std::nullopt;
+  bool is_split = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    is_split = is_split && split_origin(lattice, axis, result);
   }
-  const SolidArrays& arrays = canonical.arrays();
-  result.solid.vertices.reserve(arrays.vertices.size());
-  for (const Point& point : arrays.vertices) {
-    GridPoint grid_point{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const double value = point[axis];
-      if (!(std::abs(value) < static_cast<double>(kCoordinateLimit)) ||
-          value != std::trunc(value)) {
-        return std::nullopt;
-      }
-      const auto a = static_cast<std::size_t>(axis);
-      grid_point[a] = static_cast<std::int64_t>(value) + result.origin[a];
-      if (grid_point[a] >= kCoordinateLimit || grid_point[a] <= -kCoordinateLimit) {
-        return std::nullopt;
-      }
-    }
-    result.solid.vertices.push_back(grid_point);
+  if (!is_split || !place_vertices(arrays.vertices, result)) {
+    result.grid.phase = lattice.origin;  // too fine a grid: count from the solid's own origin
+    result.origin = {};
+    if (!place_vertices(arrays.vertices, result)) return std::nullopt;
   }
   result.solid.ring_vertices = arrays.ring_vertices;
   result.solid.ring_offsets = arrays.ring_offsets;

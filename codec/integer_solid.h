@@ -37,7 +37,8 @@ struct IntegerSolid {
 };
 
 /// The grid that the solids of a page share: their steps, and an origin below one step on each axis
-/// (0 unless the source's origin was no multiple of its step).
+/// (0 unless the source's origin was no multiple of its step). Where coordinates from there would
+/// reach 2^53 the origin is that of the solid's lattice instead.
 struct PageGrid {
   LatticeKind kind = LatticeKind::decimal;
   std::array<GridNumber, 3> step{};
@@ -53,8 +54,8 @@ struct GriddedSolid {
   IntegerSolid solid;
 };
 
-/// Nothing if a coordinate of the page would be no integer of magnitude below 2^53: such a solid
-/// is stored raw. Requires a canonical solid. Cost: linear.
+/// Nothing if a coordinate is no integer of magnitude below 2^53 (LatticeKind::float64): such a
+/// solid is stored raw. Requires a canonical solid. Cost: linear.
 std::optional<GriddedSolid> grid_solid(const Solid& canonical);
 
 /// The inverse, in whatever order the arrays are. Requires indices in range.

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The canonical Delaunay tetrahedralization by CGAL: for all points that small_delaunay.h does not
+// take. Private to delaunay/: others call canonical_delaunay().
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "base/result.h"
+#include "delaunay/canonical_delaunay.h"
+
+namespace watertight {
+
+/// As canonical_delaunay(), for any finite points.
+Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points,
+                                        std::uint64_t max_tetrahedra = 64'000'000,
+                                        const std::function<bool()>& is_cancelled = {});
+
+}  // namespace watertight

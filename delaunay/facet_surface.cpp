@@ -3,10 +3,11 @@
 // Steps for one facet:
 //   1. every edge of its faces has two of them on opposite sides, or one (the boundary);
 //   2. the faces are connected by edges and have the Euler characteristic of a disc with as many
-//      boundary components as there are rings, so there is no handle, bubble or pinch;
+//      holes as there are interior rings, so there is no handle, bubble or pinch. Rings may touch
+//      in vertices: each such touch joins two components of the boundary into one;
 //   3. turned consistently, the boundary runs along the rings: each ring edge is a chain of edges
 //      through points that lie on it, in order: Steiner points but for rounding, vertices of other
-//      shells exactly;
+//      shells exactly. Each edge of the boundary is in one chain;
 //   4. vertices are the rings', or other shells' that lie exactly on a canonical triangle (shells
 //      may touch in points), or Steiner points in the facet's slab (the space between the two
 //      parallels of its fitted plane that hold the rings) but for rounding;
@@ -115,10 +116,20 @@ class FacetSurfaces::Mesh {
     std::sort(boundary_.begin(), boundary_.end());
   }
 
-  /// Vertices - edges + faces.
-  long euler_characteristic() const {
-    return static_cast<long>(vertices_.size()) - static_cast<long>(edge_count_) +
-           static_cast<long>(faces_.size());
+  /// True if the faces are a disc with `rings` - 1 holes, whose rings may touch in vertices.
+  ///
+  /// Take the vertices apart, one for each fan of faces: a surface of genus g whose boundary has as
+  /// many components as can be walked from fan to fan. Putting t vertices back where the boundary
+  /// leaves a vertex more than once, and u elsewhere, lowers the Euler characteristic to
+  /// 2 - 2g - components - t - u. If that is 2 - rings, and rings - t components are walked
+  /// (each touch joins two), then g and u are 0.
+  bool is_disc(std::size_t rings) const {
+    std::size_t touches = 0;
+    for (std::size_t i = 0; i + 1 < boundary_.size(); ++i) {
+      if (boundary_[i].first == boundary_[i + 1].first) ++touches;
+    }
+    return vertices_.size() + faces_.size() + rings == edge_count_ + 2 &&
+           boundary_walks() + touches == rings;
   }
 
   /// The vertices that are joined to `vertex` by an edge of a face, as (vertex, other).
@@ -165,9 +176,46 @@ class FacetSurfaces::Mesh {
   }
 
   bool runs(Index face, Index from, Index to) const {
+    const std::size_t k = corner(face, from);
+    return k < 3 && faces_[face][(k + 1) % 3] == to;
+  }
+
+  /// Position of a vertex in a face, 3 if it has another.
+  std::size_t corner(Index face, Index vertex) const {
     const Triangle& t = faces_[face];
-    return (t[0] == from && t[1] == to) || (t[1] == from && t[2] == to) ||
-           (t[2] == from && t[0] == to);
+    return static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
+  }
+
+  /// How many closed walks the boundary makes if it goes on, at each vertex, where the fan of faces
+  /// beside it ends.
+  std::size_t boundary_walks() const {
+    const auto place = [&](Index from, Index to) {
+      return static_cast<std::size_t>(
+          std::lower_bound(boundary_.begin(), boundary_.end(), std::pair(from, to)) -
+          boundary_.begin());
+    };
+    std::vector<std::size_t> next(boundary_.size());
+    for (Index f = 0; f < faces_.size(); ++f) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (neighbour_[f][k] != kNone) continue;
+        const Index pivot = faces_[f][(k + 1) % 3];
+        Index face = f;
+        std::size_t at = (k + 1) % 3;
+        while (neighbour_[face][at] != kNone) {
+          face = neighbour_[face][at];
+          at = corner(face, pivot);
+        }
+        next[place(faces_[f][k], pivot)] = place(pivot, faces_[face][(at + 1) % 3]);
+      }
+    }
+    std::size_t walks = 0;
+    std::vector<char> is_seen(next.size(), 0);
+    for (std::size_t start = 0; start < next.size(); ++start) {
+      if (is_seen[start] != 0) continue;
+      ++walks;
+      for (std::size_t at = start; is_seen[at] == 0; at = next[at]) is_seen[at] = 1;
+    }
+    return walks;
   }
 
   /// (a, b, c) becomes (a, c, b): its edges ab, bc, ca become ac, cb, ba.
@@ -335,11 +383,34 @@ bool FacetSurfaces::may_pass(Index facet, Index vertex, Index from, Index to, do
   return is_near_segment(vertex, from, to, place);
 }
 
+/// The edge of the boundary on which a chain along the segment goes on from `current`, as a place
+/// in the list, or the list's end. Where rings touch, several edges leave a vertex: the one that
+/// follows the segment. Only there does the choice ask for more than a start.
+std::size_t FacetSurfaces::boundary_step(Index facet, const Mesh& mesh, Index current, Index from,
+                                         Index to) const {
+  const auto& boundary = mesh.boundary();
+  const auto begin =
+      std::lower_bound(boundary.begin(), boundary.end(), std::pair(current, Index{0}));
+  const auto end = std::upper_bound(begin, boundary.end(), std::pair(current, kNone));
+  const auto place_of = [&](auto step) {
+    return static_cast<std::size_t>(step - boundary.begin());
+  };
+  if (begin == end) return boundary.size();
+  if (end - begin == 1) return place_of(begin);
+  // A Steiner point, or a vertex of another shell, where the boundary touches itself.
+  if (current != from) return boundary.size();
+  const auto straight = std::lower_bound(begin, end, std::pair(current, to));
+  if (straight != end && straight->second == to) return place_of(straight);
+  const auto step = std::find_if(begin, end, [&](const std::pair<Index, Index>& edge) {
+    double place = 0;
+    return may_pass(facet, edge.second, from, to, place);
+  });
+  return step == end ? boundary.size() : place_of(step);
+}
+
 std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& mesh) const {
   const auto& boundary = mesh.boundary();
-  for (std::size_t i = 0; i + 1 < boundary.size(); ++i) {
-    if (boundary[i].first == boundary[i + 1].first) return "its boundary touches itself";
-  }
+  std::vector<char> is_used(boundary.size(), 0);
   std::size_t used = 0;
   const IndexRange rings = solid_.rings_of(facet);
   for (Index r = rings.begin; r < rings.end; ++r) {
@@ -349,14 +420,14 @@ std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& m
       double last = 0;
       Index current = ring[i];
       while (current != to) {
-        const auto step =
-            std::lower_bound(boundary.begin(), boundary.end(), std::pair(current, Index{0}));
-        if (step == boundary.end() || step->first != current || used == boundary.size()) {
+        const std::size_t step = boundary_step(facet, mesh, current, ring[i], to);
+        if (step == boundary.size() || is_used[step] != 0) {
           return "ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
                  ") is missing";
         }
+        is_used[step] = 1;
         ++used;
-        current = step->second;
+        current = boundary[step].second;
         double place = 1;
         if (current != to && (!may_pass(facet, current, ring[i], to, place) || place <= last)) {
           return "ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
@@ -430,8 +501,7 @@ std::optional<std::string> FacetSurfaces::check(Index facet, std::span<const Con
   if (faces.empty()) return "it has no faces";
   Mesh mesh(faces);
   if (const char* wrong = mesh.turn()) return wrong;
-  const long rings = static_cast<long>(solid_.rings_of(facet).size());
-  if (mesh.euler_characteristic() != 2 - rings) return "its faces are no disc";
+  if (!mesh.is_disc(solid_.rings_of(facet).size())) return "its faces are no disc";
   const Plane plane = plane_of(facet);
   if (auto wrong = check_vertices(facet, plane, mesh, surface)) return wrong;
   if (auto wrong = check_rings(facet, mesh)) {

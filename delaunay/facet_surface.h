@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Whether the faces that a tetrahedralization gives to a facet really are that facet: a disc with
-// the facet's rings as its boundary, made of the facet's own vertices, of vertices of other shells
-// that lie on it exactly, and of Steiner points that differ from it by rounding only. For the
-// certificate.
+// Whether the faces that a tetrahedralization gives to a facet really are that facet: a disc, with
+// holes, that has the facet's rings as its boundary, made of the facet's own vertices, of vertices
+// of other shells that lie on it exactly, and of Steiner points that differ from it by rounding
+// only. For the certificate.
 #pragma once
 
 #include <array>
@@ -60,6 +60,8 @@ class FacetSurfaces {
   bool may_pass(Index facet, Index vertex, Index from, Index to, double& place) const;
   std::optional<std::string> check_vertices(Index facet, const Plane& plane, const Mesh& mesh,
                                             FacetSurface& surface);
+  std::size_t boundary_step(Index facet, const Mesh& mesh, Index current, Index from,
+                            Index to) const;
   std::optional<std::string> check_rings(Index facet, const Mesh& mesh) const;
   std::optional<std::string> check_area(Index facet, const FacetSurface& surface) const;
   std::span<const Triangle> canonical_of(Index facet) const;

@@ -139,14 +139,15 @@ std::vector<SuiteCase> ring_cases() {
       shell.push_back({{pit.rim[i], pit.rim[(i + 1) % pit.rim.size()], bottom}});
     }
     const Solid solid = solid_of({shell}, millimetres());
-    cases.push_back({"pit-" + pit.name, solid, pit.errors, {}, Ask::boundary});
+    const Ask ask = pit.errors.empty() ? Ask::engines : Ask::rung_zero;
+    cases.push_back({"pit-" + pit.name, solid, pit.errors, {}, ask});
     for (int image = 1; image <= 3; ++image) {
       const AffineMap map = image == 1 ? unimodular_map(random, 40) : general_map(random, 40);
       cases.push_back({"pit-" + pit.name + "-image-" + std::to_string(image),
                        mapped(solid, map),
                        pit.errors,
                        {},
-                       Ask::boundary});
+                       ask});
     }
   }
   return cases;
@@ -175,14 +176,14 @@ std::vector<SuiteCase> surface_cases() {
     cases.push_back(
         of("dent-tip-on-floor-" + std::to_string(i), {dented_block(random, Tip::on_floor)}, {306}));
     cases.push_back(of("dent-tip-above-floor-" + std::to_string(i),
-                       {dented_block(random, Tip::above_floor)}, {}, {}, Ask::boundary));
+                       {dented_block(random, Tip::above_floor)}, {}, {}, Ask::engines));
   }
   Shell slab{{reversed(saddle(10000, 0, 5))}, {saddle(10000, 2, 7)}};
   const Ring low = saddle(10000, 0, 5), high = saddle(10000, 2, 7);
   for (std::size_t i = 0; i < 4; ++i) {
     slab.push_back({{low[i], low[(i + 1) % 4], high[(i + 1) % 4], high[i]}});
   }
-  cases.push_back(of("slab-depends-on-diagonal", {slab}, {}, {804}, Ask::boundary));
+  cases.push_back(of("slab-depends-on-diagonal", {slab}, {}, {804}, Ask::engines));
   return cases;
 }
 
@@ -205,7 +206,7 @@ std::vector<SuiteCase> number_cases() {
                        {{a, b, along(b), along(a)}},
                        {{b, c, along(c), along(b)}},
                        {{c, a, along(a), along(c)}}}},
-                     {}, {}, Ask::boundary));
+                     {}, {}, Ask::engines));
   const double huge = 4503599627370496.0;  // 2^52
   cases.push_back(of("three-units-near-2-52", {cube(huge - 3001, huge - 1)}));
   cases.push_back(of("box-of-2-52", {cube(0, huge)}));
@@ -217,13 +218,13 @@ std::vector<SuiteCase> number_cases() {
                      solid_of({prism(outline, 0, huge)}, fine),
                      is_open ? std::set<int>{} : std::set<int>{104, 306},
                      {},
-                     Ask::boundary});
+                     is_open ? Ask::engines : Ask::rung_zero});
   }
   Lattice doubles;
   doubles.kind = LatticeKind::float64;
   const Ring notched{{0, 0, 0}, {2e6, 0, 0}, {2e6, 1e6, 0}, {1e-11, 5e5, 0}, {0, 1e6, 0}};
   cases.push_back(
-      {"notch-of-1e-11", solid_of({prism(notched, 0, 100)}, doubles), {}, {}, Ask::boundary});
+      {"notch-of-1e-11", solid_of({prism(notched, 0, 100)}, doubles), {}, {}, Ask::engines});
   SolidArrays arrays = solid_of({cube(0, 1000)}).arrays();
   arrays.vertices.push_back({-1e16, 0, 0});
   cases.push_back({"unused-far-vertex", solid_of(std::move(arrays), doubles), {}, {802}});

@@ -100,7 +100,11 @@ TEST_CASE("the suite's files are what the builders make, and read as files they 
     table += file + "," + std::string(to_string(truth.verdict())) + "," + text_of(truth.errors) +
              "," + text_of(truth.warnings) + "," + std::string(proof_of(truth.ask)) + "\n";
     const Solid solid = read_solid(text, Format::city_json);
-    if (truth.ask != Ask::engines) check(truth, report_of(solid, truth.ask));
+    // What the engines decide is decided above; here only that the file says the same.
+    const bool is_decided = truth.ask == Ask::engines;
+    if (!is_decided || solid.shell_count() == 1) {
+      check(truth, report_of(solid, is_decided ? Ask::boundary : truth.ask));
+    }
   }
   compare_golden(kGolden / "expected.csv", table);
 }

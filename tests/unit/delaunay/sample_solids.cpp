@@ -89,6 +89,30 @@ Shape tunnelled_box() {
   return shape;
 }
 
+Shape touching_pits() {
+  Shape shape = box({0, 0, 0}, {90, 60, 40});
+  const auto vertex_at = [&](const Point& p) {
+    const auto at = std::find(shape.vertices.begin(), shape.vertices.end(), p);
+    const auto place = Index(at - shape.vertices.begin());
+    if (at == shape.vertices.end()) shape.vertices.push_back(p);
+    return place;
+  };
+  const std::vector<std::array<Point, 4>> pits = {
+      {{{0, 0, 40}, {30, 12, 40}, {11, 25, 40}, {14, 13, 21}}},
+      {{{30, 12, 40}, {57, 20, 40}, {40, 41, 40}, {43, 24, 13}}},
+      {{{90, 60, 40}, {66, 52, 40}, {79, 31, 40}, {78, 47, 19}}}};
+  for (const std::array<Point, 4>& pit : pits) {
+    Ring rim;
+    for (std::size_t i = 0; i < 3; ++i) rim.push_back(vertex_at(pit[i]));
+    const Index bottom = vertex_at(pit[3]);
+    shape.shells[0][1].push_back({rim[2], rim[1], rim[0]});
+    for (std::size_t i = 0; i < 3; ++i) {
+      shape.shells[0].push_back({{rim[i], rim[(i + 1) % 3], bottom}});
+    }
+  }
+  return shape;
+}
+
 Shape warped_box(double lift) {
   Shape shape = box({0, 0, 0}, {100, 80, 50});
   shape.vertices[7].z += lift;

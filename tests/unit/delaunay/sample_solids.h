@@ -31,6 +31,9 @@ void add_box_facets(Shape& shape, const Point& low, const Point& high, bool is_c
 Shape schoenhardt();
 /// A box with a square hole from top to bottom (a torus): two facets have an interior ring.
 Shape tunnelled_box();
+/// A box with three pits in its top, facet 1: the rim of the first has the box's corner 4, the
+/// second's a vertex of the first's, the third's the box's corner 7.
+Shape touching_pits();
 /// A box whose roof is a quadrilateral that is not planar (one corner `lift` units higher).
 Shape warped_box(double lift);
 /// A prism over a polygon in the plane z = 0, counter-clockwise.

@@ -60,6 +60,26 @@ Shape schoenhardt_in_a_cavity() {
   return shape;
 }
 
+Shape touching_pits_in_a_cavity() {
+  // Small cavities above the rims, and below them inside the pits: edges that leave a vertex where
+  // rims touch need Steiner points.
+  Shape shape = samples::box({-100, -100, -100}, {200, 200, 200});
+  const Shape pits = samples::touching_pits();
+  const auto first = Index(shape.vertices.size());
+  shape.vertices.insert(shape.vertices.end(), pits.vertices.begin(), pits.vertices.end());
+  shape.shells.push_back(pits.shells[0]);
+  for (samples::Facet& facet : shape.shells.back()) {
+    for (samples::Ring& ring : facet) {
+      std::reverse(ring.begin(), ring.end());
+      for (Index& v : ring) v += first;
+    }
+  }
+  for (const Point& p : {Point{14, 5, 41}, {14, 9, 38}, {43, 15, 41}, {43, 18, 38}, {18, 17, 38}}) {
+    samples::add_box(shape, p, {p.x + 1, p.y + 1, p.z + 1}, true);
+  }
+  return shape;
+}
+
 Shape boxes_in_a_box(int cavities) {
   Shape shape = samples::box({0, 0, 0}, {60.0 * cavities + 20, 90, 90});
   for (int i = 0; i < cavities; ++i) {
@@ -89,11 +109,14 @@ const std::vector<Proof>& proofs() {
     add(list, "tunnel", samples::tunnelled_box(), Rung::delaunay);
     add(list, "cavities", boxes_in_a_box(3), Rung::delaunay);
     add(list, "prism", samples::prism({{0, 0}, {90, 10}, {40, 80}}, 50), Rung::delaunay);
+    add(list, "touching pits", samples::touching_pits(), Rung::delaunay);
     if (engines().cgal() == nullptr) return list;
     add(list, "tunnel by CGAL", samples::tunnelled_box(), Rung::patch);
     add(list, "Schoenhardt", samples::schoenhardt(), Rung::patch);
     add(list, "Schoenhardt by triangles", samples::schoenhardt(), Rung::triangles_scaled);
     add(list, "Schoenhardt in a cavity", schoenhardt_in_a_cavity(), Rung::patch);
+    add(list, "touching pits by CGAL", samples::touching_pits(), Rung::patch);
+    add(list, "touching pits in a cavity", touching_pits_in_a_cavity(), Rung::patch);
     add(list, "stairs", samples::stairs(6), Rung::patch);
     return list;
   }();
@@ -379,6 +402,84 @@ TEST_CASE("mutated certificate: a solid with a facet or a shell turned over is r
       }
     }
   }
+}
+
+TEST_CASE("mutated certificate: other rings than those that touch are refused") {
+  // The same faces, but facet 1 declares something else.
+  using Rings = samples::Facet;
+  const auto joined = [](const samples::Ring& a, const samples::Ring& b, Index at) {
+    samples::Ring ring = a;  // runs along a, then along b, and so passes `at` twice
+    samples::Ring other = b;
+    std::rotate(ring.begin(), std::find(ring.begin(), ring.end(), at), ring.end());
+    std::rotate(other.begin(), std::find(other.begin(), other.end(), at), other.end());
+    ring.insert(ring.end(), other.begin(), other.end());
+    return ring;
+  };
+  const Shape shape = samples::touching_pits();
+  const Rings rings = shape.shells[0][1];
+  REQUIRE(rings.size() == 4);
+  const auto reversed = [](samples::Ring ring) {
+    std::reverse(ring.begin(), ring.end());
+    return ring;
+  };
+  const Index shared = 8;
+  const std::vector<Rings> others = {{joined(rings[0], rings[1], 4), rings[2], rings[3]},
+                                     {joined(rings[0], rings[3], 7), rings[1], rings[2]},
+                                     {rings[0], joined(rings[1], rings[2], shared), rings[3]},
+                                     {rings[0], rings[1], rings[2]},
+                                     {rings[0], rings[1], rings[3]},
+                                     {rings[0], rings[2], rings[3]},
+                                     {rings[0], rings[1], rings[1], rings[2], rings[3]},
+                                     {rings[0], rings[1], reversed(rings[2]), rings[3]},
+                                     {rings[0], reversed(rings[1]), reversed(rings[2]), rings[3]},
+                                     {reversed(rings[0]), rings[1], rings[2], rings[3]}};
+  std::size_t judged = 0;
+  for (const Proof& proof : proofs()) {
+    if (proof.shape.shells[0] != shape.shells[0]) continue;
+    ++judged;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      Shape other = shape;
+      other.shells[0][1] = others[i];
+      const Solid solid = samples::make_solid(other);
+      const CertificateResult result =
+          check_certificate(solid, proof.canonical, proof.data, Rung::patch);
+      INFO(proof.name << " " << i << ": " << result.detail);
+      CHECK(result.refusal == kNonconforming);
+      CHECK(result.facet == 1);
+    }
+  }
+  CHECK(judged >= 1);
+}
+
+TEST_CASE("mutated certificate: a pit's mouth that belongs to the facet is refused") {
+  // The mouth of a pit that touches another ring, where it is a face of the tetrahedra.
+  const Shape shape = samples::touching_pits();
+  std::size_t closed = 0;
+  for (const Proof& proof : proofs()) {
+    if (proof.shape.shells[0] != shape.shells[0]) continue;
+    for (std::size_t r = 1; r < 4; ++r) {
+      const samples::Ring& rim = shape.shells[0][1][r];
+      Triangle mouth{rim[0], rim[1], rim[2]};
+      std::sort(mouth.begin(), mouth.end());
+      const auto& tetrahedra = proof.data.tetrahedra;
+      if (std::none_of(tetrahedra.begin(), tetrahedra.end(), [&](const Tetrahedron& t) {
+            const auto faces = faces_of(t);
+            return std::find(faces.begin(), faces.end(), mouth) != faces.end();
+          })) {
+        continue;
+      }
+      ++closed;
+      Tetrahedralization damaged = proof.data;
+      damaged.constrained.push_back({mouth, 1});
+      CHECK(proof.judge(damaged) == kNonconforming);
+      Shape without = shape;  // and its ring is not declared
+      without.shells[0][1].erase(without.shells[0][1].begin() + long(r));
+      const Solid solid = samples::make_solid(without);
+      CHECK(check_certificate(solid, triangulate_facets(solid), damaged, Rung::patch).refusal !=
+            CertificateRefusal::none);
+    }
+  }
+  CHECK(closed >= 1);
 }
 
 TEST_CASE("mutated certificate: random numbers in place of indices are never accepted") {

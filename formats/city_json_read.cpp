@@ -4,6 +4,7 @@
 
 #include "formats/city_json.h"
 #include "formats/feature_reader.h"
+#include "formats/text_layout.h"
 
 namespace watertight {
 namespace {
@@ -120,6 +121,13 @@ std::string header_text(const Json& root) {
   return out + '}';
 }
 
+/// Notes how the feature's text differs from the one we would write. What cannot be written is kept
+/// as it is.
+void keep_text(const CityHeader& header, std::string_view text, Feature& feature) {
+  const auto plain = write_city_json_feature(header, feature);
+  feature.layout = describe_layout(plain ? *plain : std::string(), text);
+}
+
 Error type_error(const Json& root) {
   const std::string type = string_member(root, "type");
   if (type == "CityJSONFeature") {
@@ -188,13 +196,15 @@ Result<CityHeader> read_city_json_header(std::string_view line, const Limits& li
 }
 
 Result<Feature> read_city_json_feature(const CityHeader& header, std::string_view line,
-                                       const Limits& limits) {
-  auto model = parse_city_model(line, CityText::document, limits);
+                                       const ReadOptions& options) {
+  auto model = parse_city_model(line, CityText::document, options.limits);
   if (!model) return std::move(model).error();
   if (string_member(model->root, "type") != "CityJSONFeature") {
     return Error{ErrorCode::malformed, "the type is not \"CityJSONFeature\"", {}, "/type"};
   }
-  return read_feature_model(std::move(*model), header, limits);
+  auto feature = read_feature_model(std::move(*model), header, options.limits);
+  if (feature && options.keep_text) keep_text(header, line, *feature);
+  return feature;
 }
 
 Result<Document> read_city_json(std::string_view text, const ReadOptions& options) {
@@ -228,6 +238,7 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   feature.srid = header->srid;
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
+  if (options.keep_text) keep_text(*header, text, feature);
   document.features.push_back(std::move(feature));
   return document;
 }
@@ -252,6 +263,7 @@ Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& op
   }
   Document document = reader->document();
   document.features = std::move(features);
+  if (options.keep_text) document.framing = reader->framing();
   return document;
 }
 

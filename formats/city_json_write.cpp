@@ -6,6 +6,7 @@
 #include "formats/appearance.h"
 #include "formats/city_json.h"
 #include "formats/numbers.h"
+#include "formats/text_layout.h"
 
 namespace watertight {
 namespace {
@@ -359,9 +360,16 @@ bool is_whole(const Document& document) {
 }  // namespace
 
 Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature) {
-  auto open = open_feature(header, feature);
-  if (!open) return std::move(open).error();
-  return print_whole(*open);
+  const auto plain = [&]() -> Result<std::string> {
+    auto open = open_feature(header, feature);
+    if (!open) return std::move(open).error();
+    return print_whole(*open);
+  };
+  if (feature.layout.empty()) return plain();
+  if (holds_whole_text(feature.layout)) return apply_layout({}, feature.layout, Limits{}.bytes);
+  const auto text = plain();
+  if (!text) return text;
+  return apply_layout(*text, feature.layout, Limits{}.bytes);
 }
 
 Result<std::string> write_city_json(const Document& document) {
@@ -393,12 +401,17 @@ Result<std::string> write_city_json_seq(const Document& document) {
     return Error{ErrorCode::unsupported,
                  "a CityJSONSeq needs a transform and this city model has none"};
   }
-  std::string out = document.header + '\n';
+  FramingReader framing(document.framing);
+  std::string out(framing.next_gap(false));
+  out += document.header;
   for (const Feature& feature : document.features) {
     auto line = write_city_json_feature(*header, feature);
     if (!line) return line;
-    out += *line + '\n';
+    out += framing.next_gap(false);
+    out += *line;
   }
+  out += framing.next_gap(true);
+  if (!framing.is_finished()) return unfit("lines");
   return out;
 }
 

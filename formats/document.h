@@ -69,6 +69,9 @@ struct Feature {
   std::vector<SubmittedSolid> solids;
   /// Everything but the solids' geometry, as UTF-8 JSON; write_feature needs it. Opaque.
   std::string skeleton;
+  /// How the text of the document was written (ReadOptions::keep_text), so that the same bytes come
+  /// back; empty: compact JSON is written. Opaque (formats/text_layout.h).
+  Bytes layout = {};
 };
 
 struct Document {
@@ -82,6 +85,9 @@ struct Document {
   /// Coordinates are the templates' own, on no reference system; `source.pointer` is, for example,
   /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's position.
   std::vector<SubmittedSolid> templates = {};
+  /// What stands between the lines of a CityJSONSeq read with ReadOptions::keep_text; empty: line
+  /// feeds. Opaque.
+  Bytes framing = {};
 };
 
 struct ReadOptions {
@@ -89,6 +95,9 @@ struct ReadOptions {
   /// false: a CityJSON document becomes one feature whose skeleton returns the whole document
   /// (files); true: one feature per top-level object (stores). Solids are the same either way.
   bool split_features = true;
+  /// true: a whole CityJSON, a CityJSONFeature of a sequence and a sequence are written byte for
+  /// byte as they were read. The features of a document that is split have no text of their own.
+  bool keep_text = false;
 };
 
 /// What all features of a city model share, as stated by the first line of a CityJSONSeq.
@@ -105,7 +114,7 @@ struct CityHeader {
 /// offset are within the line. Cost: linear.
 Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits = {});
 Result<Feature> read_city_json_feature(const CityHeader& header, std::string_view line,
-                                       const Limits& limits = {});
+                                       const ReadOptions& options = {});
 /// The solids of the header's geometry templates (Document::templates), each template on a lattice
 /// of its own; none for most headers, at no cost. Errors: malformed with JSON Pointer. Cost:
 /// linear.
@@ -120,11 +129,13 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
 
 /// The feature with its solids put back: a CityJSONFeature (one line) for CityJSON and Seq. Solids
 /// must be in the order and with the facet, ring and vertex order of the feature that was read.
-/// Errors: malformed if skeleton and solids do not fit.
+/// Errors: malformed if skeleton and solids do not fit, or if the text is not the one that was
+/// read.
 Result<std::string> write_feature(const Document& document, const Feature& feature);
 
 /// The whole document. City models: a CityJSON of all features when `format` is city_json, header
-/// line + feature lines when city_json_seq. For obj, off, wkt and ewkb the solids of all features.
+/// line + feature lines when city_json_seq; a document that kept its text gives it back in its own
+/// format. For obj, off, wkt and ewkb the solids of all features.
 /// Errors: unsupported when a format cannot hold what is asked (OFF: several solids; OBJ, OFF:
 /// rings with holes are triangulated only by `convert`, never silently here).
 Result<Bytes> write_document(const Document& document, Format format);

@@ -103,6 +103,7 @@ Status FeatureReader::read_header() {
   if (buffer_.starts_with(kByteOrderMark)) {
     used_ = kByteOrderMark.size();
     document_.notes.emplace_back("byte order mark skipped");
+    gap_ = kByteOrderMark;
   }
   auto text = next_line();
   if (!text) return std::move(text).error();
@@ -114,7 +115,7 @@ Status FeatureReader::read_header() {
                    **text);
   }
   header_ = *std::move(header);
-  document_.header = header_.text;
+  document_.header = options_.keep_text ? (*text)->line : header_.text;
   auto templates = read_geometry_templates(header_, options_.limits);
   if (!templates) return in_line(std::move(templates).error(), **text);
   document_.templates = *std::move(templates);
@@ -136,11 +137,27 @@ Result<std::optional<FeatureText>> FeatureReader::next_line() {
     const std::uint64_t offset = bytes_read_ - rest.size() + start;
     line.remove_prefix(start);
     FeatureText text{std::string(line), ++line_number_, offset, {}};
+    if (options_.keep_text) note_gap(rest.substr(0, start), !line.empty());
+    if (options_.keep_text && searched_ < buffer_.size()) gap_ += '\n';
     used_ = std::min(searched_ + 1, buffer_.size());
     searched_ = used_;
     if (line.empty()) continue;
     return std::optional(std::move(text));
   }
+}
+
+/// `blanks` stand at the start of a line that has a text behind them or not.
+void FeatureReader::note_gap(std::string_view blanks, bool has_text) {
+  gap_ += blanks;
+  if (!has_text) return;
+  framing_.gap(gap_, false);
+  gap_.clear();
+}
+
+Bytes FeatureReader::framing() const {
+  FramingWriter framing = framing_;
+  framing.gap(gap_, true);
+  return std::move(framing).finish();
 }
 
 Result<std::optional<FeatureText>> FeatureReader::next() {
@@ -153,7 +170,7 @@ Result<std::optional<FeatureText>> FeatureReader::next() {
 
 Result<Feature> FeatureReader::read(FeatureText text) const {
   if (text.ready) return *std::move(text.ready);
-  auto feature = read_city_json_feature(header_, text.line, options_.limits);
+  auto feature = read_city_json_feature(header_, text.line, options_);
   if (!feature) return in_line(std::move(feature).error(), text);
   return feature;
 }

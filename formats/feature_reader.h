@@ -11,6 +11,7 @@
 #include <string>
 
 #include "formats/document.h"
+#include "formats/text_layout.h"
 
 namespace watertight {
 
@@ -47,6 +48,9 @@ class FeatureReader {
 
   /// Format, header and notes; its features are the reader's.
   const Document& document() const { return document_; }
+  /// What stood between the lines of a sequence that was read to its end, with
+  /// ReadOptions::keep_text (Document::framing).
+  Bytes framing() const;
   std::uint64_t bytes_read() const { return bytes_read_; }
   /// Features in all; unknown for a sequence.
   std::optional<std::size_t> feature_count() const {
@@ -61,6 +65,7 @@ class FeatureReader {
   Status read_whole(std::string_view file_name);
   Status read_header();
   Result<std::optional<FeatureText>> next_line();
+  void note_gap(std::string_view blanks, bool has_text);
 
   ByteSource source_;
   ReadOptions options_;
@@ -68,7 +73,9 @@ class FeatureReader {
   CityHeader header_;
   std::string buffer_;  // bytes read and not used yet: from used_ on
   std::size_t used_ = 0;
-  std::size_t searched_ = 0;       // there is no line end in buffer_ before it
+  std::size_t searched_ = 0;  // there is no line end in buffer_ before it
+  FramingWriter framing_;
+  std::string gap_;                // since the end of the last line that was not blank
   std::uint64_t line_number_ = 0;  // of the last line, from 1
   std::uint64_t bytes_read_ = 0;
   std::size_t given_ = 0;  // features of a document that was read whole

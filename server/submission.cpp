@@ -118,7 +118,7 @@ bool is_sequence(std::string_view body) {
 }
 
 Result<Document> read_bare_feature(std::string body, const std::string& header,
-                                   const Limits& limits) {
+                                   const ReadOptions& options) {
   if (header.empty()) {
     return Error{ErrorCode::malformed,
                  "a CityJSONFeature needs the transform of its document, and there is no "
@@ -130,7 +130,7 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
   // Line ends outside strings are white space, and inside strings JSON has none.
   std::replace(body.begin(), body.end(), '\n', ' ');
   std::replace(body.begin(), body.end(), '\r', ' ');
-  auto feature = read_city_json_feature(*city_header, body, limits);
+  auto feature = read_city_json_feature(*city_header, body, options);
   if (!feature) return std::move(feature).error();
   Document document;
   document.format = Format::city_json_seq;
@@ -166,7 +166,7 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   read_options.limits = options.limits;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
   auto document = *format == Format::city_json && is_bare_feature(request)
-                      ? read_bare_feature(body, header, options.limits)
+                      ? read_bare_feature(body, header, read_options)
                       : read_document(as_bytes(body), *format, read_options);
   if (document) {
     submission.document = *std::move(document);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How a text of a JSON value differs from the text that we would print for the same value: white
+// space, spellings of numbers and escapes of strings. With it the very bytes of a document come
+// back. Internal to formats/.
+//
+// Both texts have the same tokens in the same order. What stands before each token is predicted
+// from what stood at the last such place (the tokens before and after, the depth), the spelling of
+// a token from the last one that was unlike ours; a layout holds the exceptions only. So it is a
+// few bytes for a text in any regular style, and still exact for a text in none.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/bytes.h"
+#include "base/result.h"
+
+namespace watertight {
+
+/// What turns `plain` into `text`, with size and hash of `text`. For two texts without the same
+/// tokens it holds all of `text`. Cost: linear.
+Bytes describe_layout(std::string_view plain, std::string_view text);
+
+/// The text that describe_layout(plain, text) was made of.
+/// Errors: malformed when that is not what comes out, limit_exceeded beyond `most_bytes`.
+Result<std::string> apply_layout(std::string_view plain, ByteView layout, std::uint64_t most_bytes);
+
+/// True if the layout needs no plain text.
+bool holds_whole_text(ByteView layout);
+
+/// A sequence of texts most of which are as expected: pairs of the number of expected ones and one
+/// that is not.
+class ExceptionWriter {
+ public:
+  void expected() { ++run_; }
+  void exception(std::string_view text);
+  Bytes finish() && { return std::move(writer_).bytes(); }
+
+ private:
+  ByteWriter writer_;
+  std::uint64_t run_ = 0;
+};
+
+class ExceptionReader {
+ public:
+  explicit ExceptionReader(ByteView bytes) : reader_(bytes) { start_run(); }
+  /// False when the next text is as expected; else `text`, which views the bytes, becomes it.
+  bool next(std::string_view& text);
+  /// All was read, and rightly.
+  bool is_finished() const { return is_last_run_ && !reader_.failed(); }
+
+ private:
+  void start_run();
+  ByteReader reader_;
+  std::uint64_t run_ = 0;
+  bool is_last_run_ = false;
+};
+
+/// What stands before, between and after the lines of a sequence: nothing, then a line feed each.
+class FramingWriter {
+ public:
+  /// The gap before the next line, or after the last when `is_last`.
+  void gap(std::string_view text, bool is_last);
+  Bytes finish() && { return std::move(gaps_).finish(); }
+
+ private:
+  ExceptionWriter gaps_;
+  std::string likely_;
+  bool is_first_ = true;
+};
+
+class FramingReader {
+ public:
+  explicit FramingReader(ByteView framing) : gaps_(framing) {}
+  std::string_view next_gap(bool is_last);
+  bool is_finished() const { return gaps_.is_finished(); }
+
+ private:
+  ExceptionReader gaps_;
+  std::string_view likely_;
+  bool is_first_ = true;
+};
+
+}  // namespace watertight

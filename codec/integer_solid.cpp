@@ -157,4 +157,12 @@ Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, cons
   return Solid::make(std::move(arrays), lattice, srid, limits);
 }
 
+void PageMemory::add(const IntegerSolid& solid) {
+  if (solid.vertices.empty()) return;
+  last_position = *std::min_element(solid.vertices.begin(), solid.vertices.end());
+  for (const GridPoint& vertex : solid.vertices) columns.push_back({vertex[0], vertex[1]});
+  std::sort(columns.begin(), columns.end());
+  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+}
+
 }  // namespace watertight

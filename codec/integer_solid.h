@@ -64,9 +64,12 @@ Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, cons
 
 /// What the solids of a page before this one have left behind for it; empty in a blob of its own.
 struct PageMemory {
-  GridPoint last_position{};                         // the first vertex coded of the solid before
-  std::vector<std::array<std::int64_t, 2>> columns;  // (x, y) of all vertices so far, each once
+  GridPoint last_position{};  // the smallest vertex of the solid before
+  std::vector<std::array<std::int64_t, 2>>
+      columns;  // (x, y) of all vertices so far, each once, sorted
   bool is_first() const { return columns.empty(); }
+  /// Cost: O(columns + n log n).
+  void add(const IntegerSolid& solid);
 };
 
 }  // namespace watertight

@@ -52,15 +52,6 @@ struct Options {
   int passes = 2;
 };
 
-void remember(const GriddedSolid& gridded, PageMemory& memory) {
-  const auto& vertices = gridded.solid.vertices;
-  if (!vertices.empty()) memory.last_position = vertices.front();
-  for (const GridPoint& vertex : vertices) memory.columns.push_back({vertex[0], vertex[1]});
-  std::sort(memory.columns.begin(), memory.columns.end());
-  memory.columns.erase(std::unique(memory.columns.begin(), memory.columns.end()),
-                       memory.columns.end());
-}
-
 /// Bits for one solid, or nothing if the mode cannot hold it; then `bank` is as before.
 std::optional<double> bits_of(const ModeRow& mode, ModelBank& bank, const PageMemory& memory,
                               const GriddedSolid& gridded) {
@@ -89,7 +80,7 @@ void train(const ModeRow& mode, const std::vector<Page>& pages, ModelBank& bank)
     for (const GriddedSolid* gridded : page.solids) {
       bits_of(mode, bank, PageMemory{}, *gridded);
       bits_of(mode, bank, memory, *gridded);
-      remember(*gridded, memory);
+      memory.add(gridded->solid);
     }
   }
 }
@@ -105,7 +96,7 @@ void measure(const ModeRow& mode, const std::vector<Page>& pages, const ModelBan
       ModelBank own = prior;
       const auto alone = bits_of(mode, own, PageMemory{}, *gridded);
       const auto paged = bits_of(mode, bank, memory, *gridded);
-      remember(*gridded, memory);
+      memory.add(gridded->solid);
       if (!alone || !paged) {
         ++sum.refused;
         continue;

@@ -130,36 +130,51 @@ void ModelBank::add_family(const FamilyShape& shape) {
   families_.push_back(family);
 }
 
-bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
-                        const std::uint32_t* contexts, bool value) {
-  std::array<std::uint32_t*, kMaxInputs> counter{};
-  std::array<std::int32_t, kMaxInputs + 1> input{};
-  std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+ModelBank::Mix ModelBank::mix(const Family& family, std::uint32_t selector,
+                              const std::uint32_t* contexts) const {
+  Mix result;
+  const std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
   std::int64_t sum = 0;
   for (std::uint32_t i = 0; i < family.inputs; ++i) {
     WATERTIGHT_ASSERT(contexts[i] < family.sizes[i]);
-    counter[i] = &counters_[family.first_counter[i] + contexts[i]];
-    input[i] = input_of(*counter[i]);
-    sum += static_cast<std::int64_t>(weight[i]) * input[i];
+    result.counter[i] = family.first_counter[i] + contexts[i];
+    result.input[i] = input_of(counters_[result.counter[i]]);
+    sum += static_cast<std::int64_t>(weight[i]) * result.input[i];
   }
-  input[family.inputs] = kBiasInput;
+  result.input[family.inputs] = kBiasInput;
   sum += static_cast<std::int64_t>(weight[family.inputs]) * kBiasInput;
 
   const auto x = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum >> 16, -kDomain, kDomain));
-  const std::uint32_t ones = std::clamp(static_cast<std::uint32_t>(squash(x)), kLeastProbability,
-                                        65536 - kLeastProbability);
-  const bool bit = stream.code(value, ones);
+  result.ones = std::clamp(static_cast<std::uint32_t>(squash(x)), kLeastProbability,
+                           65536 - kLeastProbability);
+  return result;
+}
 
-  std::uint32_t& mixed = mixed_[family.first_rate + selector];
+bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
+                        const std::uint32_t* contexts, bool value) {
+  const Mix mixed = mix(family, selector, contexts);
+  const bool bit = stream.code(value, mixed.ones);
+
+  std::uint32_t& seen = mixed_[family.first_rate + selector];
+  std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
   const std::int64_t step =
-      ((bit ? 65536 : 0) - static_cast<std::int64_t>(ones)) * mixing_rate(mixed);
+      ((bit ? 65536 : 0) - static_cast<std::int64_t>(mixed.ones)) * mixing_rate(seen);
   for (std::uint32_t i = 0; i <= family.inputs; ++i) {
     weight[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(
-        weight[i] + ((step * input[i]) >> 20), -kWeightLimit, kWeightLimit));
+        weight[i] + ((step * mixed.input[i]) >> 20), -kWeightLimit, kWeightLimit));
   }
-  mixed = std::min(mixed + 1, kMaxMixed);
-  for (std::uint32_t i = 0; i < family.inputs; ++i) *counter[i] = learned(*counter[i], bit);
+  seen = std::min(seen + 1, kMaxMixed);
+  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+    std::uint32_t& counter = counters_[mixed.counter[i]];
+    counter = learned(counter, bit);
+  }
   return bit;
+}
+
+std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selector,
+                                     std::span<const std::uint32_t> contexts) const {
+  WATERTIGHT_ASSERT(family < number_base_ && contexts.size() == families_[family].inputs);
+  return mix(families_[family], selector, contexts.data()).ones;
 }
 
 bool ModelBank::code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,

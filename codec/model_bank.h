@@ -49,6 +49,9 @@ class ModelBank {
   /// what the shape says, and as many contexts as it has tables. Cost: linear in the contexts.
   bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
             std::initializer_list<std::uint32_t> contexts, bool value);
+  /// The probability of 65536 that code() would code this decision with.
+  std::uint32_t probability(std::uint32_t family, std::uint32_t selector,
+                            std::span<const std::uint32_t> contexts) const;
 
   /// A number from 0 on: its bit length in unary and the three bits after the first by mixed
   /// models, the rest plain. Requires value < 2^62. Bit lengths above `max_length` fail the stream.
@@ -77,7 +80,14 @@ class ModelBank {
     std::array<std::uint32_t, kMaxInputs> first_counter{};
     std::array<std::uint32_t, kMaxInputs> sizes{};
   };
+  /// What a decision is coded with: the counters' opinions and their weighted sum.
+  struct Mix {
+    std::array<std::uint32_t, kMaxInputs> counter{};
+    std::array<std::int32_t, kMaxInputs + 1> input{};
+    std::uint32_t ones = 0;
+  };
   void add_family(const FamilyShape& shape);
+  Mix mix(const Family& family, std::uint32_t selector, const std::uint32_t* contexts) const;
   bool code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
                const std::uint32_t* contexts, bool value);
 

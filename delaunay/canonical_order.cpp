@@ -2,9 +2,8 @@
 #include "delaunay/canonical_order.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <numeric>
+#include <cstdint>
+#include <utility>
 
 namespace watertight {
 namespace {
@@ -22,88 +21,67 @@ Tetrahedron canonical_tetrahedron(Tetrahedron t) {
   return t;
 }
 
-/// Stable sorting by counting, one key (a vertex) after the other from the least significant on.
-class CountingSort {
- public:
-  CountingSort(std::size_t count, Index vertex_count) : starts_(vertex_count + 1), order_(count) {
-    std::iota(order_.begin(), order_.end(), Index{0});
-    sorted_.resize(count);
+/// Faces are told apart by their three vertices, tetrahedra by their first three: two with the same
+/// would lie on the same side of a face.
+const Triangle& key_of(const ListedFace& face) { return face.vertices; }
+Triangle key_of(const Tetrahedron& t) { return {t[0], t[1], t[2]}; }
+
+/// Sorts by the key: by counting as to its first vertex, then the few that share it.
+template <class Record>
+void sort_by_key(std::vector<Record>& records, Index vertex_count) {
+  std::vector<std::size_t> ends(std::size_t{vertex_count} + 1);
+  for (const Record& record : records) ++ends[key_of(record)[0] + 1];
+  for (std::size_t v = 0; v < vertex_count; ++v) ends[v + 1] += ends[v];
+  std::vector<Record> sorted(records.size());
+  for (const Record& record : records) sorted[ends[key_of(record)[0]]++] = record;
+  const auto rest = [](const Record& record) {
+    return std::uint64_t{key_of(record)[1]} << 32 | key_of(record)[2];
+  };
+  std::size_t begin = 0;
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+              sorted.begin() + static_cast<std::ptrdiff_t>(ends[v]),
+              [&](const Record& a, const Record& b) { return rest(a) < rest(b); });
+    begin = ends[v];
   }
-
-  template <class Key>
-  void sort_by(Key key) {
-    std::fill(starts_.begin(), starts_.end(), Index{0});
-    for (const Index i : order_) ++starts_[key(i) + 1];
-    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-    for (const Index i : order_) sorted_[starts_[key(i)]++] = i;
-    order_.swap(sorted_);
-  }
-  const std::vector<Index>& order() const { return order_; }
-
- private:
-  std::vector<Index> starts_;
-  std::vector<Index> order_;
-  std::vector<Index> sorted_;
-};
-
-/// No two tetrahedra share their first three vertices: they would lie on the same side of a face.
-void sort_tetrahedra(std::vector<Tetrahedron>& tetrahedra, Index vertex_count) {
-  CountingSort sort(tetrahedra.size(), vertex_count);
-  for (const std::size_t corner : {2, 1, 0}) {
-    sort.sort_by([&](Index i) { return tetrahedra[i][corner]; });
-  }
-  std::vector<Tetrahedron> sorted;
-  sorted.reserve(tetrahedra.size());
-  for (const Index i : sort.order()) sorted.push_back(tetrahedra[i]);
-  tetrahedra.swap(sorted);
-}
-
-/// A face as one of its tetrahedra has it: its vertices increase, `side` is 0 if the apex lies on
-/// their positive side.
-struct Corner {
-  Triangle face;
-  Index apex;
-  std::size_t side;
-};
-
-/// The face of a canonical tetrahedron that leaves out its i-th smallest vertex.
-Corner corner_of(const Tetrahedron& t, std::size_t i) {
-  const bool is_even = t[2] < t[3];
-  const std::array<Index, 4> sorted{t[0], t[1], is_even ? t[2] : t[3], is_even ? t[3] : t[2]};
-  const Triangle face{sorted[i == 0 ? 1 : 0], sorted[i <= 1 ? 2 : 1], sorted[i <= 2 ? 3 : 2]};
-  // Moving the apex behind its face takes 3 - i transpositions.
-  return {face, sorted[i], ((3 - i) + (is_even ? 0U : 1U)) % 2};
-}
-
-/// Numbers 4 t + i stand for the i-th face of tetrahedron t; inner faces come twice.
-void list_faces(CanonicalDelaunay& delaunay, Index vertex_count) {
-  const std::vector<Tetrahedron>& tetrahedra = delaunay.tetrahedra;
-  const auto corner = [&](Index i) { return corner_of(tetrahedra[i / 4], i % 4); };
-  CountingSort sort(4 * tetrahedra.size(), vertex_count);
-  for (const std::size_t k : {2, 1, 0}) {
-    sort.sort_by([&](Index i) { return corner(i).face[k]; });
-  }
-  const std::size_t most = 2 * tetrahedra.size() + 2 * std::size_t{vertex_count};
-  delaunay.faces.reserve(std::min(most, 4 * tetrahedra.size()));
-  delaunay.apexes.reserve(std::min(most, 4 * tetrahedra.size()));
-  for (const Index i : sort.order()) {
-    const auto [face, apex, side] = corner(i);
-    if (delaunay.faces.empty() || delaunay.faces.back() != face) {
-      delaunay.faces.push_back(face);
-      delaunay.apexes.push_back({kNone, kNone});
-    }
-    delaunay.apexes.back()[side] = apex;
-  }
+  records.swap(sorted);
 }
 
 }  // namespace
 
-CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra, Index vertex_count) {
+ListedFace face_opposite(const Tetrahedron& tetrahedron, std::size_t corner, Index beyond) {
+  // A cycle of four is an odd permutation: the apex is on the positive side for odd corners.
+  Index a = tetrahedron[(corner + 1) % 4];
+  Index b = tetrahedron[(corner + 2) % 4];
+  Index c = tetrahedron[(corner + 3) % 4];
+  std::size_t side = 1 - corner % 2;
+  const auto order = [&side](Index& low, Index& high) {
+    if (low < high) return;
+    std::swap(low, high);
+    side = 1 - side;
+  };
+  order(a, b);
+  order(b, c);
+  order(a, b);
+  ListedFace face{{a, b, c}};
+  face.apexes[side] = tetrahedron[corner];
+  face.apexes[1 - side] = beyond;
+  return face;
+}
+
+CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra,
+                                   std::vector<ListedFace> faces, Index vertex_count) {
   CanonicalDelaunay result;
   result.tetrahedra = std::move(tetrahedra);
   for (Tetrahedron& t : result.tetrahedra) t = canonical_tetrahedron(t);
-  sort_tetrahedra(result.tetrahedra, vertex_count);
-  list_faces(result, vertex_count);
+  sort_by_key(result.tetrahedra, vertex_count);
+  sort_by_key(faces, vertex_count);
+  result.faces.reserve(faces.size());
+  result.apexes.reserve(faces.size());
+  for (const ListedFace& face : faces) {
+    result.faces.push_back(face.vertices);
+    result.apexes.push_back(face.apexes);
+  }
   return result;
 }
 

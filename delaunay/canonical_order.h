@@ -3,19 +3,28 @@
 // The canonical listing of a Delaunay tetrahedralization, whatever made it. Private to delaunay/.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "delaunay/canonical_delaunay.h"
 
 namespace watertight {
 
-/// More tetrahedra cannot be listed: four faces of each are numbered by an Index.
-inline constexpr std::uint64_t kMostTetrahedra = kNone / 4;
+/// A face with its vertices in increasing order, and the apexes as CanonicalDelaunay has them.
+struct ListedFace {
+  Triangle vertices{};
+  std::array<Index, 2> apexes{kNone, kNone};
+};
 
-/// Brings positively oriented tetrahedra, in any order and from any of their vertices on, into the
-/// canonical order, and lists their faces. Requires at most kMostTetrahedra of them, vertices
-/// below `vertex_count`, and of each face at most two tetrahedra, on different sides.
-/// Cost: linear in both.
-CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra, Index vertex_count);
+/// The face of a positively oriented tetrahedron that lies opposite to `corner`; `beyond` is the
+/// apex on its other side, kNone on the hull.
+ListedFace face_opposite(const Tetrahedron& tetrahedron, std::size_t corner, Index beyond);
+
+/// Lists positively oriented tetrahedra and all their faces, each once, canonically: whatever their
+/// order and from whichever of its vertices a tetrahedron starts. Vertices are below
+/// `vertex_count`. Cost: O(n log n), linear if no vertex is the smallest of very many.
+CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra,
+                                   std::vector<ListedFace> faces, Index vertex_count);
 
 }  // namespace watertight

@@ -81,6 +81,11 @@ Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
   return Done{};
 }
 
+Tetrahedron vertices_of(Delaunay::Cell_handle cell) {
+  return {cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(),
+          cell->vertex(3)->info()};
+}
+
 }  // namespace
 
 Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint64_t max_tetrahedra,
@@ -88,22 +93,30 @@ Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint
   if (points.size() >= kNone) {
     return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
   }
-  max_tetrahedra = std::min(max_tetrahedra, kMostTetrahedra);
   Delaunay delaunay;
+  delaunay.infinite_vertex()->info() = kNone;
   if (Status inserted = insert_all(points, max_tetrahedra, is_cancelled, delaunay); !inserted) {
     return std::move(inserted).error();
   }
   if (delaunay.dimension() < 3) return CanonicalDelaunay{};
   std::vector<Tetrahedron> tetrahedra;
   for (auto cell = delaunay.finite_cells_begin(); cell != delaunay.finite_cells_end(); ++cell) {
-    tetrahedra.push_back({cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(),
-                          cell->vertex(3)->info()});
+    tetrahedra.push_back(vertices_of(cell));
   }
   if (tetrahedra.size() > max_tetrahedra) {
     return Error{ErrorCode::limit_exceeded, "the Delaunay tetrahedralization has more than " +
                                                 std::to_string(max_tetrahedra) + " tetrahedra"};
   }
-  return list_canonically(std::move(tetrahedra), static_cast<Index>(points.size()));
+  std::vector<ListedFace> faces;
+  for (auto facet = delaunay.finite_facets_begin(); facet != delaunay.finite_facets_end();
+       ++facet) {
+    const bool is_outside = delaunay.is_infinite(facet->first);
+    const auto [cell, corner] = is_outside ? delaunay.mirror_facet(*facet) : *facet;
+    const Index beyond = delaunay.mirror_vertex(cell, corner)->info();
+    faces.push_back(face_opposite(vertices_of(cell), static_cast<std::size_t>(corner), beyond));
+  }
+  return list_canonically(std::move(tetrahedra), std::move(faces),
+                          static_cast<Index>(points.size()));
 }
 
 }  // namespace watertight

@@ -27,6 +27,8 @@ namespace watertight {
 namespace {
 
 constexpr double kSide = 1 << 30;
+/// Sides of cells are numbered by an Index.
+constexpr std::size_t kMostCells = kNone / 4;
 constexpr double kLargestInteger = 9007199254740992.0;
 
 /// One side of a cell: the face opposite to vertex `corner`, as 4 cell + corner.
@@ -34,6 +36,14 @@ using Side = Index;
 Index cell_of(Side side) { return side >> 2; }
 std::size_t corner_of(Side side) { return side & 3; }
 Side side_of(Index cell, std::size_t corner) { return 4 * cell + static_cast<Index>(corner); }
+
+/// The other corners of a cell.
+constexpr std::array<std::array<std::size_t, 3>, 4> kOthers{
+    {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
+
+/// Rims up to this many vertices, and so (Euler's formula) faces, are linked by a table.
+constexpr std::size_t kRimVertices = 64;
+constexpr std::size_t kSmallRim = 2 * (kRimVertices - 2);
 
 struct Cell {
   Tetrahedron vertices{kNone, kNone, kNone, kNone};
@@ -48,6 +58,8 @@ class SmallDelaunay {
     // 6.8 tetrahedra per point are usual, and freed cells are used again.
     cells_.reserve(8 * points_.size() + 64);
     marks_.reserve(8 * points_.size() + 64);
+    labels_.resize(points_.size() + 1, kNone);
+    new_cell({infinite_, infinite_, infinite_, infinite_});
   }
 
   /// Starts with four points of positive orientation.
@@ -56,8 +68,8 @@ class SmallDelaunay {
   /// Returns false if the point equals one that is there. `steps` counts the work.
   bool insert(Index vertex, std::size_t& steps);
 
-  std::size_t cell_count() const { return cells_.size() - free_.size(); }
-  std::vector<Tetrahedron> finite_cells() const;
+  std::size_t cell_count() const { return cells_.size() - free_.size() - 1; }
+  CanonicalDelaunay list() const;
   const GridPredicates& signs() const { return signs_; }
   const Point& point(Index vertex) const { return points_[vertex]; }
 
@@ -78,7 +90,8 @@ class SmallDelaunay {
   bool is_in_conflict(Index cell, const Point& p) const;
   void find_conflicts(Index first, const Point& p);
   void fill_cavity(Index vertex);
-  void link_around(Side side, std::size_t corner);
+  void link_small_rim();
+  void link_large_rim();
 
   std::vector<Point> points_;
   Index infinite_;
@@ -90,7 +103,9 @@ class SmallDelaunay {
   Index round_ = 0;
   Index last_ = 0;
   std::vector<Index> cavity_;
-  std::vector<Side> rim_;  // sides of cavity cells whose neighbour is not in the cavity
+  /// Sides of the cavity's cells towards cells outside it; then of the new cells.
+  std::vector<Side> rim_;
+  std::vector<Index> labels_;  // of vertices, while a rim is linked; else kNone
 };
 
 void SmallDelaunay::start(const Tetrahedron& corners) {
@@ -100,14 +115,15 @@ void SmallDelaunay::start(const Tetrahedron& corners) {
       {{3, 1, 2, 4}, {0, 3, 2, 4}, {0, 1, 3, 4}, {1, 0, 2, 4}, {0, 1, 2, 3}}};
   const std::array<Index, 5> vertices{a, b, c, d, infinite_};
   for (const auto& label : labels) {
-    new_cell({vertices[label[0]], vertices[label[1]], vertices[label[2]], vertices[label[3]]});
+    last_ =
+        new_cell({vertices[label[0]], vertices[label[1]], vertices[label[2]], vertices[label[3]]});
   }
-  for (std::size_t cell = 0; cell < 5; ++cell) {
+  for (std::size_t i = 0; i < 5; ++i) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      const auto& other = labels[labels[cell][corner]];
-      const auto across = std::find(other.begin(), other.end(), cell) - other.begin();
-      cells_[cell].neighbors[corner] =
-          side_of(static_cast<Index>(labels[cell][corner]), static_cast<std::size_t>(across));
+      const std::size_t j = labels[i][corner];
+      const auto across = std::find(labels[j].begin(), labels[j].end(), i) - labels[j].begin();
+      cells_[1 + i].neighbors[corner] =
+          side_of(static_cast<Index>(1 + j), static_cast<std::size_t>(across));
     }
   }
 }
@@ -175,19 +191,20 @@ void SmallDelaunay::find_conflicts(Index first, const Point& p) {
 /// Replaces the cavity by a cell between the vertex and each face of its rim. The vertex takes the
 /// place of the corner inside, so infinite vertices stay last and orientations right.
 void SmallDelaunay::fill_cavity(Index vertex) {
-  for (const Side side : rim_) {
+  for (Side& side : rim_) {
     const std::size_t corner = corner_of(side);
     Tetrahedron vertices = cells_[cell_of(side)].vertices;
     vertices[corner] = vertex;
     const Side outside = cells_[cell_of(side)].neighbors[corner];
     last_ = new_cell(vertices);
     cells_[last_].neighbors[corner] = outside;
-    cells_[cell_of(outside)].neighbors[corner_of(outside)] = side_of(last_, corner);
+    side = side_of(last_, corner);
+    cells_[cell_of(outside)].neighbors[corner_of(outside)] = side;
   }
-  for (const Side side : rim_) {
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      if (corner != corner_of(side)) link_around(side, corner);
-    }
+  if (rim_.size() <= kSmallRim) {
+    link_small_rim();
+  } else {
+    link_large_rim();
   }
   for (const Index cell : cavity_) {
     cells_[cell].vertices[3] = infinite_;  // no finite cell any more
@@ -195,29 +212,59 @@ void SmallDelaunay::fill_cavity(Index vertex) {
   }
 }
 
-/// Links the new cell at a side of the rim with its neighbour opposite to `corner`: the new cell at
-/// the rim's other side at the same edge, found by turning around the edge through the cavity.
-void SmallDelaunay::link_around(Side side, std::size_t corner) {
-  const auto new_side_at = [&](Side outside) {
-    return cells_[cell_of(outside)].neighbors[corner_of(outside)];
-  };
-  const Cell* old = &cells_[cell_of(side)];
-  Cell& cell = cells_[cell_of(new_side_at(old->neighbors[corner_of(side)]))];
-  if (cell.neighbors[corner] != kNone) return;
-  // The face about to be crossed has the edge and the pivot.
-  std::size_t pivot_corner = corner_of(side);
-  Side next = old->neighbors[corner];
-  while (marks_[cell_of(next)] == 2 * round_) {
-    const Index pivot = old->vertices[pivot_corner];
-    old = &cells_[cell_of(next)];
-    pivot_corner = corner_of(next);
-    const auto crossed = std::find(old->vertices.begin(), old->vertices.end(), pivot);
-    next = old->neighbors[static_cast<std::size_t>(crossed - old->vertices.begin())];
+/// Two new cells are neighbours if their faces in the rim share an edge: found in a table of the
+/// rim's vertices by its vertices. An empty place stands for cell 0, which takes what is written
+/// there by mistake: it is never in use.
+void SmallDelaunay::link_small_rim() {
+  std::array<Side, kRimVertices * kRimVertices> table;
+  Index labels = 0;
+  for (const Side side : rim_) {
+    const Cell& cell = cells_[cell_of(side)];
+    for (const std::size_t other : kOthers[corner_of(side)]) {
+      Index& label = labels_[cell.vertices[other]];
+      if (label == kNone) label = labels++;
+    }
   }
-  const Index other = cell_of(new_side_at(next));
-  cell.neighbors[corner] = side_of(other, pivot_corner);
-  cells_[other].neighbors[pivot_corner] =
-      side_of(static_cast<Index>(&cell - cells_.data()), corner);
+  std::fill_n(table.begin(), labels * kRimVertices, Side{0});
+  for (const Side side : rim_) {
+    Cell& cell = cells_[cell_of(side)];
+    const auto& others = kOthers[corner_of(side)];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = labels_[cell.vertices[others[(i + 1) % 3]]];
+      const Index b = labels_[cell.vertices[others[(i + 2) % 3]]];
+      Side& met = table[std::min(a, b) * kRimVertices + std::max(a, b)];
+      const Side own = side_of(cell_of(side), others[i]);
+      cell.neighbors[others[i]] = met;
+      cells_[cell_of(met)].neighbors[corner_of(met)] = own;
+      met = own;
+    }
+  }
+  for (const Side side : rim_) {
+    for (const Index vertex : cells_[cell_of(side)].vertices) labels_[vertex] = kNone;
+  }
+}
+
+/// The same by sorting the edges.
+void SmallDelaunay::link_large_rim() {
+  std::vector<std::pair<std::uint64_t, Side>> edges;
+  edges.reserve(3 * rim_.size());
+  for (const Side side : rim_) {
+    const Cell& cell = cells_[cell_of(side)];
+    const auto& others = kOthers[corner_of(side)];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = cell.vertices[others[(i + 1) % 3]];
+      const Index b = cell.vertices[others[(i + 2) % 3]];
+      edges.emplace_back(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b),
+                         side_of(cell_of(side), others[i]));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i + 1 < edges.size(); i += 2) {
+    const Side one = edges[i].second;
+    const Side other = edges[i + 1].second;
+    cells_[cell_of(one)].neighbors[corner_of(one)] = other;
+    cells_[cell_of(other)].neighbors[corner_of(other)] = one;
+  }
 }
 
 bool SmallDelaunay::insert(Index vertex, std::size_t& steps) {
@@ -234,13 +281,26 @@ bool SmallDelaunay::insert(Index vertex, std::size_t& steps) {
   return true;
 }
 
-std::vector<Tetrahedron> SmallDelaunay::finite_cells() const {
+CanonicalDelaunay SmallDelaunay::list() const {
   std::vector<Tetrahedron> tetrahedra;
+  std::vector<ListedFace> faces;
   tetrahedra.reserve(cell_count());
-  for (const Cell& cell : cells_) {
-    if (!is_infinite(cell)) tetrahedra.push_back(cell.vertices);
+  faces.reserve(2 * cell_count());
+  for (Index i = 0; i < cells_.size(); ++i) {
+    const Cell& cell = cells_[i];
+    if (is_infinite(cell)) continue;
+    tetrahedra.push_back(cell.vertices);
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const Side across = cell.neighbors[corner];
+      const Cell& neighbor = cells_[cell_of(across)];
+      if (is_infinite(neighbor)) {
+        faces.push_back(face_opposite(cell.vertices, corner, kNone));
+      } else if (cell_of(across) > i) {
+        faces.push_back(face_opposite(cell.vertices, corner, neighbor.vertices[corner_of(across)]));
+      }
+    }
   }
-  return tetrahedra;
+  return list_canonically(std::move(tetrahedra), std::move(faces), infinite_);
 }
 
 Error equal_points() {
@@ -308,10 +368,10 @@ bool is_small_grid(std::span<const Point> points) {
 Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
                                          std::uint64_t max_tetrahedra,
                                          const std::function<bool()>& is_cancelled) {
-  if (points.size() >= kMostTetrahedra) {
+  if (points.size() >= kMostCells / 4) {
     return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
   }
-  max_tetrahedra = std::min(max_tetrahedra, kMostTetrahedra / 2);
+  max_tetrahedra = std::min<std::uint64_t>(max_tetrahedra, kMostCells / 4);
   const Box box = box_of(points);
   std::vector<Point> relative;
   relative.reserve(points.size());
@@ -339,9 +399,9 @@ Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
       return Error{ErrorCode::cancelled, "cancelled by the caller"};
     }
   }
-  std::vector<Tetrahedron> tetrahedra = delaunay.finite_cells();
-  if (tetrahedra.size() > max_tetrahedra) return too_many(max_tetrahedra);
-  return list_canonically(std::move(tetrahedra), static_cast<Index>(points.size()));
+  CanonicalDelaunay result = delaunay.list();
+  if (result.tetrahedra.size() > max_tetrahedra) return too_many(max_tetrahedra);
+  return result;
 }
 
 }  // namespace watertight

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <numeric>
 #include <utility>
 
 #include "base/assert.h"
@@ -96,7 +97,7 @@ void EntropyStream::shift_out() {
 bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
   WATERTIGHT_ASSERT(ones_of_65536 > 0 && ones_of_65536 < 65536);
   if (direction_ == Direction::measure) {
-    cost_ += kCosts[(value ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
+    costs_[part_] += kCosts[(value ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
     return value;
   }
   if (failed_) return false;
@@ -109,6 +110,10 @@ bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
   }
   shift_out();
   return result;
+}
+
+std::uint64_t EntropyStream::cost() const {
+  return std::accumulate(costs_.begin(), costs_.end(), std::uint64_t{0});
 }
 
 std::uint64_t EntropyStream::code_bits(std::uint64_t value, int count) {

@@ -6,11 +6,16 @@
 // Integers only. Source: the carry-less coder of M. Mahoney's lpaq (32-bit interval).
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "base/bytes.h"
 
 namespace watertight {
+
+/// What decisions are about, for reports on sizes.
+enum class StreamPart : std::uint8_t { frame, position, connectivity, facets, coordinates, order };
+inline constexpr std::size_t kStreamParts = 6;
 
 /// log2 of the cost unit of a measuring stream: costs are in 1/65536 bit.
 inline constexpr int kCostBits = 16;
@@ -38,10 +43,11 @@ class EntropyStream {
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
 
-  /// Measured so far, in 1/65536 bit.
-  std::uint64_t cost() const { return cost_; }
-  /// Written so far, to the byte: for reports on the size of parts.
-  std::size_t bytes_written() const { return bytes_.size(); }
+  /// What a measuring stream measured so far, in 1/65536 bit.
+  std::uint64_t cost() const;
+  std::uint64_t cost(StreamPart part) const { return costs_[static_cast<std::size_t>(part)]; }
+  /// The decisions from here on belong to `part`. Changes nothing but the account of the costs.
+  void enter(StreamPart part) { part_ = static_cast<std::size_t>(part); }
   /// Ends a written stream: the shortest bytes, and of those the smallest.
   Bytes finish() &&;
   /// True if nothing failed and the bytes end exactly as a writer would have ended them.
@@ -61,7 +67,8 @@ class EntropyStream {
   std::size_t position_ = 0;  // reading: bytes taken, counting those past the end
   ByteView source_;
   Bytes bytes_;
-  std::uint64_t cost_ = 0;
+  std::array<std::uint64_t, kStreamParts> costs_{};
+  std::size_t part_ = 0;
 };
 
 }  // namespace watertight

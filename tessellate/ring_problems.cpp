@@ -2,6 +2,7 @@
 #include "tessellate/ring_problems.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <tuple>
 
@@ -58,6 +59,7 @@ class RingExaminer {
   void find_nesting();
   std::optional<bool> is_within(Index inner, Index outer, bool& is_mixed) const;
   int side_of_ring(const Point& p, std::span<const Index> around) const;
+  void keep_one_of_each_contact();
   void add(RingProblem problem);
   bool goes_on(std::size_t steps);
 
@@ -233,9 +235,12 @@ std::optional<Contact> RingExaminer::neighbour_contact(const Edge& a, const Edge
   const Index end_of_a = a.to == joint ? a.from : a.to;
   const Index end_of_b = b.to == joint ? b.from : b.to;
   if (turn(end_of_a, joint, end_of_b) != 0) return std::nullopt;
-  if (is_between(end_of_a, b)) return Contact{vertices_[end_of_a], false};
-  if (is_between(end_of_b, a)) return Contact{vertices_[end_of_b], false};
-  return std::nullopt;
+  std::optional<Contact> found;
+  for (const auto& [end, edge] : {std::pair(end_of_a, &b), std::pair(end_of_b, &a)}) {
+    if (!is_between(end, *edge)) continue;
+    if (!found || vertices_[end] < found->witness) found = Contact{vertices_[end], false};
+  }
+  return found;
 }
 
 std::optional<Contact> RingExaminer::contact(const Edge& a, const Edge& b) const {
@@ -245,7 +250,13 @@ std::optional<Contact> RingExaminer::contact(const Edge& a, const Edge& b) const
   const int from_b = turn(a.from, a.to, b.from);
   const int to_b = turn(a.from, a.to, b.to);
   if (from_b * to_b > 0) return std::nullopt;
-  if (from_a * to_a < 0 && from_b * to_b < 0) return Contact{crossing(a, b), false};
+  if (from_a * to_a < 0 && from_b * to_b < 0) {
+    // On the same edge, however the facet is written.
+    const auto ends = [&](const Edge& e) {
+      return std::minmax(vertices_[e.from], vertices_[e.to]);
+    };
+    return Contact{ends(a) <= ends(b) ? crossing(a, b) : crossing(b, a), false};
+  }
 
   // Some end lies on the other edge or at least on its line.
   std::vector<Index> ends;
@@ -376,6 +387,28 @@ void RingExaminer::find_nesting() {
   }
 }
 
+/// A point of contact, in the plane of projection, is found by each pair of edges that meet there:
+/// keeps the first, with the smallest of their witnesses. Requires sorted problems.
+void RingExaminer::keep_one_of_each_contact() {
+  using Key = std::tuple<RingProblemKind, Index, Index, double, double>;
+  std::map<Key, std::size_t> kept_at;
+  std::vector<RingProblem> kept;
+  for (const RingProblem& p : result_.problems) {
+    if (p.kind == RingProblemKind::self_contact || p.kind == RingProblemKind::rings_meet) {
+      const Key key{p.kind, p.ring, p.other_ring, p.witness[(axis_ + 1) % 3],
+                    p.witness[(axis_ + 2) % 3]};
+      const auto [place, is_new] = kept_at.try_emplace(key, kept.size());
+      if (!is_new) {
+        Point& witness = kept[place->second].witness;
+        witness = std::min(witness, p.witness);
+        continue;
+      }
+    }
+    kept.push_back(p);
+  }
+  result_.problems = std::move(kept);
+}
+
 RingProblems RingExaminer::examine(Index facet) {
   if (rings_.size() == 0) return result_;
   find_collapsed();
@@ -391,23 +424,7 @@ RingProblems RingExaminer::examine(Index facet) {
   };
   std::sort(problems.begin(), problems.end(),
             [&](const RingProblem& a, const RingProblem& b) { return key(a) < key(b); });
-  // One point of contact is found once by each pair of edges that end there: keep the first.
-  std::vector<RingProblem> kept;
-  std::vector<std::tuple<RingProblemKind, Index, Index, Point>> seen;
-  for (const RingProblem& p : problems) seen.emplace_back(p.kind, p.ring, p.other_ring, p.witness);
-  std::sort(seen.begin(), seen.end());
-  std::vector<bool> is_taken(seen.size(), false);
-  for (const RingProblem& p : problems) {
-    const auto place = std::lower_bound(seen.begin(), seen.end(),
-                                        std::tuple(p.kind, p.ring, p.other_ring, p.witness));
-    const auto number = static_cast<std::size_t>(place - seen.begin());
-    if (p.kind == RingProblemKind::self_contact || p.kind == RingProblemKind::rings_meet) {
-      if (is_taken[number]) continue;
-      is_taken[number] = true;
-    }
-    kept.push_back(p);
-  }
-  problems = std::move(kept);
+  keep_one_of_each_contact();
   return result_;
 }
 

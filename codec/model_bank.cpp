@@ -178,9 +178,9 @@ std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selecto
 }
 
 bool ModelBank::code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
-                     std::initializer_list<std::uint32_t> contexts, bool value) {
+                     std::span<const std::uint32_t> contexts, bool value) {
   WATERTIGHT_ASSERT(family < number_base_ && contexts.size() == families_[family].inputs);
-  return code_at(stream, families_[family], selector, contexts.begin(), value);
+  return code_at(stream, families_[family], selector, contexts.data(), value);
 }
 
 std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number,

@@ -48,7 +48,11 @@ class ModelBank {
   /// Codes one decision of `family`, then learns from it. Requires selector and contexts below
   /// what the shape says, and as many contexts as it has tables. Cost: linear in the contexts.
   bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
-            std::initializer_list<std::uint32_t> contexts, bool value);
+            std::span<const std::uint32_t> contexts, bool value);
+  bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
+            std::initializer_list<std::uint32_t> contexts, bool value) {
+    return code(stream, family, selector, std::span(contexts.begin(), contexts.size()), value);
+  }
   /// The probability of 65536 that code() would code this decision with.
   std::uint32_t probability(std::uint32_t family, std::uint32_t selector,
                             std::span<const std::uint32_t> contexts) const;

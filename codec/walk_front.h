@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The surface that the pivot walk has made so far: triangles as half-edges, open where there is no
+// triangle beyond yet. Private to the walk.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/point.h"
+
+namespace watertight {
+
+class WalkFront {
+ public:
+  explicit WalkFront(Index vertex_count)
+      : head_(vertex_count, kNone),
+        open_count_(vertex_count, 0),
+        component_of_(vertex_count, kNone) {}
+
+  std::vector<Triangle> triangles;
+  std::vector<Index> twin;  // half-edge 3 t + k: corner k of triangle t to the next; kNone if open
+
+  /// From here on triangles belong to another component, which knows nothing of the ones before.
+  void start_component() { ++component_; }
+  /// Adds a triangle, whose half-edges must be unused, and joins them to open ones.
+  void add(const Triangle& triangle);
+
+  Index from(Index half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
+  Index to(Index half_edge) const { return triangles[half_edge / 3][next_corner(half_edge)]; }
+  Index corner(Index half_edge) const { return triangles[half_edge / 3][(half_edge + 2) % 3]; }
+  bool is_open(Index half_edge) const { return twin[half_edge] == kNone; }
+  static Index next_of(Index half_edge) {
+    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
+  }
+  static Index previous_of(Index half_edge) {
+    return half_edge % 3 == 0 ? half_edge + 2 : half_edge - 1;
+  }
+
+  /// The half-edges of the component that leave `v`: this one first, then next_at().
+  Index first_at(Index v) const { return is_used(v) ? head_[v] : kNone; }
+  Index next_at(Index half_edge) const { return next_[half_edge]; }
+  /// The half-edge between two vertices in this direction, kNone if unused.
+  Index find(Index a, Index b) const {
+    Index h = first_at(a);
+    while (h != kNone && to(h) != b) h = next_[h];
+    return h;
+  }
+  /// By a triangle of this component; by one of any.
+  bool is_used(Index v) const { return component_of_[v] == component_; }
+  bool is_known(Index v) const { return component_of_[v] != kNone; }
+  /// Used, and all its edges are joined.
+  bool is_closed(Index v) const { return is_used(v) && open_count_[v] == 0; }
+  /// Half-edges without twin, of all components.
+  std::size_t open_edges() const { return open_edges_; }
+
+ private:
+  static Index next_corner(Index half_edge) { return (half_edge % 3 + 1) % 3; }
+
+  Index component_ = kNone;  // start_component() makes the first one 0
+  std::vector<Index> next_;  // half-edge -> the one added before it at the same vertex
+  std::vector<Index> head_;
+  std::vector<Index> open_count_;
+  std::vector<Index> component_of_;  // vertex -> the last component to use it
+  std::size_t open_edges_ = 0;
+};
+
+inline void WalkFront::add(const Triangle& triangle) {
+  const auto first = static_cast<Index>(3 * triangles.size());
+  for (const Index v : triangle) {
+    if (is_used(v)) continue;
+    component_of_[v] = component_;
+    head_[v] = kNone;
+    open_count_[v] = 0;
+  }
+  std::array<Index, 3> opposite{};
+  for (std::size_t k = 0; k < 3; ++k) opposite[k] = find(triangle[(k + 1) % 3], triangle[k]);
+  triangles.push_back(triangle);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index a = triangle[k];
+    const Index b = triangle[(k + 1) % 3];
+    const Index half_edge = first + static_cast<Index>(k);
+    twin.push_back(opposite[k]);
+    if (opposite[k] == kNone) {
+      ++open_edges_;
+      ++open_count_[a];
+      ++open_count_[b];
+    } else {
+      twin[opposite[k]] = half_edge;
+      --open_edges_;
+      --open_count_[a];
+      --open_count_[b];
+    }
+    next_.push_back(head_[a]);
+    head_[a] = half_edge;
+  }
+}
+
+}  // namespace watertight

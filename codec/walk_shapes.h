@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the pivot walk sees of the geometry: small classes that say how well a triangle continues a
+// surface. From IEEE + - * / and sqrt in a fixed order, compared with constants: the same on every
+// machine. Part of the format (docs/format.md, "The walk").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "geometry/point.h"
+
+namespace watertight {
+
+using Vector = std::array<double, 3>;
+
+inline constexpr std::uint32_t kBendClasses = 12;
+inline constexpr std::uint32_t kSideClasses = 3;
+inline constexpr std::uint32_t kDeviationClasses = 6;
+inline constexpr std::uint32_t kRadiusClasses = 10;
+inline constexpr std::uint32_t kParallelogramClasses = 12;
+inline constexpr std::uint32_t kSphereClasses = 18;
+inline constexpr std::uint32_t kRatioClasses = 10;
+inline constexpr std::uint32_t kGabrielClasses = 4;
+
+/// An edge from a to b with the triangle (a, b, o) on one side.
+struct Gate {
+  Point a, b, o;
+  Vector along{};      // b - a
+  Vector normal{};     // along x (o - a)
+  double length2 = 0;  // of along, squared
+  double normal2 = 0;  // of normal, squared
+  Gate(const Point& from, const Point& to, const Point& corner);
+};
+
+/// How the triangle (b, a, w) continues a gate.
+struct Continuation {
+  std::uint32_t bend;           // angle between the normals, in twelfths of a half turn
+  std::uint32_t side;           // of w: below the gate's plane, in it, above it
+  std::uint32_t deviation;      // distance of w from that plane in grid steps
+  std::uint32_t radius;         // circumradius by the gate's length, steps of sqrt(2)
+  std::uint32_t parallelogram;  // distance of w from a + b - o by the gate's length, likewise
+};
+Continuation continuation(const Gate& gate, const Point& w);
+
+/// What a face is among the tetrahedra beside it.
+struct FaceShape {
+  std::uint8_t sphere;   // angle between the circumspheres of its two tetrahedra
+  std::uint8_t ratio;    // of their radii, steps of sqrt(2)
+  std::uint8_t gabriel;  // how many of the radii exceed 1.3 times that of the face
+};
+/// Of a triangle that is no face.
+inline constexpr FaceShape kNoFace{kSphereClasses - 1, kRatioClasses - 1, kGabrielClasses - 1};
+FaceShape face_shape(std::span<const Point> points, const Triangle& face,
+                     const std::array<Index, 2>& apexes);
+
+}  // namespace watertight

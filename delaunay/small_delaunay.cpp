@@ -57,6 +57,8 @@ class SmallDelaunay {
       : points_(std::move(points)), infinite_(static_cast<Index>(points_.size())), signs_(extent) {
     // 6.8 tetrahedra per point are usual, and freed cells are used again.
     cells_.reserve(8 * points_.size() + 64);
+    cavity_.reserve(64);
+    rim_.reserve(kSmallRim);
     marks_.reserve(8 * points_.size() + 64);
     labels_.resize(points_.size() + 1, kNone);
     new_cell({infinite_, infinite_, infinite_, infinite_});
@@ -225,14 +227,14 @@ void SmallDelaunay::link_small_rim() {
       if (label == kNone) label = labels++;
     }
   }
-  std::fill_n(table.begin(), labels * kRimVertices, Side{0});
+  std::fill_n(table.begin(), labels * labels, Side{0});
   for (const Side side : rim_) {
     Cell& cell = cells_[cell_of(side)];
     const auto& others = kOthers[corner_of(side)];
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = labels_[cell.vertices[others[(i + 1) % 3]]];
       const Index b = labels_[cell.vertices[others[(i + 2) % 3]]];
-      Side& met = table[std::min(a, b) * kRimVertices + std::max(a, b)];
+      Side& met = table[std::min(a, b) * labels + std::max(a, b)];
       const Side own = side_of(cell_of(side), others[i]);
       cell.neighbors[others[i]] = met;
       cells_[cell_of(met)].neighbors[corner_of(met)] = own;

@@ -3,9 +3,11 @@
 // The two implementations of the canonical Delaunay tetrahedralization against each other.
 //   bench_delaunay compare COUNT [FIRST]   the same result for COUNT sets, numbered from FIRST?
 //   bench_delaunay time [REPEATS]          microseconds per set, as a Markdown table
-#include <chrono>
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <ctime>
+#include <iomanip>
 #include <iostream>
 #include <map>
 #include <string>
@@ -57,25 +59,25 @@ int compare(std::uint64_t count, std::uint64_t first) {
   return differences == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-/// Least of some repetitions, each long enough to be timed.
+/// CPU time, the least of some repetitions that are each long enough to be timed.
 template <class Delaunay>
 double microseconds(const std::vector<Point>& points, int repeats, Delaunay delaunay) {
-  using Clock = std::chrono::steady_clock;
-  const std::size_t inner = 1 + 20000 / points.size();
+  const std::size_t inner = 1 + 6000 / points.size();
   double least = 1e300;
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    const auto start = Clock::now();
+    const std::clock_t start = std::clock();
     for (std::size_t i = 0; i < inner; ++i) {
       if (!delaunay(points)) return -1;
     }
-    const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
-    least = std::min(least, spent.count() / static_cast<double>(inner));
+    const double spent = static_cast<double>(std::clock() - start) * 1e6 / CLOCKS_PER_SEC;
+    least = std::min(least, spent / static_cast<double>(inner));
   }
   return least;
 }
 
 int time(int repeats) {
-  std::cout << "| set | points | faces | CGAL us | own us | own us/point | factor |\n"
+  std::cout << std::fixed << std::setprecision(2)
+            << "| set | points | faces | CGAL us | own us | own us/point | factor |\n"
                "|---|---|---|---|---|---|---|\n";
   for (const char* formula : {"houses 1",
                               "houses 5",

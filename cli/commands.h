@@ -38,6 +38,7 @@ struct EncodeCommand {
   std::string mode = "auto";
   bool keeps_steiner = false;
   bool is_bare = false;  // one blob instead of a Watertight file
+  std::string contract = "exact";
   std::size_t jobs = 1;
 };
 Exit run(const EncodeCommand& command);
@@ -77,6 +78,7 @@ struct IngestCommand {
   std::vector<std::string> files;
   std::string collection;
   std::string invalid = "refuse";
+  std::string contract = "exact";
   bool is_json = false;
   bool is_quiet = false;
   std::size_t jobs = 1;

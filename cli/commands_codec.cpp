@@ -24,9 +24,10 @@ Exit fail_to_write(const std::string& file, const Error& error) {
   return fail(file == "-" ? "standard output" : file, error);
 }
 
-Result<Input> load(const std::string& path, bool split_features) {
+Result<Input> load(const std::string& path, bool keep_text = false) {
   ReadOptions options;
-  options.split_features = split_features;
+  options.split_features = false;
+  options.keep_text = keep_text;
   const auto bytes = read_file(path, options.limits);
   if (!bytes) return bytes.error();
   return load_input(path, *bytes, options);
@@ -37,11 +38,11 @@ Mode mode_named(const std::string& name) {
   return name == "bitmap" ? Mode::bitmap : Mode::automatic;
 }
 
-Result<Bytes> pack(const EncodeCommand& command, const std::vector<StoredFeature>& features) {
-  if (!command.is_bare) return write_container(features);
+Result<Bytes> pack(const EncodeCommand& command, const StoredDocument& document) {
+  if (!command.is_bare) return write_container(document);
   std::size_t solids = 0;
   const Bytes* blob = nullptr;
-  for (const StoredFeature& feature : features) {
+  for (const StoredFeature& feature : document.features) {
     solids += feature.solids.size();
     if (!feature.solids.empty()) blob = &feature.solids.front().blob;
   }
@@ -51,7 +52,7 @@ Result<Bytes> pack(const EncodeCommand& command, const std::vector<StoredFeature
 }
 
 Result<Document> load_encoded(const std::string& path) {
-  auto input = load(path, false);
+  auto input = load(path);
   if (!input) return std::move(input).error();
   if (input->kind == InputKind::document) {
     return Error{ErrorCode::malformed, "neither a Watertight file nor a blob"};
@@ -104,15 +105,15 @@ void print_info(const Json& json, const std::string& indent) {
 }
 
 Result<Json> info_of_container(ByteView bytes) {
-  auto features = read_container(bytes);
-  if (!features) return std::move(features).error();
+  auto document = read_container(bytes);
+  if (!document) return std::move(document).error();
   Json json{{"file", "Watertight file"}, {"bytes", bytes.size()}};
-  json["format"] = features->empty() ? "" : features->front().format;
-  json["features"] = features->size();
+  json["format"] = document->format;
+  json["features"] = document->features.size();
   std::uint64_t solids = 0;
   std::uint64_t blob_bytes = 0;
   Json parts = Json::object();
-  for (const StoredFeature& feature : *features) {
+  for (const StoredFeature& feature : document->features) {
     for (const StoredSolid& solid : feature.solids) {
       const auto info = describe(solid.blob);
       if (!info) return info.error();
@@ -133,11 +134,14 @@ Result<Json> info_of_container(ByteView bytes) {
 }  // namespace
 
 Exit run(const EncodeCommand& command) {
-  auto input = load(command.input, false);
+  const auto contract = contract_named(command.contract);
+  if (!contract) return fail("--contract", contract.error());
+  auto input = load(command.input, *contract == Contract::exact);
   if (!input) return fail(command.input, input.error());
   EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
   IngestOptions options;
   options.threads = command.jobs;
+  options.contract = *contract;
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
   options.steiner = command.keeps_steiner ? SteinerVertices::keep : SteinerVertices::leave_out;
   auto encoded = [&] {
@@ -155,7 +159,7 @@ Exit run(const EncodeCommand& command) {
                  command.input.c_str());
     return exit;
   }
-  const auto packed = pack(command, encoded->features);
+  const auto packed = pack(command, encoded->document);
   if (!packed) return fail(command.input, packed.error());
   const Status status = write_file(command.output, *packed);
   return status ? Exit::valid : fail_to_write(command.output, status.error());
@@ -168,7 +172,7 @@ Exit run(const DecodeCommand& command) {
 }
 
 Exit run(const ConvertCommand& command) {
-  const auto input = load(command.input, false);
+  const auto input = load(command.input);
   if (!input) return fail(command.input, input.error());
   return save(input->document, command.output);
 }

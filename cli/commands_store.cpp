@@ -59,7 +59,11 @@ Status read_listen(const std::string& text, ServerOptions& options) {
 
 Result<IngestOutcome> ingest_file(const IngestCommand& command, const std::string& file,
                                   const Bytes& bytes, SolidStore& store, EngineWorkers& workers) {
-  auto input = load_input(file, bytes, {});
+  const auto contract = contract_named(command.contract);
+  if (!contract) return contract.error();
+  ReadOptions read_options;
+  read_options.keep_text = *contract == Contract::exact;
+  auto input = load_input(file, bytes, read_options);
   if (!input) return std::move(input).error();
   // Formats without ids: the file's name is the feature's.
   for (Feature& feature : input->document.features) {
@@ -68,6 +72,7 @@ Result<IngestOutcome> ingest_file(const IngestCommand& command, const std::strin
   IngestOptions options;
   options.collection = command.collection;
   options.threads = command.jobs;
+  options.contract = *contract;
   options.invalid_features =
       command.invalid == "skip" ? InvalidFeatures::skip : InvalidFeatures::refuse_document;
   ProgressBar bar(file);

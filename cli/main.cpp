@@ -96,6 +96,14 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
+void add_contract(CLI::App& sub, std::string& contract) {
+  sub.add_option("--contract", contract,
+                 "what comes back: exact, the very bytes; lattice, the same values in canonical "
+                 "order; boundary, the solids only")
+      ->check(CLI::IsMember({"exact", "lattice", "boundary"}))
+      ->capture_default_str();
+}
+
 void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("encode", "Validate and compress a document");
   sub->add_option("IN", command.input, "document; - for standard input")->required();
@@ -108,6 +116,7 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
                 "keep the Steiner vertices of the proof (mode bitmap)")
       ->excludes(mode);
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
+  add_contract(*sub, command.contract);
   add_jobs(*sub, command.jobs);
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
@@ -163,6 +172,7 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
                   "documents with invalid features: refuse them, or skip those features")
       ->check(CLI::IsMember({"refuse", "skip"}))
       ->capture_default_str();
+  add_contract(*sub, command.contract);
   sub->add_flag("--json", command.is_json, "the table as one line of JSON");
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
   add_jobs(*sub, command.jobs);

@@ -82,9 +82,38 @@ using BoundaryPrinter = std::function<void(const Json& boundaries, std::string& 
 void append_city_object(std::string& out, const Json& object, const BoundaryPrinter& print);
 void append_city_objects(std::string& out, const Json& objects, const BoundaryPrinter& print);
 
+/// Calls `visit` with each vertex index in the `location` of the object's addresses, which are the
+/// only vertex references outside of geometries.
+template <class Visit>
+Status for_each_address_vertex(Json& object, Visit visit) {
+  Json* addresses = find_member(object, "address");
+  if (addresses == nullptr) return Done{};
+  const auto each_address = [&](Json& address) -> Status {
+    Json* location = find_member(address, "location");
+    Json* boundaries = location == nullptr ? nullptr : find_member(*location, "boundaries");
+    if (boundaries == nullptr || !boundaries->is_array()) return Done{};
+    for (Json& vertex : *boundaries) {
+      if (auto status = visit(vertex); !status) return status;
+    }
+    return Done{};
+  };
+  if (!addresses->is_array()) return each_address(*addresses);
+  for (Json& address : *addresses) {
+    if (auto status = each_address(address); !status) return status;
+  }
+  return Done{};
+}
+
 /// Appends nested arrays; `vertex_of(i)` is what index i becomes.
 void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
                      const std::function<std::uint64_t(Index)>& vertex_of);
+
+/// Appends "[first,length,first,length]".
+void append_vertex_runs(std::string& out, std::span<const Index> vertices);
+/// The inverse, for a solid of `solid_vertex_count` vertices of a document of `vertex_count`.
+/// Errors: malformed.
+Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex_count,
+                                            std::size_t solid_vertex_count);
 
 /// The members of the skeleton's "vertices". `others` are indices into the model's vertices.
 std::string skeleton_vertices(const CityModel& model, std::size_t count,

@@ -35,8 +35,9 @@ void append_geometries(std::string& out, const Json& geometries, const BoundaryP
   out += ']';
 }
 
-// "[first,length,first,length]"
-void append_runs(std::string& out, std::span<const Index> vertices) {
+}  // namespace
+
+void append_vertex_runs(std::string& out, std::span<const Index> vertices) {
   out += '[';
   for (std::size_t begin = 0; begin < vertices.size();) {
     std::size_t end = begin + 1;
@@ -47,6 +48,8 @@ void append_runs(std::string& out, std::span<const Index> vertices) {
   }
   out += ']';
 }
+
+namespace {
 
 std::string decimal_text(const GridNumber& number) {
   std::string text = std::to_string(number.mantissa);
@@ -115,7 +118,7 @@ std::string skeleton_vertices(const CityModel& model, std::size_t count,
   out += "\",\"solids\":[";
   for (std::size_t i = 0; i < vertex_of.size(); ++i) {
     if (i > 0) out += ',';
-    append_runs(out, vertex_of[i]);
+    append_vertex_runs(out, vertex_of[i]);
   }
   out += "],\"others\":[";
   bool is_first = true;

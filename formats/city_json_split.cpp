@@ -8,28 +8,6 @@
 namespace watertight {
 namespace {
 
-// Calls `visit` with each vertex index in the `location` of the object's addresses, which are the
-// only vertex references outside of geometries.
-template <class Visit>
-Status for_each_address_vertex(Json& object, Visit visit) {
-  Json* addresses = find_member(object, "address");
-  if (addresses == nullptr) return Done{};
-  const auto each_address = [&](Json& address) -> Status {
-    Json* location = find_member(address, "location");
-    Json* boundaries = location == nullptr ? nullptr : find_member(*location, "boundaries");
-    if (boundaries == nullptr || !boundaries->is_array()) return Done{};
-    for (Json& vertex : *boundaries) {
-      if (auto status = visit(vertex); !status) return status;
-    }
-    return Done{};
-  };
-  if (!addresses->is_array()) return each_address(*addresses);
-  for (Json& address : *addresses) {
-    if (auto status = each_address(address); !status) return status;
-  }
-  return Done{};
-}
-
 // The vertices of one feature, numbered in order of first use.
 class LocalVertices {
  public:

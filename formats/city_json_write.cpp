@@ -28,23 +28,6 @@ struct OpenFeature {
   std::vector<std::string> vertices;          // "[x,y,z]"
 };
 
-Result<std::vector<Index>> read_runs(const Json& runs, std::size_t vertex_count,
-                                     std::size_t solid_vertex_count) {
-  std::vector<Index> vertices;
-  if (!runs.is_array() || runs.size() % 2 != 0) return unfit("vertex runs");
-  for (std::size_t i = 0; i < runs.size(); i += 2) {
-    const auto first = unsigned_of(&runs[i]);
-    const auto length = unsigned_of(&runs[i + 1]);
-    if (!first || !length || *first > vertex_count || *length > vertex_count - *first ||
-        *length > solid_vertex_count - vertices.size()) {
-      return unfit("vertex runs");
-    }
-    for (std::uint64_t j = 0; j < *length; ++j) vertices.push_back(static_cast<Index>(*first + j));
-  }
-  if (vertices.size() != solid_vertex_count) return unfit("number of vertices");
-  return vertices;
-}
-
 std::string vertex_text(const std::array<std::string, 3>& axes) {
   return '[' + axes[0] + ',' + axes[1] + ',' + axes[2] + ']';
 }
@@ -120,7 +103,7 @@ Status place_vertices(OpenFeature& open, const CityHeader& header) {
   open.vertices.resize(*count);
   for (std::size_t i = 0; i < solids->size(); ++i) {
     const Solid& solid = open.feature->solids[i].solid;
-    auto vertex_of = read_runs((*solids)[i], *count, solid.vertex_count());
+    auto vertex_of = read_vertex_runs((*solids)[i], *count, solid.vertex_count());
     if (!vertex_of) return vertex_of.error();
     auto texts = solid_vertex_texts(solid, header.transform, kind == "integers");
     if (!texts) return texts.error();
@@ -270,19 +253,11 @@ Result<CityHeader> header_of(const Document& document, Json& root) {
 }
 
 // Shifts the vertex numbers in the locations of addresses.
-void shift_addresses(Json& object, std::uint64_t offset) {
-  Json* addresses = find_member(object, "address");
-  if (addresses == nullptr) return;
-  const auto shift = [offset](Json& address) {
-    Json* location = find_member(address, "location");
-    Json* boundaries = location == nullptr ? nullptr : find_member(*location, "boundaries");
-    if (boundaries == nullptr || !boundaries->is_array()) return;
-    for (Json& vertex : *boundaries) {
-      if (vertex.is_number_unsigned()) vertex = vertex.get<std::uint64_t>() + offset;
-    }
-  };
-  if (!addresses->is_array()) return shift(*addresses);
-  for (Json& address : *addresses) shift(address);
+Status shift_addresses(Json& object, std::uint64_t offset) {
+  return for_each_address_vertex(object, [offset](Json& vertex) -> Status {
+    if (vertex.is_number_unsigned()) vertex = vertex.get<std::uint64_t>() + offset;
+    return Done{};
+  });
 }
 
 // One CityJSON of many features.
@@ -302,7 +277,7 @@ class Merger {
                      {},
                      "/CityObjects" + pointer_token(id)};
       }
-      shift_addresses(object, vertex_count_);
+      if (auto status = shift_addresses(object, vertex_count_); !status) return status;
       if (source != nullptr) {
         if (auto status = adopt(object, source); !status) return status;
       }
@@ -358,6 +333,23 @@ bool is_whole(const Document& document) {
 }
 
 }  // namespace
+
+Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex_count,
+                                            std::size_t solid_vertex_count) {
+  std::vector<Index> vertices;
+  if (!runs.is_array() || runs.size() % 2 != 0) return unfit("vertex runs");
+  for (std::size_t i = 0; i < runs.size(); i += 2) {
+    const auto first = unsigned_of(&runs[i]);
+    const auto length = unsigned_of(&runs[i + 1]);
+    if (!first || !length || *first > vertex_count || *length > vertex_count - *first ||
+        *length > solid_vertex_count - vertices.size()) {
+      return unfit("vertex runs");
+    }
+    for (std::uint64_t j = 0; j < *length; ++j) vertices.push_back(static_cast<Index>(*first + j));
+  }
+  if (vertices.size() != solid_vertex_count) return unfit("number of vertices");
+  return vertices;
+}
 
 Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature) {
   const auto plain = [&]() -> Result<std::string> {

@@ -71,6 +71,35 @@ std::string_view to_string(Format format) {
   return "";
 }
 
+std::string_view to_string(Contract contract) {
+  switch (contract) {
+    case Contract::exact:
+      return "exact";
+    case Contract::lattice:
+      return "lattice";
+    case Contract::boundary:
+      return "boundary";
+  }
+  return "";
+}
+
+Result<Contract> contract_named(std::string_view name) {
+  for (const Contract contract : {Contract::exact, Contract::lattice, Contract::boundary}) {
+    if (to_string(contract) == name) return contract;
+  }
+  return Error{ErrorCode::invalid_argument,
+               "a contract is exact, lattice or boundary, not '" + std::string(name) + "'"};
+}
+
+Result<Format> format_named(std::string_view name) {
+  for (const Format format :
+       {Format::city_json, Format::city_json_seq, Format::obj, Format::off, Format::wkt,
+        Format::ewkb, Format::gml, Format::json_fg, Format::stl, Format::ply, Format::poly}) {
+    if (to_string(format) == name) return format;
+  }
+  return Error{ErrorCode::malformed, "stored in an unknown format '" + std::string(name) + "'"};
+}
+
 Result<Document> read_document(ByteView bytes, Format format, const ReadOptions& options) {
   if (bytes.size() > options.limits.bytes) {
     return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +

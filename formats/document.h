@@ -32,6 +32,8 @@ enum class Format : std::uint8_t {
   poly      // TetGen; read only
 };
 std::string_view to_string(Format format);
+/// The inverse. Errors: malformed.
+Result<Format> format_named(std::string_view name);
 
 /// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb", "x.gml",
 /// "x.xml", "x.stl", "x.ply", "x.poly"), else by the first bytes. Errors: unsupported.
@@ -89,6 +91,23 @@ struct Document {
   /// feeds. Opaque.
   Bytes framing = {};
 };
+
+/// What comes back of a document.
+enum class Contract : std::uint8_t {
+  exact,    // its very bytes, if it was read with ReadOptions::keep_text; else its values and order
+  lattice,  // its values; solids in canonical form (geometry/canonical_form.h), what is listed by
+            // facet or ring with them, and vertices numbered by the solids
+  boundary  // solids in canonical form; of the rest only city objects, their types and families
+};
+std::string_view to_string(Contract contract);
+/// The inverse. Errors: invalid_argument.
+Result<Contract> contract_named(std::string_view name);
+
+/// The skeleton of a feature of a city model for its solids in canonical form. Contract lattice or
+/// boundary. Errors: malformed when a solid is no oriented boundary or the skeleton does not fit.
+Result<std::string> canonical_skeleton(const Feature& feature, Contract contract);
+/// The header for skeletons of contract boundary. Errors: malformed.
+Result<std::string> boundary_header(std::string_view header);
 
 struct ReadOptions {
   Limits limits;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Layout: magic (8 bytes), version (1), format name, header, feature count, features, CRC-32C of
-// all before (4). Texts and blobs are a varint of their length and their bytes.
+// Layout: magic (8 bytes), version (1), length of the texts, the texts as one Zstandard frame, the
+// blobs one after the other, CRC-32C of all before (4). All texts are compressed together, as
+// features of one document resemble each other. They are: format, header, framing, feature count;
+// for each feature id, type, SRID, skeleton, solid count; for each solid object id, LoD, geometry,
+// ordinal and the length of its blob. A text is a varint of its length and its bytes.
 #include "pipeline/container.h"
 
 #include <algorithm>
@@ -9,13 +12,14 @@
 #include <limits>
 
 #include "base/checksum.h"
+#include "formats/packed_text.h"
 
 namespace watertight {
 namespace {
 
 // As PNG's: a byte above 127, and line ends that a text-mode transfer would change.
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n'};
-constexpr std::uint8_t kVersion = 0;
+constexpr std::uint8_t kVersion = 1;
 constexpr std::size_t kChecksumBytes = 4;
 
 void write_text(ByteWriter& writer, ByteView text) {
@@ -39,23 +43,26 @@ std::uint32_t read_index(ByteReader& reader, bool& is_in_range) {
   return static_cast<std::uint32_t>(value);
 }
 
-void write_feature_part(ByteWriter& writer, const StoredFeature& feature) {
+Status write_feature_part(ByteWriter& writer, const StoredFeature& feature) {
+  const auto skeleton = unpacked_skeleton(feature);
+  if (!skeleton) return skeleton.error();
   write_text(writer, feature.id);
   write_text(writer, feature.type);
   writer.varint(feature.srid);
-  write_text(writer, feature.skeleton);
+  write_text(writer, *skeleton);
   writer.varint(feature.solids.size());
   for (const StoredSolid& solid : feature.solids) {
     write_text(writer, solid.object_id);
     write_text(writer, solid.lod);
     writer.varint(solid.geometry);
     writer.varint(solid.ordinal);
-    write_text(writer, ByteView(solid.blob));
+    writer.varint(solid.blob.size());
   }
+  return Done{};
 }
 
-/// False when the bytes do not hold one.
-bool read_feature_part(ByteReader& reader, StoredFeature& feature) {
+/// False when the texts and blobs do not hold one.
+bool read_feature_part(ByteReader& reader, ByteReader& blobs, StoredFeature& feature) {
   bool is_in_range = true;
   feature.id = read_text(reader);
   feature.type = read_text(reader);
@@ -69,7 +76,9 @@ bool read_feature_part(ByteReader& reader, StoredFeature& feature) {
     solid.lod = read_text(reader);
     solid.geometry = read_index(reader, is_in_range);
     solid.ordinal = read_index(reader, is_in_range);
-    const ByteView blob = read_bytes(reader);
+    const std::uint64_t size = reader.varint();
+    if (size > blobs.remaining()) return false;
+    const ByteView blob = blobs.take(static_cast<std::size_t>(size));
     solid.blob.assign(blob.begin(), blob.end());
     feature.solids.push_back(std::move(solid));
   }
@@ -111,64 +120,77 @@ bool is_container(ByteView bytes) {
   return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
 }
 
-Result<Bytes> write_container(std::span<const StoredFeature> features) {
+Result<Bytes> write_container(const StoredDocument& document) {
+  ByteWriter texts;
+  write_text(texts, document.format);
+  write_text(texts, document.header);
+  write_text(texts, ByteView(document.framing));
+  texts.varint(document.features.size());
+  for (const StoredFeature& feature : document.features) {
+    if (feature.format != document.format || feature.header != document.header) {
+      return Error{ErrorCode::invalid_argument, "the features are of several documents"};
+    }
+    if (Status status = write_feature_part(texts, feature); !status) return status.error();
+  }
+  const auto packed = pack_text(as_text(texts.bytes()));
+  if (!packed) return packed;
   ByteWriter writer;
   writer.append(kMagic);
   writer.u8(kVersion);
-  write_text(writer, features.empty() ? std::string_view() : features.front().format);
-  write_text(writer, features.empty() ? std::string_view() : features.front().header);
-  writer.varint(features.size());
-  for (const StoredFeature& feature : features) {
-    if (feature.format != features.front().format || feature.header != features.front().header) {
-      return Error{ErrorCode::invalid_argument, "the features are of several documents"};
-    }
-    write_feature_part(writer, feature);
+  write_text(writer, ByteView(*packed));
+  for (const StoredFeature& feature : document.features) {
+    for (const StoredSolid& solid : feature.solids) writer.append(solid.blob);
   }
   writer.u32(crc32c(writer.bytes()));
   return std::move(writer).bytes();
 }
 
-Result<std::vector<StoredFeature>> read_container(ByteView bytes, const Limits& limits) {
+Result<StoredDocument> read_container(ByteView bytes, const Limits& limits) {
   auto content = checked_content(bytes, limits);
   if (!content) return std::move(content).error();
-  const std::size_t start = kMagic.size() + 1;
-  ByteReader reader(*content);
-  const std::string format = read_text(reader);
-  const std::string header = read_text(reader);
+  ByteReader blobs(*content);
+  const ByteView packed = read_bytes(blobs);
+  if (blobs.failed()) return malformed("truncated Watertight file", kMagic.size() + 1);
+  const auto texts = unpack_text(packed, limits.bytes);
+  if (!texts) return texts.error();
+  ByteReader reader(as_bytes(*texts));
+  StoredDocument document;
+  document.format = read_text(reader);
+  document.header = read_text(reader);
+  const ByteView framing = read_bytes(reader);
+  document.framing.assign(framing.begin(), framing.end());
   const std::uint64_t count = reader.varint();
   if (reader.failed() || count > reader.remaining()) {
-    return malformed("truncated or malformed Watertight file", start + reader.position());
+    return malformed("malformed texts of a Watertight file", kMagic.size() + 1);
   }
-  std::vector<StoredFeature> features;
   for (std::uint64_t i = 0; i < count; ++i) {
     StoredFeature feature;
-    if (!read_feature_part(reader, feature)) {
-      return malformed("malformed feature " + std::to_string(i), start + reader.position());
+    if (!read_feature_part(reader, blobs, feature)) {
+      return malformed("malformed feature " + std::to_string(i), kMagic.size() + 1);
     }
-    feature.format = format;
-    // One header is shared by all; a copy for each could be made to take any amount of memory.
-    if (i == 0) feature.header = header;
-    features.push_back(std::move(feature));
+    feature.format = document.format;
+    document.features.push_back(std::move(feature));
   }
-  if (reader.remaining() > 0) {
-    return malformed("bytes after the last feature", start + reader.position());
+  if (reader.remaining() > 0 || blobs.remaining() > 0) {
+    return malformed("bytes after the last feature", bytes.size() - kChecksumBytes);
   }
-  return features;
+  return document;
 }
 
 Result<Document> decode_container(ByteView bytes, const Limits& limits) {
-  auto features = read_container(bytes, limits);
-  if (!features) return std::move(features).error();
+  auto stored = read_container(bytes, limits);
+  if (!stored) return std::move(stored).error();
+  const auto format = format_named(stored->format);
+  if (!format) return format.error();
   Document document;
-  for (StoredFeature& stored : *features) {
-    auto part = from_stored(stored, limits);
+  document.format = *format;
+  document.header = std::move(stored->header);
+  document.framing = std::move(stored->framing);
+  for (StoredFeature& feature : stored->features) {
+    auto part = from_stored(feature, limits);
     if (!part) return std::move(part).error();
-    if (document.features.empty()) {
-      document.format = part->format;
-      document.header = std::move(part->header);
-    }
     document.features.push_back(std::move(part->features.front()));
-    stored = StoredFeature();
+    feature = StoredFeature();
   }
   return document;
 }

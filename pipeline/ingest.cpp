@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "formats/packed_text.h"
 #include "pipeline/groups.h"
 #include "pipeline/parallel.h"
 #include "pipeline/pipeline.h"
@@ -42,8 +43,8 @@ Processed process(Feature feature, const Document& document, EngineWorkers* work
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   if (processed.outcome.verdict == Verdict::valid) {
-    auto stored =
-        to_stored(inspected, document, options.collection, options.encode, options.steiner);
+    auto stored = to_stored(inspected, document, options.collection, options.encode,
+                            options.steiner, options.contract);
     if (stored) {
       processed.stored = *std::move(stored);
     } else {
@@ -118,6 +119,17 @@ Status check_crs(const Document& document, SolidStore& store, const std::string&
   return Done{};
 }
 
+/// Leaves what the contract promises of what the features share.
+Status reduce_to(Contract contract, Document& document) {
+  if (contract == Contract::exact) return Done{};
+  document.framing.clear();
+  if (contract == Contract::lattice || document.header.empty()) return Done{};
+  auto header = boundary_header(document.header);
+  if (!header) return std::move(header).error();
+  document.header = *std::move(header);
+  return Done{};
+}
+
 /// Stores what was encoded. `outcome` has a feature per entry of `processed`.
 Status store_all(std::vector<Processed>& processed, SolidStore& store, IngestOutcome& outcome) {
   std::vector<StoredFeature> features;
@@ -126,6 +138,9 @@ Status store_all(std::vector<Processed>& processed, SolidStore& store, IngestOut
     if (!processed[i].stored) continue;
     features.push_back(*std::move(processed[i].stored));
     places.push_back(i);
+    auto packed = pack_text(features.back().skeleton);
+    if (!packed) return std::move(packed).error();
+    features.back().skeleton = as_text(*packed);
   }
   if (features.empty()) return Done{};
   auto versions = store.put(features);
@@ -176,15 +191,20 @@ InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyO
 
 Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,
                                         const IngestOptions& options) {
+  Status status = reduce_to(options.contract, document);
+  if (!status) return std::move(status).error();
   auto processed = process_all(document, workers, options);
   if (!processed) return std::move(processed).error();
   EncodedDocument encoded;
+  encoded.document.format = std::string(to_string(document.format));
+  encoded.document.header = std::move(document.header);
+  encoded.document.framing = std::move(document.framing);
   for (Processed& feature : *processed) {
     if (feature.error) return *std::move(feature.error);
-    if (feature.stored) encoded.features.push_back(*std::move(feature.stored));
+    if (feature.stored) encoded.document.features.push_back(*std::move(feature.stored));
   }
   encoded.outcome = summarize(*processed);
-  if (encoded.outcome.verdict != Verdict::valid) encoded.features.clear();
+  if (encoded.outcome.verdict != Verdict::valid) encoded.document.features.clear();
   return encoded;
 }
 
@@ -192,6 +212,7 @@ Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers
                              const IngestOptions& options) {
   Status status = check_ids(document);
   if (status) status = check_crs(document, store, options.collection);
+  if (status) status = reduce_to(options.contract, document);
   if (!status) return std::move(status).error();
   auto processed = process_all(document, workers, options);
   if (!processed) return std::move(processed).error();

@@ -58,11 +58,24 @@ std::optional<Feature> template_feature(const Document& document);
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };
 
-/// Encodes a feature whose verdict is valid into what the store keeps.
+/// A document with its solids encoded: what the features share, as Document has it, and they.
+struct StoredDocument {
+  std::string format;  // to_string(Format)
+  std::string header;
+  Bytes framing;
+  std::vector<StoredFeature> features;
+};
+
+/// Encodes a feature whose verdict is valid into what the store keeps. For contract boundary,
+/// document.header must be a boundary_header().
 /// Errors: invalid_argument when a solid is not valid; those of encode().
 Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
                                 const std::string& collection, const EncodeOptions& options = {},
-                                SteinerVertices steiner = SteinerVertices::leave_out);
+                                SteinerVertices steiner = SteinerVertices::leave_out,
+                                Contract contract = Contract::exact);
+
+/// The skeleton as to_stored() made it; stores keep it compressed. Errors: those of unpack_text().
+Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits& limits = {});
 
 /// Decodes a stored feature: the document (with one feature) that came in.
 /// Errors: malformed when what is stored is not what to_stored() made; those of decode().
@@ -99,6 +112,7 @@ struct IngestOptions {
   GroupOptions groups;
   EncodeOptions encode;
   SteinerVertices steiner = SteinerVertices::leave_out;
+  Contract contract = Contract::exact;
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
   std::size_t threads = 1;
   std::function<bool()> is_cancelled = {};
@@ -113,7 +127,7 @@ struct IngestOutcome {
 
 /// A document encoded feature by feature, but not stored.
 struct EncodedDocument {
-  std::vector<StoredFeature> features;  // in document order; empty unless all are valid
+  StoredDocument document;  // features in document order; none unless all are valid
   IngestOutcome outcome;
 };
 

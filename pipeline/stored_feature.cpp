@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Features to stored features and back. What the store keeps as skeleton is the feature's, preceded
-// by one line "merged <solid> <line of describe_merge>" for each solid with equal vertices.
+// Features to stored features and back. What the store keeps as skeleton is the feature's and, if
+// it has a layout, a line feed and the layout; all preceded by one line "merged <solid> <line of
+// describe_merge>" for each solid with equal vertices. It may be compressed.
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
 
+#include "formats/packed_text.h"
 #include "pipeline/merged_vertices.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
@@ -54,15 +56,6 @@ Result<StoredSolid> store_solid(const InspectedSolid& solid, const Solid& submit
   return stored;
 }
 
-Result<Format> format_named(std::string_view name) {
-  for (const Format format :
-       {Format::city_json, Format::city_json_seq, Format::obj, Format::off, Format::wkt,
-        Format::ewkb, Format::gml, Format::json_fg, Format::stl, Format::ply, Format::poly}) {
-    if (to_string(format) == name) return format;
-  }
-  return Error{ErrorCode::malformed, "stored in an unknown format '" + std::string(name) + "'"};
-}
-
 /// Takes the merge lines off the front of a stored skeleton: one per solid, "" for most.
 Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleton,
                                                        std::size_t solids) {
@@ -86,7 +79,7 @@ Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleto
 
 Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
                                 const std::string& collection, const EncodeOptions& options,
-                                SteinerVertices steiner) {
+                                SteinerVertices steiner, Contract contract) {
   StoredFeature stored;
   stored.collection = collection;
   stored.id = feature.feature.id;
@@ -94,9 +87,11 @@ Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document&
   stored.srid = feature.feature.srid;
   stored.format = std::string(to_string(document.format));
   stored.header = document.header;
+  EncodeOptions encode_options = options;
+  if (contract != Contract::exact) encode_options.keep_order = false;
   for (std::size_t i = 0; i < feature.solids.size(); ++i) {
     const InspectedSolid& inspected = feature.solids[i];
-    auto solid = store_solid(inspected, feature.feature.solids[i].solid, options, steiner);
+    auto solid = store_solid(inspected, feature.feature.solids[i].solid, encode_options, steiner);
     if (!solid) {
       Error error = std::move(solid).error();
       if (error.pointer.empty()) error.pointer = inspected.source.pointer;
@@ -107,24 +102,45 @@ Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document&
     include(stored.box, certified);
     auto merge = describe_merge(feature.feature.solids[i].solid, certified);
     if (!merge) return std::move(merge).error();
-    if (merge->empty()) continue;
+    if (contract != Contract::exact || merge->empty()) continue;
     stored.skeleton += std::string(kMergedLine) + std::to_string(i) + ' ' + *merge + '\n';
   }
+  if (contract != Contract::exact) {
+    if (feature.feature.skeleton.empty()) return stored;
+    auto skeleton = canonical_skeleton(feature.feature, contract);
+    if (!skeleton) return std::move(skeleton).error();
+    stored.skeleton = *std::move(skeleton);
+    return stored;
+  }
   stored.skeleton += feature.feature.skeleton;
+  if (!feature.feature.layout.empty()) {
+    stored.skeleton += '\n';
+    stored.skeleton += as_text(feature.feature.layout);
+  }
   return stored;
+}
+
+Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits& limits) {
+  if (!is_packed_text(as_bytes(stored.skeleton))) return stored.skeleton;
+  return unpack_text(as_bytes(stored.skeleton), limits.bytes);
 }
 
 Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) {
   auto format = format_named(stored.format);
   if (!format) return std::move(format).error();
-  std::string_view skeleton = stored.skeleton;
+  auto unpacked = unpacked_skeleton(stored, limits);
+  if (!unpacked) return std::move(unpacked).error();
+  std::string_view skeleton = *unpacked;
   auto merges = take_merge_lines(skeleton, stored.solids.size());
   if (!merges) return std::move(merges).error();
   Feature feature;
   feature.id = stored.id;
   feature.type = stored.type;
   feature.srid = stored.srid;
-  feature.skeleton = std::string(skeleton);
+  const std::size_t end = std::min(skeleton.find('\n'), skeleton.size());
+  feature.skeleton = std::string(skeleton.substr(0, end));
+  const ByteView layout = as_bytes(skeleton.substr(std::min(end + 1, skeleton.size())));
+  feature.layout.assign(layout.begin(), layout.end());
   for (std::size_t i = 0; i < stored.solids.size(); ++i) {
     const StoredSolid& solid = stored.solids[i];
     auto decoded = decode(solid.blob, limits);

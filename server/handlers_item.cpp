@@ -91,7 +91,9 @@ Result<Bytes> blob_of(const StoredFeature& feature, const Target& target) {
 Result<Bytes> represent(const StoredFeature& feature, const ItemFormat& format,
                         const RoutedRequest& request) {
   if (format.parameter == "blob") return blob_of(feature, request.target);
-  if (format.parameter == "wt") return write_container({&feature, 1});
+  if (format.parameter == "wt") {
+    return write_container({feature.format, feature.header, {}, {feature}});
+  }
   auto document = from_stored(feature, request.service.options.limits);
   if (!document) {
     return Error{ErrorCode::unavailable,

@@ -164,6 +164,7 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   const RouteOptions& options = request.service.options;
   ReadOptions read_options;
   read_options.limits = options.limits;
+  read_options.keep_text = true;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
   auto document = *format == Format::city_json && is_bare_feature(request)
                       ? read_bare_feature(body, header, read_options)

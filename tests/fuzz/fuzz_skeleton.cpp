@@ -2,6 +2,7 @@
 //
 // libFuzzer harness of writing a feature whose skeleton came from outside (a damaged store): an
 // Error or a text, for a fixed pair of solids.
+#include <algorithm>
 #include <string>
 
 #include "fuzz_formats.h"
@@ -25,7 +26,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const auto feature = read_city_json_feature(*header, kFeature);
   fuzz::require(feature.has_value());
   Feature changed = *feature;
-  changed.skeleton.assign(reinterpret_cast<const char*>(data), size);
+  // A skeleton, then perhaps a line feed and a layout.
+  const std::uint8_t* end = std::find(data, data + size, '\n');
+  changed.skeleton.assign(data, end);
+  if (end != data + size) changed.layout.assign(end + 1, data + size);
+  if (changed.skeleton.empty()) changed.skeleton = feature->skeleton;
   const auto text = write_city_json_feature(*header, changed);
   if (!text) fuzz::require(!text.error().message.empty());
   return 0;

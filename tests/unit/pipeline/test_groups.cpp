@@ -192,7 +192,7 @@ TEST_CASE("the outcome's JSON tells of groups") {
   REQUIRE(document);
   const auto encoded = encode_document(*std::move(document), nullptr, {});
   REQUIRE(encoded);
-  CHECK(encoded->features.empty());
+  CHECK(encoded->document.features.empty());
   CHECK(encoded->outcome.verdict == Verdict::invalid);
   const std::string json = outcome_json(encoded->outcome);
   CHECK(json.find(R"("groups":[{"kind":"building_parts","object":"a","lod":"2","solids":[0,1])") !=

@@ -43,7 +43,7 @@ Bytes container_of(const std::string& text) {
   auto encoded = encode_document(read(text), nullptr, {});
   REQUIRE(encoded);
   REQUIRE(encoded->outcome.verdict == Verdict::valid);
-  auto container = write_container(encoded->features);
+  auto container = write_container(encoded->document);
   REQUIRE(container);
   return *std::move(container);
 }

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What comes back of a document under each contract, through Watertight files and a store.
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/packed_text.h"
+#include "pipeline/container.h"
+#include "tests/unit/pipeline/samples.h"
+
+namespace watertight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A box with semantics, a texture and a surface of its own, written with white space; the facet
+/// whose semantics are "top" is the one with all z = 2500.
+const std::string kBox =
+    "\xEF\xBB\xBF{ \"type\": \"CityJSON\", \"version\": \"2.0\",\r\n"
+    R"( "transform": {"scale":[0.0010,1e-3,0.001],"translate":[100.0,200.0,0.0]},
+  "metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/7415","title":"caf\u00e9"},
+  "CityObjects": {"b": {"type":"Building","children":["p"],"attributes":{"h":2.50}},
+    "p": {"type":"BuildingPart","parents":["b"],"attributes":{"a\/b":1},
+      "address":[{"location":{"type":"MultiPoint","lod":"0","boundaries":[8]}}],
+      "geometry":[{"type":"MultiSurface","lod":"0","boundaries":[[[9,8,0]]]},
+       {"type":"Solid","lod":"2.2",
+        "semantics":{"surfaces":[{"type":"GroundSurface"},{"type":"RoofSurface"},{"type":"WallSurface"}],
+          "values":[[2,1,2,0,2,2]]},
+        "texture":{"t":{"values":[[[[0,2,3,0,1]],[[0,0,1,2,3]],[[null]],[[null]],[[null]],[[null]]]]}},
+        "boundaries":[[[[5,4,0,1]],[[7,4,5,6]],[[1,2,6,5]],[[3,2,1,0]],[[2,3,7,6]],[[3,0,4,7]]]]}]}},
+  "appearance":{"textures":[{"type":"PNG","image":"a.png"}],"vertices-texture":[[0.0,0.0],[1.0,0.0],[1.0,1.0],[0.0,1.0]]},
+  "vertices": [[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,2500],[1000,0,2500],
+    [1000,1000,2500],[0,1000,2500],[5,5,5],[6,6,6]]}
+)";
+
+Document read_kept(const std::string& text, Format format) {
+  ReadOptions options;
+  options.split_features = false;
+  options.keep_text = true;
+  auto document = read_document(as_bytes(text), format, options);
+  REQUIRE(document);
+  return *std::move(document);
+}
+
+std::string through_container(const std::string& text, Format format, Contract contract) {
+  IngestOptions options;
+  options.contract = contract;
+  auto encoded = encode_document(read_kept(text, format), nullptr, options);
+  REQUIRE(encoded);
+  REQUIRE(encoded->outcome.verdict == Verdict::valid);
+  const auto container = write_container(encoded->document);
+  REQUIRE(container);
+  const auto document = decode_container(*container);
+  REQUIRE(document);
+  const auto written = write_document(*document, format);
+  if (!written) return to_string(written.error());
+  return std::string(as_text(*written));
+}
+
+/// The box's positions around each facet, from the smallest on, beside its surface type.
+std::vector<std::string> typed_facets(const Json& model, const Json& geometry) {
+  std::vector<std::string> facets;
+  const Json& shell = geometry["boundaries"][0];
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    Json ring = Json::array();
+    for (const Json& vertex : shell[i][0])
+      ring.push_back(model["vertices"][vertex.get<std::size_t>()]);
+    std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+    const Json& type = geometry["semantics"]["values"][0][i];
+    facets.push_back(ring.dump() +
+                     geometry["semantics"]["surfaces"][type.get<std::size_t>()].dump());
+  }
+  std::sort(facets.begin(), facets.end());
+  return facets;
+}
+
+/// Position and texture vertex of each corner that has one.
+std::vector<std::string> textured_corners(const Json& model, const Json& geometry) {
+  std::vector<std::string> corners;
+  const Json& shell = geometry["boundaries"][0];
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    const Json& texture = geometry["texture"]["t"]["values"][0][i][0];
+    if (texture.size() == 1) continue;
+    for (std::size_t j = 0; j < shell[i][0].size(); ++j) {
+      corners.push_back(model["vertices"][shell[i][0][j].get<std::size_t>()].dump() +
+                        texture[j + 1].dump());
+    }
+  }
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+TEST_CASE("contract exact gives the very bytes of a document back") {
+  CHECK(through_container(kBox, Format::city_json, Contract::exact) == kBox);
+}
+
+TEST_CASE("contract exact gives the very bytes of a sequence back") {
+  std::string text = "\x1E" + std::string(samples::kHeader) + " \r\n\n" + samples::feature("a") +
+                     "\r\n" + samples::feature("b") + " ";
+  text.insert(text.find("\"version\""), "  ");
+  CHECK(through_container(text, Format::city_json_seq, Contract::exact) == text);
+}
+
+TEST_CASE("a sequence without features comes back") {
+  const std::string text = std::string(samples::kHeader) + "\n";
+  CHECK(through_container(text, Format::city_json_seq, Contract::exact) == text);
+}
+
+TEST_CASE("a store gives a line of a sequence back byte for byte, and keeps it compressed") {
+  std::string line = samples::feature("a");
+  line.insert(1, "   ");
+  samples::MemoryStore store;
+  IngestOptions options;
+  options.collection = "town";
+  const std::string text = std::string(samples::kHeader) + "\n" + line + "\n";
+  REQUIRE(ingest(read_kept(text, Format::city_json_seq), store, nullptr, options));
+  const auto stored = store.get("town", "a");
+  REQUIRE(stored);
+  CHECK(is_packed_text(as_bytes(stored->skeleton)));
+  const auto document = from_stored(*stored);
+  REQUIRE(document);
+  const auto written = write_feature(*document, document->features[0]);
+  REQUIRE(written);
+  CHECK(*written == line);
+}
+
+TEST_CASE("contract lattice keeps values, and semantics and textures with their facets") {
+  const Json before = Json::parse(kBox.substr(3));
+  const std::string text = through_container(kBox, Format::city_json, Contract::lattice);
+  const Json after = Json::parse(text);
+  const Json& part = after["CityObjects"]["p"];
+  const Json& old_part = before["CityObjects"]["p"];
+  CHECK(typed_facets(after, part["geometry"][1]) == typed_facets(before, old_part["geometry"][1]));
+  CHECK(textured_corners(after, part["geometry"][1]) ==
+        textured_corners(before, old_part["geometry"][1]));
+  CHECK(textured_corners(after, part["geometry"][1]).size() == 8);
+  CHECK(after["CityObjects"]["b"] == before["CityObjects"]["b"]);
+  CHECK(part["attributes"] == old_part["attributes"]);
+  CHECK(after["metadata"] == before["metadata"]);
+  const auto vertex = part["address"][0]["location"]["boundaries"][0].get<std::size_t>();
+  CHECK(after["vertices"][vertex] == Json({5, 5, 5}));
+  const auto corner = part["geometry"][0]["boundaries"][0][0][0].get<std::size_t>();
+  CHECK(after["vertices"][corner] == Json({6, 6, 6}));
+  CHECK(text.find(": ") == std::string::npos);
+  CHECK(text != kBox);
+}
+
+TEST_CASE("contract lattice gives one text for solids that differ in order only") {
+  const std::string a = samples::sequence({samples::feature("a")});
+  const std::string b = samples::sequence({samples::feature(
+      "a", "[[[5,6,7,4]],[[3,2,1,0]],[[1,2,6,5]],[[3,0,4,7]],[[2,3,7,6]],[[0,1,5,4]]]")});
+  CHECK(through_container(a, Format::city_json_seq, Contract::lattice) ==
+        through_container(b, Format::city_json_seq, Contract::lattice));
+}
+
+TEST_CASE("contract boundary keeps solids, types and families only") {
+  const Json after = Json::parse(through_container(kBox, Format::city_json, Contract::boundary));
+  CHECK(after["CityObjects"]["b"] == Json({{"type", "Building"}, {"children", {"p"}}}));
+  const Json& part = after["CityObjects"]["p"];
+  CHECK_FALSE(part.contains("attributes"));
+  CHECK(part["geometry"].size() == 1);
+  CHECK_FALSE(part["geometry"][0].contains("semantics"));
+  CHECK(part["geometry"][0]["boundaries"][0].size() == 6);
+  CHECK(after["vertices"].size() == 8);
+  CHECK_FALSE(after.contains("appearance"));
+  CHECK(after["metadata"].size() == 1);
+}
+
+TEST_CASE("a stored document with another hash is an error") {
+  auto encoded = encode_document(read_kept(kBox, Format::city_json), nullptr, {});
+  REQUIRE(encoded);
+  StoredFeature& feature = encoded->document.features.at(0);
+  const std::size_t place = feature.skeleton.find("BuildingPart");
+  REQUIRE(place != std::string::npos);
+  feature.skeleton[place] = 'X';
+  const auto container = write_container(encoded->document);
+  REQUIRE(container);
+  const auto document = decode_container(*container);
+  REQUIRE(document);
+  const auto written = write_document(*document, Format::city_json);
+  REQUIRE_FALSE(written);
+  CHECK(written.error().message.find("hash") != std::string::npos);
+}
+
+TEST_CASE("a compressed text cannot make more than the limit") {
+  const auto bomb = pack_text(std::string(50'000'000, 'a'));
+  REQUIRE(bomb);
+  CHECK(bomb->size() < 10'000);
+  CHECK(unpack_text(*bomb, 1'000'000).error().code == ErrorCode::limit_exceeded);
+  StoredFeature feature;
+  feature.format = "city-json";
+  feature.skeleton = as_text(*bomb);
+  Limits limits;
+  limits.bytes = 1'000'000;
+  const auto document = from_stored(feature, limits);
+  REQUIRE_FALSE(document);
+  CHECK(document.error().code == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE(
+    "a compressed text that is cut, changed or followed by more is an error or another text") {
+  const std::string text = kBox;
+  const auto packed = pack_text(text);
+  REQUIRE(packed);
+  REQUIRE(unpack_text(*packed, 1U << 20U));
+  for (std::size_t size = 0; size < packed->size(); ++size) {
+    CHECK_FALSE(unpack_text(ByteView(*packed).first(size), 1U << 20U));
+  }
+  Bytes longer = *packed;
+  longer.push_back(0);
+  CHECK_FALSE(unpack_text(longer, 1U << 20U));
+  for (std::size_t i = 0; i < packed->size(); ++i) {
+    Bytes changed = *packed;
+    changed[i] ^= 0x55U;
+    const auto result = unpack_text(changed, 1U << 20U);
+    if (!result) CHECK_FALSE(result.error().message.empty());
+  }
+}
+
+}  // namespace
+}  // namespace watertight

@@ -20,7 +20,7 @@
 namespace watertight {
 
 /// The families of the facets, to be put next to each other into the layout of a mode.
-inline constexpr std::uint32_t kFacetFamilyCount = 3;
+inline constexpr std::uint32_t kFacetFamilyCount = 2;
 extern const std::array<FamilyShape, kFacetFamilyCount> kFacetFamilies;
 
 /// Codes the facets of the surface that `mesh` triangulates, and fills the arrays of `solid` other

@@ -2,7 +2,9 @@
 //
 // The canonical Delaunay tetrahedralization (design section 5): the Delaunay tetrahedralization of
 // a point set with ties broken by lexicographic symbolic perturbation, so that it is unique. Part
-// of the blob format. Depends on CGAL only; for the codec and for rung 0 of the CDT ladder.
+// of the blob format: docs/format.md states the rule. For the codec and for rung 0 of the CDT
+// ladder. Integers in a box of sides below 2^30 are taken by small_delaunay.h, without a library;
+// all other points by CGAL.
 // Source: Verbree & Si 2008, section 2.2 and composition steps 2 and 4; the tie rule is Devillers &
 // Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations" (2011), section 3.
 #pragma once
@@ -31,8 +33,9 @@ struct CanonicalDelaunay {
 /// Requires distinct points. Guarantees the same result for every insertion order, compiler and
 /// machine; indices refer to `points`. Returns an empty tetrahedralization if the points span no
 /// volume (fewer than 4, or all coplanar).
-/// Errors: limit_exceeded beyond `max_tetrahedra`; cancelled once `is_cancelled` (asked every few
-/// thousand points) says so. Cost: O(n log n) typical, O(n^2) worst.
+/// Errors: invalid_argument for equal points or one that is not finite; limit_exceeded beyond
+/// `max_tetrahedra`; cancelled once `is_cancelled` (asked every few thousand cells) says so.
+/// Cost: O(n log n) typical, O(n^2) worst.
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
                                              std::uint64_t max_tetrahedra = 64'000'000,
                                              const std::function<bool()>& is_cancelled = {});

@@ -55,7 +55,7 @@ class SmallDelaunay {
  public:
   SmallDelaunay(std::vector<Point> points, const Point& extent)
       : points_(std::move(points)), infinite_(static_cast<Index>(points_.size())), signs_(extent) {
-    // 6.8 tetrahedra per point are usual, and freed cells are used again.
+    // 6.8 tetrahedra per point are usual; freed cells are used again.
     cells_.reserve(8 * points_.size() + 64);
     cavity_.reserve(64);
     rim_.reserve(kSmallRim);
@@ -71,7 +71,8 @@ class SmallDelaunay {
   bool insert(Index vertex, std::size_t& steps);
 
   std::size_t cell_count() const { return cells_.size() - free_.size() - 1; }
-  CanonicalDelaunay list() const;
+  /// The result; gives up the cells.
+  CanonicalDelaunay list();
   const GridPredicates& signs() const { return signs_; }
   const Point& point(Index vertex) const { return points_[vertex]; }
 
@@ -283,7 +284,7 @@ bool SmallDelaunay::insert(Index vertex, std::size_t& steps) {
   return true;
 }
 
-CanonicalDelaunay SmallDelaunay::list() const {
+CanonicalDelaunay SmallDelaunay::list() {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<ListedFace> faces;
   tetrahedra.reserve(cell_count());
@@ -302,6 +303,7 @@ CanonicalDelaunay SmallDelaunay::list() const {
       }
     }
   }
+  std::vector<Cell>().swap(cells_);  // before the sorting, which takes as much memory again
   return list_canonically(std::move(tetrahedra), std::move(faces), infinite_);
 }
 

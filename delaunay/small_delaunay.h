@@ -21,7 +21,7 @@ namespace watertight {
 bool is_small_grid(std::span<const Point> points);
 
 /// As canonical_delaunay(), for points that are a small grid. Exact: all decisions are signs of
-/// integers. Memory: about 600 bytes per point, in a few vectors.
+/// integers. Memory: about 800 bytes per point, in a few vectors.
 Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
                                          std::uint64_t max_tetrahedra = 64'000'000,
                                          const std::function<bool()>& is_cancelled = {});

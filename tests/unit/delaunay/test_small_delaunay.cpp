@@ -181,7 +181,8 @@ TEST_CASE("a small grid has integers in a box with sides below 2^30") {
   }
 }
 
-TEST_CASE("canonical Delaunay takes the same way for integers and for the same set made fractions") {
+TEST_CASE(
+    "canonical Delaunay takes the same way for integers and for the same set made fractions") {
   // CGAL takes what has a coordinate that is no integer.
   for (const char* formula : {"grid 3 3 3 1", "houses 3", "spheres 9 25", "tower 20 1024 1"}) {
     std::vector<Point> points = point_sets::make(formula);

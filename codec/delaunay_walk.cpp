@@ -2,6 +2,7 @@
 #include "codec/delaunay_walk.h"
 
 #include <algorithm>
+#include <bit>
 #include <queue>
 #include <utility>
 
@@ -18,6 +19,7 @@ constexpr std::uint32_t kCandidate = 0;  // is it this vertex, of those near at 
 constexpr std::uint32_t kDistant = 1;    // the same of the other Delaunay neighbours
 constexpr std::uint32_t kRare = 2;
 constexpr std::uint32_t kSeed = 3;
+constexpr std::uint32_t kChoice = 4;  // kCandidate again, knowing how likely it and the next are
 
 /// What a candidate is to the front: new, used, closing the left or right edge or both, or out of
 /// the question in a manifold.
@@ -43,6 +45,24 @@ constexpr FamilyShape kCandidateShape{
      kRatioClasses* kSphereClasses* kStates,
      kParallelogramClasses* kSphereClasses / 2 * kStates * 5,
      kRadiusClasses* kBendClasses* kCloses* kGabrielClasses}};
+
+constexpr std::uint32_t kLikelihoods = 64;
+constexpr std::uint32_t kRanks = 4;
+constexpr FamilyShape kChoiceShape{
+    kRanks,
+    {kLikelihoods * kRanks * kKinds, kLikelihoods / 2 * kLikelihoods / 2,
+     kLikelihoods / 2 * kStates* kRanks}};
+
+/// A probability of 65536 in half octaves, of itself or of the rest to one.
+std::uint32_t likelihood(std::uint32_t probability) {
+  const bool is_high = probability > 32768;
+  const std::uint32_t lesser = is_high ? 65536 - probability : probability;
+  if (lesser == 0) return 0;
+  const auto width = static_cast<std::uint32_t>(std::bit_width(lesser));  // 1 to 16
+  const std::uint32_t half = width > 1 ? (lesser >> (width - 2)) & 1U : 0;
+  const std::uint32_t place = std::min(2 * (width - 1) + half, kLikelihoods / 2 - 1);
+  return is_high ? kLikelihoods - 1 - place : place;
+}
 
 struct Candidate {
   Index vertex = 0;
@@ -99,8 +119,10 @@ class Walk {
   Status code_seed(Index seed);
   void list_seeds(Index seed);
   Status code_gate(Index gate);
+  bool code_candidate(std::size_t place, Index truth);
   Index code_distant(Index gate, Index truth);
   void add(const Triangle& triangle, Index source);
+  void push(Index half_edge);
   void push_open(Index triangle);
 
   void mark_used(Index gate);
@@ -114,6 +136,7 @@ class Walk {
   void score(std::uint32_t family, std::vector<Candidate>& list);
 
   EntropyStream& stream_;
+  EntropyStream lessons_ = EntropyStream::meter();  // what only teaches
   ModelBank& models_;
   std::uint32_t family_;
   std::span<const Point> points_;
@@ -138,6 +161,7 @@ class Walk {
   std::vector<Closing> closing_;
   std::vector<std::pair<Triangle, std::uint32_t>> seeds_;  // with the context
   std::priority_queue<Entry> queue_;
+  std::vector<std::uint32_t> pushed_;  // half-edge -> its probability in the queue
   std::uint64_t steps_left_;
 };
 
@@ -193,7 +217,9 @@ std::uint32_t Walk::state_of(Index, Index, Index w) const {
 
 void Walk::describe(const Gate& gate, Index from, Index to, Index w, Index face,
                     std::uint32_t faces, Candidate& candidate) {
-  const FaceShape shape = face == kNone ? kNoFace : shape_of(face);
+  const FaceShape shape = face == kNone ? no_face((edges_.faces_at(from, w).empty() ? 0U : 1U) +
+                                                  (edges_.faces_at(to, w).empty() ? 0U : 2U))
+                                        : shape_of(face);
   const Continuation c = continuation(gate, points_[w]);
   const std::uint32_t state = state_of(from, to, w);
   const std::uint32_t closes = state >= 2 && state <= 4 ? state - 1 : 0;
@@ -282,11 +308,28 @@ void Walk::add(const Triangle& triangle, Index source) {
   source_.push_back(source);
 }
 
+void Walk::push(Index half_edge) {
+  list_candidates(half_edge);
+  const std::uint32_t now = candidates_.empty() ? 0 : candidates_.front().probability;
+  if (now <= pushed_[half_edge] && now > 0) return;
+  pushed_[half_edge] = now;
+  queue_.push({now, half_edge});
+}
+
+/// Puts the open edges at the corners of a new triangle into the queue, where they are not there
+/// already as more certain.
 void Walk::push_open(Index triangle) {
+  pushed_.resize(front_.twin.size(), 0);
   for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
-    if (!front_.is_open(h)) continue;
-    list_candidates(h);
-    queue_.push({candidates_.empty() ? 0 : candidates_.front().probability, h});
+    if (front_.is_open(h)) push(h);
+  }
+  for (const Index v : front_.triangles[triangle]) {
+    for (Index h = front_.first_at(v); h != kNone; h = front_.next_at(h)) {
+      const Index incoming = WalkFront::previous_of(h);
+      if (h / 3 == triangle) continue;
+      if (front_.is_open(h)) push(h);
+      if (front_.is_open(incoming)) push(incoming);
+    }
   }
 }
 
@@ -311,6 +354,22 @@ Index Walk::code_distant(Index gate, Index truth) {
   return distant_.back().vertex;
 }
 
+/// Is it this candidate? The family that ranked it learns the answer too.
+bool Walk::code_candidate(std::size_t place, Index truth) {
+  const Candidate& c = candidates_[place];
+  const std::uint32_t next =
+      place + 1 < candidates_.size() ? candidates_[place + 1].probability : 0;
+  const std::uint32_t own = likelihood(c.probability);
+  const auto rank = static_cast<std::uint32_t>(std::min<std::size_t>(place, kRanks - 1));
+  const bool is_it = models_.code(stream_, family_ + kChoice, rank,
+                                  {(own * kRanks + rank) * kKinds + c.selector % kKinds,
+                                   own / 2 * (kLikelihoods / 2) + likelihood(next) / 2,
+                                   (own / 2 * kStates + c.selector / kKinds) * kRanks + rank},
+                                  c.vertex == truth);
+  models_.code(lessons_, family_ + kCandidate, c.selector, c.contexts, is_it);
+  return is_it;
+}
+
 /// Codes the triangle beyond an open edge. Requires list_candidates(gate) just before.
 Status Walk::code_gate(Index gate) {
   const Index a = front_.from(gate);
@@ -322,12 +381,8 @@ Status Walk::code_gate(Index gate) {
     truth = truth_->corner(source);
   }
   Index w = kNone;
-  for (const Candidate& c : candidates_) {
-    if (!models_.code(stream_, family_ + kCandidate, c.selector, c.contexts, c.vertex == truth)) {
-      continue;
-    }
-    w = c.vertex;
-    break;
+  for (std::size_t i = 0; i < candidates_.size() && w == kNone; ++i) {
+    if (code_candidate(i, truth)) w = candidates_[i].vertex;
   }
   if (w == kNone) {
     w = code_distant(gate, truth);
@@ -416,9 +471,11 @@ Status Walk::code_component(Index seed) {
     const Entry entry = queue_.top();
     queue_.pop();
     if (!front_.is_open(entry.half_edge)) continue;
+    if (entry.probability != pushed_[entry.half_edge]) continue;  // there is a more recent one
     list_candidates(entry.half_edge);
     const std::uint32_t now = candidates_.empty() ? 0 : candidates_.front().probability;
     if (now + 1024 < entry.probability && !queue_.empty() && now < queue_.top().probability) {
+      pushed_[entry.half_edge] = now;
       queue_.push({now, entry.half_edge});
       continue;
     }
@@ -457,9 +514,9 @@ Status Walk::run(BoundaryMesh& mesh) {
 
 }  // namespace
 
-const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies{kCandidateShape, kCandidateShape,
-                                                              FamilyShape{1, {kRares}},
-                                                              FamilyShape{1, {4 * kSphereClasses}}};
+const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies{
+    kCandidateShape, kCandidateShape, FamilyShape{1, {kRares}},
+    FamilyShape{1, {4 * kSphereClasses}}, kChoiceShape};
 
 Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
                           std::span<const Point> points, const CanonicalDelaunay& delaunay,

@@ -36,7 +36,7 @@ struct BoundaryMesh {
 };
 
 /// The families of the walk, to be put next to each other into the layout of a mode.
-inline constexpr std::uint32_t kWalkFamilyCount = 4;
+inline constexpr std::uint32_t kWalkFamilyCount = 5;
 extern const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies;
 
 /// Codes the triangles, the families of `models` from `first_family` on being kWalkFamilies.

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kSideClasses = 3;
 inline constexpr std::uint32_t kDeviationClasses = 6;
 inline constexpr std::uint32_t kRadiusClasses = 10;
 inline constexpr std::uint32_t kParallelogramClasses = 12;
-inline constexpr std::uint32_t kSphereClasses = 18;
+inline constexpr std::uint32_t kSphereClasses = 21;
 inline constexpr std::uint32_t kRatioClasses = 10;
 inline constexpr std::uint32_t kGabrielClasses = 4;
 
@@ -50,8 +50,12 @@ struct FaceShape {
   std::uint8_t ratio;    // of their radii, steps of sqrt(2)
   std::uint8_t gabriel;  // how many of the radii exceed 1.3 times that of the face
 };
-/// Of a triangle that is no face.
-inline constexpr FaceShape kNoFace{kSphereClasses - 1, kRatioClasses - 1, kGabrielClasses - 1};
+/// Of a triangle that is no face: `edges` tells which of its two edges beyond the gate are Delaunay
+/// edges, 0 to 3.
+constexpr FaceShape no_face(std::uint32_t edges) {
+  return {static_cast<std::uint8_t>(kSphereClasses - 4 + edges), kRatioClasses - 1,
+          kGabrielClasses - 1};
+}
 FaceShape face_shape(std::span<const Point> points, const Triangle& face,
                      const std::array<Index, 2>& apexes);
 

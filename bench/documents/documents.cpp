@@ -9,6 +9,8 @@
 #include <iterator>
 #include <string>
 
+#include "codec/order_section.h"
+#include "codec/source_order.h"
 #include "formats/packed_text.h"
 #include "pipeline/container.h"
 
@@ -25,6 +27,10 @@ struct Sizes {
   std::size_t blobs = 0;
   std::size_t order = 0;  // order sections
   std::size_t solids = 0;
+  std::size_t closed = 0;           // solids whose order was measured
+  std::size_t order_bytes = 0;      // of version 0
+  std::uint64_t order_alone = 0;    // of version 1 with a neutral bank per solid, 1/65536 bit
+  std::uint64_t order_in_page = 0;  // with a bank for 128 solids
 };
 
 bool is_same(const Document& document, const std::string& text) {
@@ -61,6 +67,34 @@ void add_blobs(const StoredDocument& document, Sizes& sizes) {
   }
 }
 
+/// The order of every closed solid, in both versions of the format.
+void add_orders(const Document& document, Sizes& sizes) {
+  constexpr std::size_t kPage = 128;
+  const ModelLayout layout{order_families(), {}};
+  ModelBank page(layout);
+  for (const Feature& feature : document.features) {
+    for (const SubmittedSolid& submitted : feature.solids) {
+      auto boundary = OrientedBoundary::make(merge_equal_vertices(submitted.solid).solid);
+      if (!boundary) continue;
+      CanonicalSolid canonical = canonical_form(*boundary);
+      const Solid& solid = canonical.boundary.solid();
+      sizes.order_bytes += write_order(solid, canonical.order).size();
+      ModelBank neutral(layout);
+      EntropyStream alone = EntropyStream::meter();
+      code_order(alone, neutral, 0, solid, canonical.order);
+      sizes.order_alone += alone.cost();
+      if (sizes.closed++ % kPage == 0) page = ModelBank(layout);
+      EntropyStream in_page = EntropyStream::meter();
+      code_order(in_page, page, 0, solid, canonical.order);
+      sizes.order_in_page += in_page.cost();
+    }
+  }
+}
+
+double bytes_each(std::uint64_t cost, std::size_t count) {
+  return count == 0 ? 0 : static_cast<double>(cost) / 65536 / 8 / static_cast<double>(count);
+}
+
 /// "yes", "no", or why there is no Watertight file.
 std::string through_container(Document document, const std::string& text, EngineWorkers& workers,
                               Sizes& sizes) {
@@ -83,7 +117,9 @@ int main(int argc, char** argv) {
   EngineWorkers workers(EngineWorkers::Options{{}, {}, 1});
   std::printf(
       "| file | bytes | same text | same by file | layout | skeletons | alone | together | "
-      "file bytes | blobs | order | solids |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "file bytes | blobs | order | solids "
+      "| closed | order v0 | v1 alone | v1 in pages "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   const bool texts_only = argc > 1 && std::string_view(argv[1]) == "--texts";
   for (int i = texts_only ? 2 : 1; i < argc; ++i) {
     const std::string name = argv[i];
@@ -103,14 +139,18 @@ int main(int argc, char** argv) {
     }
     Sizes sizes;
     add_texts(*document, sizes);
+    add_orders(*document, sizes);
     const bool same_text = is_same(*document, text);
     const std::string same_file =
         texts_only ? "" : through_container(*std::move(document), text, workers, sizes);
     if (!same_text || same_file.starts_with("no:") || same_file == "no") ++failures;
-    std::printf("| %s | %zu | %s | %s | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu |\n",
-                file.c_str(), text.size(), same_text ? "yes" : "NO", same_file.c_str(),
-                sizes.layout, sizes.texts, sizes.alone, sizes.together, sizes.container,
-                sizes.blobs, sizes.order, sizes.solids);
+    std::printf(
+        "| %s | %zu | %s | %s | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu "
+        "| %zu | %.2f | %.2f | %.2f |\n",
+        file.c_str(), text.size(), same_text ? "yes" : "NO", same_file.c_str(), sizes.layout,
+        sizes.texts, sizes.alone, sizes.together, sizes.container, sizes.blobs, sizes.order,
+        sizes.solids, sizes.closed, bytes_each(sizes.order_bytes * 8 * 65536, sizes.closed),
+        bytes_each(sizes.order_alone, sizes.closed), bytes_each(sizes.order_in_page, sizes.closed));
     std::fflush(stdout);
   }
   return failures == 0 ? 0 : 1;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Vectors of doubles for predictions and contexts: + - * / and sqrt in the order written, so that
+// every machine computes the same. Decisions on geometry never come from here.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace watertight {
+
+using Vector = std::array<double, 3>;
+
+inline Vector operator+(const Vector& a, const Vector& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vector operator-(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Vector operator*(const Vector& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+inline double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double length(const Vector& a) { return std::sqrt(dot(a, a)); }
+/// `a` divided by its length, or 0.
+inline Vector unit(const Vector& a) {
+  const double size = length(a);
+  return size > 0 ? a * (1 / size) : Vector{};
+}
+
+inline constexpr double kHalfTurn = 3.141592653589793;
+
+/// The angle between two vectors, 0 to kHalfTurn, to about a quarter of a degree.
+inline double angle_between(const Vector& a, const Vector& b) {
+  const double along = dot(a, b);
+  const double across = length(cross(a, b));
+  const double least = along < 0 ? -along : along;
+  if (!(least + across > 0)) return 0;
+  const bool is_steep = across > least;
+  const double t = is_steep ? least / across : across / least;
+  const double sharp = t * (kHalfTurn / 4 + 0.273 * (1 - t));
+  const double acute = is_steep ? kHalfTurn / 2 - sharp : sharp;
+  return along < 0 ? kHalfTurn - acute : acute;
+}
+
+/// floor(x) limited to 0 to size - 1.
+inline std::uint32_t bucket(double x, std::uint32_t size) {
+  if (!(x > 0)) return 0;
+  return x >= static_cast<double>(size) ? size - 1 : static_cast<std::uint32_t>(x);
+}
+
+/// floor(2 log2(x)) + zero, limited to 0 to size - 1.
+inline std::uint32_t log_bucket(double x, int zero, std::uint32_t size) {
+  if (!(x > 0)) return 0;
+  int exponent = 0;
+  const double fraction = std::frexp(x, &exponent);  // exact: x = fraction 2^exponent
+  const int steps = 2 * (exponent - 1) + (fraction >= 0.7071067811865476 ? 1 : 0) + zero;
+  return bucket(static_cast<double>(steps), size);
+}
+
+/// Where a cosine stands between -1 and 1, finer near 1: 0 to 7.
+inline std::uint32_t cosine_bucket(const Vector& a, const Vector& b) {
+  constexpr std::array<double, 7> kBounds{-0.5, 0.0, 0.5, 0.8, 0.92, 0.98, 0.995};
+  const double sizes = std::sqrt(dot(a, a) * dot(b, b));
+  if (!(sizes > 0)) return 0;
+  const double cosine = dot(a, b) / sizes;
+  std::uint32_t at = 0;
+  while (at < 7 && cosine >= kBounds[at]) ++at;
+  return at;
+}
+
+}  // namespace watertight

@@ -11,9 +11,11 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 #include "geometry/point.h"
 
@@ -81,22 +83,37 @@ struct InlinePredicates {
            static_cast<double>(static_cast<std::int64_t>(q)) == q;
   }
 
-  static int sign_of(Wide value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+  template <class Integer>
+  static int sign_of(Integer value) {
+    return value > 0 ? 1 : value < 0 ? -1 : 0;
+  }
+
+  using Rows = std::array<std::array<std::int64_t, 3>, 3>;
+
+  template <class Integer>
+  static int determinant_sign(const Rows& rows) {
+    const auto at = [&](std::size_t i, std::size_t k) { return static_cast<Integer>(rows[i][k]); };
+    return sign_of(at(2, 0) * (at(0, 1) * at(1, 2) - at(0, 2) * at(1, 1)) +
+                   at(2, 1) * (at(0, 2) * at(1, 0) - at(0, 0) * at(1, 2)) +
+                   at(2, 2) * (at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0)));
+  }
 
   static int exact_orient3d(const Point& a, const Point& b, const Point& c, const Point& d) {
-    std::array<std::array<Wide, 3>, 3> rows{};
+    Rows rows{};
+    std::int64_t largest = 0;
     const std::array<const Point*, 3> others{&b, &c, &d};
     for (std::size_t i = 0; i < 3; ++i) {
       for (int axis = 0; axis < 3; ++axis) {
         const double p = (*others[i])[axis];
         if (!has_short_difference(p, a[axis])) return cgal_orient3d(a, b, c, d);
-        rows[i][static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(p - a[axis]);
+        const auto value = static_cast<std::int64_t>(p - a[axis]);
+        rows[i][static_cast<std::size_t>(axis)] = value;
+        largest = std::max(largest, std::abs(value));
       }
     }
-    // Differences below 2^40 give terms below 2^120.
-    const auto& [u, v, w] = rows;
-    return sign_of(w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
-                   w[2] * (u[0] * v[1] - u[1] * v[0]));
+    // Six terms, below 2^60 each from differences below 2^20, and below 2^120 in any case.
+    constexpr std::int64_t kSmall = std::int64_t{1} << 20U;
+    return largest < kSmall ? determinant_sign<std::int64_t>(rows) : determinant_sign<Wide>(rows);
   }
 
   static int exact_orient2d(const std::array<double, 2>& a, const std::array<double, 2>& b,

@@ -61,7 +61,7 @@ template <std::size_t D>
 class SlabDivider {
  public:
   /// Parts with fewer pairs are not divided.
-  static constexpr double kFewPairs = 0.5 * 40 * 40;
+  static constexpr double kFewPairs = 0.5 * 72 * 72;
   /// A division is worth its copies if it leaves at most this share of the pairs. It also bounds
   /// the work: the pairs of all undivided parts together never exceed those of the root.
   static constexpr double kLargestShareOfPairs = 0.8;

@@ -25,6 +25,7 @@ constexpr std::uint32_t kChoice = 4;  // kCandidate again, knowing how likely it
 /// the question in a manifold.
 constexpr std::uint32_t kStates = 6;
 constexpr std::uint32_t kCounts = 7;
+constexpr std::uint32_t kHalfSpheres = (kSphereClasses + 1) / 2;
 constexpr std::uint32_t kKinds = 3;  // a face, the only face, no face
 constexpr std::uint32_t kCloses = 4;
 
@@ -42,8 +43,7 @@ constexpr FamilyShape kCandidateShape{
      kRadiusClasses* kParallelogramClasses* kCloses* kGabrielClasses,
      kSphereClasses* kRadiusClasses* kSideClasses,
      kStates* kGabrielClasses* kDeviationClasses* kSideClasses,
-     kRatioClasses* kSphereClasses* kStates,
-     kParallelogramClasses* kSphereClasses / 2 * kStates * 5,
+     kRatioClasses* kSphereClasses* kStates, kParallelogramClasses* kHalfSpheres* kStates * 5,
      kRadiusClasses* kBendClasses* kCloses* kGabrielClasses}};
 
 constexpr std::uint32_t kLikelihoods = 64;
@@ -236,7 +236,7 @@ void Walk::describe(const Gate& gate, Index from, Index to, Index w, Index face,
       ((state * kGabrielClasses + shape.gabriel) * kDeviationClasses + c.deviation) * kSideClasses +
           c.side,
       (shape.ratio * kSphereClasses + shape.sphere) * kStates + state,
-      ((c.parallelogram * (kSphereClasses / 2) + shape.sphere / 2U) * kStates + state) * 5 +
+      ((c.parallelogram * (kHalfSpheres) + shape.sphere / 2U) * kStates + state) * 5 +
           std::min(count, 4U),
       ((c.radius * kBendClasses + c.bend) * kCloses + closes) * kGabrielClasses + shape.gabriel};
 }

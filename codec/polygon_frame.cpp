@@ -105,7 +105,15 @@ void FacetPlane::add(Index vertex, const std::vector<GridPoint>& points_of) {
 std::int64_t FacetPlane::height(GridColumn column) const {
   const double x = static_cast<double>(column[0] - origin[0]);
   const double y = static_cast<double>(column[1] - origin[1]);
-  return origin[2] - to_whole((x * normal[0] + y * normal[1]) / normal[2]);
+  const std::int64_t height = origin[2] - to_whole((x * normal[0] + y * normal[1]) / normal[2]);
+  constexpr std::int64_t limit = std::int64_t{1} << 53;
+  return height < limit && height > -limit ? height : origin[2];
+}
+
+double FacetPlane::reach(GridColumn column) const {
+  const double x = static_cast<double>(column[0] - origin[0]);
+  const double y = static_cast<double>(column[1] - origin[1]);
+  return 16 * (x * x + y * y) / (normal[2] < 0 ? -normal[2] : normal[2]);
 }
 
 }  // namespace watertight

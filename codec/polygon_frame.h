@@ -52,8 +52,12 @@ struct FacetPlane {
 
   /// Takes one more vertex into account: keeps those three that span the largest triangle.
   void add(Index vertex, const std::vector<GridPoint>& points_of);
-  /// The height of the plane in a column. Requires a kind that is level or steep.
+  /// The height of the plane in a column, of its origin if that is 2^53 or more. Requires a kind
+  /// that is level or steep.
   std::int64_t height(GridColumn column) const;
+  /// How far that is from what is known: squared distance from the origin by twice the area of the
+  /// triangle in the xy plane, times 16. The same requirement.
+  double reach(GridColumn column) const;
 };
 
 }  // namespace watertight

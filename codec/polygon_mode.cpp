@@ -22,8 +22,9 @@ constexpr FamilyShape kFamilies[] = {
     {1, {1}},                       // kHasCopies
     {1, {1}},                       // kIsCopy
     {3, {48, 54, 162, 72}},         // kVertical
-    {1, {1}},                       // kKnownColumn
-    {1, {1}},                       // kHeightOnPlane
+    {1, {63, 36, 24}},              // kKnownColumn
+    {1, {112, 64}},                 // kAcrossSign
+    {1, {112, 128, 224}},           // kAlongSign
     {2, {48, 128, 36}},             // kKnownHeight
 };
 static_assert(std::size(kFamilies) == kPolygonFamilies);
@@ -34,11 +35,11 @@ constexpr NumberShape kNumbers[] = {
     {1, {1}},           // kGateSteps
     {1, {3}},           // kFirstPosition
     {1, {3}},           // kFirstOffset
-    {7, {7, 56, 24}},   // kAcross
-    {7, {42, 16, 24}},  // kAlong
-    {1, {1}},           // kColumnRank
-    {2, {12, 4}},       // kPlaneResidual
-    {2, {8, 2}},        // kHeightResidual
+    {7, {56, 12, 32}},  // kAcross
+    {7, {42, 32, 32}},  // kAlong
+    {1, {21, 12}},      // kColumnRank
+    {2, {12, 4, 16}},   // kPlaneResidual
+    {2, {32, 2}},       // kHeightResidual
 };
 static_assert(std::size(kNumbers) == kPolygonNumbers);
 

@@ -22,7 +22,8 @@ enum PolygonFamily : std::uint32_t {
   kIsCopy,
   kVertical,
   kKnownColumn,
-  kHeightOnPlane,
+  kAcrossSign,
+  kAlongSign,
   kKnownHeight,
   kPolygonFamilies
 };

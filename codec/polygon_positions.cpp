@@ -1,117 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The order of things, and columns. Heights: polygon_heights.cpp.
 #include "codec/polygon_positions.h"
 
 #include <algorithm>
 #include <bit>
 #include <utility>
 
-#include "codec/polygon_frame.h"
+#include "codec/polygon_columns.h"
 #include "codec/polygon_models.h"
+#include "codec/polygon_position_coder.h"
 
 namespace watertight {
-namespace {
-
-constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
-constexpr int kCoordinateBits = 55;
-constexpr std::size_t kFanLimit = 12;    // corners of a vertex that are looked at
-constexpr std::size_t kLevelLimit = 12;  // heights that are remembered
-constexpr std::size_t kHeightLimit = 6;  // of them those that are offered
-
-using Kind = FacetPlane::Kind;
-
-/// What a column is predicted from: one model selector each.
-enum class Frame : std::uint8_t { start, bare, edge, corner, closing, wall, walls };
-constexpr std::uint32_t kFrames = 7;
-
-struct Neighbor {
-  Index vertex = kNone;
-  Index facet = kNone;         // left of the edge to it
-  Index other_facet = kNone;   // right of it
-  std::uint32_t relation = 2;  // 0: the one before in the ring, 1: the one after, 2: another
-};
-
-/// A known plane around a vertex.
-struct Support {
-  Index facet = kNone;
-};
-
-struct Prediction {
-  Frame frame = Frame::start;
-  GridColumn base{};
-  Flat direction{};
-};
-
-std::uint32_t bits_of(std::int64_t value) {
-  return static_cast<std::uint32_t>(
-      std::bit_width(static_cast<std::uint64_t>(value < 0 ? -value : value)));
-}
-
-GridColumn column_of(const GridPoint& point) { return {point[0], point[1]}; }
-
-class PositionCoder {
- public:
-  PositionCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                const PolygonSurface& surface, std::span<const GridPoint> truth)
-      : stream_(stream), models_(models), memory_(memory), surface_(surface), truth_(truth) {
-    planes_.resize(surface.facet_count());
-    uprights_.assign(surface.facet_count(), 0);
-    has_upright_.assign(surface.vertex_count(), 0);
-  }
-
-  Result<CodedPositions> run();
-
- private:
-  void find_copies();
-  bool code_copy(Index vertex);
-  void code_vertex(Index vertex);
-  void look_around(Index vertex);
-  bool code_upright(Index vertex);
-  void code_column(Index vertex);
-  Prediction predicted_column(Index vertex) const;
-  bool predict_on_walls(Prediction& prediction) const;
-  void code_height(Index vertex);
-  bool code_height_on_planes(Index vertex);
-  void code_other_height(Index vertex);
-  void remember_height(std::int64_t height);
-  void learn(Index vertex);
-
-  bool is_known(Index vertex) const { return vertex < current_; }
-  Flat flat(Index vertex) const {
-    const GridPoint& point = points_[vertex];
-    return {static_cast<double>(point[0] - points_[0][0]),
-            static_cast<double>(point[1] - points_[0][1])};
-  }
-  GridPoint& point() { return points_[current_]; }
-  std::int64_t truth_at(std::size_t axis) const {
-    return truth_.empty() ? 0 : truth_[current_][axis];
-  }
-
-  EntropyStream& stream_;
-  ModelBank& models_;
-  const PageMemory& memory_;
-  const PolygonSurface& surface_;
-  std::span<const GridPoint> truth_;
-
-  std::vector<GridPoint> points_;
-  std::vector<Index> same_as_;
-  bool has_copies_ = false;
-  std::vector<FacetPlane> planes_;
-  std::vector<std::uint8_t> uprights_;     // facet -> vertical edges known, at most 2
-  std::vector<std::uint8_t> has_upright_;  // vertex -> vertical edges known, at most 2
-  std::vector<std::int64_t> levels_;       // heights, the latest first
-
-  // Of the vertex being coded.
-  Index current_ = 0;
-  Index before_ = kNone;  // neighbours in the ring that it was met in, where known
-  Index after_ = kNone;
-  Index before_two_ = kNone;
-  Index after_two_ = kNone;
-  std::uint32_t ring_size_ = 0;
-  bool in_first_facet_ = false;
-  std::vector<Neighbor> neighbors_;
-  std::vector<Index> facets_;  // around it
-  Index below_ = kNone;        // the neighbour in the same column
-};
+namespace polygon {
 
 void PositionCoder::find_copies() {
   same_as_.resize(surface_.vertex_count());
@@ -138,7 +39,10 @@ Result<CodedPositions> PositionCoder::run() {
     stream_.enter(StreamPart::coordinates);
     learn(current_);
   }
-  if (stream_.failed()) return Error{ErrorCode::malformed, "a position is out of range"};
+  if (stream_.failed()) {
+    return Error{truth_.empty() ? ErrorCode::malformed : ErrorCode::not_encodable,
+                 "a position is out of range"};
+  }
   return CodedPositions{std::move(points_), std::move(same_as_)};
 }
 
@@ -295,6 +199,7 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
     prediction.base = column_of(points_[before_]);
     prediction.frame = before_two_ != kNone ? Frame::corner : Frame::edge;
     if (before_two_ != kNone) prediction.direction = flat(before_) - flat(before_two_);
+    prediction.is_steady = follow_direction(prediction.direction);
     return prediction;
   }
   prediction.frame = Frame::bare;
@@ -302,8 +207,53 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
   return prediction;
 }
 
+/// Whether the vertex stands in a column of an earlier solid.
+bool PositionCoder::code_known_column(const Prediction& prediction) {
+  if (memory_.columns.empty()) return false;
+  const bool is_start = prediction.frame == Frame::start;
+  ColumnScore score;
+  score.base = prediction.base;
+  score.turn = Turn(prediction.direction);
+  score.across_weight = prediction.frame == Frame::corner ? 4 : 1;
+  const std::vector<GridColumn> near =
+      nearest_columns(memory_.columns, score, is_start ? 2048 : 64, is_start ? 2048 : 16);
+  const GridColumn truth{truth_at(0), truth_at(1)};
+  const auto rank = static_cast<std::size_t>(
+      truth_.empty() ? 0 : std::find(near.begin(), near.end(), truth) - near.begin());
+  const auto frame = static_cast<std::uint32_t>(prediction.frame);
+  const std::uint32_t before = before_ == kNone ? 0U : 1U + in_known_column_[before_];
+  const std::uint32_t distance =
+      near.empty() ? 0U : capped(std::bit_width(score(near.front())) / 2, 12);
+  const std::uint32_t context = (frame * 3 + before) * 3 + capped(known_columns_, 3);
+  if (!models_.code(stream_, kKnownColumn, 0,
+                    {context, distance * 3 + before, capped(current_, 8) * 3 + before},
+                    !truth_.empty() && rank < near.size())) {
+    return false;
+  }
+  const std::uint64_t coded = models_.code_number(
+      stream_, kColumnRank, 0, {frame * 3 + before, distance}, truth_.empty() ? 0 : rank, 12);
+  if (coded >= near.size()) {
+    stream_.fail();
+    return true;
+  }
+  point()[0] = near[coded][0];
+  point()[1] = near[coded][1];
+  in_known_column_[current_] = 1;
+  ++known_columns_;
+  return true;
+}
+
 void PositionCoder::code_column(Index vertex) {
-  const Prediction prediction = predicted_column(vertex);
+  Prediction prediction = predicted_column(vertex);
+  for (const std::int64_t coordinate : prediction.base) {
+    if (coordinate < kCoordinateLimit && coordinate > -kCoordinateLimit) continue;
+    prediction.base = column_of(points_[0]);  // out of all bounds: no prediction
+  }
+  if (prediction.frame == Frame::start) prediction.base = column_of(memory_.last_position);
+  if (!code_known_column(prediction)) code_offset(prediction);
+}
+
+void PositionCoder::code_offset(const Prediction& prediction) {
   if (prediction.frame == Frame::start) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const auto number = memory_.is_first() ? kFirstPosition : kFirstOffset;
@@ -316,10 +266,7 @@ void PositionCoder::code_column(Index vertex) {
   }
   const Turn turn(prediction.direction);
   const auto frame = static_cast<std::uint32_t>(prediction.frame);
-  const std::uint32_t length =
-      bits_of(to_whole(prediction.direction.x)) > bits_of(to_whole(prediction.direction.y))
-          ? bits_of(to_whole(prediction.direction.x))
-          : bits_of(to_whole(prediction.direction.y));
+  const std::uint32_t length = length_bits(prediction.direction);
   GridColumn residual{};
   if (!truth_.empty()) {
     residual = turn.forward({truth_at(0) - prediction.base[0], truth_at(1) - prediction.base[1]});
@@ -327,110 +274,58 @@ void PositionCoder::code_column(Index vertex) {
   const bool is_line = prediction.frame == Frame::wall;
   const std::size_t small = is_line ? 1 : 0;
   const std::size_t large = 1 - small;
-  residual[small] =
-      models_.code_signed(stream_, kAcross, frame,
-                          {frame, capped(ring_size_ - 3, 8) * kFrames + frame, capped(length, 24)},
-                          residual[small], kCoordinateBits);
+  const std::uint32_t degree = before_ == kNone ? 0 : capped(surface_.degree[before_] - 1, 4);
+  const std::uint32_t turned = before_ == kNone ? 0U : turns_[before_];
+  const std::uint32_t steady = prediction.is_steady ? 1 : 0;
+  const auto magnitude = [](std::int64_t value) {
+    return static_cast<std::uint64_t>(value < 0 ? -value : value);
+  };
+  std::uint64_t size =
+      models_.code_number(stream_, kAcross, frame,
+                          {(capped(ring_size_ - 3, 4) * kFrames + frame) * 2 + steady,
+                           capped(length, 24) / 2, (turned * 4 + degree) * 2 + in_first_facet_},
+                          magnitude(residual[small]), kCoordinateBits);
+  const std::uint32_t across_bits = capped(std::bit_width(size), 16);
+  if (size > 0) {
+    const bool is_negative = models_.code(stream_, kAcrossSign, 0,
+                                          {across_bits * kFrames + frame, across_bits * 4 + turned},
+                                          residual[small] < 0);
+    residual[small] =
+        is_negative ? -static_cast<std::int64_t>(size) : static_cast<std::int64_t>(size);
+  } else {
+    residual[small] = 0;
+  }
   const std::uint32_t across = capped(bits_of(residual[small]), 6);
-  residual[large] = models_.code_signed(
+  size = models_.code_number(
       stream_, kAlong, frame,
-      {frame * 6 + across, capped(ring_size_ - 3, 8) * 2 + in_first_facet_, capped(length, 24)},
-      residual[large], kCoordinateBits);
+      {frame * 6 + across, (capped(ring_size_ - 3, 4) * 2 + in_first_facet_) * 4 + turned,
+       (capped(bits_of(residual[small]), 16) * 2 + steady)},
+      magnitude(residual[large]), kCoordinateBits);
+  if (size > 0) {
+    const std::uint32_t along_bits = capped(std::bit_width(size), 16);
+    const bool is_negative = models_.code(
+        stream_, kAlongSign, 0,
+        {along_bits * kFrames + frame, (across_bits * 4 + turned) * 2 + in_first_facet_,
+         (capped(ring_size_ - 3, 8) * kFrames + frame) * 4 + turned},
+        residual[large] < 0);
+    residual[large] =
+        is_negative ? -static_cast<std::int64_t>(size) : static_cast<std::int64_t>(size);
+  } else {
+    residual[large] = 0;
+  }
+  turns_[current_] = bits_of(residual[large]) + 2 < bits_of(residual[small]) ? 3
+                     : residual[large] < 0                                   ? 2
+                                                                             : 1;
   const GridColumn offset = turn.back(residual);
   for (std::size_t axis = 0; axis < 2; ++axis) point()[axis] = prediction.base[axis] + offset[axis];
-}
-
-void PositionCoder::code_height(Index vertex) {
-  if (vertex == 0) {
-    const auto number = memory_.is_first() ? kFirstPosition : kFirstOffset;
-    const std::int64_t base = memory_.last_position[2];
-    point()[2] =
-        base + models_.code_signed(stream_, number, 0, {2}, truth_at(2) - base, kCoordinateBits);
-  } else if (!code_height_on_planes(vertex)) {
-    code_other_height(vertex);
-  }
-}
-
-bool PositionCoder::code_height_on_planes(Index /*vertex*/) {
-  const FacetPlane* best = nullptr;
-  std::uint32_t count = 0;
-  std::int64_t height = 0;
-  bool agree = true;
-  for (const Index facet : facets_) {
-    const FacetPlane& plane = planes_[facet];
-    if (plane.kind != Kind::level && plane.kind != Kind::steep) continue;
-    const std::int64_t own = plane.height(column_of(point()));
-    if (best == nullptr || plane.area > best->area) {
-      if (best != nullptr && own != height) agree = false;
-      best = &plane;
-      height = own;
-    } else if (own != height) {
-      agree = false;
-    }
-    ++count;
-  }
-  if (best == nullptr) return false;
-  const std::uint32_t context =
-      ((best->kind == Kind::level ? 1U : 0U) * 3 + capped(count - 1, 3)) * 2 + (agree ? 1U : 0U);
-  const std::uint32_t upright = below_ == kNone ? 0 : 1;
-  const std::int64_t residual = models_.code_signed(
-      stream_, kPlaneResidual, best->kind == Kind::level ? 1U : 0U,
-      {context, upright * 2 + (in_first_facet_ ? 1U : 0U)}, truth_at(2) - height, kCoordinateBits);
-  point()[2] = height + residual;
-  return true;
-}
-
-void PositionCoder::code_other_height(Index /*vertex*/) {
-  // Heights of the neighbours in the ring, then those seen last.
-  std::array<std::int64_t, kHeightLimit> offered{};
-  std::array<std::uint32_t, kHeightLimit> source{};
-  std::size_t count = 0;
-  const auto offer = [&](std::int64_t height, std::uint32_t kind) {
-    if (count == kHeightLimit) return;
-    if (below_ != kNone && height == points_[below_][2]) return;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (offered[i] == height) return;
-    }
-    offered[count] = height;
-    source[count++] = kind;
-  };
-  if (before_ != kNone) offer(points_[before_][2], 0);
-  if (after_ != kNone) offer(points_[after_][2], 1);
-  for (const Neighbor& neighbor : neighbors_) offer(points_[neighbor.vertex][2], 2);
-  for (const std::int64_t height : levels_) offer(height, 3);
-  const std::uint32_t upright = below_ == kNone ? 0 : 1;
-  const std::uint32_t first = in_first_facet_ ? 1 : 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t context = (static_cast<std::uint32_t>(i) * 4 + source[i]) * 2 + upright;
-    if (models_.code(stream_, kKnownHeight, upright,
-                     {context, ((source[i] * 2 + upright) * 2 + first) * 8 + capped(ring_size_, 8),
-                      capped(count - i, 6) * 6 + capped(levels_.size(), 6)},
-                     truth_at(2) == offered[i])) {
-      point()[2] = offered[i];
-      return;
-    }
-  }
-  const Index near = below_ != kNone ? below_ : before_ != kNone ? before_ : current_ - 1;
-  point()[2] =
-      points_[near][2] + models_.code_signed(stream_, kHeightResidual, upright,
-                                             {upright * 4 + capped(levels_.size(), 4), first},
-                                             truth_at(2) - points_[near][2], kCoordinateBits);
-}
-
-void PositionCoder::remember_height(std::int64_t height) {
-  const auto found = std::find(levels_.begin(), levels_.end(), height);
-  if (found != levels_.end()) {
-    levels_.erase(found);
-  } else if (levels_.size() == kLevelLimit) {
-    levels_.pop_back();
-  }
-  levels_.insert(levels_.begin(), height);
 }
 
 /// What the position of a vertex tells about its facets and neighbours.
 void PositionCoder::learn(Index vertex) {
   const GridPoint& own = points_[vertex];
   remember_height(own[2]);
+  if (below_ != kNone) last_top_ = vertex;
+  if (vertex > 0 && same_as_[vertex] == vertex) remember_direction(vertex);
   const Index half = surface_.out_half[vertex];
   Index corner = half;
   do {
@@ -452,12 +347,12 @@ void PositionCoder::learn(Index vertex) {
   } while (corner != half);
 }
 
-}  // namespace
+}  // namespace polygon
 
 Result<CodedPositions> code_positions(EntropyStream& stream, ModelBank& models,
                                       const PageMemory& memory, const PolygonSurface& surface,
                                       std::span<const GridPoint> truth) {
-  return PositionCoder(stream, models, memory, surface, truth).run();
+  return polygon::PositionCoder(stream, models, memory, surface, truth).run();
 }
 
 }  // namespace watertight

@@ -99,9 +99,31 @@ Index first_facet(const IntegerSolid& solid, Index shell) {
   return best;
 }
 
+/// Where the walk begins in its first facet: in the column of an earlier solid that is
+/// nearest to the last position, else at its smallest vertex.
+Index first_half(const IntegerSolid& solid, Index facet, const PageMemory& memory) {
+  const Index ring = solid.facet_offsets[facet];
+  Index best = solid.ring_offsets[ring];
+  std::uint64_t best_distance = UINT64_MAX;
+  for (Index half = best; half < solid.ring_offsets[ring + 1]; ++half) {
+    const GridPoint& point = solid.vertices[solid.ring_vertices[half]];
+    const std::array<std::int64_t, 2> column{point[0], point[1]};
+    const bool is_known = std::binary_search(memory.columns.begin(), memory.columns.end(), column);
+    std::uint64_t distance = 0;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const std::int64_t offset = column[axis] - memory.last_position[axis];
+      distance += static_cast<std::uint64_t>(offset < 0 ? -offset : offset);
+    }
+    if (!is_known || distance >= best_distance) continue;
+    best = half;
+    best_distance = distance;
+  }
+  return best;
+}
+
 }  // namespace
 
-Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& /*memory*/) {
+Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& memory) {
   SurfaceTruth truth;
   PolygonSurface& surface = truth.surface;
   surface.ring_offsets = solid.ring_offsets;
@@ -122,8 +144,7 @@ Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& /*m
   }
   number_fans(truth, solid.ring_vertices);
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
-    truth.first_half.push_back(
-        surface.ring_offsets[surface.facet_offsets[first_facet(solid, shell)]]);
+    truth.first_half.push_back(first_half(solid, first_facet(solid, shell), memory));
   }
   return truth;
 }

@@ -37,8 +37,9 @@ struct EncodeCommand {
   std::string output;
   std::string mode = "auto";
   bool keeps_steiner = false;
-  bool is_bare = false;  // one blob instead of a Watertight file
   std::string contract = "exact";
+  bool is_bare = false;   // one blob instead of a Watertight file
+  bool explains = false;  // print what the solids take in each mode
   std::size_t jobs = 1;
 };
 Exit run(const EncodeCommand& command);

@@ -2,12 +2,14 @@
 //
 // encode, decode, info, convert: files to files.
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/progress.h"
+#include "codec/explain.h"
 #include "pipeline/container.h"
 
 namespace watertight {
@@ -34,8 +36,11 @@ Result<Input> load(const std::string& path, bool keep_text = false) {
 }
 
 Mode mode_named(const std::string& name) {
-  if (name == "raw") return Mode::raw;
-  return name == "bitmap" ? Mode::bitmap : Mode::automatic;
+  for (const Mode mode :
+       {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::hybrid, Mode::parallelogram}) {
+    if (name == to_string(mode)) return mode;
+  }
+  return Mode::automatic;
 }
 
 Result<Bytes> pack(const EncodeCommand& command, const StoredDocument& document) {
@@ -71,6 +76,7 @@ Exit save(const Document& document, const std::string& output) {
 
 Json json_of(const BlobInfo& info) {
   Json json{{"formatVersion", info.version},
+            {"models", info.models},
             {"mode", to_string(info.mode)},
             {"srid", info.srid},
             {"vertices", info.vertices},
@@ -120,7 +126,7 @@ Result<Json> info_of_container(ByteView bytes) {
       ++solids;
       blob_bytes += solid.blob.size();
       for (const BlobInfo::Part& part : info->parts) {
-        parts[part.name] = parts.value(part.name, std::uint64_t{0}) + part.bytes;
+        parts[part.name] = parts.value(part.name, 0.0) + part.bytes;
       }
     }
   }
@@ -129,6 +135,40 @@ Result<Json> info_of_container(ByteView bytes) {
   json["documentBytes"] = bytes.size() - blob_bytes;
   json["parts"] = parts;
   return json;
+}
+
+/// Bytes of all solids in one mode.
+struct ModeTotal {
+  std::uint64_t solids = 0;  // that the mode can hold
+  std::uint64_t bytes = 0;
+  std::map<std::string, double> parts;
+};
+
+Status explain_features(const std::vector<StoredFeature>& features, std::FILE* out) {
+  std::map<Mode, ModeTotal> totals;
+  for (const StoredFeature& feature : features) {
+    for (const StoredSolid& solid : feature.solids) {
+      const auto sizes = explain(solid.blob);
+      if (!sizes) return sizes.error();
+      for (const ModeSize& size : *sizes) {
+        ModeTotal& total = totals[size.mode];
+        if (size.bytes == 0) continue;
+        ++total.solids;
+        total.bytes += size.bytes;
+        for (const BlobInfo::Part& part : size.parts) total.parts[part.name] += part.bytes;
+      }
+    }
+  }
+  std::fprintf(out, "%-14s %8s %10s  %s\n", "mode", "solids", "bytes", "bytes of parts");
+  for (const auto& [mode, total] : totals) {
+    std::fprintf(out, "%-14s %8llu %10llu ", std::string(to_string(mode)).c_str(),
+                 static_cast<unsigned long long>(total.solids),
+                 static_cast<unsigned long long>(total.bytes));
+    for (const auto& [part, bytes] : total.parts)
+      std::fprintf(out, " %s %.1f", part.c_str(), bytes);
+    std::fprintf(out, "\n");
+  }
+  return Done{};
 }
 
 }  // namespace
@@ -162,7 +202,11 @@ Exit run(const EncodeCommand& command) {
   const auto packed = pack(command, encoded->document);
   if (!packed) return fail(command.input, packed.error());
   const Status status = write_file(command.output, *packed);
-  return status ? Exit::valid : fail_to_write(command.output, status.error());
+  if (!status) return fail_to_write(command.output, status.error());
+  if (!command.explains) return Exit::valid;
+  const Status explained =
+      explain_features(encoded->document.features, command.output == "-" ? stderr : stdout);
+  return explained ? Exit::valid : fail(command.input, explained.error());
 }
 
 Exit run(const DecodeCommand& command) {

@@ -110,13 +110,16 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   sub->add_option("-o,--output", command.output, "Watertight file; - for standard output")
       ->required();
   auto* mode = sub->add_option("--mode", command.mode, "how solids are coded")
-                   ->check(CLI::IsMember({"raw", "bitmap", "auto"}))
+                   ->check(CLI::IsMember(
+                       {"auto", "raw", "bitmap", "walk", "polygon", "hybrid", "parallelogram"}))
                    ->capture_default_str();
   sub->add_flag("--steiner", command.keeps_steiner,
                 "keep the Steiner vertices of the proof (mode bitmap)")
       ->excludes(mode);
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
   add_contract(*sub, command.contract);
+  sub->add_flag("--explain", command.explains,
+                "print the bytes that the solids take in each mode, part by part");
   add_jobs(*sub, command.jobs);
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }

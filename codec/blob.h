@@ -15,14 +15,26 @@
 
 namespace watertight {
 
-inline constexpr std::uint8_t kFormatVersion = 0;
+inline constexpr std::uint8_t kFormatVersion = 1;
 
-enum class Mode : std::uint8_t { automatic = 255, raw = 0, bitmap = 1 };
+/// The set of priors that encoders use unless told otherwise; 0 is the neutral one.
+inline constexpr std::uint8_t kModelNumber = 0;
+
+enum class Mode : std::uint8_t {
+  raw = 0,            // vertices and rings listed
+  bitmap = 1,         // the paper's: a bit for each face of the Delaunay tetrahedralization
+  walk = 2,           // columns, then a walk over Delaunay faces
+  polygon = 3,        // a walk over the polygons, then coordinates by planes and right angles
+  hybrid = 4,         // coarse points, a walk over their Delaunay faces, the lower bits
+  parallelogram = 5,  // a walk over triangles, each vertex from those around it
+  automatic = 255     // the smallest of those that can hold the solid
+};
 std::string_view to_string(Mode mode);
 
 struct EncodeOptions {
-  Mode mode = Mode::automatic;  // the smaller of raw and bitmap
-  bool keep_order = true;       // write the order section: decode returns the source order
+  Mode mode = Mode::automatic;
+  bool keep_order = true;              // decode returns the source order
+  std::uint8_t models = kModelNumber;  // the set of priors (codec/models.h)
   /// With a certificate and mode bitmap: store its Steiner vertices (the paper's setting).
   const Certificate* certificate = nullptr;
 };
@@ -31,9 +43,10 @@ struct EncodeOptions {
 /// Errors: not_encodable if the mode cannot hold the solid (automatic always can).
 Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options = {});
 
-/// Bytes of each part of a blob, for `info` and `bench/ratio`.
+/// What a blob is made of, for `info` and `bench/ratio`.
 struct BlobInfo {
   std::uint8_t version = 0;
+  std::uint8_t models = 0;  // number of the set of priors; 0 for none
   Mode mode = Mode::raw;
   Acceptance acceptance;
   std::uint32_t srid = 0;
@@ -49,10 +62,10 @@ struct BlobInfo {
   bool has_order = false;
   struct Part {
     std::string name;
-    std::size_t bytes = 0;
+    double bytes = 0;  // what its decisions take; fractions where they share bytes
   };
   std::vector<Part> parts;
-  std::uint32_t checksum = 0;  // CRC-32C over the decoded canonical solid
+  std::uint32_t checksum = 0;  // over what the blob says; of a page, over all its solids
 };
 
 struct Decoded {

@@ -19,11 +19,6 @@ constexpr int kOneStepShift = 7;  // bit 7
 constexpr std::uint8_t kKnownFlags = 0x7F;
 constexpr std::uint8_t kRawFlags = kHasOrder | kHasTolerances;
 
-void write_grid_number(ByteWriter& writer, const GridNumber& number) {
-  writer.zigzag(number.mantissa);
-  writer.zigzag(number.exponent);
-}
-
 GridNumber read_grid_number(ByteReader& reader, bool& fits) {
   const std::int64_t mantissa = reader.zigzag();
   const std::int64_t exponent = reader.zigzag();
@@ -83,10 +78,7 @@ Status read_mode(ByteReader& reader, BlobHeader& header, std::uint8_t& mode_byte
   if (first != kMagic[0] || second != kMagic[1]) {
     return Error{ErrorCode::malformed, "this is no blob: it does not start with WT", 0};
   }
-  if (version != kFormatVersion) {
-    return Error{ErrorCode::unsupported,
-                 "format version " + std::to_string(version) + "; this program reads version 0", 2};
-  }
+  if (version != 0) return Error{ErrorCode::unsupported, "not of format version 0", 2};
   const std::uint8_t mode = mode_byte & 0x0F;
   if (mode > static_cast<std::uint8_t>(Mode::bitmap)) {
     return Error{ErrorCode::unsupported, "mode " + std::to_string(mode) + " is unknown", 3};
@@ -104,13 +96,13 @@ void append_indices(ByteWriter& writer, const std::vector<Index>& indices) {
   for (const Index index : indices) writer.u32(index);
 }
 
-void append_acceptance(ByteWriter& writer, const BlobHeader& header) {
-  const Tolerances& tolerances = header.acceptance.tolerances;
+void append_acceptance(ByteWriter& writer, const Acceptance& acceptance) {
+  const Tolerances& tolerances = acceptance.tolerances;
   writer.f64(tolerances.planarity_metres);
   writer.f64(tolerances.planarity_degrees);
   writer.f64(tolerances.snap_metres);
-  writer.u8(static_cast<std::uint8_t>(header.acceptance.proof));
-  writer.u16(header.acceptance.rule_set);
+  writer.u8(static_cast<std::uint8_t>(acceptance.proof));
+  writer.u16(acceptance.rule_set);
 }
 
 void append_lattice(ByteWriter& writer, const Lattice& lattice) {
@@ -124,30 +116,6 @@ void append_lattice(ByteWriter& writer, const Lattice& lattice) {
 }
 
 }  // namespace
-
-void write_header(ByteWriter& writer, const BlobHeader& header) {
-  const bool one_step = has_one_step(header.lattice);
-  writer.u8(kMagic[0]);
-  writer.u8(kMagic[1]);
-  writer.u8(kFormatVersion);
-  writer.u8(
-      static_cast<std::uint8_t>(static_cast<unsigned>(header.mode) |
-                                static_cast<unsigned>(header.lattice.kind) << kKindShift |
-                                static_cast<unsigned>(header.acceptance.proof) << kProofShift |
-                                static_cast<unsigned>(one_step) << kOneStepShift));
-  writer.u8(header.flags);
-  writer.varint(header.acceptance.rule_set);
-  if (header.has(kHasTolerances)) {
-    writer.f64(header.acceptance.tolerances.planarity_metres);
-    writer.f64(header.acceptance.tolerances.planarity_degrees);
-    writer.f64(header.acceptance.tolerances.snap_metres);
-  }
-  writer.varint(header.srid);
-  for (std::size_t axis = 0; axis < (one_step ? 1U : 3U); ++axis) {
-    write_grid_number(writer, header.lattice.step[axis]);
-  }
-  for (const GridNumber& origin : header.lattice.origin) write_grid_number(writer, origin);
-}
 
 Result<BlobHeader> read_header(ByteReader& reader) {
   BlobHeader header;
@@ -171,13 +139,13 @@ Result<BlobHeader> read_header(ByteReader& reader) {
   return header;
 }
 
-std::uint32_t checksum_of(const BlobHeader& header, const Solid& canonical,
+std::uint32_t checksum_of(const Acceptance& acceptance, const Solid& canonical,
                           const SourceOrder& order) {
   const SolidArrays& arrays = canonical.arrays();
   ByteWriter writer;
-  append_acceptance(writer, header);
-  writer.u32(header.srid);
-  append_lattice(writer, header.lattice);
+  append_acceptance(writer, acceptance);
+  writer.u32(canonical.srid());
+  append_lattice(writer, canonical.lattice());
   writer.u32(canonical.vertex_count());
   for (const Point& p : arrays.vertices) {
     for (int axis = 0; axis < 3; ++axis) writer.f64(p[axis]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The fixed part of a blob: format version, mode, flags, acceptance, SRID, lattice and checksum
-// (docs/format.md, "Header" and "Checksum"). For encode, decode and describe.
+// The header of a blob of format version 0, its flags (those of mode bitmap live on), and the
+// checksum of all versions (docs/format.md, "Checksum").
 #pragma once
 
 #include <cstdint>
@@ -35,14 +35,12 @@ struct BlobHeader {
   bool has(BlobFlag flag) const { return (flags & flag) != 0; }
 };
 
-void write_header(ByteWriter& writer, const BlobHeader& header);
-
 /// Errors: malformed; unsupported (version, mode, flags).
 Result<BlobHeader> read_header(ByteReader& reader);
 
 /// CRC-32C over the canonical serialization of what a blob says: acceptance, SRID, lattice, the
 /// canonical solid, and the source order unless it is the identity.
-std::uint32_t checksum_of(const BlobHeader& header, const Solid& canonical,
+std::uint32_t checksum_of(const Acceptance& acceptance, const Solid& canonical,
                           const SourceOrder& order);
 
 }  // namespace watertight

@@ -3,118 +3,70 @@
 #include <utility>
 #include <vector>
 
-#include "codec/blob_header.h"
-#include "codec/coordinates.h"
-#include "codec/decompose.h"
 #include "codec/encode_boundary.h"
-#include "codec/facet_listing.h"
-#include "codec/order_section.h"
+#include "codec/page.h"
+#include "codec/page_bytes.h"
 
 namespace watertight {
 namespace {
 
-void append_section(ByteWriter& writer, const Bytes& section) {
-  writer.varint(section.size());
-  writer.append(section);
-}
-
-/// Everything that a blob is made from, whatever its mode.
+/// What is to be encoded, and how.
 struct Source {
-  const OrientedBoundary& boundary;
-  const Acceptance& acceptance;
-  const EncodeOptions& options;
-  CanonicalSolid canonical;
-  bool has_order = false;  // else canonical order is returned
-  Bytes order;
+  const OrientedBoundary* boundary;
+  Acceptance acceptance;
 };
 
-BlobHeader header_of(const Source& source, Mode mode) {
-  BlobHeader header;
-  header.mode = mode;
-  header.acceptance = source.acceptance;
-  header.srid = source.boundary.solid().srid();
-  header.lattice = source.boundary.solid().lattice();
-  unsigned flags = source.has_order ? static_cast<unsigned>(kHasOrder) : 0U;
-  if (source.acceptance.tolerances != kImpliedTolerances) flags |= kHasTolerances;
-  header.flags = static_cast<std::uint8_t>(flags);
-  return header;
-}
+constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
+                           .vertices = kNone,
+                           .facets = kNone,
+                           .rings = kNone,
+                           .shells = kNone};
 
-Bytes finish(const Source& source, const BlobHeader& header, const std::vector<Bytes>& sections) {
-  ByteWriter writer;
-  write_header(writer, header);
-  for (const Bytes& section : sections) append_section(writer, section);
-  if (header.has(kHasOrder)) append_section(writer, source.order);
-  const SourceOrder none;
-  writer.u32(checksum_of(header, source.canonical.boundary.solid(),
-                         header.has(kHasOrder) ? source.canonical.order : none));
-  return std::move(writer).bytes();
-}
-
-Bytes encode_raw(const Source& source) {
-  const Solid& solid = source.canonical.boundary.solid();
-  return finish(source, header_of(source, Mode::raw),
-                {write_vertices(solid.vertices()), write_facet_listing(solid.arrays())});
-}
-
-Result<Bytes> encode_bitmap(const Source& source, const Certificate* certificate) {
-  auto parts = decompose(source.canonical, certificate);
-  if (!parts) return parts.error();
-  BlobHeader header = header_of(source, Mode::bitmap);
-  unsigned flags = header.flags;
-  std::vector<Bytes> sections{std::move(parts->vertices)};
-  if (!parts->steiner.empty()) {
-    flags |= kHasSteiner;
-    sections.push_back(std::move(parts->steiner));
+/// The number of the first solid that does not come back, or all of them.
+Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
+                                     const std::vector<Source>& sources,
+                                     const std::vector<PageSolid>& stored,
+                                     const EncodeOptions& options) {
+  const auto page = read_page_bytes(bytes, kind, kNoLimits);
+  if (!page) return page.error();
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const auto decoded = decoded_of(*page, i);
+    const Solid& wanted =
+        options.keep_order ? sources[i].boundary->solid() : stored[i].canonical->boundary.solid();
+    const bool is_equal =
+        decoded && decoded->solid == wanted && decoded->info.acceptance == sources[i].acceptance;
+    if (!is_equal) return i;
   }
-  if (parts->bitmap_coding == BitCoding::arithmetic) flags |= kCodedBitmap;
-  sections.push_back(std::move(parts->bitmap));
-  if (!parts->unrecovered.empty()) {
-    flags |= kHasUnrecovered;
-    sections.push_back(std::move(parts->unrecovered));
-  }
-  if (!parts->facets) {
-    flags |= kExplicitFacets;
-    sections.push_back(write_facet_listing(source.canonical.boundary.solid().arrays()));
-  } else {
-    if (parts->facets->coding == BitCoding::arithmetic) flags |= kCodedFacets;
-    sections.push_back(std::move(parts->facets->bytes));
-  }
-  header.flags = static_cast<std::uint8_t>(flags);
-  return finish(source, header, sections);
+  return sources.size();
 }
 
-/// Verify-after-write.
-Status verify(const Source& source, ByteView blob) {
-  const Limits none{.bytes = ~std::uint64_t{0},
-                    .vertices = kNone,
-                    .facets = kNone,
-                    .rings = kNone,
-                    .shells = kNone};
-  const auto decoded = decode(blob, none);
-  if (!decoded) {
-    return Error{ErrorCode::not_encodable, "the blob does not decode: " + decoded.error().message};
+/// In automatic mode, what cannot be stored in the mode that seemed best is stored raw.
+Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
+                              const EncodeOptions& options) {
+  PageContents page;
+  page.models = options.models;
+  for (const Source& source : sources) {
+    page.solids.push_back(page_solid(*source.boundary, options));
   }
-  const bool in_source_order = source.options.keep_order;
-  const Solid& wanted =
-      in_source_order ? source.boundary.solid() : source.canonical.boundary.solid();
-  if (decoded->solid != wanted || decoded->info.acceptance != source.acceptance) {
-    return Error{ErrorCode::not_encodable, "the blob decodes to another solid"};
+  page.frame = frame_of(sources.front().boundary->solid(), sources.front().acceptance);
+  const bool may_fall_back = options.mode == Mode::automatic;
+  for (std::size_t attempt = 0; attempt <= sources.size(); ++attempt) {
+    auto bytes = write_page_bytes(page, kind, options.certificate);
+    if (!bytes) return bytes;
+    const auto difference = first_difference(*bytes, kind, sources, page.solids, options);
+    if (difference && *difference == sources.size()) return bytes;
+    if (!may_fall_back) {
+      std::string reason = "the blob decodes to another solid";
+      if (!difference) reason = "the blob does not decode: " + difference.error().message;
+      return Error{ErrorCode::not_encodable, std::move(reason)};
+    }
+    for (std::size_t i = 0; i < page.solids.size(); ++i) {
+      if (difference && *difference != i) continue;
+      page.solids[i].mode = Mode::raw;
+      page.solids[i].plain = {};
+    }
   }
-  return Done{};
-}
-
-Result<Bytes> verified(const Source& source, Result<Bytes> blob) {
-  if (!blob) return blob;
-  if (auto status = verify(source, *blob); !status) return status.error();
-  return blob;
-}
-
-Result<Bytes> encode_smallest(const Source& source) {
-  Bytes raw = encode_raw(source);
-  auto bitmap = encode_bitmap(source, nullptr);
-  if (bitmap && bitmap->size() < raw.size() && verify(source, *bitmap)) return bitmap;
-  return verified(source, std::move(raw));
+  return Error{ErrorCode::not_encodable, "no mode brings the solid back"};
 }
 
 }  // namespace
@@ -125,6 +77,14 @@ std::string_view to_string(Mode mode) {
       return "raw";
     case Mode::bitmap:
       return "bitmap";
+    case Mode::walk:
+      return "walk";
+    case Mode::polygon:
+      return "polygon";
+    case Mode::hybrid:
+      return "hybrid";
+    case Mode::parallelogram:
+      return "parallelogram";
     case Mode::automatic:
       return "automatic";
   }
@@ -133,24 +93,30 @@ std::string_view to_string(Mode mode) {
 
 Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
                               const EncodeOptions& options) {
-  Source source{boundary, acceptance, options, canonical_form(boundary), false, {}};
-  source.has_order = options.keep_order && !source.canonical.order.is_identity();
-  if (source.has_order) {
-    source.order = write_order(source.canonical.boundary.solid(), source.canonical.order);
-  }
-  switch (options.mode) {
-    case Mode::raw:
-      return verified(source, encode_raw(source));
-    case Mode::bitmap:
-      return verified(source, encode_bitmap(source, options.certificate));
-    case Mode::automatic:
-      return encode_smallest(source);
-  }
-  return Error{ErrorCode::invalid_argument, "unknown mode"};
+  return encode_contents({{&boundary, acceptance}}, PageKind::blob, options);
 }
 
 Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options) {
   return encode_boundary(solid.boundary(), solid.acceptance(), options);
+}
+
+bool share_page(const ValidSolid& one, const ValidSolid& other) {
+  return frame_of(one.solid(), one.acceptance()) == frame_of(other.solid(), other.acceptance());
+}
+
+Result<Bytes> encode_page(std::span<const ValidSolid* const> solids, const EncodeOptions& options) {
+  if (solids.empty() || solids.size() > kMaxPageSolids) {
+    return Error{ErrorCode::invalid_argument, "a page has 1 to 256 solids"};
+  }
+  std::vector<Source> sources;
+  for (const ValidSolid* solid : solids) {
+    if (!share_page(*solids.front(), *solid)) {
+      return Error{ErrorCode::invalid_argument,
+                   "the solids of a page share their grid, reference system and acceptance"};
+    }
+    sources.push_back({&solid->boundary(), solid->acceptance()});
+  }
+  return encode_contents(sources, PageKind::page, options);
 }
 
 }  // namespace watertight

@@ -96,19 +96,19 @@ void EntropyStream::shift_out() {
 
 bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
   WATERTIGHT_ASSERT(ones_of_65536 > 0 && ones_of_65536 < 65536);
-  if (direction_ == Direction::measure) {
-    costs_[part_] += kCosts[(value ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
-    return value;
-  }
   if (failed_) return false;
-  const std::uint32_t middle = split(low_, high_, ones_of_65536);
-  const bool result = is_reading() ? window_ <= middle : value;
-  if (result) {
-    high_ = middle;
-  } else {
-    low_ = middle + 1;
+  bool result = value;
+  if (direction_ != Direction::measure) {
+    const std::uint32_t middle = split(low_, high_, ones_of_65536);
+    if (is_reading()) result = window_ <= middle;
+    if (result) {
+      high_ = middle;
+    } else {
+      low_ = middle + 1;
+    }
+    shift_out();
   }
-  shift_out();
+  costs_[part_] += kCosts[(result ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
   return result;
 }
 

@@ -43,7 +43,7 @@ class EntropyStream {
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
 
-  /// What a measuring stream measured so far, in 1/65536 bit.
+  /// What the decisions so far take, in 1/65536 bit; within 0.1 % of the bytes.
   std::uint64_t cost() const;
   std::uint64_t cost(StreamPart part) const { return costs_[static_cast<std::size_t>(part)]; }
   /// The decisions from here on belong to `part`. Changes nothing but the account of the costs.

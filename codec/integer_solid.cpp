@@ -121,21 +121,30 @@ std::optional<GriddedSolid> grid_solid(const Solid& canonical) {
   return result;
 }
 
-Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, const Limits& limits) {
+Result<Lattice> lattice_at(const PageGrid& grid, const GridPoint& origin) {
   Lattice lattice;
-  lattice.kind = gridded.grid.kind;
-  lattice.step = gridded.grid.step;
-  const int radix = radix_of(lattice.kind);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Aligned aligned = align(gridded.grid.phase[a], gridded.grid.step[a], radix);
-    std::optional<GridNumber> origin;
+  lattice.kind = grid.kind;
+  if (grid.kind == LatticeKind::float64) return lattice;
+  lattice.step = grid.step;
+  const int radix = radix_of(grid.kind);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Aligned aligned = align(grid.phase[axis], grid.step[axis], radix);
+    std::optional<GridNumber> number;
     if (aligned.step > 0) {
-      origin =
-          normalized(aligned.origin + gridded.origin[a] * aligned.step, aligned.exponent, radix);
+      number = normalized(aligned.origin + origin[axis] * aligned.step, aligned.exponent, radix);
+    } else if (origin[axis] == 0) {
+      number = grid.phase[axis];  // so far apart that they have no common unit of 128 bits
     }
-    if (!origin) return Error{ErrorCode::malformed, "the origin of the lattice is out of range"};
-    lattice.origin[a] = *origin;
+    if (!number) return Error{ErrorCode::malformed, "the origin of the lattice is out of range"};
+    lattice.origin[axis] = *number;
   }
+  if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice makes no sense"};
+  return lattice;
+}
+
+Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, const Limits& limits) {
+  auto lattice = lattice_at(gridded.grid, gridded.origin);
+  if (!lattice) return lattice.error();
   SolidArrays arrays;
   arrays.vertices.reserve(gridded.solid.vertices.size());
   for (const GridPoint& grid_point : gridded.solid.vertices) {
@@ -154,7 +163,7 @@ Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, cons
   arrays.ring_offsets = gridded.solid.ring_offsets;
   arrays.facet_offsets = gridded.solid.facet_offsets;
   arrays.shell_offsets = gridded.solid.shell_offsets;
-  return Solid::make(std::move(arrays), lattice, srid, limits);
+  return Solid::make(std::move(arrays), *lattice, srid, limits);
 }
 
 void PageMemory::add(const IntegerSolid& solid) {

@@ -54,6 +54,9 @@ struct GriddedSolid {
   IntegerSolid solid;
 };
 
+/// The lattice with its origin at a point of the grid. Errors: malformed if it leaves its range.
+Result<Lattice> lattice_at(const PageGrid& grid, const GridPoint& origin);
+
 /// Nothing if a coordinate is no integer of magnitude below 2^53 (LatticeKind::float64): such a
 /// solid is stored raw. Requires a canonical solid. Cost: linear.
 std::optional<GriddedSolid> grid_solid(const Solid& canonical);

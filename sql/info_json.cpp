@@ -84,9 +84,10 @@ std::string acceptance_json(const Acceptance& acceptance) {
 
 std::string info_json(const BlobInfo& info, std::size_t bytes) {
   JsonObject parts;
-  for (const BlobInfo::Part& part : info.parts) parts.add(part.name.c_str(), part.bytes);
+  for (const BlobInfo::Part& part : info.parts) parts.add(part.name.c_str(), number(part.bytes));
   return JsonObject()
       .add("version", info.version)
+      .add("models", info.models)
       .add("mode", quoted(to_string(info.mode)))
       .add("bytes", bytes)
       .add("srid", info.srid)

@@ -22,6 +22,7 @@ namespace {
 Bytes write_corpus_record(const std::string& set, const ValidSolid& solid) {
   EncodeOptions options;
   options.mode = Mode::raw;
+  options.models = 0;
   const auto blob = encode(solid, options);
   if (!blob) give_up(set, to_string(blob.error()));
   ByteWriter writer;

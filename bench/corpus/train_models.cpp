@@ -1,69 +1,52 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// train_models CORPUS [--prior FOLDER] [--exclude SET]... [--only MODE] [--passes N]
+// train_models CORPUS [--out FILE] [--exclude SET]... [--only MODE] [--passes N]
 //
-// Trains the models of each mode on the training half of a corpus and prints what the test half
-// takes, per set and mode: bytes per solid in pages of 64 and in blobs of their own, the models'
-// part alone. Blocks of 64 solids of a set are training and test in turns; excluded sets are test
-// only. With --prior the trained states are written, one file per mode.
+// Trains the priors of the codec on the training half of a corpus, and prints what the test half
+// takes, per set and mode: bytes per solid in pages of 64 and in blobs of their own (streams alone,
+// without the bytes around them). bench/corpus/split.h says what is training and what test. With
+// --out the set of priors is written as a model file.
+//
+// First each mode learns from every solid that it can hold. Then all go on learning, through the
+// coder of pages, each from the solids for which it is the cheapest.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "bench/corpus/corpus.h"
+#include "bench/corpus/split.h"
+#include "codec/frame.h"
 #include "codec/modes.h"
+#include "codec/page_bytes.h"
 
 using namespace watertight;
 
 namespace {
 
-constexpr std::size_t kPage = 64;
 constexpr std::uint32_t kMaxCount = 60;
-
-struct ModeRow {
-  const char* name;
-  const ModelLayout& (*layout)();
-  CodeSolid* code;
-};
-
-const ModeRow kModes[] = {
-    // One row per mode.
-    {nullptr, nullptr, nullptr},
-};
+constexpr Mode kModes[] = {Mode::polygon, Mode::walk, Mode::hybrid, Mode::parallelogram};
 
 struct Page {
   std::string set;
   bool is_test = false;
-  std::vector<const GriddedSolid*> solids;
+  Frame frame;
+  std::vector<const PageSolid*> solids;
 };
 
 struct Options {
   std::string corpus;
-  std::string prior;
+  std::string out;
   std::set<std::string> excluded;
   std::string only;
   int passes = 2;
 };
-
-/// Bits for one solid, or nothing if the mode cannot hold it; then `bank` is as before.
-std::optional<double> bits_of(const ModeRow& mode, ModelBank& bank, const PageMemory& memory,
-                              const GriddedSolid& gridded) {
-  const ModelBank before = bank;
-  EntropyStream meter = EntropyStream::meter();
-  IntegerSolid solid = gridded.solid;
-  if (const Status status = mode.code(meter, bank, memory, solid, Limits{}); !status) {
-    bank = before;
-    return std::nullopt;
-  }
-  return static_cast<double>(meter.cost()) / (1 << kCostBits);
-}
 
 struct Sums {
   std::size_t solids = 0;
@@ -71,99 +54,135 @@ struct Sums {
   std::size_t refused = 0;
   double paged = 0;
   double alone = 0;
+  std::array<double, kStreamParts> parts{};
+  std::map<std::string, std::size_t> modes;
+
+  Sums& operator+=(const Sums& other) {
+    solids += other.solids;
+    vertices += other.vertices;
+    refused += other.refused;
+    paged += other.paged;
+    alone += other.alone;
+    for (std::size_t i = 0; i < kStreamParts; ++i) parts[i] += other.parts[i];
+    for (const auto& [mode, number] : other.modes) modes[mode] += number;
+    return *this;
+  }
+};
+using SetSums = std::map<std::string, Sums>;
+
+double bytes_of(std::uint64_t cost) { return static_cast<double>(cost) / (8.0 * (1 << kCostBits)); }
+
+/// Codes one solid with a set of models; false if the mode cannot hold it, which spoils the coder.
+bool learn(SolidCoder& coder, const PageSolid& solid, Mode mode,
+           std::array<std::uint64_t, kStreamParts>* costs = nullptr) {
+  PageSolid copy = solid;
+  copy.mode = mode;
+  if (!coder.code(copy)) return false;
+  if (costs != nullptr) *costs = copy.costs;
+  return true;
+}
+
+/// A coder with a meter of its own.
+struct MeteredCoder {
+  EntropyStream meter = EntropyStream::meter();
+  SolidCoder coder;
+  MeteredCoder(ModelSet& models, const Frame& frame) : coder(meter, models, frame, Limits{}) {}
 };
 
-void train(const ModeRow& mode, const std::vector<Page>& pages, ModelBank& bank) {
+/// `choose` names the mode of a solid, or Mode::automatic to leave it out.
+template <class Choose>
+void train(const std::vector<Page>& pages, ModelSet& models, const Choose& choose) {
   for (const Page& page : pages) {
     if (page.is_test) continue;
-    PageMemory memory;
-    for (const GriddedSolid* gridded : page.solids) {
-      bits_of(mode, bank, PageMemory{}, *gridded);
-      bits_of(mode, bank, memory, *gridded);
-      memory.add(gridded->solid);
-    }
-  }
-}
-
-void measure(const ModeRow& mode, const std::vector<Page>& pages, const ModelBank& prior,
-             std::map<std::string, Sums>& sums) {
-  for (const Page& page : pages) {
-    if (!page.is_test) continue;
-    Sums sum;
-    PageMemory memory;
-    ModelBank bank = prior;
-    for (const GriddedSolid* gridded : page.solids) {
-      ModelBank own = prior;
-      const auto alone = bits_of(mode, own, PageMemory{}, *gridded);
-      const auto paged = bits_of(mode, bank, memory, *gridded);
-      memory.add(gridded->solid);
-      if (!alone || !paged) {
-        ++sum.refused;
-        continue;
+    MeteredCoder paged(models, page.frame);
+    for (const PageSolid* solid : page.solids) {
+      MeteredCoder alone(models, page.frame);
+      Frame frame = page.frame;
+      if (!code_frame(alone.meter, models[ModelPart::frame], frame)) std::abort();
+      for (MeteredCoder* coder : {&alone, &paged}) {
+        const Mode mode = choose(coder->coder, *solid);
+        if (mode != Mode::automatic && !learn(coder->coder, *solid, mode)) std::abort();
       }
-      ++sum.solids;
-      sum.vertices += gridded->solid.vertices.size();
-      sum.alone += *alone / 8;
-      sum.paged += *paged / 8;
-    }
-    for (const std::string& key : {page.set, std::string("~ all")}) {
-      Sums& total = sums[key];
-      total.solids += sum.solids;
-      total.vertices += sum.vertices;
-      total.refused += sum.refused;
-      total.alone += sum.alone;
-      total.paged += sum.paged;
     }
   }
 }
 
-void print(const std::map<std::string, Sums>& sums) {
-  std::printf("| set | solids | vertices | refused | page B | blob B | page bits/vertex |\n");
-  std::printf("|---|---|---|---|---|---|---|\n");
+template <class Choose>
+Sums measure_page(const Page& page, const std::array<ModelBank, kModelParts>& priors,
+                  const Choose& choose) {
+  Sums sum;
+  ModelSet models(priors);
+  MeteredCoder paged(models, page.frame);
+  for (const PageSolid* solid : page.solids) {
+    ModelSet own(priors);
+    MeteredCoder alone(own, page.frame);
+    Frame frame = page.frame;
+    if (!code_frame(alone.meter, own[ModelPart::frame], frame)) std::abort();
+    const Mode mode = choose(alone.coder, *solid);
+    if (mode == Mode::automatic) {
+      ++sum.refused;
+      continue;
+    }
+    learn(alone.coder, *solid, mode);
+    std::array<std::uint64_t, kStreamParts> costs{};
+    const Mode paged_mode = choose(paged.coder, *solid);
+    learn(paged.coder, *solid, paged_mode, &costs);
+    ++sum.solids;
+    sum.vertices += solid->gridded.solid.vertices.size();
+    sum.alone += bytes_of(alone.meter.cost());
+    for (std::size_t i = 0; i < kStreamParts; ++i) sum.parts[i] += bytes_of(costs[i]);
+    for (const std::uint64_t cost : costs) sum.paged += bytes_of(cost);
+    ++sum.modes[std::string(to_string(paged_mode))];
+  }
+  return sum;
+}
+
+void print(const SetSums& sums) {
+  std::printf(
+      "| set | solids | vertices | refused | page B | blob B | frame | position | connectivity | "
+      "facets | coordinates | conn. bits/v | modes |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& [set, sum] : sums) {
     const auto n = static_cast<double>(std::max<std::size_t>(sum.solids, 1));
-    std::printf("| %s | %zu | %.1f | %zu | %.1f | %.1f | %.2f |\n", set.c_str(), sum.solids,
-                static_cast<double>(sum.vertices) / n, sum.refused, sum.paged / n, sum.alone / n,
-                8 * sum.paged / static_cast<double>(std::max<std::size_t>(sum.vertices, 1)));
+    const auto v = static_cast<double>(std::max<std::size_t>(sum.vertices, 1));
+    std::printf("| %s | %zu | %.1f | %zu | %.1f | %.1f |", set.c_str(), sum.solids, v / n,
+                sum.refused, sum.paged / n, sum.alone / n);
+    for (std::size_t i = 0; i + 1 < kStreamParts; ++i) std::printf(" %.1f |", sum.parts[i] / n);
+    std::printf(" %.2f |", 8 * (sum.parts[2] + sum.parts[3]) / v);
+    for (const auto& [mode, number] : sum.modes) std::printf(" %s %zu", mode.c_str(), number);
+    std::printf(" |\n");
   }
+  std::fflush(stdout);
+}
+
+template <class Choose>
+void measure(const char* title, const std::vector<Page>& pages,
+             const std::array<ModelBank, kModelParts>& priors, const Choose& choose) {
+  SetSums sums;
+  for (const Page& page : pages) {
+    if (!page.is_test) continue;
+    const Sums sum = measure_page(page, priors, choose);
+    sums[page.set] += sum;
+    sums["~ all"] += sum;
+  }
+  std::printf("\n### %s\n\n", title);
+  print(sums);
+}
+
+std::array<ModelBank, kModelParts> banks_of(ModelSet& models) {
+  std::array<ModelBank, kModelParts> banks = neutral_priors();
+  for (std::size_t i = 0; i < kModelParts; ++i) banks[i] = models[static_cast<ModelPart>(i)];
+  return banks;
 }
 
 std::vector<Page> pages_of(const std::vector<CorpusSolid>& corpus,
-                           const std::vector<GriddedSolid>& gridded, const Options& options) {
-  std::map<std::string, std::vector<const GriddedSolid*>> sets;
-  for (std::size_t i = 0; i < corpus.size(); ++i) sets[corpus[i].set].push_back(&gridded[i]);
+                           const std::vector<PageSolid>& stored, const Options& options) {
   std::vector<Page> pages;
-  for (const auto& [set, solids] : sets) {
-    for (std::size_t first = 0; first < solids.size(); first += kPage) {
-      Page page;
-      page.set = set;
-      page.is_test = options.excluded.contains(set) || (first / kPage) % 2 == 1;
-      for (std::size_t i = first; i < std::min(first + kPage, solids.size()); ++i) {
-        if (!solids[i]->solid.vertices.empty()) page.solids.push_back(solids[i]);
-      }
-      pages.push_back(std::move(page));
-    }
+  for (const CorpusPage& page : split_corpus(corpus, stored, options.excluded, kBlock)) {
+    pages.push_back(Page{page.set, page.is_test, page.frame, {}});
+    for (const std::size_t solid : page.solids) pages.back().solids.push_back(&stored[solid]);
   }
   return pages;
-}
-
-void run(const ModeRow& mode, const std::vector<Page>& pages, const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
-  ModelBank bank(mode.layout());
-  for (int pass = 0; pass < options.passes; ++pass) train(mode, pages, bank);
-  const Bytes state = bank.save(kMaxCount);
-  ModelBank prior(mode.layout());
-  if (!prior.load(state)) std::abort();
-  std::map<std::string, Sums> sums;
-  measure(mode, pages, prior, sums);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("\n### %s: prior %zu bytes, %zu counters, %.1f s\n\n", mode.name, state.size(),
-              bank.counter_count(), seconds);
-  print(sums);
-  if (options.prior.empty()) return;
-  std::ofstream file(options.prior + "/" + mode.name + ".prior", std::ios::binary);
-  file.write(as_text(state).data(), static_cast<std::streamsize>(state.size()));
 }
 
 Options read_options(int count, char** arguments) {
@@ -172,7 +191,7 @@ Options read_options(int count, char** arguments) {
   for (int i = 2; i + 1 < count; i += 2) {
     const std::string name = arguments[i];
     const std::string value = arguments[i + 1];
-    if (name == "--prior") options.prior = value;
+    if (name == "--out") options.out = value;
     if (name == "--exclude") options.excluded.insert(value);
     if (name == "--only") options.only = value;
     if (name == "--passes") options.passes = std::atoi(value.c_str());
@@ -180,26 +199,57 @@ Options read_options(int count, char** arguments) {
   return options;
 }
 
+void train_all(const std::vector<Page>& pages, const Options& options) {
+  const std::array<ModelBank, kModelParts> neutral = neutral_priors();
+  ModelSet first(neutral);
+  for (const Mode mode : kModes) {
+    if (!options.only.empty() && options.only != to_string(mode)) continue;
+    const auto start = std::chrono::steady_clock::now();
+    const auto choose = [mode](const SolidCoder& coder, const PageSolid& solid) {
+      return coder.cost(solid, mode) ? mode : Mode::automatic;
+    };
+    for (int pass = 0; pass < options.passes; ++pass) train(pages, first, choose);
+    const std::string title(to_string(mode));
+    measure(title.c_str(), pages, banks_of(first), choose);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::printf("\n%.1f s\n", seconds);
+  }
+  if (!options.only.empty()) return;
+
+  const std::array<ModelBank, kModelParts> chosen_by = banks_of(first);
+  const auto cheapest = [](const SolidCoder& coder, const PageSolid& solid) {
+    return coder.cheapest_mode(solid);
+  };
+  ModelSet second(chosen_by);
+  for (int pass = 0; pass < options.passes; ++pass) train(pages, second, cheapest);
+  const Bytes file = write_models(banks_of(second), kModelNumber, kMaxCount);
+  const auto priors = read_models(file, kModelNumber);
+  if (!priors) std::abort();
+  measure("cheapest mode", pages, *priors, cheapest);
+  std::printf("\nmodel file: %zu bytes\n", file.size());
+  for (std::size_t i = 0; i < kModelParts; ++i) {
+    std::printf("part %zu: %zu bytes\n", i, (*priors)[i].save(kMaxCount).size());
+  }
+  if (options.out.empty()) return;
+  std::ofstream out(options.out, std::ios::binary);
+  out.write(as_text(file).data(), static_cast<std::streamsize>(file.size()));
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   const Options options = read_options(count, arguments);
   if (options.corpus.empty()) {
-    std::fprintf(stderr, "usage: train_models CORPUS [--prior FOLDER] [--exclude SET]...\n");
+    std::fprintf(stderr,
+                 "usage: train_models CORPUS [--out FILE] [--exclude SET]... [--only MODE]\n");
     return 2;
   }
   const std::vector<CorpusSolid> corpus = read_corpus(options.corpus);
-  std::vector<GriddedSolid> gridded;
-  std::size_t without_grid = 0;
+  std::vector<PageSolid> stored;
   for (const CorpusSolid& solid : corpus) {
-    auto on_grid = grid_solid(solid.canonical.boundary.solid());
-    without_grid += on_grid ? 0U : 1U;
-    gridded.push_back(on_grid ? std::move(*on_grid) : GriddedSolid{});
+    stored.push_back(page_solid(solid.source, EncodeOptions{.keep_order = false}));
   }
-  std::printf("%zu solids, %zu without a grid\n", corpus.size(), without_grid);
-  const std::vector<Page> pages = pages_of(corpus, gridded, options);
-  for (const ModeRow& mode : kModes) {
-    if (mode.name == nullptr || (!options.only.empty() && options.only != mode.name)) continue;
-    run(mode, pages, options);
-  }
+  std::printf("%zu solids\n", corpus.size());
+  train_all(pages_of(corpus, stored, options), options);
 }

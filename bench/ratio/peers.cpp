@@ -3,16 +3,19 @@
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
+#include <meshoptimizer.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "base/bytes.h"
+#include "codec/integer_solid.h"
 #include "formats/ewkb.h"
 
 namespace watertight {
@@ -36,12 +39,13 @@ std::string join(const std::vector<std::string>& items) {
   return text + "]";
 }
 
-std::string city_json(const Solid& solid) {
-  std::vector<std::string> vertices;
-  for (const Point& p : solid.vertices()) {
-    const auto c = integers(p);
-    vertices.push_back(join({std::to_string(c[0]), std::to_string(c[1]), std::to_string(c[2])}));
-  }
+std::string point_text(const GridPoint& c) {
+  return join({std::to_string(c[0]), std::to_string(c[1]), std::to_string(c[2])});
+}
+
+/// The nested arrays of a Solid, each vertex index through `number`.
+template <class Number>
+std::string boundaries(const Solid& solid, const Number& number) {
   std::vector<std::string> shells;
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
     std::vector<std::string> facets;
@@ -49,14 +53,48 @@ std::string city_json(const Solid& solid) {
       std::vector<std::string> rings;
       for (Index ring = solid.rings_of(facet).begin; ring < solid.rings_of(facet).end; ++ring) {
         std::vector<std::string> indices;
-        for (const Index vertex : solid.ring(ring)) indices.push_back(std::to_string(vertex));
+        for (const Index vertex : solid.ring(ring)) {
+          indices.push_back(std::to_string(number(vertex)));
+        }
         rings.push_back(join(indices));
       }
       facets.push_back(join(rings));
     }
     shells.push_back(join(facets));
   }
-  return "{\"vertices\":" + join(vertices) + ",\"boundaries\":" + join(shells) + "}";
+  return join(shells);
+}
+
+std::string city_json(const Solid& solid) {
+  std::vector<std::string> vertices;
+  for (const Point& p : solid.vertices()) vertices.push_back(point_text(integers(p)));
+  return "{\"vertices\":" + join(vertices) +
+         ",\"boundaries\":" + boundaries(solid, [](Index vertex) { return vertex; }) + "}";
+}
+
+std::size_t meshopt_size(const Solid& solid, std::span<const Triangle> triangles) {
+  std::vector<std::array<std::int32_t, 3>> vertices;
+  for (const Point& p : solid.vertices()) {
+    const auto c = integers(p);
+    if (std::max({c[0], c[1], c[2]}) > std::numeric_limits<std::int32_t>::max()) return 0;
+    vertices.push_back({static_cast<std::int32_t>(c[0]), static_cast<std::int32_t>(c[1]),
+                        static_cast<std::int32_t>(c[2])});
+  }
+  std::vector<unsigned int> indices;
+  for (const Triangle& triangle : triangles) {
+    indices.insert(indices.end(), triangle.begin(), triangle.end());
+  }
+  // In the order that its coders are made for.
+  meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
+  const std::size_t used = meshopt_optimizeVertexFetch(
+      vertices.data(), indices.data(), indices.size(), vertices.data(), vertices.size(), 12);
+  Bytes coded(meshopt_encodeVertexBufferBound(used, 12));
+  coded.resize(meshopt_encodeVertexBuffer(coded.data(), coded.size(), vertices.data(), used, 12));
+  Bytes faces(meshopt_encodeIndexBufferBound(indices.size(), used));
+  faces.resize(
+      meshopt_encodeIndexBuffer(faces.data(), faces.size(), indices.data(), indices.size()));
+  coded.insert(coded.end(), faces.begin(), faces.end());
+  return std::min(coded.size(), zstd_size(coded));
 }
 
 std::size_t draco_size(const Solid& solid, std::span<const Triangle> triangles) {
@@ -95,7 +133,42 @@ PeerBytes measure_peers(const Solid& solid, std::span<const Triangle> triangles)
   bytes.wkb_zstd = zstd_size(wkb);
   bytes.city_json_zstd = zstd_size(as_bytes(city_json(solid)));
   bytes.draco = draco_size(solid, triangles);
+  bytes.meshopt = meshopt_size(solid, triangles);
   return bytes;
+}
+
+std::size_t whole_city_json_zstd(std::span<const Solid* const> solids) {
+  std::vector<GriddedSolid> gridded;
+  GridPoint corner{INT64_MAX, INT64_MAX, INT64_MAX};
+  for (const Solid* solid : solids) {
+    auto on_grid = grid_solid(*solid);
+    if (!on_grid) continue;
+    for (const GridPoint& vertex : on_grid->solid.vertices) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        corner[axis] = std::min(corner[axis], vertex[axis]);
+      }
+    }
+    gridded.push_back(std::move(*on_grid));
+  }
+  std::map<GridPoint, std::size_t> numbers;
+  std::vector<std::string> vertices;
+  std::string objects;
+  for (std::size_t i = 0; i < gridded.size(); ++i) {
+    for (const GridPoint& vertex : gridded[i].solid.vertices) {
+      if (!numbers.emplace(vertex, numbers.size()).second) continue;
+      vertices.push_back(
+          point_text({vertex[0] - corner[0], vertex[1] - corner[1], vertex[2] - corner[2]}));
+    }
+    objects +=
+        (i == 0 ? "\"" : ",\"") + std::to_string(i) +
+        "\":{\"type\":\"Building\",\"geometry\":[{\"type\":\"Solid\",\"lod\":\"2\"," +
+        "\"boundaries\":" +
+        boundaries(*solids[i],
+                   [&](Index vertex) { return numbers.at(gridded[i].solid.vertices[vertex]); }) +
+        "}]}";
+  }
+  return zstd_size(as_bytes("{\"type\":\"CityJSON\",\"version\":\"2.0\",\"CityObjects\":{" +
+                            objects + "},\"vertices\":" + join(vertices) + "}"));
 }
 
 }  // namespace watertight

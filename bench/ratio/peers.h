@@ -15,10 +15,15 @@ struct PeerBytes {
   std::size_t wkb = 0;             // EWKB, doubles in world coordinates
   std::size_t wkb_zstd = 0;        // the same through zstd -19
   std::size_t city_json_zstd = 0;  // {"vertices":[ints],"boundaries":[...]} through zstd -19
-  std::size_t draco = 0;  // Draco, compression level 10, int32 positions; 0 = wider than it takes
+  std::size_t draco = 0;    // Draco, compression level 10, int32 positions; 0 = wider than it takes
+  std::size_t meshopt = 0;  // meshoptimizer's vertex and index buffers through zstd -19; likewise
 };
 
 /// `triangles` = canonical triangulation of the solid. Requires an integer lattice.
 PeerBytes measure_peers(const Solid& solid, std::span<const Triangle> triangles);
+
+/// All solids as one CityJSON through zstd -19: one list of vertices, each once, from the smallest
+/// corner of all on. Requires that they share their lattice's steps.
+std::size_t whole_city_json_zstd(std::span<const Solid* const> solids);
 
 }  // namespace watertight

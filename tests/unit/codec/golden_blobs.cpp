@@ -6,7 +6,7 @@
 
 namespace watertight::generated {
 
-std::vector<Golden> goldens() {
+std::vector<Golden> version_0_goldens() {
   Random random(1);
   const Acceptance stated{{0.001, 5, 0.0005}, Proof::boundary, 1};
   const OrientedBoundary terrain = random_terrain(random, 4);
@@ -27,9 +27,32 @@ std::vector<Golden> goldens() {
           {"stated-tolerances", 329, torus(8, 4), stated, Mode::bitmap, false}};
 }
 
+std::vector<Golden> goldens() {
+  std::vector<Golden> all = version_0_goldens();
+  for (Golden& golden : all) golden.size = 0;
+  Random random(2);
+  const auto add = [&](const std::string& name, const OrientedBoundary& boundary) {
+    for (const Mode mode : {Mode::walk, Mode::polygon, Mode::hybrid, Mode::parallelogram}) {
+      Golden golden{name + "-" + std::string(to_string(mode)), 0, boundary, {}, mode};
+      if (encode_golden(golden)) all.push_back(std::move(golden));
+    }
+  };
+  add("box", box());
+  add("holes", pierced_block(2));
+  add("cavities", box_with_cavities(2));
+  add("edge", boxes_touching_at_edge());
+  add("torus", torus(9, 5));
+  add("terrain", random_terrain(random, 5));
+  Golden neutral{"box-neutral", 0, box(), {}, Mode::automatic};
+  neutral.models = 0;
+  all.push_back(neutral);
+  return all;
+}
+
 Result<Bytes> encode_golden(const Golden& golden) {
   const Certificate certificate = schoenhardt_certificate();
   EncodeOptions options{.mode = golden.mode, .keep_order = golden.keep_order};
+  options.models = golden.models;
   if (golden.with_steiner) options.certificate = &certificate;
   return encode_boundary(golden.boundary, golden.acceptance, options);
 }

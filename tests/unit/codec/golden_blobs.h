@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The solids and options behind tests/golden/blobs: one file each, named <name>.blob.
+// The solids and options behind tests/golden/blobs: one file each, <version>/<name>.blob.
 #pragma once
 
 #include <optional>
@@ -13,14 +13,18 @@ namespace watertight::generated {
 
 struct Golden {
   std::string name;
-  std::size_t size = 0;  // bytes of the file
+  std::size_t size = 0;  // bytes of the file of version 0
   OrientedBoundary boundary;
   Acceptance acceptance;
   Mode mode = Mode::bitmap;
   bool keep_order = true;
   bool with_steiner = false;  // with schoenhardt_certificate()
+  std::uint8_t models = kModelNumber;
 };
 
+/// Files that are only decoded.
+std::vector<Golden> version_0_goldens();
+/// Of the present version: every mode that can hold each of some solids.
 std::vector<Golden> goldens();
 Result<Bytes> encode_golden(const Golden& golden);
 

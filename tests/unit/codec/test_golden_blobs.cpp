@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Files of format version 0. A change of theirs is a change of the format: see CONTRIBUTING.
+// Files of every format version. A change of theirs is a change of the format: see CONTRIBUTING.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <fstream>
@@ -15,18 +15,28 @@ using namespace watertight;
 
 namespace {
 
-std::string path_of(const std::string& name) {
-  return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + name + ".blob";
+std::string path_of(const std::string& name, const char* version = "version-1") {
+  return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + version + "/" + name + ".blob";
 }
 
-Bytes file_of(const std::string& name) {
-  std::ifstream file(path_of(name), std::ios::binary);
+Bytes file_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+void check_decoded(const generated::Golden& golden, const Bytes& bytes) {
+  const auto decoded = decode(bytes);
+  REQUIRE(decoded);
+  const Solid& source = golden.boundary.solid();
+  CHECK(decoded->solid ==
+        (golden.keep_order ? source : canonical_form(golden.boundary).boundary.solid()));
+  CHECK(decoded->info.acceptance == golden.acceptance);
+  CHECK((decoded->info.steiner_vertices > 0) == golden.with_steiner);
+}
+
 /// The bytes of the worked example: in its fenced lines, the pairs of hex digits before two spaces.
-Bytes example_of_format() {
-  std::ifstream file(WATERTIGHT_TEST_DATA "/../../docs/format.md");
+Bytes example_of(const std::string& document) {
+  std::ifstream file(std::string(WATERTIGHT_TEST_DATA "/../../docs/") + document);
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const std::size_t example = text.find("\n## Example");
   if (example == std::string::npos) return {};
@@ -46,22 +56,23 @@ Bytes example_of_format() {
 
 }  // namespace
 
-TEST_CASE("the worked example of docs/format.md is the golden box") {
-  CHECK(example_of_format() == file_of("box-bitmap"));
+TEST_CASE("the worked example of docs/format-0.md is the golden box of version 0") {
+  CHECK(example_of("format-0.md") == file_of(path_of("box-bitmap", "version-0")));
 }
 
-TEST_CASE("golden blobs keep their sizes and decode to their solids") {
+TEST_CASE("golden blobs of version 0 decode to their solids") {
+  for (const auto& golden : generated::version_0_goldens()) {
+    INFO(golden.name);
+    const Bytes bytes = file_of(path_of(golden.name, "version-0"));
+    CHECK(bytes.size() == golden.size);
+    check_decoded(golden, bytes);
+  }
+}
+
+TEST_CASE("golden blobs decode to their solids") {
   for (const auto& golden : generated::goldens()) {
     INFO(golden.name);
-    const Bytes bytes = file_of(golden.name);
-    CHECK(bytes.size() == golden.size);
-    const auto decoded = decode(bytes);
-    REQUIRE(decoded);
-    const Solid& source = golden.boundary.solid();
-    CHECK(decoded->solid ==
-          (golden.keep_order ? source : canonical_form(golden.boundary).boundary.solid()));
-    CHECK(decoded->info.acceptance == golden.acceptance);
-    CHECK((decoded->info.steiner_vertices > 0) == golden.with_steiner);
+    check_decoded(golden, file_of(path_of(golden.name)));
   }
 }
 
@@ -70,7 +81,7 @@ TEST_CASE("encoding a golden solid again gives the golden bytes") {
     INFO(golden.name);
     const auto blob = generated::encode_golden(golden);
     REQUIRE(blob);
-    CHECK(*blob == file_of(golden.name));
+    CHECK(*blob == file_of(path_of(golden.name)));
   }
 }
 

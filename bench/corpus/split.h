@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Which solids of a corpus the models of the codec are trained on, and which they are tested on.
+// Within a set, blocks of 64 consecutive solids are training and test in turns; sets that are
+// excluded from training are test only. A test solid that stands where a training solid stands (the
+// same building in another release, level of detail or file) is left out.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bench/corpus/corpus.h"
+#include "codec/page_bytes.h"
+
+namespace watertight {
+
+inline constexpr std::size_t kBlock = 64;
+
+/// Solids of one set, of one frame, in their order.
+struct CorpusPage {
+  std::string set;
+  bool is_test = false;
+  Frame frame;
+  std::vector<std::size_t> solids;  // in the corpus
+};
+
+/// Pages of at most `most` solids, which are neighbours within the training or the test half.
+/// Solids without a grid are in none. `stored` are the corpus' solids as page_solid() makes them.
+std::vector<CorpusPage> split_corpus(const std::vector<CorpusSolid>& corpus,
+                                     const std::vector<PageSolid>& stored,
+                                     const std::set<std::string>& excluded, std::size_t most);
+
+}  // namespace watertight

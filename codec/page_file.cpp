@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Layout: magic and version (5 bytes), the pages, the index, its CRC-32C (4), its length (4), the
+// magic again (4).
+#include "codec/page_file.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "base/checksum.h"
+#include "codec/page_bytes.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::uint8_t kMagic[4] = {'W', 'T', 'P', 'F'};
+constexpr std::size_t kHeadBytes = 5;
+constexpr std::size_t kTailBytes = 12;
+// The solids of a page that cannot keep up with the others wait no longer than this many pages.
+constexpr std::size_t kMaxOpenPages = 16;
+
+bool has_magic(ByteView bytes) {
+  return std::equal(std::begin(kMagic), std::end(kMagic), bytes.begin());
+}
+
+Error malformed(const char* what) {
+  return {ErrorCode::malformed, std::string("the page file ") + what};
+}
+
+}  // namespace
+
+PageFileWriter::PageFileWriter(std::size_t page_solids, EncodeOptions options)
+    : page_solids_(std::clamp<std::size_t>(page_solids, 1, kMaxPageSolids)), options_(options) {
+  ByteWriter writer;
+  writer.append(kMagic);
+  writer.u8(kFormatVersion);
+  written_ = std::move(writer).bytes();
+}
+
+Status PageFileWriter::close(OpenPage& page) {
+  std::vector<const ValidSolid*> solids;
+  for (const ValidSolid& solid : page.solids) solids.push_back(&solid);
+  auto bytes = encode_page(solids, options_);
+  if (!bytes) return bytes.error();
+  written_.insert(written_.end(), bytes->begin(), bytes->end());
+  index_.push_back({bytes->size(), std::move(page.numbers)});
+  return Done{};
+}
+
+Status PageFileWriter::add(const ValidSolid& solid) {
+  const Frame frame = frame_of(solid.solid(), solid.acceptance());
+  auto page = std::find_if(open_.begin(), open_.end(),
+                           [&](const OpenPage& other) { return other.frame == frame; });
+  if (page == open_.end()) {
+    if (open_.size() == kMaxOpenPages) {
+      if (auto status = close(open_.front()); !status) return status;
+      open_.erase(open_.begin());
+    }
+    open_.push_back(OpenPage{frame, {}, {}});
+    page = open_.end() - 1;
+  }
+  page->solids.push_back(solid);
+  page->numbers.push_back(count_++);
+  if (page->solids.size() < page_solids_) return Done{};
+  const Status status = close(*page);
+  open_.erase(page);
+  return status;
+}
+
+Bytes PageFileWriter::take() { return std::exchange(written_, {}); }
+
+Result<Bytes> PageFileWriter::finish() && {
+  for (OpenPage& page : open_) {
+    if (auto status = close(page); !status) return status.error();
+  }
+  ByteWriter index;
+  index.varint(count_);
+  index.varint(index_.size());
+  for (const Entry& entry : index_) {
+    index.varint(entry.bytes);
+    index.varint(entry.numbers.size());
+    // Gaps between the numbers: almost always 0.
+    std::uint64_t next = 0;
+    for (const std::uint64_t number : entry.numbers) {
+      index.varint(number - next);
+      next = number + 1;
+    }
+  }
+  ByteWriter tail;
+  tail.append(index.bytes());
+  tail.u32(crc32c(index.bytes()));
+  tail.u32(static_cast<std::uint32_t>(index.size()));
+  tail.append(kMagic);
+  Bytes result = std::move(written_);
+  result.insert(result.end(), tail.bytes().begin(), tail.bytes().end());
+  return result;
+}
+
+bool is_page_file(ByteView bytes) { return bytes.size() >= kHeadBytes && has_magic(bytes); }
+
+Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits) {
+  if (file.size() < kHeadBytes + kTailBytes || !has_magic(file) || !has_magic(file.last(4))) {
+    return malformed("is truncated, or none");
+  }
+  if (file[4] != kFormatVersion) {
+    return Error{ErrorCode::unsupported, "page file of version " + std::to_string(file[4])};
+  }
+  ByteReader tail(file.last(kTailBytes));
+  const std::uint32_t sum = tail.u32();
+  const std::uint32_t size = tail.u32();
+  const ByteView body = file.subspan(kHeadBytes, file.size() - kHeadBytes - kTailBytes);
+  if (size > body.size()) return malformed("has an index longer than itself");
+  const ByteView index = body.last(size);
+  if (crc32c(index) != sum) return malformed("has a damaged index");
+  ByteReader reader(index);
+  PageFileReader result;
+  result.limits_ = limits;
+  const std::uint64_t count = reader.varint();
+  const std::uint64_t pages = reader.varint();
+  if (reader.failed() || count > index.size() || pages > index.size()) {
+    return malformed("has an index that cannot be");
+  }
+  result.place_.assign(count, Place{pages, 0});
+  ByteReader page_bytes(body.first(body.size() - size));
+  for (std::uint64_t page = 0; page < pages; ++page) {
+    result.pages_.push_back(page_bytes.take(reader.varint()));
+    const std::uint64_t solids = reader.varint();
+    if (reader.failed() || page_bytes.failed() || solids > kMaxPageSolids) {
+      return malformed("has an index that cannot be");
+    }
+    std::vector<std::uint64_t>& numbers = result.numbers_.emplace_back();
+    std::uint64_t next = 0;
+    for (std::uint64_t slot = 0; slot < solids; ++slot) {
+      const std::uint64_t gap = reader.varint();
+      if (gap >= count || next + gap >= count || result.place_[next + gap].page != pages) {
+        return malformed("has an index that names a solid twice, or none");
+      }
+      next += gap;
+      result.place_[next] = {page, slot};
+      numbers.push_back(next++);
+    }
+  }
+  const bool all_placed = std::all_of(result.place_.begin(), result.place_.end(),
+                                      [&](const Place& place) { return place.page != pages; });
+  if (reader.failed() || reader.remaining() != 0 || page_bytes.remaining() != 0 || !all_placed) {
+    return malformed("has an index that does not fit its pages");
+  }
+  return result;
+}
+
+Result<std::vector<PageFileReader::NumberedSolid>> PageFileReader::page(std::size_t page) const {
+  auto decoded = decode_page(pages_[page], limits_);
+  if (!decoded) return decoded.error();
+  if (decoded->size() != numbers_[page].size()) {
+    return malformed("has a page of another size than its index says");
+  }
+  std::vector<NumberedSolid> solids;
+  for (std::size_t slot = 0; slot < decoded->size(); ++slot) {
+    solids.push_back({numbers_[page][slot], std::move((*decoded)[slot])});
+  }
+  return solids;
+}
+
+Result<Decoded> PageFileReader::solid(std::uint64_t number) const {
+  if (number >= size()) {
+    return Error{ErrorCode::invalid_argument,
+                 "solid " + std::to_string(number) + " of " + std::to_string(size())};
+  }
+  const Place& place = place_[number];
+  auto solids = page(place.page);
+  if (!solids) return solids.error();
+  return std::move((*solids)[place.slot].decoded);
+}
+
+}  // namespace watertight

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A file of pages with an index: solids in the order they were given, packed into pages of those
+// that share one, and each found again without reading the others (docs/format.md, "Page files").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/frame.h"
+#include "codec/page.h"
+
+namespace watertight {
+
+/// Collects solids and writes a page whenever one is full. Memory: the open pages, at most
+/// `page_solids` solids for each grid, reference system and acceptance that occurs.
+class PageFileWriter {
+ public:
+  /// `page_solids` from 1 to kMaxPageSolids: fewer make random access faster, more make the file
+  /// smaller.
+  explicit PageFileWriter(std::size_t page_solids = kMaxPageSolids, EncodeOptions options = {});
+
+  /// Errors: not_encodable.
+  Status add(const ValidSolid& solid);
+  /// What was written since the last call, to be appended to the file.
+  Bytes take();
+  /// The last pages and the index. Errors: not_encodable.
+  Result<Bytes> finish() &&;
+
+ private:
+  struct OpenPage {
+    Frame frame;
+    std::vector<ValidSolid> solids;
+    std::vector<std::uint64_t> numbers;
+  };
+  struct Entry {
+    std::uint64_t bytes = 0;
+    std::vector<std::uint64_t> numbers;
+  };
+  Status close(OpenPage& page);
+
+  std::size_t page_solids_;
+  EncodeOptions options_;
+  std::vector<OpenPage> open_;
+  std::vector<Entry> index_;
+  std::uint64_t count_ = 0;
+  Bytes written_;
+};
+
+/// Finds solids in a page file. Trusts nothing.
+class PageFileReader {
+ public:
+  /// Reads the index. `file` must outlive the reader. Errors: malformed; unsupported.
+  static Result<PageFileReader> open(ByteView file, const Limits& limits = {});
+
+  std::uint64_t size() const { return place_.size(); }
+  std::size_t page_count() const { return pages_.size(); }
+  /// The solid of this number, below size(). Decodes its page. Errors: as decode_page().
+  Result<Decoded> solid(std::uint64_t number) const;
+  /// All solids of one page and their numbers. Errors: as decode_page().
+  struct NumberedSolid {
+    std::uint64_t number = 0;
+    Decoded decoded;
+  };
+  Result<std::vector<NumberedSolid>> page(std::size_t page) const;
+
+ private:
+  struct Place {
+    std::size_t page = 0;
+    std::size_t slot = 0;
+  };
+  PageFileReader() = default;
+
+  Limits limits_;
+  std::vector<ByteView> pages_;
+  std::vector<std::vector<std::uint64_t>> numbers_;  // of each page
+  std::vector<Place> place_;                         // of each solid
+};
+
+/// True for what PageFileWriter writes.
+bool is_page_file(ByteView bytes);
+
+}  // namespace watertight

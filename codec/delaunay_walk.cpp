@@ -64,6 +64,9 @@ std::uint32_t likelihood(std::uint32_t probability) {
   return is_high ? kLikelihoods - 1 - place : place;
 }
 
+/// An edge as certain as this is not scored again when a triangle comes beside it.
+constexpr std::uint32_t kCertain = 49152;
+
 struct Candidate {
   Index vertex = 0;
   std::uint32_t probability = 0;
@@ -122,6 +125,7 @@ class Walk {
   bool code_candidate(std::size_t place, Index truth);
   Index code_distant(Index gate, Index truth);
   void add(const Triangle& triangle, Index source);
+  std::uint32_t greatest_probability() const;
   void push(Index half_edge);
   void push_open(Index triangle);
 
@@ -132,7 +136,7 @@ class Walk {
   void describe(const Gate& gate, Index from, Index to, Index w, Index face, std::uint32_t faces,
                 Candidate& candidate);
   const FaceShape& shape_of(Index face);
-  std::uint32_t state_of(Index from, Index to, Index w) const;
+  std::uint32_t state_of(Index w) const;
   void score(std::uint32_t family, std::vector<Candidate>& list);
 
   EntropyStream& stream_;
@@ -207,7 +211,7 @@ bool Walk::is_possible(Index w) const {
   return mark_[w] != stamp_ && !(is_manifold_ && front_.is_closed(w));
 }
 
-std::uint32_t Walk::state_of(Index, Index, Index w) const {
+std::uint32_t Walk::state_of(Index w) const {
   for (const Closing& closing : closing_) {
     if (closing.vertex == w) return 1 + closing.sides;
   }
@@ -221,7 +225,7 @@ void Walk::describe(const Gate& gate, Index from, Index to, Index w, Index face,
                                                   (edges_.faces_at(to, w).empty() ? 0U : 2U))
                                         : shape_of(face);
   const Continuation c = continuation(gate, points_[w]);
-  const std::uint32_t state = state_of(from, to, w);
+  const std::uint32_t state = state_of(w);
   const std::uint32_t closes = state >= 2 && state <= 4 ? state - 1 : 0;
   const std::uint32_t count = std::min(faces, kCounts - 1);
   const std::uint32_t kind = face == kNone ? 2 : faces == 1 ? 1 : 0;
@@ -236,7 +240,7 @@ void Walk::describe(const Gate& gate, Index from, Index to, Index w, Index face,
       ((state * kGabrielClasses + shape.gabriel) * kDeviationClasses + c.deviation) * kSideClasses +
           c.side,
       (shape.ratio * kSphereClasses + shape.sphere) * kStates + state,
-      ((c.parallelogram * (kHalfSpheres) + shape.sphere / 2U) * kStates + state) * 5 +
+      ((c.parallelogram * kHalfSpheres + shape.sphere / 2U) * kStates + state) * 5 +
           std::min(count, 4U),
       ((c.radius * kBendClasses + c.bend) * kCloses + closes) * kGabrielClasses + shape.gabriel};
 }
@@ -246,7 +250,6 @@ void Walk::score(std::uint32_t family, std::vector<Candidate>& list) {
     candidate.probability =
         models_.probability(family_ + family, candidate.selector, candidate.contexts);
   }
-  std::sort(list.begin(), list.end(), is_more_likely);
 }
 
 /// The Delaunay faces at the gate, then the vertices beyond open edges beside it.
@@ -299,6 +302,7 @@ void Walk::list_distant(Index gate) {
     }
   }
   score(kDistant, distant_);
+  std::sort(distant_.begin(), distant_.end(), is_more_likely);
 }
 
 void Walk::add(const Triangle& triangle, Index source) {
@@ -308,9 +312,15 @@ void Walk::add(const Triangle& triangle, Index source) {
   source_.push_back(source);
 }
 
+std::uint32_t Walk::greatest_probability() const {
+  std::uint32_t greatest = 0;
+  for (const Candidate& c : candidates_) greatest = std::max(greatest, c.probability);
+  return greatest;
+}
+
 void Walk::push(Index half_edge) {
   list_candidates(half_edge);
-  const std::uint32_t now = candidates_.empty() ? 0 : candidates_.front().probability;
+  const std::uint32_t now = greatest_probability();
   if (now <= pushed_[half_edge] && now > 0) return;
   pushed_[half_edge] = now;
   queue_.push({now, half_edge});
@@ -327,8 +337,8 @@ void Walk::push_open(Index triangle) {
     for (Index h = front_.first_at(v); h != kNone; h = front_.next_at(h)) {
       const Index incoming = WalkFront::previous_of(h);
       if (h / 3 == triangle) continue;
-      if (front_.is_open(h)) push(h);
-      if (front_.is_open(incoming)) push(incoming);
+      if (front_.is_open(h) && pushed_[h] < kCertain) push(h);
+      if (front_.is_open(incoming) && pushed_[incoming] < kCertain) push(incoming);
     }
   }
 }
@@ -380,6 +390,7 @@ Status Walk::code_gate(Index gate) {
     source = truth_->twin_of(truth_->turned(source_[gate / 3], gate % 3));
     truth = truth_->corner(source);
   }
+  std::sort(candidates_.begin(), candidates_.end(), is_more_likely);
   Index w = kNone;
   for (std::size_t i = 0; i < candidates_.size() && w == kNone; ++i) {
     if (code_candidate(i, truth)) w = candidates_[i].vertex;
@@ -473,7 +484,7 @@ Status Walk::code_component(Index seed) {
     if (!front_.is_open(entry.half_edge)) continue;
     if (entry.probability != pushed_[entry.half_edge]) continue;  // there is a more recent one
     list_candidates(entry.half_edge);
-    const std::uint32_t now = candidates_.empty() ? 0 : candidates_.front().probability;
+    const std::uint32_t now = greatest_probability();
     if (now + 1024 < entry.probability && !queue_.empty() && now < queue_.top().probability) {
       pushed_[entry.half_edge] = now;
       queue_.push({now, entry.half_edge});

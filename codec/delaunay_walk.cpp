@@ -65,7 +65,7 @@ std::uint32_t likelihood(std::uint32_t probability) {
 }
 
 /// An edge as certain as this is not scored again when a triangle comes beside it.
-constexpr std::uint32_t kCertain = 49152;
+constexpr std::uint32_t kCertain = 32768;
 
 struct Candidate {
   Index vertex = 0;

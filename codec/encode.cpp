@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,12 +11,6 @@
 namespace watertight {
 namespace {
 
-/// What is to be encoded, and how.
-struct Source {
-  const OrientedBoundary* boundary;
-  Acceptance acceptance;
-};
-
 constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
                            .vertices = kNone,
                            .facets = kNone,
@@ -24,7 +19,7 @@ constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
 
 /// The number of the first solid that does not come back, or all of them.
 Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
-                                     const std::vector<Source>& sources,
+                                     std::span<const AcceptedBoundary> sources,
                                      const std::vector<PageSolid>& stored,
                                      const EncodeOptions& options) {
   const auto page = read_page_bytes(bytes, kind, kNoLimits);
@@ -41,11 +36,11 @@ Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
 }
 
 /// In automatic mode, what cannot be stored in the mode that seemed best is stored raw.
-Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
+Result<Bytes> encode_contents(std::span<const AcceptedBoundary> sources, PageKind kind,
                               const EncodeOptions& options) {
   PageContents page;
   page.models = options.models;
-  for (const Source& source : sources) {
+  for (const AcceptedBoundary& source : sources) {
     page.solids.push_back(page_solid(*source.boundary, options));
   }
   page.frame = frame_of(sources.front().boundary->solid(), sources.front().acceptance);
@@ -93,7 +88,8 @@ std::string_view to_string(Mode mode) {
 
 Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
                               const EncodeOptions& options) {
-  return encode_contents({{&boundary, acceptance}}, PageKind::blob, options);
+  const AcceptedBoundary source{&boundary, acceptance};
+  return encode_contents({&source, 1}, PageKind::blob, options);
 }
 
 Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options) {
@@ -104,19 +100,47 @@ bool share_page(const ValidSolid& one, const ValidSolid& other) {
   return frame_of(one.solid(), one.acceptance()) == frame_of(other.solid(), other.acceptance());
 }
 
-Result<Bytes> encode_page(std::span<const ValidSolid* const> solids, const EncodeOptions& options) {
+Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundaries,
+                                const Acceptance& acceptance, const EncodeOptions& options) {
+  if (boundaries.empty() || boundaries.size() > kMaxPageSolids) {
+    return Error{ErrorCode::invalid_argument, "a page has 1 to 256 solids"};
+  }
+  const Frame frame = frame_of(boundaries.front()->solid(), acceptance);
+  std::vector<Source> sources;
+  for (const OrientedBoundary* boundary : boundaries) {
+    if (frame_of(boundary->solid(), acceptance) != frame) {
+      return Error{ErrorCode::invalid_argument,
+                   "the solids of a page share their grid and reference system"};
+    }
+    sources.push_back({boundary, acceptance});
+  }
+  return encode_contents(sources, PageKind::page, options);
+}
+
+Result<Bytes> encode_boundary_page(std::span<const AcceptedBoundary> solids,
+                                   const EncodeOptions& options) {
   if (solids.empty() || solids.size() > kMaxPageSolids) {
     return Error{ErrorCode::invalid_argument, "a page has 1 to 256 solids"};
   }
-  std::vector<Source> sources;
+  const auto frame = [](const AcceptedBoundary& solid) {
+    return frame_of(solid.boundary->solid(), solid.acceptance);
+  };
+  const Frame first = frame(solids.front());
+  const bool is_shared = std::all_of(solids.begin() + 1, solids.end(),
+                                     [&](const auto& solid) { return frame(solid) == first; });
+  if (!is_shared) {
+    return Error{ErrorCode::invalid_argument,
+                 "the solids of a page share their grid, reference system and acceptance"};
+  }
+  return encode_contents(solids, PageKind::page, options);
+}
+
+Result<Bytes> encode_page(std::span<const ValidSolid* const> solids, const EncodeOptions& options) {
+  std::vector<AcceptedBoundary> sources;
   for (const ValidSolid* solid : solids) {
-    if (!share_page(*solids.front(), *solid)) {
-      return Error{ErrorCode::invalid_argument,
-                   "the solids of a page share their grid, reference system and acceptance"};
-    }
     sources.push_back({&solid->boundary(), solid->acceptance()});
   }
-  return encode_contents(sources, PageKind::page, options);
+  return encode_boundary_page(sources, options);
 }
 
 }  // namespace watertight

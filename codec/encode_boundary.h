@@ -4,6 +4,8 @@
 // public encode(ValidSolid) in codec/blob.h calls it; nothing else should.
 #pragma once
 
+#include <span>
+
 #include "codec/blob.h"
 
 namespace watertight {
@@ -12,5 +14,9 @@ namespace watertight {
 /// canonical form. Errors: not_encodable.
 Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
                               const EncodeOptions& options = {});
+
+/// The same for pages (codec/page.h). Errors: those of encode_page().
+Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundaries,
+                                const Acceptance& acceptance, const EncodeOptions& options = {});
 
 }  // namespace watertight

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +10,12 @@
 namespace watertight {
 namespace {
 
+/// What is to be encoded, and how.
+struct Source {
+  const OrientedBoundary* boundary;
+  Acceptance acceptance;
+};
+
 constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
                            .vertices = kNone,
                            .facets = kNone,
@@ -19,7 +24,7 @@ constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
 
 /// The number of the first solid that does not come back, or all of them.
 Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
-                                     std::span<const AcceptedBoundary> sources,
+                                     const std::vector<Source>& sources,
                                      const std::vector<PageSolid>& stored,
                                      const EncodeOptions& options) {
   const auto page = read_page_bytes(bytes, kind, kNoLimits);
@@ -36,11 +41,11 @@ Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
 }
 
 /// In automatic mode, what cannot be stored in the mode that seemed best is stored raw.
-Result<Bytes> encode_contents(std::span<const AcceptedBoundary> sources, PageKind kind,
+Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
                               const EncodeOptions& options) {
   PageContents page;
   page.models = options.models;
-  for (const AcceptedBoundary& source : sources) {
+  for (const Source& source : sources) {
     page.solids.push_back(page_solid(*source.boundary, options));
   }
   page.frame = frame_of(sources.front().boundary->solid(), sources.front().acceptance);
@@ -88,8 +93,7 @@ std::string_view to_string(Mode mode) {
 
 Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
                               const EncodeOptions& options) {
-  const AcceptedBoundary source{&boundary, acceptance};
-  return encode_contents({&source, 1}, PageKind::blob, options);
+  return encode_contents({{&boundary, acceptance}}, PageKind::blob, options);
 }
 
 Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options) {
@@ -110,37 +114,24 @@ Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundar
   for (const OrientedBoundary* boundary : boundaries) {
     if (frame_of(boundary->solid(), acceptance) != frame) {
       return Error{ErrorCode::invalid_argument,
-                   "the solids of a page share their grid and reference system"};
+                   "the solids of a page share their grid, reference system and acceptance"};
     }
     sources.push_back({boundary, acceptance});
   }
   return encode_contents(sources, PageKind::page, options);
 }
 
-Result<Bytes> encode_boundary_page(std::span<const AcceptedBoundary> solids,
-                                   const EncodeOptions& options) {
-  if (solids.empty() || solids.size() > kMaxPageSolids) {
-    return Error{ErrorCode::invalid_argument, "a page has 1 to 256 solids"};
-  }
-  const auto frame = [](const AcceptedBoundary& solid) {
-    return frame_of(solid.boundary->solid(), solid.acceptance);
-  };
-  const Frame first = frame(solids.front());
-  const bool is_shared = std::all_of(solids.begin() + 1, solids.end(),
-                                     [&](const auto& solid) { return frame(solid) == first; });
-  if (!is_shared) {
-    return Error{ErrorCode::invalid_argument,
-                 "the solids of a page share their grid, reference system and acceptance"};
-  }
-  return encode_contents(solids, PageKind::page, options);
-}
-
 Result<Bytes> encode_page(std::span<const ValidSolid* const> solids, const EncodeOptions& options) {
-  std::vector<AcceptedBoundary> sources;
+  std::vector<const OrientedBoundary*> boundaries;
   for (const ValidSolid* solid : solids) {
-    sources.push_back({&solid->boundary(), solid->acceptance()});
+    if (!(solid->acceptance() == solids.front()->acceptance())) {
+      return Error{ErrorCode::invalid_argument,
+                   "the solids of a page share their grid, reference system and acceptance"};
+    }
+    boundaries.push_back(&solid->boundary());
   }
-  return encode_boundary_page(sources, options);
+  const Acceptance acceptance = solids.empty() ? Acceptance{} : solids.front()->acceptance();
+  return encode_boundaries(boundaries, acceptance, options);
 }
 
 }  // namespace watertight

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/checksum.h"
+#include "codec/encode_boundary.h"
 #include "codec/page_bytes.h"
 
 namespace watertight {
@@ -39,9 +40,9 @@ PageFileWriter::PageFileWriter(std::size_t page_solids, EncodeOptions options)
 }
 
 Status PageFileWriter::close(OpenPage& page) {
-  std::vector<const ValidSolid*> solids;
-  for (const ValidSolid& solid : page.solids) solids.push_back(&solid);
-  auto bytes = encode_page(solids, options_);
+  std::vector<const OrientedBoundary*> solids;
+  for (const OrientedBoundary& boundary : page.solids) solids.push_back(&boundary);
+  auto bytes = encode_boundaries(solids, page.frame.acceptance, options_);
   if (!bytes) return bytes.error();
   written_.insert(written_.end(), bytes->begin(), bytes->end());
   index_.push_back({bytes->size(), std::move(page.numbers)});
@@ -49,7 +50,19 @@ Status PageFileWriter::close(OpenPage& page) {
 }
 
 Status PageFileWriter::add(const ValidSolid& solid) {
-  const Frame frame = frame_of(solid.solid(), solid.acceptance());
+  return add(solid.boundary(), solid.acceptance());
+}
+
+Status PageFileWriter::add_blob(ByteView blob, const Limits& limits) {
+  auto decoded = decode(blob, limits);
+  if (!decoded) return std::move(decoded).error();
+  const auto boundary = OrientedBoundary::make(std::move(decoded->solid));
+  if (!boundary) return boundary.error();
+  return add(*boundary, decoded->info.acceptance);
+}
+
+Status PageFileWriter::add(const OrientedBoundary& boundary, const Acceptance& acceptance) {
+  const Frame frame = frame_of(boundary.solid(), acceptance);
   auto page = std::find_if(open_.begin(), open_.end(),
                            [&](const OpenPage& other) { return other.frame == frame; });
   if (page == open_.end()) {
@@ -60,7 +73,7 @@ Status PageFileWriter::add(const ValidSolid& solid) {
     open_.push_back(OpenPage{frame, {}, {}});
     page = open_.end() - 1;
   }
-  page->solids.push_back(solid);
+  page->solids.push_back(boundary);
   page->numbers.push_back(count_++);
   if (page->solids.size() < page_solids_) return Done{};
   const Status status = close(*page);
@@ -124,11 +137,13 @@ Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits)
   result.place_.assign(count, Place{pages, 0});
   ByteReader page_bytes(body.first(body.size() - size));
   for (std::uint64_t page = 0; page < pages; ++page) {
-    result.pages_.push_back(page_bytes.take(reader.varint()));
+    const std::uint64_t size_of_page = reader.varint();
     const std::uint64_t solids = reader.varint();
-    if (reader.failed() || page_bytes.failed() || solids > kMaxPageSolids) {
-      return malformed("has an index that cannot be");
+    if (reader.failed() || size_of_page > page_bytes.remaining() || solids == 0 ||
+        solids > kMaxPageSolids) {
+      return malformed("has an index that does not fit its pages");
     }
+    result.pages_.push_back(page_bytes.take(static_cast<std::size_t>(size_of_page)));
     std::vector<std::uint64_t>& numbers = result.numbers_.emplace_back();
     std::uint64_t next = 0;
     for (std::uint64_t slot = 0; slot < solids; ++slot) {

@@ -22,6 +22,9 @@ class PageFileWriter {
 
   /// Errors: not_encodable.
   Status add(const ValidSolid& solid);
+  /// The solid of a blob, accepted as the blob says; without Steiner vertices. For stores, which
+  /// keep blobs of valid solids only. Errors: not_encodable; those of decode().
+  Status add_blob(ByteView blob, const Limits& limits = {});
   /// What was written since the last call, to be appended to the file.
   Bytes take();
   /// The last pages and the index. Errors: not_encodable.
@@ -30,13 +33,14 @@ class PageFileWriter {
  private:
   struct OpenPage {
     Frame frame;
-    std::vector<ValidSolid> solids;
+    std::vector<OrientedBoundary> solids;
     std::vector<std::uint64_t> numbers;
   };
   struct Entry {
     std::uint64_t bytes = 0;
     std::vector<std::uint64_t> numbers;
   };
+  Status add(const OrientedBoundary& boundary, const Acceptance& acceptance);
   Status close(OpenPage& page);
 
   std::size_t page_solids_;

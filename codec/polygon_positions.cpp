@@ -49,6 +49,7 @@ Result<CodedPositions> PositionCoder::run() {
 bool PositionCoder::code_copy(Index vertex) {
   const bool is_copy = models_.code(stream_, kIsCopy, 0, {0}, same_as_[vertex] != vertex);
   if (!is_copy) return false;
+  below_ = kNone;
   same_as_[vertex] =
       static_cast<Index>(stream_.code_uniform(truth_.empty() ? 0 : same_as_[vertex], vertex));
   same_as_[vertex] = same_as_[same_as_[vertex]];

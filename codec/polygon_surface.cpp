@@ -2,7 +2,6 @@
 #include "codec/polygon_surface.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace watertight {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <utility>
 #include <vector>
@@ -130,6 +131,35 @@ TEST_CASE("mode polygon gives back facets with holes, cavities and touching shel
   check_round_trip(cavity_touching_at_edge());
   check_round_trip(generated::torus(7, 5));
   check_round_trip(generated::grid_cube(4));
+}
+
+TEST_CASE("mode polygon holds coordinates up to its bound, and refuses those beyond") {
+  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;
+  generated::Random random(3);
+  const auto on_grid = gridded(generated::random_prism(random, 7));
+  REQUIRE(on_grid);
+  for (const std::int64_t bound : {most, most + 1}) {
+    IntegerSolid solid = on_grid->solid;
+    // Every other vertex at one end of an axis, so that all predictions are far off.
+    for (std::size_t i = 0; i < solid.vertices.size(); ++i) {
+      solid.vertices[i][i % 3] = i % 2 == 0 ? bound : -bound;
+    }
+    const IntegerSolid truth = solid;
+    EntropyStream writer = EntropyStream::writer();
+    ModelBank models(polygon_layout());
+    const Status written = code_polygon(writer, models, {}, solid, Limits{});
+    CHECK(written.has_value() == (bound == most));
+    if (!written) continue;
+    const Bytes bytes = std::move(writer).finish();
+    IntegerSolid again;
+    bool is_finished = false;
+    REQUIRE(read(bytes, again, is_finished));
+    CHECK(is_finished);
+    std::vector<GridPoint> expected = truth.vertices;
+    std::sort(expected.begin(), expected.end());
+    std::sort(again.vertices.begin(), again.vertices.end());
+    CHECK(again.vertices == expected);
+  }
 }
 
 TEST_CASE("mode polygon codes a solid the better for the page around it") {

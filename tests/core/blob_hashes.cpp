@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Prints a hash of every blob of a fixed set: generated solids in every mode, and what the golden
-// files decode to and encode to again. Two builds of the codec agree if the lines agree.
+// Prints a hash of every blob of a fixed set: generated solids in every mode with every set of
+// priors, alone and in pages, and what the golden files of each version decode to and encode to
+// again. Two builds of the codec agree if the lines agree.
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
@@ -25,40 +26,88 @@ void print(const std::string& name, const Result<Bytes>& blob) {
   std::printf("%s %zu %016" PRIx64 "\n", name.c_str(), blob->size(), content_hash(*blob));
 }
 
+constexpr Mode kModes[] = {Mode::raw,    Mode::bitmap,        Mode::walk,     Mode::polygon,
+                           Mode::hybrid, Mode::parallelogram, Mode::automatic};
+static_assert(kModelNumber <= 1);
+constexpr std::uint8_t kModels[] = {0, 1};
+
+std::string label(const std::string& name, const EncodeOptions& options) {
+  return name + " " + std::string(to_string(options.mode)) + " " + std::to_string(options.models);
+}
+
 void print_modes(const std::string& name, const OrientedBoundary& boundary) {
-  for (const Mode mode : {Mode::raw, Mode::bitmap, Mode::automatic}) {
-    print(name + " " + std::string(to_string(mode)), encode_boundary(boundary, {}, {.mode = mode}));
+  for (const Mode mode : kModes) {
+    for (const std::uint8_t models : kModels) {
+      const EncodeOptions options{.mode = mode, .models = models};
+      print(label(name, options), encode_boundary(boundary, {}, options));
+    }
   }
 }
 
-void print_golden(const generated::Golden& golden) {
-  std::ifstream file(std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + golden.name + ".blob",
-                     std::ios::binary);
-  const Bytes bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  print("golden file " + golden.name, bytes);
-  print("golden encoded " + golden.name, generated::encode_golden(golden));
+/// A page of all the solids that may stand beside the first and that the mode can hold.
+void print_page(const std::string& name, const std::vector<generated::NamedBoundary>& solids,
+                const EncodeOptions& options) {
+  const OrientedBoundary* first = &solids.front().boundary;
+  std::vector<const OrientedBoundary*> page;
+  for (const auto& [solid, boundary] : solids) {
+    const std::vector<const OrientedBoundary*> both{first, &boundary};
+    if (!encode_boundaries(both, {}, {.mode = Mode::raw})) continue;
+    if (encode_boundary(boundary, {}, options)) page.push_back(&boundary);
+  }
+  if (!page.empty()) print(label(name, options), encode_boundaries(page, {}, options));
+}
+
+void print_pages(const std::string& name, const std::vector<generated::NamedBoundary>& solids) {
+  for (const Mode mode : kModes) {
+    for (const std::uint8_t models : kModels) {
+      print_page(name, solids, {.mode = mode, .keep_order = models == 0, .models = models});
+    }
+  }
+}
+
+Bytes file_of(const std::string& name) {
+  std::ifstream file(std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// False if the file is missing.
+bool print_golden(const std::string& version, const std::string& name) {
+  const Bytes bytes = file_of(version + "/" + name + ".blob");
+  if (bytes.empty()) {
+    std::fprintf(stderr, "there is no golden %s/%s\n", version.c_str(), name.c_str());
+    return false;
+  }
+  print(version + " file " + name, bytes);
   const auto decoded = decode(bytes);
   auto boundary =
       decoded ? OrientedBoundary::make(decoded->solid) : Result<OrientedBoundary>(decoded.error());
-  if (boundary) {
-    std::printf("golden decoded %s %016" PRIx64 "\n", golden.name.c_str(), solid_hash(*boundary));
-  } else {
-    std::printf("golden decoded %s %s\n", golden.name.c_str(), to_string(boundary.error()).c_str());
-  }
+  const std::string what = boundary ? std::string() : to_string(boundary.error());
+  std::printf("%s decoded %s %016" PRIx64 " %s\n", version.c_str(), name.c_str(),
+              boundary ? solid_hash(*boundary) : 0, what.c_str());
+  return true;
 }
 
 }  // namespace
 
 int main() {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    for (const auto& [name, boundary] : generated::all(seed)) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto solids = generated::all(seed);
+    for (const auto& [name, boundary] : solids) {
       print_modes(std::to_string(seed) + " " + name, boundary);
     }
+    print_pages(std::to_string(seed) + " page", solids);
   }
   const Certificate certificate = generated::schoenhardt_certificate();
   print("schoenhardt with Steiner vertex",
         encode_boundary(generated::schoenhardt(), {},
                         {.mode = Mode::bitmap, .certificate = &certificate}));
-  for (const auto& golden : generated::goldens()) print_golden(golden);
-  return 0;
+  bool has_all = true;
+  for (const auto& golden : generated::version_0_goldens()) {
+    has_all = print_golden("version-0", golden.name) && has_all;
+  }
+  for (const auto& golden : generated::goldens()) {
+    has_all = print_golden("version-1", golden.name) && has_all;
+    print("version-1 encoded " + golden.name, generated::encode_golden(golden));
+  }
+  return has_all ? 0 : 1;
 }

@@ -2,6 +2,7 @@
 #include "codec/parallelogram_mode.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "codec/least_squares.h"
@@ -41,22 +42,6 @@ enum Number : std::uint32_t { kOrigin, kSeed, kResidual, kRank, kNumberCount };
 
 Error malformed() { return {ErrorCode::malformed, "these triangles make no closed surface"}; }
 
-/// Whether neighbours agree in a coordinate far more often than they differ by a step, as in
-/// machine parts.
-bool repeats(const CutSurface& surface) {
-  std::uint64_t equal = 0;
-  std::uint64_t close = 0;
-  for (Index h = 0; h < surface.twin.size(); ++h) {
-    const GridPoint& a = surface.positions[surface.triangles[h / 3][h % 3]];
-    const GridPoint& b = surface.positions[surface.triangles[h / 3][(h + 1) % 3]];
-    for (std::size_t k = 0; k < 3; ++k) {
-      equal += a[k] == b[k] ? 1 : 0;
-      close += a[k] == b[k] + 1 || b[k] == a[k] + 1 ? 1 : 0;
-    }
-  }
-  return equal > 2 * close && equal * 10 > surface.twin.size();
-}
-
 /// The surface in the order of the stream, written or read.
 class SurfaceCoder {
  public:
@@ -64,9 +49,9 @@ class SurfaceCoder {
                const Limits& limits)
       : stream_(stream), models_(models), memory_(memory), limits_(limits) {}
 
-  Status code(const CutSurface* surface, IntegerSolid& solid) {
+  Status code(const CutSurface* surface, IntegerSolid& solid, bool has_repeats) {
     surface_ = surface;
-    has_repeats_ = models_.code(stream_, kHasRepeats, 0, {0}, surface_ && repeats(*surface_));
+    has_repeats_ = models_.code(stream_, kHasRepeats, 0, {0}, has_repeats);
     if (surface_) {
       code_of_.assign(surface_->positions.size(), kNone);
       gate_of_.assign(surface_->twin.size(), kNone);
@@ -119,10 +104,14 @@ class SurfaceCoder {
 
   GridPoint code_cell(const GridPoint& near, std::uint32_t number, std::uint32_t context,
                       Index true_index) {
+    std::uint32_t before = 0;
     const GridPoint truth = is_writing() ? true_cell(true_index) : GridPoint{};
     GridPoint cell = near;
     for (std::size_t k = 0; k < 3; ++k) {
-      cell[k] += models_.code_signed(stream_, number, 0, {context}, truth[k] - near[k], kMostBits);
+      cell[k] +=
+          models_.code_signed(stream_, number, 0, {context, before}, truth[k] - near[k], kMostBits);
+      before = static_cast<std::uint32_t>(
+          std::bit_width(static_cast<std::uint64_t>(std::abs(cell[k] - near[k]))));
     }
     return cell;
   }
@@ -141,7 +130,8 @@ class SurfaceCoder {
       if (k == 0 && component == 0) {
         origin_ = code_cell(memory_.last_position, kOrigin, memory_.is_first() ? 0 : 1, truth[0]);
       } else {
-        cell = code_cell(k == 0 ? cells_.back() : cells_[seed[0]], kSeed, k == 0 ? 0 : 1, truth[k]);
+        cell = code_cell(k == 0 ? cells_.back() : cells_[seed[k - 1]], kSeed,
+                         static_cast<std::uint32_t>(k), truth[k]);
       }
       if (!is_sane(cell) || stream_.failed()) return malformed();
       seed[k] = static_cast<Index>(cells_.size());
@@ -157,6 +147,9 @@ class SurfaceCoder {
   static Status stuck() {
     return Error{ErrorCode::not_encodable, "two triangles meet along two edges"};
   }
+
+  /// Within the range of coordinates, also if it is no number.
+  static double tamed(double x) { return x > -9e15 ? std::min(x, 9e15) : -9e15; }
 
   static bool is_sane(const GridPoint& cell) {
     return std::all_of(cell.begin(), cell.end(), [](std::int64_t c) {
@@ -239,7 +232,7 @@ class SurfaceCoder {
                       (degree * kDegrees + std::min(degree_u, degree_w)) * kDegrees +
                           std::max(degree_u, degree_w),
                       (room / 2 * 14 + least) * kCosines + std::min(bend, other_bend),
-                      room * kRatios + log_bucket(span / (mean_edge_ + 1e-3), 6, kRatios)},
+                      room * kRatios + log_bucket(span / (mean_edge_ + 1e-3), 6, kRatios), room},
                      truth);
     if (closes) {
       front_.close_corner(corner, half_edge);
@@ -310,9 +303,7 @@ class SurfaceCoder {
       for (std::size_t f = 0; f < kOffsets; ++f) features_[k][f] = offsets[f][k];
       predicted[k] += predictors_[class_].predict(features_[k]);
     }
-    for (double& coordinate : predicted) {
-      coordinate = std::clamp(coordinate, -9e15, 9e15);
-    }
+    for (double& coordinate : predicted) coordinate = tamed(coordinate);
     return predicted;
   }
 
@@ -347,7 +338,7 @@ class SurfaceCoder {
       double shift = 0;
       if (rank == 2 && normal_[k] != 0) {
         shift = std::clamp(-slope / normal_[k], -size - 1, size + 1);
-        expectation += shift_predictor_.predict({shift});
+        expectation = tamed(expectation + shift_predictor_.predict({shift}));
       }
       if (has_repeats_ && code_repeat(gate, rank, k, truth[k], cell[k])) {
         centre[k] = static_cast<double>(cell[k]);
@@ -365,7 +356,7 @@ class SurfaceCoder {
                      {(scale * kParts + parts) * 3 + rank, (extent * kMisses + missed) * 3 + rank,
                       (class_ * kMisses + missed) * kParts + parts,
                       (scale * kSpreads + spread) * kMisses + missed,
-                      (least_error * kErrors + apex_error) * 3 + rank},
+                      (least_error * kErrors + apex_error) * 3 + rank, scale},
                      side * (truth[k] - base), kMostBits);
       cell[k] = base + offset;
       centre[k] = static_cast<double>(cell[k]);
@@ -569,17 +560,18 @@ const ModelLayout& parallelogram_layout() {
       FamilyShape{1, {1}},
       FamilyShape{1, {2}},
       FamilyShape{1, {1}},
-      FamilyShape{4,
-                  {kRooms * kDegrees, kAngles * kRatios, 14 * 14, kCosines * kCosines * kAngles,
-                   kDegrees * kDegrees * kDegrees, kRooms / 2 * 14 * kCosines, kRooms * kRatios}},
+      FamilyShape{
+          4,
+          {kRooms * kDegrees, kAngles * kRatios, 14 * 14, kCosines * kCosines * kAngles,
+           kDegrees * kDegrees * kDegrees, kRooms / 2 * 14 * kCosines, kRooms * kRatios, kRooms}},
       FamilyShape{1, {32, 32}},
       FamilyShape{3, {kPatterns * 12, 8 * 12, kPatterns * 24, kPatterns * 7}},
       FamilyShape{5, {5 * kPatterns, 15 * 8}}};
   static constexpr std::array<NumberShape, kNumberCount> kNumbers{
-      NumberShape{1, {2}}, NumberShape{1, {2}},
+      NumberShape{1, {2, 64}}, NumberShape{1, {3, 64}},
       NumberShape{3,
                   {kErrors * kParts * 3, kErrors * kMisses * 3, kSpans * kMisses * kParts,
-                   kErrors * kSpreads * kMisses, kErrors * kErrors * 3}},
+                   kErrors * kSpreads * kMisses, kErrors * kErrors * 3, kErrors}},
       NumberShape{1, {1}}};
   static const ModelLayout kLayout{kFamilies, kNumbers};
   return kLayout;
@@ -587,11 +579,21 @@ const ModelLayout& parallelogram_layout() {
 
 Status code_parallelogram(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
                           IntegerSolid& solid, const Limits& limits) {
-  SurfaceCoder coder(stream, models, memory, limits);
-  if (stream.is_reading()) return coder.code(nullptr, solid);
+  if (stream.is_reading()) {
+    return SurfaceCoder(stream, models, memory, limits).code(nullptr, solid, false);
+  }
   const Result<CutSurface> surface = cut_surface(solid);
   if (!surface) return surface.error();
-  return coder.code(&*surface, solid);
+  std::array<std::uint64_t, 2> costs{};
+  for (const bool has_repeats : {false, true}) {
+    EntropyStream meter = EntropyStream::meter();
+    ModelBank trial = models;
+    const Status measured =
+        SurfaceCoder(meter, trial, memory, limits).code(&*surface, solid, has_repeats);
+    if (!measured) return measured;
+    costs[has_repeats ? 1 : 0] = meter.cost();
+  }
+  return SurfaceCoder(stream, models, memory, limits).code(&*surface, solid, costs[1] < costs[0]);
 }
 
 }  // namespace watertight

@@ -51,7 +51,11 @@ std::size_t draco_size(const IntegerSolid& mesh,
                         draco::PointIndex(mesh.ring_vertices[i + 2])});
   }
   draco::Encoder encoder;
-  encoder.SetSpeedOptions(0, 0);  // compression level 10
+  // Compression level 10; its trials take minutes and gigabytes where numbers are wide: 8 there.
+  std::int32_t widest = 0;
+  for (const auto& p : positions) widest = std::max({widest, p[0], p[1], p[2]});
+  const int speed = widest < (1 << 20) ? 0 : 2;
+  encoder.SetSpeedOptions(speed, speed);
   draco::EncoderBuffer buffer;
   return encoder.EncodeMeshToBuffer(draco_mesh, &buffer).ok() ? buffer.size() : 0;
 }

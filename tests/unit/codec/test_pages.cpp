@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Pages and page files: every solid comes back, wherever it stands; what no writer wrote is
+// refused.
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+
+#include "base/checksum.h"
+#include "codec/encode_boundary.h"
+#include "codec/page_bytes.h"
+#include "codec/page_file.h"
+#include "mutated_blobs.h"
+
+namespace watertight {
+namespace {
+
+using generated::NamedBoundary;
+using Boundaries = std::vector<const OrientedBoundary*>;
+
+/// The solids of all() by what pages share, each group in the order of all().
+std::vector<Boundaries> groups_of(const std::vector<NamedBoundary>& solids) {
+  std::vector<Boundaries> groups;
+  std::vector<Frame> frames;
+  for (const NamedBoundary& solid : solids) {
+    const Frame frame = frame_of(solid.boundary.solid(), {});
+    const auto known = std::find(frames.begin(), frames.end(), frame);
+    if (known == frames.end()) {
+      frames.push_back(frame);
+      groups.push_back({&solid.boundary});
+    } else {
+      groups[static_cast<std::size_t>(known - frames.begin())].push_back(&solid.boundary);
+    }
+  }
+  return groups;
+}
+
+Bytes blob_of(const OrientedBoundary& boundary, const EncodeOptions& options = {}) {
+  auto blob = encode_boundary(boundary, {}, options);
+  REQUIRE(blob);
+  return *std::move(blob);
+}
+
+/// A grid with steps of so many millimetres.
+Lattice grid_of(std::int64_t millimetres) {
+  Lattice lattice;
+  lattice.step.fill(GridNumber{millimetres, -3});
+  return lattice;
+}
+
+OrientedBoundary box_at(double x, const Lattice& lattice) {
+  SolidArrays arrays;
+  generated::add_box(arrays, {x, 0, 0}, {x + 3, 4, 5});
+  return generated::boundary_of(std::move(arrays), lattice, 28992);
+}
+
+/// Boxes on two grids in turn, and one of floating point numbers at every fifth place.
+std::vector<OrientedBoundary> interleaved(std::size_t count) {
+  generated::Random random(7);
+  const Lattice lattices[2] = {grid_of(1), grid_of(3)};
+  std::vector<OrientedBoundary> solids;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 5 == 4) {
+      solids.push_back(generated::random_doubles(random, 2));
+    } else {
+      solids.push_back(box_at(static_cast<double>(10 * i), lattices[i % 2]));
+    }
+  }
+  return solids;
+}
+
+Bytes page_file_of(const std::vector<OrientedBoundary>& solids, std::size_t page_solids,
+                   const EncodeOptions& options = {}) {
+  PageFileWriter writer(page_solids, options);
+  Bytes file;
+  for (const OrientedBoundary& solid : solids) {
+    REQUIRE(writer.add_blob(blob_of(solid)));
+    const Bytes part = writer.take();
+    file.insert(file.end(), part.begin(), part.end());
+  }
+  const auto rest = std::move(writer).finish();
+  REQUIRE(rest);
+  file.insert(file.end(), rest->begin(), rest->end());
+  return file;
+}
+
+PageFileReader opened(ByteView file) {
+  auto reader = PageFileReader::open(file);
+  REQUIRE(reader);
+  return *std::move(reader);
+}
+
+/// A page file around any pages and any index, with the right checksum.
+Bytes forged(const std::vector<Bytes>& pages, const std::vector<std::uint64_t>& index) {
+  ByteWriter numbers;
+  for (const std::uint64_t number : index) numbers.varint(number);
+  ByteWriter writer;
+  writer.append(as_bytes("WTPF\x01"));
+  for (const Bytes& page : pages) writer.append(page);
+  writer.append(numbers.bytes());
+  writer.u32(crc32c(numbers.bytes()));
+  writer.u32(static_cast<std::uint32_t>(numbers.size()));
+  writer.append(as_bytes("WTPF"));
+  return std::move(writer).bytes();
+}
+
+/// Reads all that a damaged file gives.
+void read_all(ByteView file, const Limits& limits = {}) {
+  const auto reader = PageFileReader::open(file, limits);
+  if (!reader) {
+    REQUIRE_FALSE(reader.error().message.empty());
+    return;
+  }
+  for (std::size_t page = 0; page < reader->page_count(); ++page) {
+    const auto solids = reader->page(page);
+    if (!solids) REQUIRE_FALSE(solids.error().message.empty());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a page gives back each of its solids, in source order or canonical") {
+  const auto solids = generated::all(5);
+  for (const Boundaries& group : groups_of(solids)) {
+    for (const bool keep_order : {true, false}) {
+      const auto page = encode_boundaries(group, {}, {.keep_order = keep_order});
+      REQUIRE(page);
+      const auto decoded = decode_page(*page);
+      REQUIRE(decoded);
+      REQUIRE(decoded->size() == group.size());
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        const auto canonical = canonical_form(*group[i]);
+        const Solid& wanted = keep_order ? group[i]->solid() : canonical.boundary.solid();
+        CHECK((*decoded)[i].solid == wanted);
+      }
+    }
+  }
+}
+
+TEST_CASE("a page holds solids in any one mode") {
+  const auto solids = generated::all(6);
+  for (const Boundaries& group : groups_of(solids)) {
+    for (const Mode mode : {Mode::raw, Mode::bitmap}) {
+      const auto page = encode_boundaries(group, {}, {.mode = mode});
+      REQUIRE(page);
+      const auto decoded = decode_page(*page);
+      REQUIRE(decoded);
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        CHECK((*decoded)[i].solid == group[i]->solid());
+        CHECK((*decoded)[i].info.mode == mode);
+      }
+    }
+  }
+}
+
+TEST_CASE("a page of like solids is smaller than their blobs") {
+  const Lattice lattice = grid_of(1);
+  std::vector<OrientedBoundary> solids;
+  Boundaries page;
+  std::size_t alone = 0;
+  for (int i = 0; i < 64; ++i) solids.push_back(box_at(10.0 * i, lattice));
+  for (const OrientedBoundary& solid : solids) {
+    page.push_back(&solid);
+    alone += blob_of(solid).size();
+  }
+  const auto bytes = encode_boundaries(page, {});
+  REQUIRE(bytes);
+  CHECK(2 * bytes->size() < alone);
+}
+
+TEST_CASE("solids that share no page are refused by name") {
+  const auto solids = interleaved(5);
+  const auto mixed = encode_boundaries(Boundaries{&solids[0], &solids[1]}, {});
+  REQUIRE_FALSE(mixed);
+  CHECK(mixed.error().code == ErrorCode::invalid_argument);
+  CHECK(mixed.error().message.find("grid") != std::string::npos);
+  CHECK_FALSE(encode_boundaries(Boundaries{&solids[0], &solids[4]}, {}));
+  CHECK_FALSE(encode_boundaries({}, {}));
+  CHECK_FALSE(encode_boundaries(Boundaries(kMaxPageSolids + 1, solids.data()), {}));
+  CHECK(encode_boundaries(Boundaries(kMaxPageSolids, solids.data()), {}));
+}
+
+TEST_CASE("pages and blobs are not taken for each other") {
+  const OrientedBoundary box = generated::box();
+  const auto page = encode_boundaries(Boundaries{&box}, {});
+  REQUIRE(page);
+  CHECK_FALSE(decode(*page));
+  CHECK_FALSE(decode_page(blob_of(box)));
+}
+
+TEST_CASE("every truncated page and every changed byte of one is refused") {
+  const auto solids = generated::all(8);
+  const auto page = encode_boundaries(Boundaries{&solids[0].boundary, &solids[1].boundary}, {});
+  REQUIRE(page);
+  for (std::size_t size = 0; size < page->size(); ++size) {
+    CHECK_FALSE(decode_page(ByteView(*page).first(size)));
+  }
+  for (std::size_t i = 0; i < page->size(); ++i) {
+    Bytes changed = *page;
+    changed[i] ^= 0x55U;
+    CHECK_FALSE(decode_page(changed));
+  }
+}
+
+TEST_CASE("the limit of vertices counts for a page as a whole") {
+  const auto solids = interleaved(3);
+  const auto page = encode_boundaries(Boundaries{&solids[0], &solids[2]}, {});
+  REQUIRE(page);
+  CHECK(decode_page(*page, Limits{.vertices = 16}));
+  CHECK(decode_page(*page, Limits{.vertices = 15}).error().code == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("a page file gives each solid back by its number and by its page") {
+  const auto solids = interleaved(23);
+  for (const std::size_t page_solids : {1U, 3U, 256U}) {
+    const Bytes file = page_file_of(solids, page_solids);
+    CHECK(is_page_file(file));
+    const PageFileReader reader = opened(file);
+    REQUIRE(reader.size() == solids.size());
+    CHECK(reader.page_count() == (page_solids == 1 ? 23 : page_solids == 3 ? 9 : 3));
+    std::vector<int> seen(solids.size());
+    for (std::size_t page = 0; page < reader.page_count(); ++page) {
+      const auto members = reader.page(page);
+      REQUIRE(members);
+      for (const auto& member : *members) {
+        ++seen.at(member.number);
+        CHECK(member.decoded.solid == solids[member.number].solid());
+      }
+    }
+    CHECK(seen == std::vector<int>(solids.size(), 1));
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+      const auto decoded = reader.solid(i);
+      REQUIRE(decoded);
+      CHECK(decoded->solid == solids[i].solid());
+    }
+    const auto beyond = reader.solid(solids.size());
+    REQUIRE_FALSE(beyond);
+    CHECK(beyond.error().code == ErrorCode::invalid_argument);
+  }
+}
+
+TEST_CASE("a page file keeps more grids apart than it has pages open") {
+  std::vector<OrientedBoundary> solids;
+  for (int i = 0; i < 120; ++i) {
+    solids.push_back(box_at(i, grid_of(10 * (i % 40) + 1)));
+  }
+  const Bytes file = page_file_of(solids, 64);
+  const PageFileReader reader = opened(file);
+  REQUIRE(reader.size() == solids.size());
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const auto decoded = reader.solid(i);
+    REQUIRE(decoded);
+    CHECK(decoded->solid == solids[i].solid());
+  }
+}
+
+TEST_CASE("a page file keeps what a blob says of its acceptance") {
+  const OrientedBoundary box = generated::box();
+  Acceptance other;
+  other.proof = Proof::boundary;
+  PageFileWriter writer;
+  const auto first = encode_boundary(box, {});
+  const auto second = encode_boundary(box, other);
+  REQUIRE(first);
+  REQUIRE(second);
+  REQUIRE(writer.add_blob(*first));
+  REQUIRE(writer.add_blob(*second));
+  const auto file = std::move(writer).finish();
+  REQUIRE(file);
+  const PageFileReader reader = opened(*file);
+  CHECK(reader.page_count() == 2);
+  CHECK(reader.solid(0)->info.acceptance == Acceptance{});
+  CHECK(reader.solid(1)->info.acceptance == other);
+}
+
+TEST_CASE("page files without solids and with one") {
+  const Bytes empty = page_file_of({}, 256);
+  const PageFileReader none = opened(empty);
+  CHECK(none.size() == 0);
+  CHECK(none.page_count() == 0);
+  CHECK_FALSE(none.solid(0));
+  const auto solids = interleaved(1);
+  const Bytes file = page_file_of(solids, 256);
+  const PageFileReader one = opened(file);
+  REQUIRE(one.size() == 1);
+  CHECK(one.solid(0)->solid == solids[0].solid());
+}
+
+TEST_CASE("a blob that does not decode is not taken into a page file") {
+  PageFileWriter writer;
+  Bytes blob = blob_of(generated::box());
+  blob.back() ^= 1U;
+  CHECK_FALSE(writer.add_blob(blob));
+  const auto file = std::move(writer).finish();
+  REQUIRE(file);
+  CHECK(opened(*file).size() == 0);
+}
+
+TEST_CASE("every truncated page file is refused, and no changed byte gives another solid") {
+  const auto solids = interleaved(7);
+  const Bytes file = page_file_of(solids, 2);
+  for (std::size_t size = 0; size < file.size(); ++size) {
+    CHECK_FALSE(PageFileReader::open(ByteView(file).first(size)));
+  }
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    Bytes changed = file;
+    changed[i] ^= 0x11U;
+    const auto reader = PageFileReader::open(changed);
+    if (!reader) continue;
+    for (std::size_t number = 0; number < solids.size(); ++number) {
+      const auto decoded = reader->solid(number);
+      if (decoded) CHECK(decoded->solid == solids[number].solid());
+    }
+  }
+  Bytes longer = file;
+  longer.push_back(0);
+  CHECK_FALSE(PageFileReader::open(longer));
+}
+
+TEST_CASE("mutated page files are read or refused") {
+  generated::Random random(20261121);
+  const std::vector<Bytes> files = {page_file_of(interleaved(7), 2), page_file_of({}, 2),
+                                    page_file_of(interleaved(12), 256)};
+  for (int i = 0; i < 3000; ++i) read_all(generated::mutated(files, random));
+}
+
+TEST_CASE("a page file with an index that lies is refused before anything is decoded") {
+  const OrientedBoundary box = generated::box();
+  const auto made = encode_boundaries(Boundaries{&box, &box}, {});
+  REQUIRE(made);
+  const Bytes page = *made;
+  const std::uint64_t size = page.size();
+  constexpr std::uint64_t kHuge = ~std::uint64_t{0};
+  REQUIRE(PageFileReader::open(forged({page}, {2, 1, size, 2, 0, 0})));
+  const std::vector<std::vector<std::uint64_t>> lies = {
+      {kHuge, 1, size, 2, 0, 0},               // more solids than the index has bytes
+      {2, kHuge, size, 2, 0, 0},               // more pages
+      {2, 1, kHuge, 2, 0, 0},                  // a page beyond the file
+      {2, 1, size + 1, 2, 0, 0},               //
+      {2, 1, size - 1, 2, 0, 0},               // bytes between pages and index
+      {2, 1, size, kHuge, 0, 0},               // a page of too many solids
+      {2, 1, size, kMaxPageSolids + 1, 0, 0},  //
+      {2, 1, size, 2, 0, 1},                   // solid 2 of 2
+      {2, 1, size, 2, 0, kHuge},               //
+      {2, 1, size, 2, 0},                      // an index that ends early
+      {2, 1, size, 2, 0, 0, 0},                // or late
+      {3, 1, size, 2, 0, 0},                   // a solid in no page
+      {1, 1, size, 2, 0, 0},                   // a solid too many
+      {2, 2, size, 2, 0, 0, 0, 0},             // a page without solids
+      {2, 2, size, 2, 0, 0, 0, 1, 0},          // a solid twice
+  };
+  for (const auto& lie : lies) {
+    const auto reader = PageFileReader::open(forged({page}, lie));
+    REQUIRE_FALSE(reader);
+    CHECK(reader.error().code == ErrorCode::malformed);
+  }
+}
+
+TEST_CASE("a page of another count than the index says is refused") {
+  const OrientedBoundary box = generated::box();
+  const auto page = encode_boundaries(Boundaries{&box, &box}, {});
+  REQUIRE(page);
+  for (const std::uint64_t count : {1U, 3U}) {
+    std::vector<std::uint64_t> index = {count, 1, page->size(), count};
+    index.resize(index.size() + count);
+    const Bytes file = forged({*page}, index);
+    const PageFileReader reader = opened(file);
+    const auto solid = reader.solid(0);
+    REQUIRE_FALSE(solid);
+    CHECK(solid.error().code == ErrorCode::malformed);
+    CHECK(solid.error().message.find("index") != std::string::npos);
+  }
+}
+
+TEST_CASE("page files of other versions are unsupported") {
+  Bytes file = page_file_of({}, 256);
+  file[4] = 2;
+  const auto reader = PageFileReader::open(file);
+  REQUIRE_FALSE(reader);
+  CHECK(reader.error().code == ErrorCode::unsupported);
+}
+
+}  // namespace watertight

@@ -86,6 +86,13 @@ struct IngestCommand {
 };
 Exit run(const IngestCommand& command);
 
+struct ExportCommand {
+  StoreChoice store;
+  std::string collection;
+  std::string output;
+};
+Exit run(const ExportCommand& command);
+
 /// "watertight: <file>: <what> (at <place>)" on standard error.
 void complain(const std::string& file, const Error& error);
 

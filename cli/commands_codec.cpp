@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // encode, decode, info, convert: files to files.
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -44,7 +45,11 @@ Mode mode_named(const std::string& name) {
 }
 
 Result<Bytes> pack(const EncodeCommand& command, const StoredDocument& document) {
-  if (!command.is_bare) return write_container(document);
+  if (!command.is_bare) {
+    EncodeOptions pages;
+    pages.mode = mode_named(command.mode);
+    return write_container(document, pages);
+  }
   std::size_t solids = 0;
   const Bytes* blob = nullptr;
   for (const StoredFeature& feature : document.features) {
@@ -56,13 +61,30 @@ Result<Bytes> pack(const EncodeCommand& command, const StoredDocument& document)
                "--bare takes a document with one solid; this one has " + std::to_string(solids)};
 }
 
-Result<Document> load_encoded(const std::string& path) {
-  auto input = load(path);
+/// The documents of a Watertight file, or that of a blob.
+Result<std::vector<Document>> load_encoded(const std::string& path) {
+  const auto bytes = read_file(path, {});
+  if (!bytes) return bytes.error();
+  if (is_container(*bytes)) return decode_container(*bytes);
+  auto input = load_input(path, *bytes, {});
   if (!input) return std::move(input).error();
   if (input->kind == InputKind::document) {
     return Error{ErrorCode::malformed, "neither a Watertight file nor a blob"};
   }
-  return std::move(input->document);
+  std::vector<Document> documents;
+  documents.push_back(std::move(input->document));
+  return documents;
+}
+
+/// "town.city.jsonl", "town-2.city.jsonl", ...: where document `number` goes.
+std::string numbered(const std::string& output, std::size_t number) {
+  if (number == 0) return output;
+  const std::size_t name = output.rfind('/') + 1;  // 0 without a folder
+  const std::size_t ending = std::min(output.find('.', name + 1), output.size());
+  std::string result = output.substr(0, ending);
+  result += '-';
+  result += std::to_string(number + 1);
+  return result + output.substr(ending);
 }
 
 Exit save(const Document& document, const std::string& output) {
@@ -111,29 +133,17 @@ void print_info(const Json& json, const std::string& indent) {
 }
 
 Result<Json> info_of_container(ByteView bytes) {
-  auto document = read_container(bytes);
-  if (!document) return std::move(document).error();
+  const auto info = describe_container(bytes);
+  if (!info) return info.error();
   Json json{{"file", "Watertight file"}, {"bytes", bytes.size()}};
-  json["format"] = document->format;
-  json["features"] = document->features.size();
-  std::uint64_t solids = 0;
-  std::uint64_t blob_bytes = 0;
-  Json parts = Json::object();
-  for (const StoredFeature& feature : document->features) {
-    for (const StoredSolid& solid : feature.solids) {
-      const auto info = describe(solid.blob);
-      if (!info) return info.error();
-      ++solids;
-      blob_bytes += solid.blob.size();
-      for (const BlobInfo::Part& part : info->parts) {
-        parts[part.name] = parts.value(part.name, 0.0) + part.bytes;
-      }
-    }
-  }
-  json["solids"] = solids;
-  json["blobBytes"] = blob_bytes;
-  json["documentBytes"] = bytes.size() - blob_bytes;
-  json["parts"] = parts;
+  json["documents"] = info->formats.size();
+  json["format"] = info->formats.empty() ? "" : info->formats.front();
+  json["features"] = info->features;
+  json["solids"] = info->solids;
+  json["pages"] = info->pages;
+  json["solidBytes"] = info->solid_bytes;
+  json["documentBytes"] = bytes.size() - info->solid_bytes;
+  json["parts"] = info->parts;
   return json;
 }
 
@@ -210,9 +220,17 @@ Exit run(const EncodeCommand& command) {
 }
 
 Exit run(const DecodeCommand& command) {
-  const auto document = load_encoded(command.input);
-  if (!document) return fail(command.input, document.error());
-  return save(*document, command.output);
+  const auto documents = load_encoded(command.input);
+  if (!documents) return fail(command.input, documents.error());
+  if (documents->empty()) return fail(command.input, {ErrorCode::malformed, "no document in it"});
+  if (documents->size() > 1 && command.output == "-") {
+    return fail(command.input, {ErrorCode::unsupported, "several documents need names: -o FILE"});
+  }
+  for (std::size_t i = 0; i < documents->size(); ++i) {
+    const Exit exit = save((*documents)[i], numbered(command.output, i));
+    if (exit != Exit::valid) return exit;
+  }
+  return Exit::valid;
 }
 
 Exit run(const ConvertCommand& command) {

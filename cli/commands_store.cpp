@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// serve and ingest: the commands with a store.
+// serve, ingest and export: the commands with a store.
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/progress.h"
+#include "pipeline/export.h"
 #include "pipeline/outcome_json.h"
 #include "server/serve.h"
 #include "store/private_cluster.h"
@@ -142,6 +143,38 @@ Exit run(const IngestCommand& command) {
   const std::string text = command.is_json ? summary.json(seconds) + "\n" : summary.table(seconds);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return exit;
+}
+
+Exit run(const ExportCommand& command) {
+  const auto fail = [](const std::string& what, const Error& error) {
+    complain(what, error);
+    return Exit::error;
+  };
+  const bool is_container = command.output == "-" || command.output.ends_with(".wt");
+  if (!is_container) {
+    const auto format = format_of_name(command.output);
+    if (!format || *format != Format::city_json_seq) {
+      return fail(command.output,
+                  {ErrorCode::unsupported,
+                   "export writes Watertight files (.wt) and CityJSONSeq (.jsonl)"});
+    }
+  }
+  auto opened = open_store(command.store);
+  auto store = opened ? open_postgres_store(opened->connection)
+                      : Result<std::unique_ptr<SolidStore>>(opened.error());
+  if (!store) return fail("store", store.error());
+  auto writer = FileWriter::open(command.output);
+  if (!writer) return fail(command.output, writer.error());
+  const ByteSink sink = [&writer](ByteView bytes) { return writer->write(as_text(bytes)); };
+  const auto exported = is_container ? export_container(**store, command.collection, sink)
+                                     : export_sequence(**store, command.collection, sink);
+  if (!exported) return fail(command.collection, exported.error());
+  const Status status = writer->commit();
+  if (!status) return fail(command.output, status.error());
+  std::fprintf(stderr, "watertight: %llu features with %llu solids written\n",
+               static_cast<unsigned long long>(exported->features),
+               static_cast<unsigned long long>(exported->solids));
+  return Exit::valid;
 }
 
 }  // namespace watertight

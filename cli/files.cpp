@@ -175,10 +175,14 @@ Status write_file(const std::string& path, ByteView bytes) {
 Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options) {
   Input input;
   if (is_container(bytes)) {
-    auto document = decode_container(bytes, options.limits);
-    if (!document) return std::move(document).error();
+    auto documents = decode_container(bytes, options.limits);
+    if (!documents) return std::move(documents).error();
+    if (documents->size() != 1) {
+      return Error{ErrorCode::unsupported, "features of " + std::to_string(documents->size()) +
+                                               " documents; decode writes a file for each"};
+    }
     input.kind = InputKind::container;
-    input.document = *std::move(document);
+    input.document = std::move(documents->front());
     return input;
   }
   if (describe(bytes, options.limits)) {

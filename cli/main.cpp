@@ -185,6 +185,19 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
   });
 }
 
+void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("export", "Write a collection of a store to a file");
+  sub->add_option("COLLECTION", command.collection, "collection")->required();
+  sub->add_option("-o,--output", command.output,
+                  "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl)")
+      ->required();
+  add_store(*sub, command.store);
+  sub->callback([&] {
+    require_store(command.store);
+    chosen = [&] { return run(command); };
+  });
+}
+
 int run_command_line(int argc, char** argv) {
   CLI::App app("Validates, stores and compresses 3D solids", "watertight");
   app.set_version_flag("--version", WATERTIGHT_VERSION);
@@ -198,6 +211,7 @@ int run_command_line(int argc, char** argv) {
   ConvertCommand convert_command;
   ServeCommand serve_command;
   IngestCommand ingest_command;
+  ExportCommand export_command;
   Chosen chosen;
   add_validate(app, validate_command, chosen);
   add_encode(app, encode_command, chosen);
@@ -206,6 +220,7 @@ int run_command_line(int argc, char** argv) {
   add_convert(app, convert_command, chosen);
   add_serve(app, serve_command, chosen);
   add_ingest(app, ingest_command, chosen);
+  add_export(app, export_command, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Layout: magic (8 bytes), version (1), length of the texts, the texts as one Zstandard frame, the
-// blobs one after the other, CRC-32C of all before (4). All texts are compressed together, as
-// features of one document resemble each other. They are: format, header, framing, feature count;
-// for each feature id, type, SRID, skeleton, solid count; for each solid object id, LoD, geometry,
-// ordinal and the length of its blob. A text is a varint of its length and its bytes.
+// Layout: magic (8 bytes), version (1), the parts, a zero byte, CRC-32C of all before (4). A part
+// is the length of its texts, the texts as one Zstandard frame, the length of its page file (0 for
+// none), the page file, and the blobs of the solids that no page has. All texts of a part are
+// compressed together, as features of one document resemble each other; parts are small enough to
+// be held in memory and large enough to lose nothing by that.
 #include "pipeline/container.h"
 
 #include <algorithm>
-#include <array>
-#include <limits>
+#include <utility>
 
 #include "base/checksum.h"
+#include "codec/page_file.h"
 #include "formats/packed_text.h"
+#include "pipeline/container_reader.h"
 
 namespace watertight {
 namespace {
 
-// As PNG's: a byte above 127, and line ends that a text-mode transfer would change.
-constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n'};
-constexpr std::uint8_t kVersion = 1;
-constexpr std::size_t kChecksumBytes = 4;
+constexpr std::size_t kPartFeatures = 4096;
+constexpr std::size_t kPartBytes = 16U << 20U;  // of skeletons and blobs
 
 void write_text(ByteWriter& writer, ByteView text) {
   writer.varint(text.size());
@@ -29,170 +28,217 @@ void write_text(ByteWriter& writer, ByteView text) {
 
 void write_text(ByteWriter& writer, std::string_view text) { write_text(writer, as_bytes(text)); }
 
-ByteView read_bytes(ByteReader& reader) {
-  const std::uint64_t size = reader.varint();
-  return reader.take(size > reader.remaining() ? reader.remaining() + 1
-                                               : static_cast<std::size_t>(size));
+/// The page file of those of the solids that may stand in pages: all but those whose blob has
+/// Steiner vertices, which pages do not keep.
+struct Paged {
+  Bytes file;
+  std::size_t blob_bytes = 0;    // of the blobs that it stands for
+  std::vector<bool> is_in_file;  // of each solid
+};
+
+Result<Paged> make_pages(const std::vector<const Bytes*>& blobs, const EncodeOptions& options) {
+  PageFileWriter writer(kMaxPageSolids, options);
+  Paged paged;
+  for (const Bytes* blob : blobs) {
+    const auto info = describe(*blob);
+    if (!info) return info.error();
+    paged.is_in_file.push_back(info->steiner_vertices == 0);
+    if (!paged.is_in_file.back()) continue;
+    paged.blob_bytes += blob->size();
+    if (Status status = writer.add_blob(*blob); !status) return status.error();
+  }
+  auto file = std::move(writer).finish();
+  if (!file) return std::move(file).error();
+  paged.file = *std::move(file);
+  return paged;
 }
 
-std::string read_text(ByteReader& reader) { return std::string(as_text(read_bytes(reader))); }
-
-std::uint32_t read_index(ByteReader& reader, bool& is_in_range) {
-  const std::uint64_t value = reader.varint();
-  if (value > std::numeric_limits<std::uint32_t>::max()) is_in_range = false;
-  return static_cast<std::uint32_t>(value);
+/// The page file, or nothing where blobs are smaller.
+Result<Paged> pages_if_smaller(const std::vector<const Bytes*>& blobs,
+                               const EncodeOptions& options) {
+  Paged none;
+  none.is_in_file.resize(blobs.size());
+  auto paged = make_pages(blobs, options);
+  if (!paged && paged.error().code != ErrorCode::not_encodable) return paged;
+  if (!paged || paged->file.size() >= paged->blob_bytes) return none;
+  return paged;
 }
 
-Status write_feature_part(ByteWriter& writer, const StoredFeature& feature) {
+Status write_feature(ByteWriter& writer, std::uint64_t document, const StoredFeature& feature,
+                     const std::vector<bool>& is_paged, std::size_t first_solid) {
   const auto skeleton = unpacked_skeleton(feature);
   if (!skeleton) return skeleton.error();
+  writer.varint(document);
   write_text(writer, feature.id);
   write_text(writer, feature.type);
   writer.varint(feature.srid);
   write_text(writer, *skeleton);
   writer.varint(feature.solids.size());
-  for (const StoredSolid& solid : feature.solids) {
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const StoredSolid& solid = feature.solids[i];
     write_text(writer, solid.object_id);
     write_text(writer, solid.lod);
     writer.varint(solid.geometry);
     writer.varint(solid.ordinal);
-    writer.varint(solid.blob.size());
+    writer.varint(is_paged[first_solid + i] ? 0 : solid.blob.size());
   }
   return Done{};
 }
 
-/// False when the texts and blobs do not hold one.
-bool read_feature_part(ByteReader& reader, ByteReader& blobs, StoredFeature& feature) {
-  bool is_in_range = true;
-  feature.id = read_text(reader);
-  feature.type = read_text(reader);
-  feature.srid = read_index(reader, is_in_range);
-  feature.skeleton = read_text(reader);
-  const std::uint64_t count = reader.varint();
-  if (count > reader.remaining()) return false;  // a solid takes more than one byte
-  for (std::uint64_t i = 0; i < count && !reader.failed() && is_in_range; ++i) {
-    StoredSolid solid;
-    solid.object_id = read_text(reader);
-    solid.lod = read_text(reader);
-    solid.geometry = read_index(reader, is_in_range);
-    solid.ordinal = read_index(reader, is_in_range);
-    const std::uint64_t size = reader.varint();
-    if (size > blobs.remaining()) return false;
-    const ByteView blob = blobs.take(static_cast<std::size_t>(size));
-    solid.blob.assign(blob.begin(), blob.end());
-    feature.solids.push_back(std::move(solid));
-  }
-  return !reader.failed() && is_in_range;
-}
-
-Error malformed(std::string message, std::uint64_t offset) {
-  return Error{ErrorCode::malformed, std::move(message), offset, {}};
-}
-
-/// The bytes between version and checksum.
-Result<ByteView> checked_content(ByteView bytes, const Limits& limits) {
-  if (bytes.size() > limits.bytes) {
-    return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +
-                                                std::to_string(limits.bytes)};
-  }
-  if (!is_container(bytes)) return malformed("not a Watertight file", 0);
-  if (bytes.size() < kMagic.size() + 1 + kChecksumBytes) {
-    return malformed("truncated Watertight file", bytes.size());
-  }
-  if (bytes[kMagic.size()] != kVersion) {
-    return Error{ErrorCode::unsupported,
-                 "Watertight file of version " + std::to_string(bytes[kMagic.size()]) +
-                     "; this program reads version " + std::to_string(kVersion),
-                 kMagic.size(),
-                 {}};
-  }
-  const ByteView checked = bytes.first(bytes.size() - kChecksumBytes);
-  ByteReader checksum(bytes.last(kChecksumBytes));
-  if (checksum.u32() != crc32c(checked)) {
-    return malformed("truncated or damaged Watertight file: its checksum differs", checked.size());
-  }
-  return checked.subspan(kMagic.size() + 1);
+/// The feature's solids have been decoded: the document of it alone.
+Result<Feature> restored(ContainerFeature& feature, const std::string& format,
+                         const Limits& limits) {
+  feature.stored.format = format;
+  std::vector<Solid> solids;
+  for (Decoded& decoded : feature.solids) solids.push_back(std::move(decoded.solid));
+  auto document = from_stored(feature.stored, std::move(solids), limits);
+  if (!document) return std::move(document).error();
+  return std::move(document->features.front());
 }
 
 }  // namespace
 
 bool is_container(ByteView bytes) {
-  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+  return bytes.size() >= sizeof(kContainerMagic) &&
+         std::equal(std::begin(kContainerMagic), std::end(kContainerMagic), bytes.begin());
 }
 
-Result<Bytes> write_container(const StoredDocument& document) {
+ContainerWriter::ContainerWriter(const EncodeOptions& pages) : pages_(pages) {
+  pages_.certificate = nullptr;
+  write(kContainerMagic);
+  write(ByteView(&kContainerVersion, 1));
+}
+
+void ContainerWriter::write(ByteView bytes) {
+  checksum_ = crc32c(bytes, checksum_);
+  written_.insert(written_.end(), bytes.begin(), bytes.end());
+}
+
+void ContainerWriter::add_document(const std::string& format, const std::string& header,
+                                   Bytes framing) {
+  if (!documents_.try_emplace({format, header}, documents_.size()).second) return;
+  ++new_documents_;
+  write_text(new_document_texts_, format);
+  write_text(new_document_texts_, header);
+  write_text(new_document_texts_, ByteView(framing));
+}
+
+Status ContainerWriter::add(const StoredFeature& feature) {
+  add_document(feature.format, feature.header);
+  features_.emplace_back(documents_.at({feature.format, feature.header}), feature);
+  part_bytes_ += feature.skeleton.size();
+  for (const StoredSolid& solid : feature.solids) part_bytes_ += solid.blob.size();
+  if (features_.size() < kPartFeatures && part_bytes_ < kPartBytes) return Done{};
+  return close_part();
+}
+
+Status ContainerWriter::close_part() {
+  std::vector<const Bytes*> blobs;
+  for (const auto& [document, feature] : features_) {
+    for (const StoredSolid& solid : feature.solids) blobs.push_back(&solid.blob);
+  }
+  const auto paged = pages_if_smaller(blobs, pages_);
+  if (!paged) return paged.error();
   ByteWriter texts;
-  write_text(texts, document.format);
-  write_text(texts, document.header);
-  write_text(texts, ByteView(document.framing));
-  texts.varint(document.features.size());
+  texts.varint(new_documents_);
+  texts.append(new_document_texts_.bytes());
+  texts.varint(features_.size());
+  std::size_t solids = 0;
+  for (const auto& [document, feature] : features_) {
+    Status status = write_feature(texts, document, feature, paged->is_in_file, solids);
+    if (!status) return status;
+    solids += feature.solids.size();
+  }
+  const auto packed = pack_text(as_text(texts.bytes()));
+  if (!packed) return packed.error();
+  ByteWriter part;
+  write_text(part, ByteView(*packed));
+  write_text(part, ByteView(paged->file));
+  for (std::size_t i = 0; i < blobs.size(); ++i) {
+    if (!paged->is_in_file[i]) part.append(*blobs[i]);
+  }
+  write(part.bytes());
+  features_.clear();
+  new_document_texts_ = {};
+  new_documents_ = 0;
+  part_bytes_ = 0;
+  return Done{};
+}
+
+Bytes ContainerWriter::take() { return std::exchange(written_, {}); }
+
+Result<Bytes> ContainerWriter::finish() && {
+  if (!features_.empty() || new_documents_ > 0) {
+    if (Status status = close_part(); !status) return status.error();
+  }
+  constexpr std::uint8_t kEnd = 0;
+  write(ByteView(&kEnd, 1));
+  ByteWriter checksum;
+  checksum.u32(checksum_);
+  write(checksum.bytes());
+  return std::move(written_);
+}
+
+Result<Bytes> write_container(const StoredDocument& document, const EncodeOptions& pages) {
+  ContainerWriter writer(pages);
+  writer.add_document(document.format, document.header, document.framing);
   for (const StoredFeature& feature : document.features) {
     if (feature.format != document.format || feature.header != document.header) {
       return Error{ErrorCode::invalid_argument, "the features are of several documents"};
     }
-    if (Status status = write_feature_part(texts, feature); !status) return status.error();
+    if (Status status = writer.add(feature); !status) return status.error();
   }
-  const auto packed = pack_text(as_text(texts.bytes()));
-  if (!packed) return packed;
-  ByteWriter writer;
-  writer.append(kMagic);
-  writer.u8(kVersion);
-  write_text(writer, ByteView(*packed));
-  for (const StoredFeature& feature : document.features) {
-    for (const StoredSolid& solid : feature.solids) writer.append(solid.blob);
-  }
-  writer.u32(crc32c(writer.bytes()));
-  return std::move(writer).bytes();
+  return std::move(writer).finish();
 }
 
-Result<StoredDocument> read_container(ByteView bytes, const Limits& limits) {
-  auto content = checked_content(bytes, limits);
-  if (!content) return std::move(content).error();
-  ByteReader blobs(*content);
-  const ByteView packed = read_bytes(blobs);
-  if (blobs.failed()) return malformed("truncated Watertight file", kMagic.size() + 1);
-  const auto texts = unpack_text(packed, limits.bytes);
-  if (!texts) return texts.error();
-  ByteReader reader(as_bytes(*texts));
-  StoredDocument document;
-  document.format = read_text(reader);
-  document.header = read_text(reader);
-  const ByteView framing = read_bytes(reader);
-  document.framing.assign(framing.begin(), framing.end());
-  const std::uint64_t count = reader.varint();
-  if (reader.failed() || count > reader.remaining()) {
-    return malformed("malformed texts of a Watertight file", kMagic.size() + 1);
-  }
-  for (std::uint64_t i = 0; i < count; ++i) {
-    StoredFeature feature;
-    if (!read_feature_part(reader, blobs, feature)) {
-      return malformed("malformed feature " + std::to_string(i), kMagic.size() + 1);
-    }
-    feature.format = document.format;
-    document.features.push_back(std::move(feature));
-  }
-  if (reader.remaining() > 0 || blobs.remaining() > 0) {
-    return malformed("bytes after the last feature", bytes.size() - kChecksumBytes);
-  }
-  return document;
-}
-
-Result<Document> decode_container(ByteView bytes, const Limits& limits) {
-  auto stored = read_container(bytes, limits);
-  if (!stored) return std::move(stored).error();
-  const auto format = format_named(stored->format);
-  if (!format) return format.error();
-  Document document;
-  document.format = *format;
-  document.header = std::move(stored->header);
-  document.framing = std::move(stored->framing);
-  for (StoredFeature& feature : stored->features) {
-    auto part = from_stored(feature, limits);
+Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& limits) {
+  auto reader = ContainerReader::open(bytes, limits);
+  if (!reader) return std::move(reader).error();
+  std::vector<Document> documents;
+  for (;;) {
+    auto part = reader->next();
     if (!part) return std::move(part).error();
-    document.features.push_back(std::move(part->features.front()));
-    feature = StoredFeature();
+    if (!*part) return documents;
+    for (ContainerDocument& added : (*part)->new_documents) {
+      const auto format = format_named(added.format);
+      if (!format) return format.error();
+      Document& document = documents.emplace_back();
+      document.format = *format;
+      document.header = std::move(added.header);
+      document.framing = std::move(added.framing);
+    }
+    for (ContainerFeature& feature : (*part)->features) {
+      Document& document = documents[feature.document];
+      auto whole = restored(feature, std::string(to_string(document.format)), limits);
+      if (!whole) return std::move(whole).error();
+      document.features.push_back(*std::move(whole));
+    }
   }
-  return document;
+}
+
+Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
+  auto reader = ContainerReader::open(bytes, limits);
+  if (!reader) return std::move(reader).error();
+  ContainerInfo info;
+  for (;;) {
+    auto part = reader->next();
+    if (!part) return std::move(part).error();
+    if (!*part) return info;
+    for (ContainerDocument& added : (*part)->new_documents) {
+      info.formats.push_back(std::move(added.format));
+    }
+    info.features += (*part)->features.size();
+    info.pages += (*part)->pages;
+    info.solid_bytes += (*part)->solid_bytes;
+    for (const ContainerFeature& feature : (*part)->features) {
+      info.solids += feature.solids.size();
+      for (const Decoded& decoded : feature.solids) {
+        for (const BlobInfo::Part& bytes_of : decoded.info.parts) {
+          info.parts[bytes_of.name] += bytes_of.bytes;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace watertight

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The Watertight file: a document with its solids as blobs, in one file (docs/cli.md has the
-// layout). What `encode` writes, `decode` reads and the service gives as a download.
+// The Watertight file: documents with their solids in pages, in one file (docs/cli.md has the
+// layout). What `encode` and `export` write, `decode` reads and the service gives as a download.
 #pragma once
+
+#include <map>
+#include <string>
+#include <vector>
 
 #include "pipeline/pipeline.h"
 
@@ -11,15 +15,57 @@ namespace watertight {
 /// True if the bytes start like a Watertight file (of any version).
 bool is_container(ByteView bytes);
 
-/// Features must have format and header of the document.
-/// Errors: invalid_argument if they do not; limit_exceeded.
-Result<Bytes> write_container(const StoredDocument& document);
+/// Writes a Watertight file feature by feature. Memory: one part (some thousand features), and the
+/// header of each document.
+class ContainerWriter {
+ public:
+  /// `pages`: how the solids are coded in pages. Those with Steiner vertices stay blobs.
+  explicit ContainerWriter(const EncodeOptions& pages = {});
 
-/// Trusts nothing. Reports and measures are not in the file: they come back empty.
-/// Errors: malformed (with byte offset), unsupported (version), limit_exceeded.
-Result<StoredDocument> read_container(ByteView bytes, const Limits& limits = {});
+  /// The document that features of this format and header belong to; without one, their first
+  /// feature makes it. Cost: linear in the number of documents.
+  void add_document(const std::string& format, const std::string& header, Bytes framing = {});
+  /// Features of a document keep their order. Errors: malformed (what is stored is damaged);
+  /// limit_exceeded; not_encodable.
+  Status add(const StoredFeature& feature);
+  /// What was written since the last call, to be appended to the file.
+  Bytes take();
+  /// The rest of the file. Errors: as add().
+  Result<Bytes> finish() &&;
 
-/// The document in a Watertight file, with all its features. Errors: as read_container and decode.
-Result<Document> decode_container(ByteView bytes, const Limits& limits = {});
+ private:
+  Status close_part();
+  void write(ByteView bytes);
+
+  EncodeOptions pages_;
+  std::map<std::pair<std::string, std::string>, std::uint64_t> documents_;  // format, header
+  std::uint64_t new_documents_ = 0;
+  ByteWriter new_document_texts_;
+  std::vector<std::pair<std::uint64_t, StoredFeature>> features_;  // of the part, with document
+  std::size_t part_bytes_ = 0;
+  std::uint32_t checksum_ = 0;
+  Bytes written_;
+};
+
+/// A whole document. Features must have format and header of the document.
+/// Errors: invalid_argument if they do not; as ContainerWriter::add().
+Result<Bytes> write_container(const StoredDocument& document, const EncodeOptions& pages = {});
+
+/// The documents in a Watertight file, with all their features. Trusts nothing.
+/// Errors: malformed (with byte offset), unsupported (version), limit_exceeded; those of decode().
+Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& limits = {});
+
+/// What a Watertight file is made of.
+struct ContainerInfo {
+  std::vector<std::string> formats;  // of each document
+  std::uint64_t features = 0;
+  std::uint64_t solids = 0;
+  std::uint64_t pages = 0;
+  std::uint64_t solid_bytes = 0;        // of page files and blobs
+  std::map<std::string, double> parts;  // bytes of the solids, by what they are for
+};
+
+/// Decodes all solids. Errors: as decode_container().
+Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits = {});
 
 }  // namespace watertight

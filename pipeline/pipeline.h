@@ -80,6 +80,9 @@ Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits&
 /// Decodes a stored feature: the document (with one feature) that came in.
 /// Errors: malformed when what is stored is not what to_stored() made; those of decode().
 Result<Document> from_stored(const StoredFeature& stored, const Limits& limits = {});
+/// The same of solids that are decoded already, one per stored.solids; its blobs are not looked at.
+Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> solids,
+                             const Limits& limits = {});
 
 /// What became of one solid of a document.
 struct SolidOutcome {

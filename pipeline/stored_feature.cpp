@@ -126,6 +126,20 @@ Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits&
 }
 
 Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) {
+  std::vector<Solid> solids;
+  for (const StoredSolid& solid : stored.solids) {
+    auto decoded = decode(solid.blob, limits);
+    if (!decoded) return std::move(decoded).error();
+    solids.push_back(std::move(decoded->solid));
+  }
+  return from_stored(stored, std::move(solids), limits);
+}
+
+Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> solids,
+                             const Limits& limits) {
+  if (solids.size() != stored.solids.size()) {
+    return Error{ErrorCode::malformed, "a stored feature of another number of solids"};
+  }
   auto format = format_named(stored.format);
   if (!format) return std::move(format).error();
   auto unpacked = unpacked_skeleton(stored, limits);
@@ -143,16 +157,14 @@ Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) 
   feature.layout.assign(layout.begin(), layout.end());
   for (std::size_t i = 0; i < stored.solids.size(); ++i) {
     const StoredSolid& solid = stored.solids[i];
-    auto decoded = decode(solid.blob, limits);
-    if (!decoded) return std::move(decoded).error();
     SolidSource source;
     source.object_id = solid.object_id;
     source.lod = solid.lod;
     source.geometry = solid.geometry;
     source.ordinal = solid.ordinal;
     const std::string_view merge = (*merges)[i];
-    auto whole = merge.empty() ? Result<Solid>(std::move(decoded->solid))
-                               : unmerge(decoded->solid, merge, limits);
+    auto whole =
+        merge.empty() ? Result<Solid>(std::move(solids[i])) : unmerge(solids[i], merge, limits);
     if (!whole) return std::move(whole).error();
     feature.solids.push_back(SubmittedSolid{*std::move(whole), std::move(source), {}});
   }

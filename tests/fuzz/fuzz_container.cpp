@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // libFuzzer harness of the reader of Watertight files. The input is taken as a file, with its last
-// four bytes replaced by the right checksum; and as the texts of one (two bytes of their length,
-// the texts, the blobs), which are compressed here so that what is behind it is reached. The
-// document or an Error must come out, and a document must be written or refused with an Error.
+// four bytes replaced by the right checksum; and as the one part of one (two bytes of the length of
+// its texts, the texts, page file and blobs), whose texts are compressed here so that what is
+// behind them is reached. The documents or an Error must come out, and a document must be written
+// or refused with an Error.
 #include <algorithm>
 
 #include "base/checksum.h"
@@ -23,7 +24,7 @@ Bytes with_checksum(ByteView bytes) {
   return std::move(writer).bytes();
 }
 
-/// A whole file of these texts and blobs, but for the checksum.
+/// A whole file of these texts, pages and blobs, but for the checksum.
 Bytes around(ByteView data) {
   ByteReader reader(data);
   const std::size_t size = reader.u16();
@@ -36,18 +37,21 @@ Bytes around(ByteView data) {
   writer.varint(packed->size());
   writer.append(*packed);
   writer.append(reader.take(reader.remaining()));
+  writer.u8(0);  // no more parts
   writer.u32(0);
   return std::move(writer).bytes();
 }
 
 void check(ByteView bytes) {
-  const auto stored = read_container(bytes, fuzz::small_limits());
-  if (!stored) return fuzz::require(!stored.error().message.empty());
-  const auto document = decode_container(bytes, fuzz::small_limits());
-  if (!document) return fuzz::require(!document.error().message.empty());
-  fuzz::require(document->features.size() == stored->features.size());
-  const auto written = write_document(*document, document->format);
-  if (!written) fuzz::require(!written.error().message.empty());
+  const auto info = describe_container(bytes, fuzz::small_limits());
+  if (!info) return fuzz::require(!info.error().message.empty());
+  const auto documents = decode_container(bytes, fuzz::small_limits());
+  if (!documents) return fuzz::require(!documents.error().message.empty());
+  fuzz::require(documents->size() == info->formats.size());
+  for (const Document& document : *documents) {
+    const auto written = write_document(document, document.format);
+    if (!written) fuzz::require(!written.error().message.empty());
+  }
 }
 
 }  // namespace

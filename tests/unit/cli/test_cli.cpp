@@ -112,6 +112,9 @@ TEST_CASE_METHOD(Fixture, "wrong usage is status 2 with a message") {
   CHECK(run("ingest x --collection a").status == 2);
   CHECK(run("ingest x --collection a/b --data-dir d").status == 2);
   CHECK(run("serve --data-dir d --listen nowhere").status == 2);
+  CHECK(run("export town -o x.wt").status == 2);
+  CHECK(run("export -o x.wt --data-dir d").status == 2);
+  CHECK(run("export town -o x.obj --data-dir d").output.find(".wt") != std::string::npos);
   CHECK(run("--help").status == 0);
   CHECK(run("--version").status == 0);
 }

@@ -52,9 +52,10 @@ std::string through_container(const std::string& text, Format format, Contract c
   REQUIRE(encoded->outcome.verdict == Verdict::valid);
   const auto container = write_container(encoded->document);
   REQUIRE(container);
-  const auto document = decode_container(*container);
-  REQUIRE(document);
-  const auto written = write_document(*document, format);
+  const auto documents = decode_container(*container);
+  REQUIRE(documents);
+  REQUIRE(documents->size() == 1);
+  const auto written = write_document(documents->front(), format);
   if (!written) return to_string(written.error());
   return std::string(as_text(*written));
 }
@@ -177,9 +178,9 @@ TEST_CASE("a stored document with another hash is an error") {
   feature.skeleton[place] = 'X';
   const auto container = write_container(encoded->document);
   REQUIRE(container);
-  const auto document = decode_container(*container);
-  REQUIRE(document);
-  const auto written = write_document(*document, Format::city_json);
+  const auto documents = decode_container(*container);
+  REQUIRE(documents);
+  const auto written = write_document(documents->at(0), Format::city_json);
   REQUIRE_FALSE(written);
   CHECK(written.error().message.find("hash") != std::string::npos);
 }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Reads a Watertight file part by part (docs/cli.md has the layout).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/limits.h"
+#include "codec/blob.h"
+#include "store/solid_store.h"
+
+namespace watertight {
+
+/// As PNG's: a byte above 127, and line ends that a text-mode transfer would change.
+inline constexpr std::uint8_t kContainerMagic[8] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n'};
+inline constexpr std::uint8_t kContainerVersion = 1;
+
+/// A document that features of this part and later ones may belong to.
+struct ContainerDocument {
+  std::string format;
+  std::string header;
+  Bytes framing;
+};
+
+struct ContainerFeature {
+  std::uint64_t document = 0;   // counted over the file
+  StoredFeature stored;         // its blobs are empty
+  std::vector<Decoded> solids;  // one per stored.solids
+};
+
+struct ContainerPart {
+  std::vector<ContainerDocument> new_documents;
+  std::vector<ContainerFeature> features;
+  std::uint64_t pages = 0;
+  std::uint64_t solid_bytes = 0;  // of its page file and blobs
+};
+
+/// Trusts nothing: what it makes is bounded by what it read and by the limits.
+class ContainerReader {
+ public:
+  /// Checks version and checksum. `bytes` must outlive the reader.
+  /// Errors: malformed; unsupported; limit_exceeded.
+  static Result<ContainerReader> open(ByteView bytes, const Limits& limits);
+  /// The next part, nothing after the last. Errors: malformed; limit_exceeded; those of decode().
+  Result<std::optional<ContainerPart>> next();
+
+ private:
+  ContainerReader(ByteView parts, const Limits& limits)
+      : parts_(parts), limits_(limits), texts_left_(limits.bytes) {}
+  Error malformed(std::string message) const;
+
+  ByteReader parts_;
+  Limits limits_;
+  std::uint64_t texts_left_;  // bytes of all texts that may still come
+  std::uint64_t documents_ = 0;
+};
+
+}  // namespace watertight

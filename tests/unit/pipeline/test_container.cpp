@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Watertight files: documents come back, solids stand in pages, damage is refused.
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+
+#include "base/checksum.h"
+#include "codec/encode_boundary.h"
+#include "codec/page_file.h"
+#include "formats/packed_text.h"
+#include "generated_solids.h"
+#include "pipeline/container.h"
+#include "pipeline/container_reader.h"
+#include "pipeline/export.h"
+#include "tests/unit/pipeline/samples.h"
+
+namespace watertight {
+namespace {
+
+StoredDocument encoded(const std::string& text, const IngestOptions& options = {}) {
+  ReadOptions read;
+  read.keep_text = true;
+  auto document = read_document(as_bytes(text), Format::city_json_seq, read);
+  REQUIRE(document);
+  auto result = encode_document(*std::move(document), nullptr, options);
+  REQUIRE(result);
+  REQUIRE(result->outcome.verdict == Verdict::valid);
+  return std::move(result->document);
+}
+
+Bytes container_of(const std::string& text) {
+  auto container = write_container(encoded(text));
+  REQUIRE(container);
+  return *std::move(container);
+}
+
+std::string text_of(const Document& document) {
+  const auto text = write_document(document, document.format);
+  REQUIRE(text);
+  return std::string(as_text(*text));
+}
+
+/// `count` boxes, each wider than the one before, of ids that sort as they are numbered.
+std::string row_of_boxes(int count) {
+  std::vector<std::string> lines;
+  for (int i = 0; i < count; ++i) {
+    std::string vertices(samples::kBoxVertices);
+    const std::string x = std::to_string(1000000 + 2000 * i).substr(0, 7);
+    for (std::size_t at = vertices.find("[1000,"); at != std::string::npos;
+         at = vertices.find("[1000,", at + 1)) {
+      vertices.replace(at + 1, 4, x);
+    }
+    lines.push_back(
+        samples::feature("b" + std::to_string(10000 + i), samples::kBoxFacets, vertices));
+  }
+  return samples::sequence(lines);
+}
+
+/// Puts the features of a document into a store.
+void put(samples::MemoryStore& store, const std::string& text) {
+  IngestOptions options;
+  options.collection = "town";
+  StoredDocument document = encoded(text, options);
+  for (StoredFeature& feature : document.features) feature.collection = "town";
+  REQUIRE(store.put(document.features));
+}
+
+ByteSink into(Bytes& bytes) {
+  return [&bytes](ByteView part) -> Status {
+    bytes.insert(bytes.end(), part.begin(), part.end());
+    return Done{};
+  };
+}
+
+/// A file of one part with these texts, page file and blobs.
+Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
+  const auto packed = pack_text(as_text(texts.bytes()));
+  REQUIRE(packed);
+  ByteWriter writer;
+  writer.append(kContainerMagic);
+  writer.u8(kContainerVersion);
+  writer.varint(packed->size());
+  writer.append(*packed);
+  writer.varint(page_file.size());
+  writer.append(page_file);
+  writer.append(blobs);
+  writer.u8(0);
+  writer.u32(crc32c(writer.bytes()));
+  return std::move(writer).bytes();
+}
+
+/// Texts of one OFF document with one feature of one solid.
+ByteWriter texts_of_one(std::uint64_t document, std::uint64_t blob_size) {
+  ByteWriter texts;
+  texts.varint(1);
+  texts.varint(3);
+  texts.append(as_bytes("off"));
+  texts.varint(0);  // header
+  texts.varint(0);  // framing
+  texts.varint(1);
+  texts.varint(document);
+  for (int i = 0; i < 4; ++i) texts.varint(0);  // id, type, SRID, skeleton
+  texts.varint(1);
+  for (int i = 0; i < 4; ++i) texts.varint(0);  // object, LoD, geometry, ordinal
+  texts.varint(blob_size);
+  return texts;
+}
+
+}  // namespace
+
+TEST_CASE("a Watertight file returns its document") {
+  const std::string text = samples::sequence({samples::feature("a"), samples::feature("b")});
+  const Bytes container = container_of(text);
+  CHECK(is_container(container));
+  const auto documents = decode_container(container);
+  REQUIRE(documents);
+  REQUIRE(documents->size() == 1);
+  CHECK(text_of(documents->front()) == text);
+}
+
+TEST_CASE("a Watertight file has its solids in pages when that is smaller") {
+  const std::string text = row_of_boxes(300);
+  const StoredDocument document = encoded(text);
+  std::size_t blob_bytes = 0;
+  for (const StoredFeature& feature : document.features) {
+    for (const StoredSolid& solid : feature.solids) blob_bytes += solid.blob.size();
+  }
+  const Bytes container = container_of(text);
+  const auto info = describe_container(container);
+  REQUIRE(info);
+  CHECK(info->features == 300);
+  CHECK(info->solids == 300);
+  CHECK(info->pages == 2);
+  CHECK(2 * info->solid_bytes < blob_bytes);
+  const auto documents = decode_container(container);
+  REQUIRE(documents);
+  CHECK(text_of(documents->front()) == text);
+  const auto one = describe_container(container_of(samples::sequence({samples::feature("a")})));
+  REQUIRE(one);
+  CHECK(one->pages == 0);
+  CHECK(one->solids == 1);
+}
+
+TEST_CASE("a file of several parts has its features in order") {
+  const auto blob = encode_boundary(generated::box(), {});
+  REQUIRE(blob);
+  StoredDocument document;
+  document.format = "off";
+  for (int i = 0; i < 9000; ++i) {
+    StoredFeature& feature = document.features.emplace_back();
+    feature.format = "off";
+    feature.id = std::to_string(i);
+    if (i % 100 == 0) feature.solids.emplace_back().blob = *blob;
+  }
+  const auto file = write_container(document);
+  REQUIRE(file);
+  auto reader = ContainerReader::open(*file, {});
+  REQUIRE(reader);
+  std::size_t parts = 0;
+  for (auto part = reader->next(); part && *part; part = reader->next()) ++parts;
+  CHECK(parts == 3);
+  const auto documents = decode_container(*file);
+  REQUIRE(documents);
+  REQUIRE(documents->size() == 1);
+  const std::vector<Feature>& features = documents->front().features;
+  REQUIRE(features.size() == 9000);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    CHECK(features[i].id == std::to_string(i));
+    CHECK(features[i].solids.size() == (i % 100 == 0 ? 1 : 0));
+  }
+}
+
+TEST_CASE("solids in pages have the mode that is asked for, and those with Steiner vertices stay") {
+  const auto box = encode_boundary(generated::box(), {}, {.mode = Mode::raw});
+  const Certificate certificate = generated::schoenhardt_certificate();
+  const auto proven = encode_boundary(generated::schoenhardt(), {},
+                                      {.mode = Mode::bitmap, .certificate = &certificate});
+  REQUIRE(box);
+  REQUIRE(proven);
+  StoredFeature feature;
+  feature.format = "off";
+  for (int i = 0; i < 40; ++i) feature.solids.emplace_back().blob = i == 7 ? *proven : *box;
+  const auto file = write_container({"off", "", {}, {feature}}, {.mode = Mode::raw});
+  REQUIRE(file);
+  auto reader = ContainerReader::open(*file, {});
+  REQUIRE(reader);
+  const auto part = reader->next();
+  REQUIRE(part);
+  REQUIRE(*part);
+  CHECK((*part)->pages == 1);
+  const std::vector<Decoded>& solids = (*part)->features.at(0).solids;
+  REQUIRE(solids.size() == 40);
+  CHECK(solids[0].info.mode == Mode::raw);
+  CHECK(solids[0].solid == generated::box().solid());
+  CHECK(solids[7].info.steiner_vertices == 1);
+  CHECK(solids[7].solid == generated::schoenhardt().solid());
+  const auto end = reader->next();
+  REQUIRE(end);
+  CHECK_FALSE(*end);
+}
+
+TEST_CASE("a file of several documents gives back each") {
+  const std::string first = samples::sequence({samples::feature("a"), samples::feature("c")});
+  std::string second = samples::sequence({samples::feature("b"), samples::feature("d")});
+  second.replace(second.find("100.0"), 5, "900.0");
+  const StoredDocument documents[2] = {encoded(first), encoded(second)};
+  ContainerWriter writer;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const StoredDocument& document : documents) REQUIRE(writer.add(document.features[i]));
+  }
+  const auto file = std::move(writer).finish();
+  REQUIRE(file);
+  const auto decoded = decode_container(*file);
+  REQUIRE(decoded);
+  REQUIRE(decoded->size() == 2);
+  CHECK(text_of((*decoded)[0]) == first);
+  CHECK(text_of((*decoded)[1]) == second);
+}
+
+TEST_CASE("features of several documents are no document") {
+  StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
+  document.header += ' ';
+  CHECK(write_container(document).error().code == ErrorCode::invalid_argument);
+}
+
+TEST_CASE("the Watertight file reader rejects every prefix and every changed byte") {
+  const Bytes container = container_of(row_of_boxes(4));
+  for (std::size_t size = 0; size < container.size(); ++size) {
+    CHECK_FALSE(decode_container(ByteView(container).first(size)));
+  }
+  for (std::size_t i = 0; i < container.size(); ++i) {
+    Bytes changed = container;
+    changed[i] ^= 0x41U;
+    CHECK_FALSE(decode_container(changed));
+  }
+}
+
+TEST_CASE("changed bytes under the right checksum are read or refused") {
+  const Bytes container = container_of(row_of_boxes(40));
+  for (std::size_t i = sizeof(kContainerMagic); i + 4 < container.size(); ++i) {
+    ByteWriter changed;
+    changed.append(ByteView(container).first(container.size() - 4));
+    Bytes bytes = changed.bytes();
+    bytes[i] ^= 0x41U;
+    changed = {};
+    changed.append(bytes);
+    changed.u32(crc32c(bytes));
+    const auto documents = decode_container(changed.bytes());
+    if (!documents) CHECK_FALSE(documents.error().message.empty());
+  }
+}
+
+TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
+  const StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
+  const Bytes& blob = document.features[0].solids[0].blob;
+  PageFileWriter writer;
+  REQUIRE(writer.add_blob(blob));
+  const auto pages = std::move(writer).finish();
+  REQUIRE(pages);
+  REQUIRE(decode_container(file_of(texts_of_one(0, blob.size()), {}, blob)));
+  REQUIRE(decode_container(file_of(texts_of_one(0, 0), *pages, {})));
+  const Bytes wrong[] = {
+      file_of(texts_of_one(1, blob.size()), {}, blob),      // of no document
+      file_of(texts_of_one(0, blob.size() + 1), {}, blob),  // beyond the file
+      file_of(texts_of_one(0, blob.size() - 1), {}, blob),  // a cut blob
+      file_of(texts_of_one(0, ~std::uint64_t{0}), {}, blob),
+      file_of(texts_of_one(0, 0), {}, {}),                  // in a page that is not there
+      file_of(texts_of_one(0, blob.size()), *pages, blob),  // in no feature
+      file_of(texts_of_one(0, 0), blob, {}),                // no page file
+  };
+  for (const Bytes& bytes : wrong) {
+    const auto documents = decode_container(bytes);
+    REQUIRE_FALSE(documents);
+    CHECK(documents.error().code == ErrorCode::malformed);
+  }
+}
+
+TEST_CASE("the texts of all parts together stay below the limit of bytes") {
+  const Bytes container = container_of(row_of_boxes(40));
+  Limits limits;
+  limits.bytes = container.size();
+  const auto documents = decode_container(container, limits);
+  REQUIRE_FALSE(documents);
+  CHECK(documents.error().code == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("an export of a collection is a Watertight file of its documents") {
+  samples::MemoryStore store;
+  const std::string row = row_of_boxes(600);
+  put(store, row);
+  std::string other = samples::sequence({samples::feature("zz")});
+  other.replace(other.find("100.0"), 5, "900.0");
+  put(store, other);
+  Bytes bytes;
+  const auto exported = export_container(store, "town", into(bytes));
+  REQUIRE(exported);
+  CHECK(exported->features == 601);
+  CHECK(exported->solids == 601);
+  const auto documents = decode_container(bytes);
+  REQUIRE(documents);
+  REQUIRE(documents->size() == 2);
+  CHECK(text_of((*documents)[0]) == row);
+  CHECK(text_of((*documents)[1]) == other);
+}
+
+TEST_CASE("an export as a sequence has the header and each feature's line") {
+  samples::MemoryStore store;
+  const std::string row = row_of_boxes(510);
+  put(store, row);
+  Bytes bytes;
+  REQUIRE(export_sequence(store, "town", into(bytes)));
+  CHECK(as_text(bytes) == row);
+  std::string other = samples::sequence({samples::feature("zz")});
+  other.replace(other.find("100.0"), 5, "900.0");
+  put(store, other);
+  const auto mixed = export_sequence(store, "town", into(bytes));
+  REQUIRE_FALSE(mixed);
+  CHECK(mixed.error().code == ErrorCode::unsupported);
+  CHECK(mixed.error().message.find("'zz'") != std::string::npos);
+}
+
+TEST_CASE("an export ends with the first error, of the store, a blob or the sink") {
+  samples::MemoryStore store;
+  Bytes bytes;
+  CHECK(export_container(store, "town", into(bytes)).error().code == ErrorCode::not_found);
+  put(store, row_of_boxes(3));
+  const ByteSink full = [](ByteView) -> Status {
+    return Error{ErrorCode::unavailable, "no space left"};
+  };
+  CHECK(export_container(store, "town", full).error().code == ErrorCode::unavailable);
+  CHECK(export_sequence(store, "town", full).error().code == ErrorCode::unavailable);
+  auto feature = store.get("town", "b10001");
+  REQUIRE(feature);
+  feature->solids[0].blob.back() ^= 1U;
+  REQUIRE(store.put({&*feature, 1}));
+  CHECK(export_container(store, "town", into(bytes)).error().code == ErrorCode::malformed);
+  const auto sequence = export_sequence(store, "town", into(bytes));
+  REQUIRE_FALSE(sequence);
+  CHECK(sequence.error().message.find("'b10001'") != std::string::npos);
+  store.is_away = true;
+  CHECK(export_container(store, "town", into(bytes)).error().code == ErrorCode::unavailable);
+}
+
+}  // namespace watertight

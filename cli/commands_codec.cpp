@@ -38,7 +38,7 @@ Result<Input> load(const std::string& path, bool keep_text = false) {
 
 Mode mode_named(const std::string& name) {
   for (const Mode mode :
-       {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::hybrid, Mode::parallelogram}) {
+       {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
     if (name == to_string(mode)) return mode;
   }
   return Mode::automatic;

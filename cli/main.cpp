@@ -109,10 +109,10 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   sub->add_option("IN", command.input, "document; - for standard input")->required();
   sub->add_option("-o,--output", command.output, "Watertight file; - for standard output")
       ->required();
-  auto* mode = sub->add_option("--mode", command.mode, "how solids are coded")
-                   ->check(CLI::IsMember(
-                       {"auto", "raw", "bitmap", "walk", "polygon", "hybrid", "parallelogram"}))
-                   ->capture_default_str();
+  auto* mode =
+      sub->add_option("--mode", command.mode, "how solids are coded")
+          ->check(CLI::IsMember({"auto", "raw", "bitmap", "walk", "polygon", "parallelogram"}))
+          ->capture_default_str();
   sub->add_flag("--steiner", command.keeps_steiner,
                 "keep the Steiner vertices of the proof (mode bitmap)")
       ->excludes(mode);

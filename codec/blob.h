@@ -18,15 +18,14 @@ namespace watertight {
 inline constexpr std::uint8_t kFormatVersion = 1;
 
 /// The set of priors that encoders use unless told otherwise; 0 is the neutral one.
-inline constexpr std::uint8_t kModelNumber = 0;
+inline constexpr std::uint8_t kModelNumber = 1;
 
 enum class Mode : std::uint8_t {
   raw = 0,            // vertices and rings listed
   bitmap = 1,         // the paper's: a bit for each face of the Delaunay tetrahedralization
   walk = 2,           // columns, then a walk over Delaunay faces
   polygon = 3,        // a walk over the polygons, then coordinates by planes and right angles
-  hybrid = 4,         // coarse points, a walk over their Delaunay faces, the lower bits
-  parallelogram = 5,  // a walk over triangles, each vertex from those around it
+  parallelogram = 5,  // a front over triangles, each vertex from those around it; 4 is unused
   automatic = 255     // the smallest of those that can hold the solid
 };
 std::string_view to_string(Mode mode);

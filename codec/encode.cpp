@@ -81,8 +81,6 @@ std::string_view to_string(Mode mode) {
       return "walk";
     case Mode::polygon:
       return "polygon";
-    case Mode::hybrid:
-      return "hybrid";
     case Mode::parallelogram:
       return "parallelogram";
     case Mode::automatic:

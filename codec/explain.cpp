@@ -14,7 +14,7 @@ Result<std::vector<ModeSize>> explain(ByteView blob, const Limits& limits) {
   if (!boundary) return boundary.error();
   std::vector<ModeSize> sizes;
   for (const Mode mode :
-       {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::hybrid, Mode::parallelogram}) {
+       {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
     ModeSize size;
     size.mode = mode;
     EncodeOptions options;

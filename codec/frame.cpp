@@ -176,8 +176,6 @@ ModeCoder coder_of(Mode mode) {
       return {ModelPart::walk, code_walk};
     case Mode::polygon:
       return {ModelPart::polygon, code_polygon};
-    case Mode::hybrid:
-      return {ModelPart::hybrid, code_hybrid};
     case Mode::parallelogram:
       return {ModelPart::parallelogram, code_parallelogram};
     default:
@@ -369,7 +367,7 @@ std::optional<std::uint64_t> SolidCoder::cost(const PageSolid& solid, Mode mode)
 Mode SolidCoder::cheapest_mode(const PageSolid& solid) const {
   Mode best = Mode::automatic;
   std::uint64_t least = ~std::uint64_t{0};
-  for (const Mode mode : {Mode::polygon, Mode::walk, Mode::hybrid, Mode::parallelogram}) {
+  for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {
     const auto needed = cost(solid, mode);
     if (needed && *needed < least) {
       least = *needed;

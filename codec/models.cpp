@@ -40,8 +40,6 @@ const ModelLayout& layout_of(ModelPart part) {
       return polygon_layout();
     case ModelPart::walk:
       return walk_layout();
-    case ModelPart::hybrid:
-      return hybrid_layout();
     case ModelPart::parallelogram:
       return parallelogram_layout();
   }
@@ -49,8 +47,8 @@ const ModelLayout& layout_of(ModelPart part) {
 }
 
 Priors neutral_priors() {
-  return {neutral(ModelPart::frame), neutral(ModelPart::order),  neutral(ModelPart::polygon),
-          neutral(ModelPart::walk),  neutral(ModelPart::hybrid), neutral(ModelPart::parallelogram)};
+  return {neutral(ModelPart::frame), neutral(ModelPart::order), neutral(ModelPart::polygon),
+          neutral(ModelPart::walk), neutral(ModelPart::parallelogram)};
 }
 
 Result<ModelSet> ModelSet::make(std::uint8_t number) {

@@ -16,8 +16,8 @@
 namespace watertight {
 
 /// The parts of the format that have models of their own, in the order of the model files.
-enum class ModelPart : std::uint8_t { frame, order, polygon, walk, hybrid, parallelogram };
-inline constexpr std::size_t kModelParts = 6;
+enum class ModelPart : std::uint8_t { frame, order, polygon, walk, parallelogram };
+inline constexpr std::size_t kModelParts = 5;
 
 const ModelLayout& layout_of(ModelPart part);
 

@@ -28,11 +28,7 @@ CodeSolid code_polygon;
 const ModelLayout& walk_layout();
 CodeSolid code_walk;
 
-/// Mode `hybrid`: coarse points, the boundary among their Delaunay faces, then the lower bits.
-const ModelLayout& hybrid_layout();
-CodeSolid code_hybrid;
-
-/// Mode `parallelogram`: connectivity first, each vertex from the triangles around it.
+/// Mode `parallelogram`: a front over triangles, each vertex predicted from those around it.
 const ModelLayout& parallelogram_layout();
 CodeSolid code_parallelogram;
 

@@ -30,8 +30,7 @@ using namespace watertight;
 
 namespace {
 
-constexpr std::uint32_t kMaxCount = 60;
-constexpr Mode kModes[] = {Mode::polygon, Mode::walk, Mode::hybrid, Mode::parallelogram};
+constexpr Mode kModes[] = {Mode::polygon, Mode::walk, Mode::parallelogram};
 
 struct Page {
   std::string set;
@@ -46,6 +45,7 @@ struct Options {
   std::set<std::string> excluded;
   std::string only;
   int passes = 2;
+  std::uint32_t max_count = 10;  // of observations that a prior counts for
 };
 
 struct Sums {
@@ -195,6 +195,8 @@ Options read_options(int count, char** arguments) {
     if (name == "--exclude") options.excluded.insert(value);
     if (name == "--only") options.only = value;
     if (name == "--passes") options.passes = std::atoi(value.c_str());
+    if (name == "--max-count")
+      options.max_count = static_cast<std::uint32_t>(std::atoi(value.c_str()));
   }
   return options;
 }
@@ -223,13 +225,13 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   };
   ModelSet second(chosen_by);
   for (int pass = 0; pass < options.passes; ++pass) train(pages, second, cheapest);
-  const Bytes file = write_models(banks_of(second), kModelNumber, kMaxCount);
+  const Bytes file = write_models(banks_of(second), kModelNumber, options.max_count);
   const auto priors = read_models(file, kModelNumber);
   if (!priors) std::abort();
   measure("cheapest mode", pages, *priors, cheapest);
   std::printf("\nmodel file: %zu bytes\n", file.size());
   for (std::size_t i = 0; i < kModelParts; ++i) {
-    std::printf("part %zu: %zu bytes\n", i, (*priors)[i].save(kMaxCount).size());
+    std::printf("part %zu: %zu bytes\n", i, (*priors)[i].save(options.max_count).size());
   }
   if (options.out.empty()) return;
   std::ofstream out(options.out, std::ios::binary);

@@ -26,8 +26,8 @@ void print(const std::string& name, const Result<Bytes>& blob) {
   std::printf("%s %zu %016" PRIx64 "\n", name.c_str(), blob->size(), content_hash(*blob));
 }
 
-constexpr Mode kModes[] = {Mode::raw,    Mode::bitmap,        Mode::walk,     Mode::polygon,
-                           Mode::hybrid, Mode::parallelogram, Mode::automatic};
+constexpr Mode kModes[] = {Mode::raw,     Mode::bitmap,        Mode::walk,
+                           Mode::polygon, Mode::parallelogram, Mode::automatic};
 static_assert(kModelNumber <= 1);
 constexpr std::uint8_t kModels[] = {0, 1};
 

@@ -32,7 +32,7 @@ std::vector<Golden> goldens() {
   for (Golden& golden : all) golden.size = 0;
   Random random(2);
   const auto add = [&](const std::string& name, const OrientedBoundary& boundary) {
-    for (const Mode mode : {Mode::walk, Mode::polygon, Mode::hybrid, Mode::parallelogram}) {
+    for (const Mode mode : {Mode::walk, Mode::polygon, Mode::parallelogram}) {
       Golden golden{name + "-" + std::string(to_string(mode)), 0, boundary, {}, mode};
       if (encode_golden(golden)) all.push_back(std::move(golden));
     }

@@ -57,7 +57,7 @@ std::vector<Bytes> seed_blobs(std::uint64_t seed) {
   std::vector<Bytes> blobs;
   for (const auto& [name, boundary] : all(seed)) {
     for (const Mode mode :
-         {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::hybrid, Mode::parallelogram}) {
+         {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
       for (const bool keep_order : {true, false}) {
         auto blob = encode_boundary(boundary, {}, {.mode = mode, .keep_order = keep_order});
         if (blob) blobs.push_back(std::move(blob).value());

@@ -13,8 +13,8 @@
 namespace watertight::generated {
 namespace {
 
-constexpr std::array kModes{Mode::raw,    Mode::bitmap,        Mode::walk,     Mode::polygon,
-                            Mode::hybrid, Mode::parallelogram, Mode::automatic};
+constexpr std::array kModes{Mode::raw,     Mode::bitmap,        Mode::walk,
+                            Mode::polygon, Mode::parallelogram, Mode::automatic};
 
 std::string without_numbers(std::string message) {
   message.erase(

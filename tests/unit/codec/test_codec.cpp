@@ -59,7 +59,7 @@ TEST_CASE("automatic takes the smallest blob") {
     INFO(name);
     const std::size_t automatic = encoded(boundary, {.mode = Mode::automatic}).size();
     for (const Mode mode :
-         {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::hybrid, Mode::parallelogram}) {
+         {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
       const auto blob = encode_boundary(boundary, {}, {.mode = mode});
       // Costs are estimated to the bit, sizes are whole bytes.
       if (blob) CHECK(automatic <= blob->size() + 1);

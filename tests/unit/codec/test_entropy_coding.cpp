@@ -6,6 +6,7 @@
 
 #include "codec/entropy_stream.h"
 #include "codec/model_bank.h"
+#include "codec/models.h"
 
 using namespace watertight;
 
@@ -131,4 +132,16 @@ TEST_CASE("a prior of another layout is refused") {
   CHECK_FALSE(other.load(models.save(30)));
   CHECK_FALSE(models.load(other.save(30)));
   CHECK_FALSE(models.load({}));
+}
+
+TEST_CASE("every numbered set of priors is there, and no other") {
+  for (std::uint8_t number = 0; number < 2; ++number) {
+    INFO(int{number});
+    const auto models = ModelSet::make(number);
+    REQUIRE(models);
+    CHECK(models->number() == number);
+  }
+  const auto none = ModelSet::make(2);
+  REQUIRE_FALSE(none);
+  CHECK(none.error().code == ErrorCode::unsupported);
 }

@@ -60,6 +60,10 @@ TEST_CASE("the worked example of docs/format-0.md is the golden box of version 0
   CHECK(example_of("format-0.md") == file_of(path_of("box-bitmap", "version-0")));
 }
 
+TEST_CASE("the worked example of docs/format.md is a golden box") {
+  CHECK(example_of("format.md") == file_of(path_of("box-neutral")));
+}
+
 TEST_CASE("golden blobs of version 0 decode to their solids") {
   for (const auto& golden : generated::version_0_goldens()) {
     INFO(golden.name);

@@ -25,7 +25,8 @@ for name in "${names[@]}"; do
   corpus=$build/corpora/$name
   mkdir -p "$corpus"
   while read -r seed; do
-    cp "$seed" "$corpus/seed-${seed##*/}"
+    folder=${seed%/*}  # goldens of several versions have the same names
+    cp "$seed" "$corpus/seed-${folder##*/}-${seed##*/}"
   done <"$build/tests/fuzz/$name.seeds"
   options=(-max_total_time="$seconds" -max_len=32768 -timeout=20 -rss_limit_mb=2048
     -artifact_prefix="$build/corpora/$name-" -print_final_stats=1)

@@ -163,14 +163,20 @@ Exit run(const ExportCommand& command) {
   auto store = opened ? open_postgres_store(opened->connection)
                       : Result<std::unique_ptr<SolidStore>>(opened.error());
   if (!store) return fail("store", store.error());
+  const std::string output = command.output == "-" ? "standard output" : command.output;
   auto writer = FileWriter::open(command.output);
-  if (!writer) return fail(command.output, writer.error());
-  const ByteSink sink = [&writer](ByteView bytes) { return writer->write(as_text(bytes)); };
+  if (!writer) return fail(output, writer.error());
+  bool is_written = true;
+  const ByteSink sink = [&](ByteView bytes) {
+    Status status = writer->write(as_text(bytes));
+    is_written = status.has_value();
+    return status;
+  };
   const auto exported = is_container ? export_container(**store, command.collection, sink)
                                      : export_sequence(**store, command.collection, sink);
-  if (!exported) return fail(command.collection, exported.error());
+  if (!exported) return fail(is_written ? command.collection : output, exported.error());
   const Status status = writer->commit();
-  if (!status) return fail(command.output, status.error());
+  if (!status) return fail(output, status.error());
   std::fprintf(stderr, "watertight: %llu features with %llu solids written\n",
                static_cast<unsigned long long>(exported->features),
                static_cast<unsigned long long>(exported->solids));

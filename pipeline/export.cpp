@@ -22,11 +22,7 @@ Result<Exported> for_each_feature(SolidStore& store, const std::string& collecti
     auto batch = store.list(query);
     if (!batch) return std::move(batch).error();
     for (const StoredFeature& feature : batch->features) {
-      if (Status status = take(feature); !status) {
-        Error error = status.error();
-        error.message = "feature '" + feature.id + "': " + error.message;
-        return error;
-      }
+      if (Status status = take(feature); !status) return status.error();
       ++exported.features;
       exported.solids += feature.solids.size();
     }
@@ -34,6 +30,11 @@ Result<Exported> for_each_feature(SolidStore& store, const std::string& collecti
   } while (!query.after.empty());
   if (exported.features > 0) return exported;
   return Error{ErrorCode::not_found, "collection '" + collection + "' has no features"};
+}
+
+Error about(const StoredFeature& feature, Error error) {
+  error.message.insert(0, "feature '" + feature.id + "': ");
+  return error;
 }
 
 bool is_city_model(const StoredFeature& feature) {
@@ -46,10 +47,11 @@ bool is_city_model(const StoredFeature& feature) {
 Result<Exported> export_container(SolidStore& store, const std::string& collection,
                                   const ByteSink& sink, const EncodeOptions& pages) {
   ContainerWriter writer(pages);
-  const auto exported = for_each_feature(store, collection, [&](const StoredFeature& feature) {
-    Status status = writer.add(feature);
-    return status ? sink(writer.take()) : status;
-  });
+  const auto take = [&](const StoredFeature& feature) -> Status {
+    if (Status status = writer.add(feature); !status) return status;
+    return sink(writer.take());
+  };
+  const auto exported = for_each_feature(store, collection, take);
   if (!exported) return exported;
   const auto rest = std::move(writer).finish();
   if (!rest) return rest.error();
@@ -63,7 +65,8 @@ Result<Exported> export_sequence(SolidStore& store, const std::string& collectio
   bool is_first = true;
   return for_each_feature(store, collection, [&](const StoredFeature& feature) -> Status {
     if (!is_city_model(feature)) {
-      return Error{ErrorCode::unsupported, "of format " + feature.format + ", not of a city model"};
+      return about(feature, {ErrorCode::unsupported,
+                             "of format " + feature.format + ", not of a city model"});
     }
     if (is_first) {
       header = feature.header;
@@ -71,14 +74,14 @@ Result<Exported> export_sequence(SolidStore& store, const std::string& collectio
       is_first = false;
     }
     if (feature.header != header) {
-      return Error{ErrorCode::unsupported,
-                   "of another document than those before, which a sequence cannot hold; "
-                   "a Watertight file (.wt) can"};
+      return about(feature, {ErrorCode::unsupported,
+                             "of another document than those before, which a sequence cannot "
+                             "hold; a Watertight file (.wt) can"});
     }
     const auto document = from_stored(feature);
-    if (!document) return document.error();
+    if (!document) return about(feature, document.error());
     auto line = write_feature(*document, document->features.front());
-    if (!line) return std::move(line).error();
+    if (!line) return about(feature, line.error());
     return sink(as_bytes(*line + '\n'));
   });
 }

@@ -51,6 +51,7 @@ class SurfaceCoder {
 
   Status code(const CutSurface* surface, IntegerSolid& solid, bool has_repeats) {
     surface_ = surface;
+    stream_.enter(StreamPart::connectivity);
     has_repeats_ = models_.code(stream_, kHasRepeats, 0, {0}, has_repeats);
     if (surface_) {
       code_of_.assign(surface_->positions.size(), kNone);
@@ -91,19 +92,19 @@ class SurfaceCoder {
     if (cells_.size() >= limits_.vertices) {
       return Error{ErrorCode::limit_exceeded, "the solid has too many vertices"};
     }
-    if (is_writing()) {
-      code_of_[true_index] = static_cast<Index>(cells_.size());
-    }
+    if (is_writing()) code_of_[true_index] = static_cast<Index>(cells_.size());
     cells_.push_back(cell);
     centres_.push_back(
         {static_cast<double>(cell[0]), static_cast<double>(cell[1]), static_cast<double>(cell[2])});
     errors_.push_back(error);
     repeats_.push_back(0);
+    stream_.enter(StreamPart::connectivity);
     return Done{};
   }
 
   GridPoint code_cell(const GridPoint& near, std::uint32_t number, std::uint32_t context,
                       Index true_index) {
+    stream_.enter(number == kOrigin ? StreamPart::position : StreamPart::coordinates);
     std::uint32_t before = 0;
     const GridPoint truth = is_writing() ? true_cell(true_index) : GridPoint{};
     GridPoint cell = near;
@@ -137,8 +138,7 @@ class SurfaceCoder {
       seed[k] = static_cast<Index>(cells_.size());
       if (Status added = add_vertex(cell, truth[k], 0); !added) return added;
     }
-    const double size = length(centres_[seed[1]] - centres_[seed[0]]);
-    for (const Index vertex : seed) errors_[vertex] = 0.5 * size;
+    for (const Index v : seed) errors_[v] = 0.5 * length(centres_[seed[1]] - centres_[seed[0]]);
     front_.add_seed(seed, half_edges);
     note_gates(3);
     return walk();
@@ -308,6 +308,7 @@ class SurfaceCoder {
   }
 
   Status code_tip(Index corner, Index true_index, const Vector& predicted) {
+    stream_.enter(StreamPart::coordinates);
     const Gate& gate = front_[corner];
     const GridPoint truth = is_writing() ? true_cell(true_index) : GridPoint{};
     std::array<std::size_t, 3> axes{0, 1, 2};
@@ -321,7 +322,6 @@ class SurfaceCoder {
     const double expected = 0.5 * (errors_[gate.start] + errors_[gate.end]);
     const std::uint32_t scale = log_bucket(expected, 4, kErrors);
     const double size = length(centres_[gate.end] - centres_[gate.start]);
-    const std::uint32_t extent = log_bucket(size, 1, kErrors);
     const std::uint32_t spread =
         log_bucket(length(predicted - parallelogram_) / (0.3 * expected + 1), 3, kSpreads);
     const std::uint32_t least_error =
@@ -351,13 +351,13 @@ class SurfaceCoder {
       const std::uint32_t parts = bucket(std::abs(part) * 2 * kParts, kParts);
       const auto base = static_cast<std::int64_t>(nearest);
       const std::int64_t offset =
-          side * models_.code_signed(
-                     stream_, kResidual, rank,
-                     {(scale * kParts + parts) * 3 + rank, (extent * kMisses + missed) * 3 + rank,
-                      (class_ * kMisses + missed) * kParts + parts,
-                      (scale * kSpreads + spread) * kMisses + missed,
-                      (least_error * kErrors + apex_error) * 3 + rank, scale},
-                     side * (truth[k] - base), kMostBits);
+          side * models_.code_signed(stream_, kResidual, rank,
+                                     {(scale * kParts + parts) * 3 + rank,
+                                      (log_bucket(size, 1, kErrors) * kMisses + missed) * 3 + rank,
+                                      (class_ * kMisses + missed) * kParts + parts,
+                                      (scale * kSpreads + spread) * kMisses + missed,
+                                      (least_error * kErrors + apex_error) * 3 + rank, scale},
+                                     side * (truth[k] - base), kMostBits);
       cell[k] = base + offset;
       centre[k] = static_cast<double>(cell[k]);
       slope += normal_[k] * (centre[k] - predicted[k]);

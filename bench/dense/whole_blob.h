@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A mesh as a whole blob: what it takes in bytes, time and memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/result.h"
+#include "codec/blob.h"
+#include "codec/integer_solid.h"
+
+namespace watertight {
+
+struct WholeBlob {
+  std::size_t bytes = 0;
+  Mode mode = Mode::automatic;
+  double connectivity_bytes = 0;  // parts `connectivity` and `facets`
+  double encode_seconds =
+      0;  // of the processor; every mode tried, the chosen one written and read back
+  double decode_seconds = 0;
+  double peak_bytes = 0;  // growth of the resident set at its peak; 0 where it cannot be had
+};
+
+/// The mesh on `lattice`, or on the lattice of its integers. Errors: as OrientedBoundary::make().
+Result<OrientedBoundary> boundary_of(const IntegerSolid& mesh, const Lattice* lattice);
+
+/// Automatic mode without source order. Ends the program if another solid comes back.
+WholeBlob whole_blob(const OrientedBoundary& boundary, std::uint8_t models);
+
+}  // namespace watertight

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cli/progress.h"
+#include "pipeline/container.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {
@@ -249,6 +250,30 @@ TEST_CASE_METHOD(Fixture, "encode and decode return the document") {
   CHECK(run("validate x.wt").status == 0);
   CHECK(run("encode - -o - < in.city.jsonl > y.wt").status == 0);
   CHECK(read("y.wt") == read("x.wt"));
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "decode writes a file for each document, and other commands refuse several") {
+  std::string other = kValid;
+  other.replace(other.find("100.0"), 5, "900.0");
+  ContainerWriter writer;
+  for (const std::string& text : {kValid, other}) {
+    auto document = read_document(as_bytes(text), Format::city_json_seq);
+    REQUIRE(document);
+    const auto encoded = encode_document(*std::move(document), nullptr, {});
+    REQUIRE(encoded);
+    for (const StoredFeature& feature : encoded->document.features) REQUIRE(writer.add(feature));
+  }
+  const auto file = std::move(writer).finish();
+  REQUIRE(file);
+  write("two.wt", std::string(as_text(*file)));
+  REQUIRE(run("decode two.wt -o ./out.city.jsonl").status == 0);
+  CHECK(read("out.city.jsonl") == kValid);
+  CHECK(read("out-2.city.jsonl") == other);
+  CHECK(run("decode two.wt -o -").status == 2);
+  const Ran refused = run("validate two.wt");
+  CHECK(refused.status == 2);
+  CHECK(refused.output.find("2 documents") != std::string::npos);
 }
 
 TEST_CASE_METHOD(Fixture, "encode writes nothing when a solid is invalid") {

@@ -35,8 +35,16 @@ struct Texts {
   std::vector<std::uint64_t> sizes;
 };
 
+/// False when there are more than may still come.
+bool take_items(std::uint64_t count, std::uint64_t& items_left) {
+  if (count > items_left) return false;
+  items_left -= count;
+  return true;
+}
+
 /// False when the texts do not hold a feature.
-bool read_feature(ByteReader& reader, std::uint64_t documents, Texts& texts) {
+bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& items_left,
+                  Texts& texts) {
   bool is_in_range = true;
   ContainerFeature& feature = texts.part.features.emplace_back();
   feature.document = reader.varint();
@@ -45,7 +53,7 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, Texts& texts) {
   feature.stored.srid = read_index(reader, is_in_range);
   feature.stored.skeleton = read_text(reader);
   const std::uint64_t count = reader.varint();
-  if (count > reader.remaining()) return false;  // a solid takes more than one byte
+  if (!take_items(count, items_left)) return false;
   for (std::uint64_t i = 0; i < count && !reader.failed() && is_in_range; ++i) {
     StoredSolid& solid = feature.stored.solids.emplace_back();
     solid.object_id = read_text(reader);
@@ -58,10 +66,10 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, Texts& texts) {
 }
 
 /// False when the texts are none of a part that follows so many documents.
-bool read_texts(ByteView bytes, std::uint64_t documents, Texts& texts) {
+bool read_texts(ByteView bytes, std::uint64_t documents, std::uint64_t& items_left, Texts& texts) {
   ByteReader reader(bytes);
   const std::uint64_t added = reader.varint();
-  if (added > reader.remaining()) return false;
+  if (!take_items(added, items_left)) return false;
   for (std::uint64_t i = 0; i < added && !reader.failed(); ++i) {
     ContainerDocument& document = texts.part.new_documents.emplace_back();
     document.format = read_text(reader);
@@ -70,9 +78,9 @@ bool read_texts(ByteView bytes, std::uint64_t documents, Texts& texts) {
     document.framing.assign(framing.begin(), framing.end());
   }
   const std::uint64_t features = reader.varint();
-  if (reader.failed() || features > reader.remaining()) return false;
+  if (reader.failed() || !take_items(features, items_left)) return false;
   for (std::uint64_t i = 0; i < features; ++i) {
-    if (!read_feature(reader, documents + added, texts)) return false;
+    if (!read_feature(reader, documents + added, items_left, texts)) return false;
   }
   return reader.remaining() == 0;
 }
@@ -142,7 +150,7 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
   if (!text) return text.error();
   texts_left_ -= text->size();
   Texts texts;
-  if (!read_texts(as_bytes(*text), documents_, texts)) {
+  if (!read_texts(as_bytes(*text), documents_, items_left_, texts)) {
     return malformed("malformed texts of a Watertight file");
   }
   ContainerPart& part = texts.part;

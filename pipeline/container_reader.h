@@ -47,13 +47,21 @@ class ContainerReader {
   Result<std::optional<ContainerPart>> next();
 
  private:
+  // Texts may be compressed a thousandfold, so what they name is bounded by the bytes of the file.
+  static constexpr std::uint64_t kFreeItems = 65'536;
+  static constexpr std::uint64_t kItemsPerByte = 4;
+
   ContainerReader(ByteView parts, const Limits& limits)
-      : parts_(parts), limits_(limits), texts_left_(limits.bytes) {}
+      : parts_(parts),
+        limits_(limits),
+        texts_left_(limits.bytes),
+        items_left_(kFreeItems + kItemsPerByte * parts.size()) {}
   Error malformed(std::string message) const;
 
   ByteReader parts_;
   Limits limits_;
   std::uint64_t texts_left_;  // bytes of all texts that may still come
+  std::uint64_t items_left_;  // documents, features and solids that may still come
   std::uint64_t documents_ = 0;
 };
 

@@ -275,6 +275,21 @@ TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
   }
 }
 
+TEST_CASE("texts that name more features than their file has bytes for are refused") {
+  ByteWriter texts;
+  texts.varint(1);
+  texts.varint(3);
+  texts.append(as_bytes("off"));
+  texts.append(Bytes(2));  // header and framing
+  texts.varint(200'000);
+  texts.append(Bytes(6 * 200'000));
+  const Bytes bomb = file_of(texts, {}, {});
+  CHECK(bomb.size() < 1000);
+  const auto documents = decode_container(bomb);
+  REQUIRE_FALSE(documents);
+  CHECK(documents.error().code == ErrorCode::malformed);
+}
+
 TEST_CASE("the texts of all parts together stay below the limit of bytes") {
   const Bytes container = container_of(row_of_boxes(40));
   Limits limits;

@@ -23,4 +23,4 @@ unseen=(hamburg_576_5950 capetown_cput_surface capetown_cput_solid vienna_fichte
 options=()
 for set in "${unseen[@]}"; do options+=(--exclude "$set"); done
 "$bin/train_models" "$corpus" "${options[@]}" ${model:+--out "$model"}
-echo "${options[@]}" | sed 's/--exclude/--unseen/g'
+echo "${options[@]/--exclude/--unseen}"

@@ -80,7 +80,7 @@ constexpr std::int64_t kWeightLimit = 8 << 16;
 constexpr std::uint32_t kMaxMixed = 1000;
 
 /// The step size of a weight set that has seen `mixed` decisions, in 1/4096.
-std::int64_t mixing_rate(std::uint32_t mixed) { return 20 + 1600 / (16 + mixed); }
+std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
 
 std::int32_t first_weight(std::uint32_t inputs) {
   return static_cast<std::int32_t>((4U << 16) / (3U + inputs));

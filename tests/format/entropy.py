@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The entropy coder and the models of a blob, from docs/format.md, "Entropy coding"."""
+
+
+class Malformed(Exception):
+    """A blob that no encoder writes."""
+
+
+class NotRead(Exception):
+    """A part of the format that this decoder does not know."""
+
+
+def crc32c(data):
+    """The CRC-32C (Castagnoli, reflected) of bytes."""
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc = CRC_TABLE[(crc ^ byte) & 255] ^ (crc >> 8)
+    return crc ^ 0xFFFFFFFF
+
+
+def crc_table():
+    """The remainders of the 256 bytes."""
+    table = []
+    for byte in range(256):
+        for _ in range(8):
+            byte = (byte >> 1) ^ (0x82F63B78 if byte & 1 else 0)
+        table.append(byte)
+    return table
+
+
+CRC_TABLE = crc_table()
+SQUASH_POINTS = [int(word) for word in """
+    22 28 36 47 60 77 98 126 162 208 267 342 439 562 720 922 1179 1506 1921 2446 3108 3938 4971 6249 7812 9702 11955
+    14595 17625 21025 24743 28693 32768 36843 40793 44511 47911 50941 53581 55834 57724 59287 60565 61598 62428 63090
+    63615 64030 64357 64614 64816 64974 65097 65194 65269 65328 65374 65410 65438 65459 65476 65489 65500 65508 65514
+    """.split()]
+
+
+def squash(x):
+    """The probability, of 65536, at x in the logistic domain."""
+    i, r = (x + 2048) >> 6, (x + 2048) & 63
+    return (SQUASH_POINTS[i] * (64 - r) + SQUASH_POINTS[i + 1] * r) >> 6
+
+
+def stretch_table():
+    """The inverse of squash for 4096 probabilities."""
+    table, x = [], -2047
+    for k in range(4096):
+        while x < 2047 and squash(x) < 16 * k + 8:
+            x += 1
+        table.append(x)
+    return table
+
+
+STRETCH = stretch_table()
+
+
+def clamp(value, low, high):
+    """The value, moved into low..high."""
+    return max(low, min(high, value))
+
+
+def cap(x, m):
+    """The class of x among 0..m - 1."""
+    return min(max(x, 0), m - 1)
+
+
+class Stream:
+    """Reads decisions from bytes."""
+
+    def __init__(self, data):
+        self.data, self.at, self.low, self.high, self.code = data, 0, 0, 0xFFFFFFFF, 0
+        for _ in range(4):
+            self.shift()
+
+    def shift(self):
+        """Takes one byte more into the window: zeros past the end, at most four."""
+        if self.at >= len(self.data) + 4:
+            raise Malformed("truncated stream")
+        byte = self.data[self.at] if self.at < len(self.data) else 0
+        self.code, self.at = (self.code << 8 | byte) & 0xFFFFFFFF, self.at + 1
+
+    def bit(self, p):
+        """One decision that is 1 with the probability p / 65536."""
+        split = self.low + ((self.high - self.low) * p >> 16)
+        bit = int(self.code <= split)
+        if bit:
+            self.high = split
+        else:
+            self.low = split + 1
+        while (self.low ^ self.high) >> 24 == 0:
+            self.low = self.low << 8 & 0xFFFFFFFF
+            self.high = self.high << 8 & 0xFFFFFFFF | 255
+            self.shift()
+        return bit
+
+    def plain(self, bits):
+        """A number of that many plain bits, high ones first."""
+        value = 0
+        for _ in range(bits):
+            value = 2 * value + self.bit(32768)
+        return value
+
+    def uniform(self, n):
+        """A number below n, all equally likely."""
+        if n < 1:
+            raise Malformed("a choice among nothing")
+        width = n.bit_length() - 1
+        short = (2 << width) - n
+        value = self.plain(width)
+        return value if value < short else 2 * value + self.plain(1) - short
+
+    def finish(self):
+        """Requires that the stream ends as a writer ends it."""
+        done = self.at - 4
+        for size in range(5):
+            unit = 1 << (32 - 8 * size)
+            value = -(-self.low // unit) * unit
+            if value <= self.high:
+                tail = value.to_bytes(4, "big")[:size]
+                if self.data[done:] != tail or len(self.data) != done + size:
+                    raise Malformed("another ending of the stream")
+                return
+
+
+class Family:
+    """Decisions that share tables of counters and sets of weights."""
+
+    def __init__(self, inputs, selectors=1):
+        self.tables = [[[1 << 21, 0] for _ in range(size)] for size in inputs]
+        first = 262144 // (3 + len(inputs))
+        self.weights = [[first] * len(inputs) + [0] for _ in range(selectors)]
+        self.seen = [0] * selectors
+
+    def mixed(self, contexts, selector):
+        """The counters' inputs and the probability, of 65536, that they give together."""
+        if len(contexts) != len(self.tables) or min(contexts) < 0:
+            raise IndexError("contexts")
+        inputs = []
+        for table, context in zip(self.tables, contexts):
+            p, n = table[context]
+            inputs.append(STRETCH[p >> 10] * (2560 * n // (10 * n + 4)) >> 8)
+        inputs.append(64)
+        total = sum(w * x for w, x in zip(self.weights[selector], inputs))
+        x = clamp(total >> 16, -2047, 2047)
+        return inputs, clamp(squash(x), 32, 65504)
+
+    def learn(self, contexts, selector, inputs, p, bit):
+        """Moves weights and counters towards the bit."""
+        error = (65536 if bit else 0) - p
+        rate = 10 + 1600 // (16 + self.seen[selector])
+        self.seen[selector] = min(self.seen[selector] + 1, 1000)
+        self.weights[selector] = [clamp(w + (error * rate * x >> 20), -524288, 524288)
+                                  for w, x in zip(self.weights[selector], inputs)]
+        for table, context in zip(self.tables, contexts):
+            counter = table[context]
+            target = (1 << 22) - 1 if bit else 0
+            counter[0] += (target - counter[0]) * (131072 // (2 * counter[1] + 3)) >> 16
+            counter[1] = min(counter[1] + 1, 250)
+
+    def read(self, stream, contexts, selector=0):
+        """The next decision."""
+        inputs, p = self.mixed(contexts, selector)
+        bit = stream.bit(p)
+        self.learn(contexts, selector, inputs, p, bit)
+        return bit
+
+
+class Number:
+    """The three families of a number."""
+
+    def __init__(self, inputs, selectors=1):
+        self.length = Family([48 * size for size in inputs], selectors)
+        self.mantissa = Family([48 * 7] + [16 * 7 * size for size in inputs], 3)
+        self.sign = Family(inputs, selectors)
+        self.families = [self.length, self.mantissa, self.sign]
+
+    def read(self, stream, contexts, selector=0, bits=62):
+        """The next number of at most that many bits."""
+        length = 0
+        while not self.length.read(stream, [48 * c + min(length, 47) for c in contexts], selector):
+            length += 1
+            if length > bits:
+                raise Malformed("a number that is too long")
+        if length <= 1:
+            return length
+        value = 1
+        for j in range(min(length - 1, 3)):
+            chosen = [7 * min(length, 47) + value - 1]
+            chosen += [7 * (16 * c + min(length, 15)) + value - 1 for c in contexts]
+            value = 2 * value + self.mantissa.read(stream, chosen, j)
+        rest = length - value.bit_length()
+        return value << rest | stream.plain(rest)
+
+    def read_signed(self, stream, contexts, selector=0, bits=62):
+        """The next number with a sign."""
+        value = self.read(stream, contexts, selector, bits)
+        return -value if value and self.sign.read(stream, contexts, selector) else value
+
+
+def varint(data, at):
+    """The LEB128 number at a place of bytes, and the place after it."""
+    value, shift = 0, 0
+    while True:
+        if at >= len(data):
+            raise Malformed("truncated varint")
+        byte = data[at]
+        at += 1
+        value |= (byte & 127) << shift
+        shift += 7
+        if byte < 128:
+            if byte == 0 and shift > 7:
+                raise Malformed("overlong varint")
+            return value, at
+
+
+class Bank:
+    """Families and numbers by their names, in the order of the format."""
+
+    def __init__(self, families, numbers):
+        self.named = {name: Family(*shape) for name, shape in families.items()}
+        self.named.update({name: Number(*shape) for name, shape in numbers.items()})
+        self.families = []
+        for model in self.named.values():
+            self.families += model.families if isinstance(model, Number) else [model]
+
+    def load(self, state):
+        """Starts from a prior, the saved state of a bank."""
+        at, unobserved = 0, 0
+        for family in self.families:
+            for table in family.tables:
+                for counter in table:
+                    if unobserved:
+                        unobserved -= 1
+                        continue
+                    n = state[at]
+                    at += 1
+                    if n:
+                        counter[:] = int.from_bytes(state[at:at + 2], "little") << 6, n
+                        at += 2
+                    else:
+                        unobserved, at = varint(state, at)
+                        unobserved -= 1
+        for family in self.families:
+            for weights in family.weights:
+                for i in range(len(weights)):
+                    weights[i] = 16 * int.from_bytes(state[at:at + 2], "little", signed=True)
+                    at += 2
+        for family in self.families:
+            for i in range(len(family.seen)):
+                family.seen[i] = state[at]
+                at += 1
+        if unobserved or at != len(state):
+            raise Malformed("a prior of another shape")
+
+
+class Models:
+    """Bound to a stream: what a mode reads."""
+
+    def __init__(self, stream, bank):
+        self.stream, self.bank = stream, bank.named
+
+    def decide(self, name, *contexts, selector=0):
+        """A decision of a family."""
+        return self.bank[name].read(self.stream, contexts, selector)
+
+    def number(self, name, *contexts, selector=0, bits=62):
+        """A number."""
+        return self.bank[name].read(self.stream, contexts, selector, bits)
+
+    def signed(self, name, *contexts, selector=0, bits=62):
+        """A signed number."""
+        return self.bank[name].read_signed(self.stream, contexts, selector, bits)
+
+    def uniform(self, n):
+        """A number below n."""
+        return self.stream.uniform(n)

@@ -29,8 +29,9 @@ constexpr std::uint32_t kFloors = 5;
 // Kinds of kSize.
 constexpr std::uint32_t kSizeKinds = 6;
 
-constexpr std::size_t kHeights = 16;  // remembered
-constexpr std::size_t kReach = 5;     // columns back that parallelograms are made of
+constexpr std::size_t kHeights = 16;       // remembered
+constexpr std::size_t kReach = 5;          // columns back that parallelograms are made of
+constexpr std::size_t kKnownReach = 4096;  // of the page's columns that are looked at for one
 
 int length_of(std::int64_t value) {
   return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(value)));
@@ -73,6 +74,7 @@ class Columns {
   const PageMemory& memory_;
   std::vector<GridPoint>& points_;
   const Limits& limits_;
+  bool has_too_many_ = false;
 
   std::vector<Place> places_;
   std::vector<std::size_t> first_;  // writing: place -> first point; one more entry
@@ -85,6 +87,7 @@ class Columns {
   std::vector<std::int64_t> floors_before_;
   std::size_t known_ = 0;  // place in memory_.columns behind the last column
   bool was_known_ = false;
+  bool is_over_limit_ = false;
 };
 
 /// A number of `length` bits: the first three under models, the others plain.
@@ -174,7 +177,8 @@ bool Columns::code_known_place(Place truth, Place& place) {
   std::uint64_t rank = 0;
   bool is_known = false;
   constexpr std::uint64_t kMost = 64;
-  for (std::size_t i = known_; i < known.size() && known[i][0] < end_x && count < kMost; ++i) {
+  const std::size_t end = std::min(known.size(), known_ + kKnownReach);
+  for (std::size_t i = known_; i < end && known[i][0] < end_x && count < kMost; ++i) {
     if (known[i][1] < min_[1] || known[i][1] >= end_y) continue;
     if (known[i] == truth) {
       is_known = true;
@@ -190,7 +194,7 @@ bool Columns::code_known_place(Place truth, Place& place) {
   if (!is_known) return false;
   rank = models_.bank.code_number(stream_, models_.first_number + kRank, 0, {amount}, rank, 6);
   std::uint64_t place_rank = 0;
-  for (std::size_t i = known_; i < known.size() && known[i][0] < end_x; ++i) {
+  for (std::size_t i = known_; i < end && known[i][0] < end_x; ++i) {
     if (known[i][1] < min_[1] || known[i][1] >= end_y) continue;
     if (place_rank++ < rank) continue;
     place = known[i];
@@ -326,7 +330,10 @@ bool Columns::code_floors(std::size_t number, std::span<const GridPoint> truth) 
       models_.bank.code_number(stream_, models_.first_number + kFloors, 0, {before},
                                is_reading() ? 0 : truth.size() - 1, 40) +
       1;
-  if (count > limits_.vertices - decoded_.size()) return false;
+  if (count > limits_.vertices - decoded_.size()) {
+    is_over_limit_ = true;
+    return false;
+  }
   std::vector<std::int64_t> floors;
   for (std::uint64_t i = 0; i < count; ++i) {
     if (stream_.failed()) return false;
@@ -363,7 +370,8 @@ Status Columns::run() {
   for (std::size_t i = 0; i < place_count_; ++i) {
     std::span<const GridPoint> floors;
     if (!is_reading()) floors = std::span(points_).subspan(first_[i], first_[i + 1] - first_[i]);
-    if (!code_floors(i, floors)) return malformed;
+    if (code_floors(i, floors)) continue;
+    return is_over_limit_ ? Error{ErrorCode::limit_exceeded, "too many vertices"} : malformed;
   }
   if (is_reading()) points_ = std::move(decoded_);
   return Done{};

@@ -94,6 +94,8 @@ class Walk {
         front_(static_cast<Index>(points.size())),
         face_shapes_(delaunay.faces.size(), kUnknownShape),
         mark_(points.size(), 0),
+        closing_mark_(points.size(), 0),
+        closing_sides_(points.size(), 0),
         steps_left_(std::uint64_t{1024} * points.size() + (1U << 20)) {}
 
   Status run(BoundaryMesh& mesh);
@@ -158,11 +160,10 @@ class Walk {
   std::vector<Candidate> distant_;
   std::vector<Index> mark_;
   Index stamp_ = 0;
-  struct Closing {
-    Index vertex;
-    std::uint32_t sides;
-  };
-  std::vector<Closing> closing_;
+  std::vector<Index>
+      closing_;  // vertices beyond open edges; marked with the stamp, and which edges
+  std::vector<Index> closing_mark_;
+  std::vector<std::uint8_t> closing_sides_;
   std::vector<std::pair<Triangle, std::uint32_t>> seeds_;  // with the context
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> pushed_;  // half-edge -> its probability in the queue
@@ -186,13 +187,12 @@ void Walk::mark_used(Index gate) {
   closing_.clear();
   mark_[a] = mark_[b] = mark_[front_.corner(gate)] = stamp_;
   const auto close = [&](Index w, std::uint32_t side) {
-    for (Closing& closing : closing_) {
-      if (closing.vertex == w) {
-        closing.sides |= side;
-        return;
-      }
+    if (closing_mark_[w] != stamp_) {
+      closing_mark_[w] = stamp_;
+      closing_sides_[w] = 0;
+      closing_.push_back(w);
     }
-    closing_.push_back({w, side});
+    closing_sides_[w] = static_cast<std::uint8_t>(closing_sides_[w] | side);
   };
   std::uint64_t steps = 1;
   for (Index h = front_.first_at(a); h != kNone; h = front_.next_at(h), ++steps) {
@@ -212,9 +212,7 @@ bool Walk::is_possible(Index w) const {
 }
 
 std::uint32_t Walk::state_of(Index w) const {
-  for (const Closing& closing : closing_) {
-    if (closing.vertex == w) return 1 + closing.sides;
-  }
+  if (closing_mark_[w] == stamp_) return 1U + closing_sides_[w];
   if (front_.is_closed(w)) return 5;
   return front_.is_used(w) ? 1 : 0;
 }
@@ -276,7 +274,7 @@ void Walk::list_candidates(Index gate) {
     if (possible) describe(frame, a, b, w, face, count, candidates_.emplace_back());
   }
   for (std::size_t i = 0; i < closing_.size(); ++i) {
-    const Index w = closing_[i].vertex;
+    const Index w = closing_[i];
     if (!is_possible(w)) continue;
     mark_[w] = stamp_;
     describe(frame, a, b, w, kNone, count, candidates_.emplace_back());

@@ -169,8 +169,10 @@ Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, cons
 void PageMemory::add(const IntegerSolid& solid) {
   if (solid.vertices.empty()) return;
   last_position = *std::min_element(solid.vertices.begin(), solid.vertices.end());
+  const auto known = static_cast<std::ptrdiff_t>(columns.size());
   for (const GridPoint& vertex : solid.vertices) columns.push_back({vertex[0], vertex[1]});
-  std::sort(columns.begin(), columns.end());
+  std::sort(columns.begin() + known, columns.end());
+  std::inplace_merge(columns.begin(), columns.begin() + known, columns.end());
   columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
 }
 

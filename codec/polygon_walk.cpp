@@ -195,8 +195,7 @@ void SurfaceWalk::begin_interior(Index truth_half) {
     const PolygonSurface& truth = truth_->surface;
     const Index ring = truth.ring_of[truth_half];
     Index steps_here = 0;
-    for (Index half = gate_; half < result_.surface.vertex.size() && steps_here < kGateLimit;
-         ++half) {
+    for (Index half = gate_; half < last_gate() && steps_here < kGateLimit; ++half) {
       if (result_.surface.twin[half] != kNone) continue;
       if (truth.ring_of[truth.twin[half_truth_[half]]] == ring) {
         start = Start::gate;
@@ -223,10 +222,10 @@ void SurfaceWalk::begin_interior(Index truth_half) {
   if (code(kRingStart, 0, {1}, start == Start::gate)) {
     steps = static_cast<Index>(models_.code_number(stream_, kGateSteps, 0, {0}, steps, 9));
     Index gate = gate_;
-    for (; gate < result_.surface.vertex.size(); ++gate) {
+    for (; gate < last_gate(); ++gate) {
       if (result_.surface.twin[gate] == kNone && steps-- == 0) break;
     }
-    if (gate >= result_.surface.vertex.size()) {
+    if (gate >= last_gate()) {
       return fail(ErrorCode::malformed, "an interior ring begins at no edge");
     }
     return begin_at_gate(gate, truth_ ? truth_->surface.twin[half_truth_[gate]] : kNone);

@@ -7,6 +7,7 @@
 // along it instead of splits; interior rings, several shells and several components.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -15,11 +16,12 @@
 
 namespace watertight::polygon {
 
-inline constexpr Index kLoopLimit = 64;   // steps along the front that are looked at
-inline constexpr Index kGateLimit = 256;  // open half-edges among which an interior ring begins
-inline constexpr Index kChainLimit = 64;  // unfinished fans of facets at one vertex
-inline constexpr Index kUnaryLimit = 24;  // of ring sizes and degrees
-inline constexpr int kCountBits = 28;     // of ring sizes and degrees
+inline constexpr Index kLoopLimit = 64;    // steps along the front that are looked at
+inline constexpr Index kGateLimit = 256;   // open half-edges among which an interior ring begins
+inline constexpr Index kGateReach = 4096;  // half-edges among which those are looked for
+inline constexpr Index kChainLimit = 64;   // unfinished fans of facets at one vertex
+inline constexpr Index kUnaryLimit = 24;   // of ring sizes and degrees
+inline constexpr int kCountBits = 28;      // of ring sizes and degrees
 inline constexpr std::uint32_t kLevels = 3;
 
 /// Facets around a vertex that are known and follow each other: `in` comes to the vertex and
@@ -62,6 +64,10 @@ class SurfaceWalk {
   void code_ring(Index gate, Index truth_half, bool is_interior);
   void begin_at_gate(Index gate, Index truth_half);
   void begin_interior(Index truth_half);
+  /// Behind the half-edges at which an interior ring may begin.
+  Index last_gate() const {
+    return gate_ + std::min(static_cast<Index>(result_.surface.vertex.size()) - gate_, kGateReach);
+  }
   void begin_at_vertex(Index vertex, Index truth_half);
   void extend_forward();
   void extend_backward();

@@ -74,7 +74,6 @@ class Columns {
   const PageMemory& memory_;
   std::vector<GridPoint>& points_;
   const Limits& limits_;
-  bool has_too_many_ = false;
 
   std::vector<Place> places_;
   std::vector<std::size_t> first_;  // writing: place -> first point; one more entry

@@ -33,7 +33,6 @@ constexpr std::uint32_t kCloses = 4;
 constexpr std::uint32_t kIsManifold = 0;
 constexpr std::uint32_t kIsListed = 1;  // 4 by the length of the list
 constexpr std::uint32_t kIsMore = 5;
-constexpr std::uint32_t kHasSeed = 6;
 constexpr std::uint32_t kRares = 7;
 
 constexpr std::size_t kInputs = 8;
@@ -152,7 +151,6 @@ class Walk {
   WalkFront front_;
   std::vector<FaceShape> face_shapes_;
   bool is_manifold_ = true;
-  Index component_ = 0;
   std::vector<Index> source_;  // writing: half-edge given for the first half-edge of each triangle
 
   // About the gate at hand. A vertex is marked with the stamp once it is listed or ruled out.

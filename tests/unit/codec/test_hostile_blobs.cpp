@@ -10,9 +10,10 @@
 
 using namespace watertight;
 
-TEST_CASE("decode rejects every truncated prefix") {
+TEST_CASE("decode rejects truncated blobs") {
   for (const Bytes& blob : generated::seed_blobs(1)) {
-    for (std::size_t size = 0; size < blob.size(); ++size) {
+    const std::size_t step = blob.size() < 200 ? 1 : blob.size() / 100;
+    for (std::size_t size = 0; size < blob.size(); size += step) {
       const auto decoded = decode(ByteView(blob).first(size));
       REQUIRE_FALSE(decoded);
     }

@@ -313,6 +313,7 @@ class Positions:
             if det * det > 0.25 * square(d) * square(t):
                 s = dot2(t, minus(b, a)) / det
                 return (CLOSING, (a[0] + rounded(-d[1] * s), a[1] + rounded(d[0] * s)), d, False)
+            return CORNER, a, d, False
         if self.before2 is None:
             d, frame = (0, 0), EDGE
         else:

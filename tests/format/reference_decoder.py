@@ -12,7 +12,7 @@ import pathlib
 import struct
 import sys
 
-from entropy import Bank, Malformed, Models, NotRead, Stream, cap, crc32c, varint
+from entropy import Bank, Malformed, Models, NotRead, Stream, crc32c, varint
 from order import Order, order_bank
 from polygon_positions import Positions
 from polygon_surface import Walk, polygon_bank
@@ -21,6 +21,17 @@ from solid import Solid
 RAW, BITMAP, WALK, POLYGON, PARALLELOGRAM = 0, 1, 2, 3, 5
 MODE_NAMES = {RAW: "raw", BITMAP: "bitmap", WALK: "walk", POLYGON: "polygon",
               PARALLELOGRAM: "parallelogram"}
+# Every golden blob is in one of these lists; the check fails on any other outcome.
+GOLDENS_READ = set("""
+    box-neutral box-polygon box-raw cavities-polygon doubles-raw edge-polygon holes-polygon
+    terrain-polygon terrain-shuffled torus-polygon
+    """.split())
+GOLDENS_NOT_READ = set("""
+    box-bitmap box-canonical cavity doubles-bitmap hole-touches-ring holes-in-facets
+    schoenhardt-steiner schoenhardt-unrecovered shells-touch-at-edge stated-tolerances
+    terrain-unrecovered box-walk cavities-walk edge-walk holes-walk terrain-walk torus-walk
+    torus-parallelogram
+    """.split())
 IMPLIED_TOLERANCES = (0.01, 20.0, 0.0)
 
 
@@ -292,13 +303,31 @@ def main(arguments):
         for name in arguments[1:]:
             print(json.dumps(as_json(decode(models, pathlib.Path(name)))))
         return 0
-    for path in sorted(pathlib.Path(arguments[2]).glob("*.blob")):
+    return check(models, pathlib.Path(arguments[2]))
+
+
+def check(models, folder):
+    """Reads the golden blobs; each must be read, or be of a mode stated as not read."""
+    wrong, found = 0, {}
+    for path in sorted(folder.glob("*.blob")):
         try:
             page = decode(models, path)
-            print(path.name, "read:", page.names, f"{page.checksums[0]:08x}")
-        except (Malformed, NotRead) as error:
-            print(path.name, type(error).__name__, error)
-    return 0
+            found[path.stem] = f"read, mode {page.names[0]}, checksum {page.checksums[0]:08x}"
+        except NotRead as error:
+            found[path.stem] = f"not read by this decoder: {error}"
+        except Malformed as error:
+            found[path.stem] = f"malformed: {error}"
+        print(f"{path.stem}: {found[path.stem]}")
+    for name in sorted(GOLDENS_READ | GOLDENS_NOT_READ | set(found)):
+        expected = "read," if name in GOLDENS_READ else "not read by this decoder"
+        if name not in GOLDENS_READ | GOLDENS_NOT_READ:
+            expected = "a golden listed in this script"
+        if not found.get(name, "missing").startswith(expected):
+            print(f"FAILED: {name} is {found.get(name, 'missing')}; expected: {expected}")
+            wrong += 1
+    print(f"{len(GOLDENS_READ)} goldens to be read, {len(GOLDENS_NOT_READ)} of modes not read, "
+          f"{wrong} otherwise")
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// In the place of delaunay/canonical_delaunay.cpp where CGAL is not to be linked: whole coordinates
+// in a box below 2^30, which is what our own Delaunay tetrahedralization takes. Only mode bitmap
+// knows others. A linker that finds this definition first leaves cgal_delaunay.cpp out.
+#include "delaunay/canonical_delaunay.h"
+#include "delaunay/small_delaunay.h"
+
+namespace watertight {
+
+Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
+                                             std::uint64_t max_tetrahedra,
+                                             const std::function<bool()>& is_cancelled) {
+  if (is_small_grid(points)) return small_delaunay(points, max_tetrahedra, is_cancelled);
+  return Error{ErrorCode::unsupported, "coordinates that only CGAL takes"};
+}
+
+}  // namespace watertight

@@ -5,6 +5,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "codec/blob.h"
+#include "codec/columns.h"
 #include "codec/encode_boundary.h"
 #include "mutated_blobs.h"
 
@@ -87,4 +88,38 @@ TEST_CASE("a changed acceptance, lattice or order does not pass the checksum") {
     }
   }
   CHECK(decoded_changed == 0);
+}
+
+TEST_CASE("models that come to expect one answer do not make a long blob without end") {
+  for (const Mode mode :
+       {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
+    const auto blob = encode_boundary(generated::torus(8, 4), {}, {.mode = mode});
+    REQUIRE(blob);
+    for (const unsigned byte : {0x00U, 0x55U, 0xFFU}) {
+      for (const std::size_t kept : {std::size_t{10}, blob->size() / 2, blob->size() - 5}) {
+        Bytes bomb(blob->begin(), blob->begin() + static_cast<std::ptrdiff_t>(kept));
+        bomb.resize(20000, static_cast<std::uint8_t>(byte));
+        CHECK_FALSE(decode(bomb, Limits{.vertices = 100'000}));
+      }
+    }
+  }
+}
+
+TEST_CASE("of the columns of a page only those nearby are looked at for each of a solid") {
+  // All of the page's are in the solid's range of x and none is in its range of y: without a bound
+  // each place would look at all of them, which takes minutes.
+  PageMemory memory;
+  for (std::int64_t i = 0; i < 2'000'000; ++i) memory.columns.push_back({i / 4, 1'000'000 + i % 4});
+  std::vector<GridPoint> points;
+  for (std::int64_t i = 0; i < 20'000; ++i) points.push_back({i * 25, i % 7, 0});
+  const ModelLayout layout{kColumnFamilies, kColumnNumbers};
+  ModelBank writing(layout);
+  EntropyStream writer = EntropyStream::writer();
+  REQUIRE(code_columns(writer, {writing, 0, 0}, memory, points, {}));
+  const Bytes bytes = std::move(writer).finish();
+  ModelBank reading(layout);
+  EntropyStream reader = EntropyStream::reader(bytes);
+  std::vector<GridPoint> read;
+  REQUIRE(code_columns(reader, {reading, 0, 0}, memory, read, {}));
+  CHECK(read == points);
 }

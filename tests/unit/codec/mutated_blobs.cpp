@@ -15,8 +15,8 @@ namespace {
 
 using Offset = std::ptrdiff_t;
 
-constexpr std::array kModes{Mode::raw,     Mode::bitmap, Mode::walk,
-                            Mode::polygon, Mode::parallelogram};
+constexpr std::array kModes{Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon,
+                            Mode::parallelogram};
 
 /// Adaptive models come to expect what is always the same: cheap decisions without end.
 void replace_tail(Bytes& blob, Random& random) {

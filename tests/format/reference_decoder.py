@@ -12,6 +12,7 @@ import pathlib
 import struct
 import sys
 
+from bitmap import Bits, Facets, delaunay, read_bitmap
 from entropy import Bank, Malformed, Models, NotRead, Stream, crc32c, varint
 from order import Order, order_bank
 from polygon_positions import Positions
@@ -23,14 +24,13 @@ MODE_NAMES = {RAW: "raw", BITMAP: "bitmap", WALK: "walk", POLYGON: "polygon",
               PARALLELOGRAM: "parallelogram"}
 # Every golden blob is in one of these lists; the check fails on any other outcome.
 GOLDENS_READ = set("""
-    box-neutral box-polygon box-raw cavities-polygon doubles-raw edge-polygon holes-polygon
-    terrain-polygon terrain-shuffled torus-polygon
+    box-bitmap box-canonical box-neutral box-polygon box-raw cavities-polygon cavity doubles-bitmap
+    doubles-raw edge-polygon hole-touches-ring holes-in-facets holes-polygon schoenhardt-steiner
+    schoenhardt-unrecovered shells-touch-at-edge stated-tolerances terrain-polygon terrain-shuffled
+    terrain-unrecovered torus-polygon
     """.split())
 GOLDENS_NOT_READ = set("""
-    box-bitmap box-canonical cavity doubles-bitmap hole-touches-ring holes-in-facets
-    schoenhardt-steiner schoenhardt-unrecovered shells-touch-at-edge stated-tolerances
-    terrain-unrecovered box-walk cavities-walk edge-walk holes-walk terrain-walk torus-walk
-    torus-parallelogram
+    box-walk cavities-walk edge-walk holes-walk terrain-walk torus-walk torus-parallelogram
     """.split())
 IMPLIED_TOLERANCES = (0.01, 20.0, 0.0)
 
@@ -141,6 +141,29 @@ class Sections:
                 result.append((x + self.varint(), y + self.zigzag(), z + self.zigzag()))
         return result
 
+    def steiner(self):
+        """The section of Steiner vertices."""
+        result = []
+        for _ in range(self.varint()):
+            whole, self.at, point = self.data[self.at], self.at + 1, []
+            for axis in range(3):
+                if whole >> axis & 1:
+                    point.append(self.zigzag())
+                else:
+                    point.append(struct.unpack_from("<d", self.data, self.at)[0])
+                    self.at += 8
+            result.append(tuple(point))
+        return result
+
+    def unrecovered(self):
+        """The section of unrecovered faces."""
+        result, a = [], 0
+        for _ in range(self.varint()):
+            a += self.varint()
+            b = a + 1 + self.varint()
+            result.append((a, b, b + 1 + self.varint()))
+        return result
+
     def facets(self):
         """The section of listed facets."""
         shells = []
@@ -195,8 +218,8 @@ class Page:
         if self.mode == POLYGON:
             points, shells = self.read_polygon()
             on_grid = True
-        elif self.mode == RAW:
-            points, shells = self.read_raw()
+        elif self.mode in (RAW, BITMAP):
+            points, shells = self.read_raw() if self.mode == RAW else self.read_bitmap()
             on_grid = False
         else:
             raise NotRead("mode " + self.names[-1])
@@ -248,6 +271,20 @@ class Page:
         """Mode raw."""
         points = self.read_section().vertices()
         return points, self.read_section().facets()
+
+    def read_bitmap(self):
+        """Mode bitmap."""
+        flags = self.stream.plain(8)
+        points = self.read_section().vertices()
+        nodes = points + (self.read_section().steiner() if flags & 4 else [])
+        bits = Bits(self.read_section().data, flags & 16)
+        faces = read_bitmap(bits, delaunay(nodes))
+        if flags & 8:
+            faces += self.read_section().unrecovered()
+        section = self.read_section()
+        if flags & 64:
+            return points, section.facets()
+        return points, Facets(Bits(section.data, flags & 32), nodes, len(points), faces).read()
 
     def read_polygon(self):
         """Mode polygon: fans, joined where they are copies."""

@@ -61,7 +61,7 @@ struct BlobInfo {
   bool has_order = false;
   struct Part {
     std::string name;
-    double bytes = 0;  // what its decisions take; fractions where they share bytes
+    double bytes = 0;  // what its decisions take, to 0.01; fractions where they share bytes
   };
   std::vector<Part> parts;
   std::uint32_t checksum = 0;  // over what the blob says; of a page, over all its solids

@@ -2,6 +2,7 @@
 #include "codec/page_bytes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -118,7 +119,8 @@ std::vector<BlobInfo::Part> parts_of(const PageSolid& solid, const PageContents&
   for (std::size_t i = 0; i < kStreamParts; ++i) {
     const std::uint64_t cost = solid.costs[i] + (is_alone && i == 0 ? page.frame_cost : 0);
     if (cost == 0) continue;
-    parts.push_back({kNames[i], static_cast<double>(cost) / (8.0 * (1 << kCostBits))});
+    const double bytes = static_cast<double>(cost) / (8.0 * (1 << kCostBits));
+    parts.push_back({kNames[i], std::round(bytes * 100) / 100});
   }
   if (is_alone) parts.push_back({"checksum", static_cast<double>(checksum_bytes(page.kind))});
   return parts;

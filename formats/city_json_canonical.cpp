@@ -105,7 +105,11 @@ Json arranged_solid(const Json& values, const Arranged& solid, bool has_rings) {
       }
       ring += solid.source->rings_of(source_facet).size();
     }
-    out.push_back(is_listed ? std::move(shell) : of_shell);
+    if (is_listed) {
+      out.push_back(std::move(shell));
+    } else {
+      out.push_back(of_shell);
+    }
   }
   return out;
 }

@@ -2,8 +2,9 @@
 #include "delaunay/canonical_order.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <utility>
+
+#include "delaunay/sort_by_vertices.h"
 
 namespace watertight {
 namespace {
@@ -19,32 +20,6 @@ Tetrahedron canonical_tetrahedron(Tetrahedron t) {
   }
   std::rotate(t.begin() + 1, std::min_element(t.begin() + 1, t.end()), t.end());
   return t;
-}
-
-/// Faces are told apart by their three vertices, tetrahedra by their first three: two with the same
-/// would lie on the same side of a face.
-const Triangle& key_of(const ListedFace& face) { return face.vertices; }
-Triangle key_of(const Tetrahedron& t) { return {t[0], t[1], t[2]}; }
-
-/// Sorts by the key: by counting as to its first vertex, then the few that share it.
-template <class Record>
-void sort_by_key(std::vector<Record>& records, Index vertex_count) {
-  std::vector<std::size_t> ends(std::size_t{vertex_count} + 1);
-  for (const Record& record : records) ++ends[key_of(record)[0] + 1];
-  for (std::size_t v = 0; v < vertex_count; ++v) ends[v + 1] += ends[v];
-  std::vector<Record> sorted(records.size());
-  for (const Record& record : records) sorted[ends[key_of(record)[0]]++] = record;
-  const auto rest = [](const Record& record) {
-    return std::uint64_t{key_of(record)[1]} << 32 | key_of(record)[2];
-  };
-  std::size_t begin = 0;
-  for (std::size_t v = 0; v < vertex_count; ++v) {
-    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
-              sorted.begin() + static_cast<std::ptrdiff_t>(ends[v]),
-              [&](const Record& a, const Record& b) { return rest(a) < rest(b); });
-    begin = ends[v];
-  }
-  records.swap(sorted);
 }
 
 }  // namespace
@@ -74,8 +49,12 @@ CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra,
   CanonicalDelaunay result;
   result.tetrahedra = std::move(tetrahedra);
   for (Tetrahedron& t : result.tetrahedra) t = canonical_tetrahedron(t);
-  sort_by_key(result.tetrahedra, vertex_count);
-  sort_by_key(faces, vertex_count);
+  // Faces are told apart by their three vertices, tetrahedra by their first three: two with the
+  // same would lie on the same side of a face.
+  sort_by_vertices(result.tetrahedra, vertex_count, [](const Tetrahedron& t) {
+    return Triangle{t[0], t[1], t[2]};
+  });
+  sort_by_vertices(faces, vertex_count, [](const ListedFace& face) { return face.vertices; });
   result.faces.reserve(faces.size());
   result.apexes.reserve(faces.size());
   for (const ListedFace& face : faces) {

@@ -16,6 +16,7 @@
 #include "delaunay/cancellation.h"
 #include "delaunay/complex.h"
 #include "delaunay/facet_surface.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 
@@ -207,38 +208,24 @@ class Examination {
   /// Regions are what unconstrained faces connect; region 0 is the outside. Each constrained face
   /// must separate an odd region from an even one.
   Checked check_regions() {
-    std::vector<std::vector<Index>> neighbours(data_.tetrahedra.size() + 1);
     const auto outside = static_cast<Index>(data_.tetrahedra.size());
+    DisjointSets sets(data_.tetrahedra.size() + 1);
     for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
       if (constraint_of_[f] != kNone) continue;
       const ComplexFace& face = complex_.faces[f];
-      const Index above = face.above == kNone ? outside : face.above;
-      const Index below = face.below == kNone ? outside : face.below;
-      neighbours[above].push_back(below);
-      neighbours[below].push_back(above);
+      sets.join(face.above == kNone ? outside : face.above,
+                face.below == kNone ? outside : face.below);
     }
-    region_of_.assign(neighbours.size(), kNone);
-    region_count_ = 0;
-    flood(outside, neighbours);
+    std::vector<Index> region_of_root(data_.tetrahedra.size() + 1, kNone);
+    region_of_root[sets.root(outside)] = 0;
+    region_of_.assign(data_.tetrahedra.size() + 1, 0);
+    region_count_ = 1;
     for (Index t = 0; t < outside; ++t) {
-      if (region_of_[t] == kNone) flood(t, neighbours);
+      Index& region = region_of_root[sets.root(t)];
+      if (region == kNone) region = region_count_++;
+      region_of_[t] = region;
     }
     return check_parity();
-  }
-
-  void flood(Index start, const std::vector<std::vector<Index>>& neighbours) {
-    std::vector<Index> pending{start};
-    region_of_[start] = region_count_;
-    while (!pending.empty()) {
-      const Index current = pending.back();
-      pending.pop_back();
-      for (const Index next : neighbours[current]) {
-        if (region_of_[next] != kNone) continue;
-        region_of_[next] = region_count_;
-        pending.push_back(next);
-      }
-    }
-    ++region_count_;
   }
 
   Checked check_parity() {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "delaunay/sort_by_vertices.h"
 #include "geometry/predicates.h"
 
 namespace watertight {
@@ -208,9 +209,7 @@ std::optional<ComplexFault> build_complex(const Tetrahedralization& data, Comple
     }
     for (const Side& side : sides_of(t, number)) sides.push_back(side);
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::pair(a.vertices, a.tetrahedron) < std::pair(b.vertices, b.tetrahedron);
-  });
+  sort_by_vertices(sides, data.points.size(), [](const Side& side) { return side.vertices; });
   for (const Side& side : sides) {
     if (complex.faces.empty() || complex.faces.back().vertices != side.vertices) {
       complex.faces.push_back({side.vertices, kNone, kNone});

@@ -20,6 +20,7 @@
 
 #include "base/assert.h"
 #include "delaunay/cancellation.h"
+#include "delaunay/sort_by_vertices.h"
 #include "geometry/predicates.h"
 
 namespace watertight {
@@ -35,7 +36,8 @@ using Edge = std::pair<Index, Index>;
 /// Faces by edge and faces by vertices.
 class DelaunayFaces {
  public:
-  explicit DelaunayFaces(const CanonicalDelaunay& delaunay) : faces_(delaunay.faces) {}
+  DelaunayFaces(const CanonicalDelaunay& delaunay, std::size_t vertex_count)
+      : faces_(delaunay.faces), vertex_count_(vertex_count) {}
 
   /// Place of a face in the sorted list, or kNone.
   Index find(Triangle triangle) const {
@@ -63,10 +65,11 @@ class DelaunayFaces {
       by_edge_.push_back({a, c, b});
       by_edge_.push_back({b, c, a});
     }
-    std::sort(by_edge_.begin(), by_edge_.end());
+    sort_by_vertices(by_edge_, vertex_count_, [](const Triangle& face) { return face; });
   }
 
   std::span<const Triangle> faces_;
+  std::size_t vertex_count_;
   std::vector<Triangle> by_edge_;
 };
 
@@ -325,7 +328,7 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTrian
   WATERTIGHT_ASSERT(canonical.first.size() == std::size_t{merged.facet_count()} + 1);
   FollowingTriangles result;
   Cancellation cancellation(is_cancelled);
-  DelaunayFaces faces(delaunay);
+  DelaunayFaces faces(delaunay, merged.vertex_count());
   std::vector<Index> local_of(merged.vertex_count(), kNone);
   for (Index facet = 0; facet < merged.facet_count(); ++facet) {
     const auto own =

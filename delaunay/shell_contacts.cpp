@@ -204,6 +204,7 @@ class ContactDivision {
     IntersectionOptions options;
     options.limit = kMostPairs;
     options.cancel = is_cancelled;
+    options.group_of = canonical_.facet_of;
     const auto pairs = intersecting_pairs(points_, canonical_.triangles, options);
     if (!pairs) return pairs.error();
     if (pairs->size() >= kMostPairs) {

@@ -35,6 +35,7 @@ class Search {
                  .triangles = triangles,
                  .boxes = {},
                  .tester = PairTester(points, triangles),
+                 .group_of = options.group_of,
                  .limit = options.limit,
                  .cancel = options.cancel} {}
 

@@ -31,6 +31,9 @@ struct IntersectionOptions {
   std::function<bool()> cancel = {};
   /// Threads that share the search, the caller's among them; the result does not depend on it.
   unsigned threads = 1;
+  /// If not empty, a group for each triangle: triangles of one group are known not to intersect and
+  /// are not compared.
+  std::span<const Index> group_of = {};
 };
 
 /// All pairs whose contact is an intersection (is_intersection), sorted by first, then second. If

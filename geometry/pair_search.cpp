@@ -161,6 +161,7 @@ bool PairSearch::compare(const PartMembers<D>& members, const PartBounds<D>& bou
     columns.for_overlapping(member, begin, [&](std::size_t j) {
       const BoxMember<D>& partner = partners[j];
       if (!bounds.owns(member, partner) || !outer.owns(member, partner)) return;
+      if (context_.are_of_one_group(member.triangle, partner.triangle)) return;
       const ContactClass contact = context_.tester.contact(first_planes_[i], partner_planes[j]);
       if (!is_intersection(contact)) return;
       const auto [a, b] = std::minmax(member.triangle, partner.triangle);

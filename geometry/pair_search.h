@@ -23,10 +23,15 @@ struct SearchContext {
   std::span<const Triangle> triangles;
   std::span<const BoxMember<3>> boxes;  // by triangle
   PairTester tester;
+  std::span<const Index> group_of;  // by triangle, or empty
   std::uint64_t limit = 0;
   std::function<bool()> cancel;  // asked by the caller's thread only
   std::atomic<bool> is_ended = false;
   std::atomic<bool> is_cancelled = false;
+
+  bool are_of_one_group(Index a, Index b) const {
+    return !group_of.empty() && group_of[a] == group_of[b];
+  }
 
   void ask() {
     if (!cancel || is_ended || !cancel()) return;

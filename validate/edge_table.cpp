@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validate/edge_table.h"
 
+#include <algorithm>
+#include <numeric>
 #include <tuple>
 
 namespace watertight {

@@ -3,8 +3,6 @@
 // The ring edges of a shell, grouped by their two vertices. Internal to validate/.
 #pragma once
 
-#include <algorithm>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -28,27 +26,6 @@ struct CornerPlace {
 };
 /// Cost: logarithmic in the rings of the facet.
 CornerPlace place_of_corner(const Solid& solid, Index facet, Index corner);
-
-/// Union-find with path halving; the smallest member is the root.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index root(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(Index a, Index b) {
-    a = root(a);
-    b = root(b);
-    if (a > b) std::swap(a, b);
-    parent_[b] = a;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 /// The edges of shells, one shell at a time.
 class EdgeTable {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/predicates.h"
 #include "tessellate/ring_problems.h"
 #include "validate/box_tree.h"
@@ -179,18 +179,12 @@ void check_normals(ExaminedSolid& examined, Index facet) {
 
 /// Number of parts the triangles of a facet fall into when joined over edges.
 std::size_t count_parts(std::span<const Triangle> triangles) {
-  std::vector<std::size_t> parent(triangles.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets sets(triangles.size());
   struct Side {
-    Index low, high;
-    std::size_t triangle;
+    Index low, high, triangle;
   };
   std::vector<Side> sides;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
+  for (Index t = 0; t < triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [low, high] = std::minmax({triangles[t][i], triangles[t][(i + 1) % 3]});
       sides.push_back({low, high, t});
@@ -202,10 +196,10 @@ std::size_t count_parts(std::span<const Triangle> triangles) {
   std::size_t parts = triangles.size();
   for (std::size_t i = 1; i < sides.size(); ++i) {
     if (sides[i].low != sides[i - 1].low || sides[i].high != sides[i - 1].high) continue;
-    const std::size_t a = root(sides[i - 1].triangle);
-    const std::size_t b = root(sides[i].triangle);
-    if (a == b) continue;
-    parent[b] = a;
+    const Index a = sides[i - 1].triangle;
+    const Index b = sides[i].triangle;
+    if (sets.root(a) == sets.root(b)) continue;
+    sets.join(a, b);
     --parts;
   }
   return parts;

@@ -8,8 +8,8 @@
 
 #include "geometry/common_lattice.h"
 #include "geometry/crs.h"
+#include "geometry/disjoint_sets.h"
 #include "tessellate/facets.h"
-#include "validate/edge_table.h"
 #include "validate/finding_kinds.h"
 #include "validate/solid_overlap.h"
 

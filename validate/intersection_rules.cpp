@@ -140,6 +140,8 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   options.limit = limit;
   options.cancel = cancel_;
   options.threads = threads_;
+  // Triangles of one facet meet in common vertices and edges only, by construction.
+  options.group_of = examined_.triangles().facet_of;
   const auto found = intersecting_pairs(vertices_, triangles_, options);
   if (!found) {
     contacts_.incomplete = "the search for intersections was ended: " + to_string(found.error());
@@ -149,8 +151,7 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   std::vector<FacetPair> pairs;
   for (const IntersectingPair& pair : *found) {
     const auto [first, second] = std::minmax({facet_of(pair.first), facet_of(pair.second)});
-    // Triangles of one facet meet in common vertices and edges only, by construction.
-    if (first != second) pairs.push_back({first, second, pair});
+    pairs.push_back({first, second, pair});
   }
   std::vector<TrianglePair> triangle_pairs;
   for (const FacetPair& pair : pairs) {

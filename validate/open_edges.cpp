@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/predicates.h"
 #include "validate/box_tree.h"
 

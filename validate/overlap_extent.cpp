@@ -10,8 +10,8 @@
 #include <map>
 #include <utility>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/predicates.h"
-#include "validate/edge_table.h"
 #include "validate/solid_overlap.h"
 
 namespace watertight {

@@ -5,6 +5,7 @@
 // they are not.
 #include <map>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "validate/edge_table.h"
 #include "validate/open_edges.h"

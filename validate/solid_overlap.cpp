@@ -25,11 +25,11 @@
 
 #include <algorithm>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "geometry/point_in_solid.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_triangle.h"
-#include "validate/edge_table.h"
 
 namespace watertight {
 namespace {

@@ -215,6 +215,24 @@ TEST_CASE("any number of threads finds the same pairs, also those up to a limit"
   }
 }
 
+TEST_CASE("triangles of one group are not compared") {
+  for (const Soup& soup : hard_soups()) {
+    std::vector<Index> group_of;
+    for (Index t = 0; t < soup.triangles.size(); ++t) group_of.push_back(t / 3);
+    auto expected = intersecting_pairs(soup.points, soup.triangles, {.limit = 100'000'000});
+    REQUIRE(expected.has_value());
+    const std::size_t all = expected->size();
+    std::erase_if(*expected, [&](const IntersectingPair& pair) {
+      return group_of[pair.first] == group_of[pair.second];
+    });
+    CHECK(expected->size() < all);
+    const auto pairs = intersecting_pairs(soup.points, soup.triangles,
+                                          {.limit = 100'000'000, .group_of = group_of});
+    REQUIRE(pairs.has_value());
+    CHECK(*pairs == *expected);
+  }
+}
+
 TEST_CASE("only the caller's thread is asked whether to end a search with threads") {
   const Soup soup = crossing_spheres();
   const auto caller = std::this_thread::get_id();

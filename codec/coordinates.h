@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The vertex section and the Steiner section of a blob (docs/format.md): integer coordinates as
+// The vertex section and the Steiner section of a blob (docs/format-0.md): integer coordinates as
 // differences of sorted vertices, anything else as IEEE doubles.
 #pragma once
 

@@ -3,7 +3,7 @@
 // The pivot walk: the connectivity of a triangulated boundary, given its vertices and their
 // canonical Delaunay tetrahedralization. From a first triangle on, each step names the triangle
 // beyond the open edge that is most certain, among the Delaunay faces around that edge before all
-// others. For mode walk (docs/format.md, "The walk").
+// others. For mode walk (docs/format-walk.md, "The walk").
 // Source: research of this project; the idea of a front over Delaunay faces is that of Lewiner et
 // al., "GEncode: geometry-driven compression for general meshes" (2006).
 #pragma once

@@ -2,7 +2,7 @@
 //
 // From a triangulated boundary to its polygons: one decision per edge says whether it lies inside a
 // facet; rings follow, and a few bits say which ring of a facet and which shell is the exterior
-// one. For mode walk (docs/format.md, "Facets of triangles").
+// one. For mode walk (docs/format-walk.md, "Facets of triangles").
 #pragma once
 
 #include <array>

@@ -130,8 +130,13 @@ Result<Lattice> lattice_at(const PageGrid& grid, const GridPoint& origin) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Aligned aligned = align(grid.phase[axis], grid.step[axis], radix);
     std::optional<GridNumber> number;
+    Wide moved = 0;
     if (aligned.step > 0) {
-      number = normalized(aligned.origin + origin[axis] * aligned.step, aligned.exponent, radix);
+      // A hostile step, scaled, times a hostile origin would leave 128 bits.
+      if (!__builtin_mul_overflow(Wide{origin[axis]}, aligned.step, &moved) &&
+          !__builtin_add_overflow(moved, aligned.origin, &moved)) {
+        number = normalized(moved, aligned.exponent, radix);
+      }
     } else if (origin[axis] == 0) {
       number = grid.phase[axis];  // so far apart that they have no common unit of 128 bits
     }

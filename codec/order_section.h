@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The order section of a blob: how the source had arranged shells, facets, rings, ring starts and
-// vertices (docs/format.md). Semantics, materials and textures of a document follow their facets
+// vertices (docs/format-0.md). Semantics, materials and textures of a document follow their facets
 // by it.
 #pragma once
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Pages: up to 256 solids on one grid in one entropy coded stream, whose models go on learning and
-// which shares columns and positions (docs/format.md, "Pages"). A page is read as a whole. For bulk
-// export; single blobs (codec/blob.h) are for rows.
+// which shares columns and positions (docs/format.md, "Container"). A page is read as a whole. For
+// bulk export; single blobs (codec/blob.h) are for rows.
 #pragma once
 
 #include <span>

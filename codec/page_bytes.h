@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The bytes of blobs and pages: magic, version, model number, the stream, the checksum
-// (docs/format.md, "Layout"). Between the public functions and SolidCoder.
+// (docs/format.md, "Container"). Between the public functions and SolidCoder.
 #pragma once
 
 #include <cstdint>

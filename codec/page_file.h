@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A file of pages with an index: solids in the order they were given, packed into pages of those
-// that share one, and each found again without reading the others (docs/format.md, "Page files").
+// that share one, and each found again without reading the others (docs/format.md, "Container").
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 //
 // What the pivot walk sees of the geometry: small classes that say how well a triangle continues a
 // surface. From IEEE + - * / and sqrt in a fixed order, compared with constants: the same on every
-// machine. Part of the format (docs/format.md, "The walk").
+// machine. Part of the format (docs/format-walk.md, "The walk").
 #pragma once
 
 #include <array>

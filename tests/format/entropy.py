@@ -6,8 +6,35 @@ class Malformed(Exception):
     """A blob that no encoder writes."""
 
 
-class NotRead(Exception):
-    """A part of the format that this decoder does not know."""
+class Unsupported(Exception):
+    """Another version, model set or mode."""
+
+
+class LimitExceeded(Exception):
+    """More of something than the stream may bring, or than the caller allows."""
+
+
+class Limits:
+    """What a stream of so many bytes may bring, by "Limits"; no caller sets others here."""
+
+    def __init__(self, size):
+        self.most = self.vertices_left = 4096 + 256 * size
+
+    @staticmethod
+    def check(count, most):
+        """Requires a count within a limit."""
+        if count > most:
+            raise LimitExceeded(f"{count} of at most {most}")
+
+    def vertices(self, count):
+        """Vertices of the solid at hand."""
+        self.check(count, self.vertices_left)
+
+    def facets(self, count):
+        """Facets of the solid at hand."""
+        self.check(count, self.most)
+
+    rings = shells = facets
 
 
 def crc32c(data):
@@ -212,6 +239,20 @@ def varint(data, at):
             if byte == 0 and shift > 7:
                 raise Malformed("overlong varint")
             return value, at
+
+
+def bank_bytes(data, number):
+    """The states of the banks in a model file."""
+    if data[:4] != b"WTM" + bytes([number]):
+        raise Malformed("model file")
+    at, states = 4, {}
+    for name in ("frame", "order", "polygon", "walk", "parallelogram"):
+        size, at = varint(data, at)
+        states[name] = data[at:at + size]
+        at += size
+    if at != len(data):
+        raise Malformed("model file")
+    return states
 
 
 class Bank:

@@ -40,8 +40,8 @@ class Order:
 
     def look(self, ring):
         """Facing and size of a facet."""
-        points = [self.solid.vertices[v] for v in ring]
-        o, n = points[0], [0, 0, 0]
+        points = [tuple(map(float, self.solid.vertices[v])) for v in ring]
+        o, n = points[0], [0.0, 0.0, 0.0]
         for p, q in zip(points, points[1:] + points[:1]):
             for i, (u, v) in enumerate(((1, 2), (2, 0), (0, 1))):
                 n[i] += (p[u] - o[u]) * (q[v] - o[v]) - (p[v] - o[v]) * (q[u] - o[u])
@@ -84,7 +84,10 @@ class Order:
             for i, member in enumerate(members):
                 place[member] = i
             result.append(place)
-        return result + [self.starts]
+        result.append(self.starts)
+        if not any(self.starts) and all(part == sorted(part) for part in result[:4]):
+            raise Malformed("an order that orders nothing")
+        return result
 
     def read_shell(self, shell):
         """The facets of a shell, with their rings."""

@@ -26,11 +26,11 @@ class Chain:
         self.into, self.out = into, out
 
 
-class Walk:
+class Surface:
     """Reads the surface: rings of half-edges with twins, facets, shells."""
 
-    def __init__(self, models):
-        self.m = models
+    def __init__(self, models, limits):
+        self.m, self.limits = models, limits
         self.origin, self.twin, self.ring_of, self.facet_of = [], [], [], []
         self.remaining, self.degree, self.chains, self.created_in = [], [], [], []
         self.ring_begin, self.ring_end = [], []
@@ -56,6 +56,7 @@ class Walk:
         """All shells."""
         shell = 0
         while True:
+            self.limits.shells(shell + 1)
             self.shell_begin.append(len(self.facet_level))
             component = 0
             while True:
@@ -80,6 +81,7 @@ class Walk:
         """One facet with all its rings."""
         self.gate = gate
         facet = len(self.facet_level)
+        self.limits.facets(facet + 1)
         self.facet_level.append(level)
         self.facet_rings.append([])
         Ring(self, facet, 0).read()
@@ -93,6 +95,7 @@ class Walk:
 
     def new_vertex(self, level, n):
         """A vertex and its degree."""
+        self.limits.vertices(len(self.degree) + 1)
         d, last = 2, self.last_degree
         while True:
             s = cap(d - 2, 8)
@@ -123,6 +126,7 @@ class Ring:
 
     def read(self):
         """The whole ring."""
+        self.w.limits.rings(len(self.w.ring_begin) + 1)
         self.begin()
         if not self.closed:
             self.size = self.read_size()

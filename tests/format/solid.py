@@ -8,7 +8,11 @@ from entropy import Malformed, crc32c
 class Solid:
     """Vertices on the lattice; shells of facets of rings of vertex numbers, exterior ones first."""
 
-    def __init__(self, vertices, shells):
+    def __init__(self, vertices, shells, limits):
+        limits.vertices(len(vertices))
+        limits.shells(len(shells))
+        limits.facets(sum(map(len, shells)))
+        limits.rings(sum(len(facet) for shell in shells for facet in shell))
         order = sorted(range(len(vertices)), key=lambda v: vertices[v])
         number = {v: i for i, v in enumerate(order)}
         self.vertices = [tuple(vertices[v]) for v in order]
@@ -35,6 +39,8 @@ class Solid:
 
     def check_closed(self):
         """Requires that each directed edge is met by its reverse exactly as often."""
+        if not self.shells or not all(self.shells) or not all(self.facets):
+            raise Malformed("a shell or facet of nothing")
         balance = {}
         for ring in self.rings:
             if len(ring) < 3 or len(set(ring)) < len(ring):

@@ -118,6 +118,16 @@ void read_all(ByteView file, const Limits& limits = {}) {
 
 }  // namespace
 
+TEST_CASE("a lattice whose origin leaves 128 bits on the way is refused") {
+  PageGrid grid;
+  grid.step.fill(GridNumber{(std::int64_t{1} << 62) + 1, 18});
+  grid.phase.fill(GridNumber{1, 0});
+  REQUIRE(lattice_at(grid, GridPoint{}));
+  const auto lattice = lattice_at(grid, GridPoint{0, std::int64_t{1} << 54, 0});
+  REQUIRE_FALSE(lattice);
+  CHECK(lattice.error().code == ErrorCode::malformed);
+}
+
 TEST_CASE("a page gives back each of its solids, in source order or canonical") {
   const auto solids = generated::all(5);
   for (const Boundaries& group : groups_of(solids)) {

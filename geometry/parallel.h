@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Independent pieces of work on several threads. Private to geometry/.
+// Independent pieces of work on several threads.
 #pragma once
 
 #include <cstddef>

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "formats/packed_text.h"
+#include "geometry/parallel.h"
 #include "pipeline/groups.h"
-#include "pipeline/parallel.h"
 #include "pipeline/pipeline.h"
 #include "validate/report_json.h"
 
@@ -73,7 +73,7 @@ Result<std::vector<Processed>> process_all(Document& document, EngineWorkers* wo
   std::vector<Processed> processed(features.size());
   std::size_t done = 0;
   std::mutex mutex;
-  parallel_for(features.size(), options.threads, [&](std::size_t i) {
+  for_each_piece(features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
     if (is_cancelled(options)) return;
     processed[i] = process(std::move(features[i]), document, workers, options);
     const std::lock_guard lock(mutex);

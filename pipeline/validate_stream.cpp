@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/parallel.h"
+#include "geometry/parallel.h"
 
 namespace watertight {
 namespace {
@@ -50,7 +50,7 @@ class Stream {
   Result<StreamOutcome> run() {
     const std::size_t threads = std::max<std::size_t>(options_.threads, 1);
     most_in_flight_ = kFeaturesInFlight * threads;
-    parallel_for(threads, threads, [this](std::size_t) { work(); });
+    for_each_piece(threads, static_cast<unsigned>(threads), [this](std::size_t, bool) { work(); });
     if (failure_) return *std::move(failure_);
     return outcome_;
   }

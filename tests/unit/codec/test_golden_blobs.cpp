@@ -8,8 +8,10 @@
 #include <sstream>
 #include <string>
 
+#include "codec/page_file.h"
 #include "geometry/canonical_form.h"
 #include "golden_blobs.h"
+#include "golden_pages.h"
 
 using namespace watertight;
 
@@ -18,6 +20,8 @@ namespace {
 std::string path_of(const std::string& name, const char* version = "version-1") {
   return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + version + "/" + name + ".blob";
 }
+
+std::string folder_of_goldens() { return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/version-1/"; }
 
 Bytes file_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -32,6 +36,31 @@ void check_decoded(const generated::Golden& golden, const Bytes& bytes) {
         (golden.keep_order ? source : canonical_form(golden.boundary).boundary.solid()));
   CHECK(decoded->info.acceptance == golden.acceptance);
   CHECK((decoded->info.steiner_vertices > 0) == golden.with_steiner);
+}
+
+/// The solids of a page or page file, by their numbers.
+Result<std::vector<Solid>> solids_of(ByteView bytes, bool is_file) {
+  std::vector<Solid> solids;
+  if (!is_file) {
+    const auto page = decode_page(bytes);
+    if (!page) return page.error();
+    for (const Decoded& decoded : *page) solids.push_back(decoded.solid);
+    return solids;
+  }
+  const auto reader = PageFileReader::open(bytes);
+  if (!reader) return reader.error();
+  for (std::uint64_t number = 0; number < reader->size(); ++number) {
+    const auto decoded = reader->solid(number);
+    if (!decoded) return decoded.error();
+    solids.push_back(decoded->solid);
+  }
+  return solids;
+}
+
+void write_file(const std::string& path, ByteView bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
 }
 
 /// The bytes of the worked example: in its fenced lines, the pairs of hex digits before two spaces.
@@ -89,13 +118,60 @@ TEST_CASE("encoding a golden solid again gives the golden bytes") {
   }
 }
 
+TEST_CASE("golden pages and page files decode to their solids") {
+  for (const auto& golden : generated::golden_pages()) {
+    INFO(golden.file);
+    const bool is_file = golden.file.ends_with(".wtpf");
+    const auto solids = solids_of(file_of(folder_of_goldens() + golden.file), is_file);
+    REQUIRE(solids);
+    REQUIRE(solids->size() == golden.solids.size());
+    for (std::size_t i = 0; i < solids->size(); ++i) {
+      CHECK((*solids)[i] == golden.solids[i].solid());
+    }
+  }
+}
+
+TEST_CASE("encoding golden pages again gives the golden bytes") {
+  for (const auto& golden : generated::golden_pages()) {
+    INFO(golden.file);
+    const auto page = generated::encode_golden_page(golden);
+    REQUIRE(page);
+    CHECK(*page == file_of(folder_of_goldens() + golden.file));
+  }
+}
+
+TEST_CASE("bytes that no encoder writes are refused with the error that the specification states") {
+  for (const auto& refused : generated::refused()) {
+    INFO(refused.name);
+    if (refused.kind == "blob") {
+      const auto decoded = decode(refused.bytes);
+      REQUIRE_FALSE(decoded);
+      CHECK(decoded.error().code == refused.error);
+    } else {
+      const auto solids = solids_of(refused.bytes, refused.kind == "wtpf");
+      REQUIRE_FALSE(solids);
+      CHECK(solids.error().code == refused.error);
+    }
+  }
+}
+
+TEST_CASE("the golden table of refused bytes is the one that is tested") {
+  const Bytes table = file_of(folder_of_goldens() + "refused.csv");
+  CHECK(as_text(table) == generated::refused_csv());
+}
+
 TEST_CASE("write golden blobs", "[.][write]") {
   for (const auto& golden : generated::goldens()) {
     const auto blob = generated::encode_golden(golden);
     REQUIRE(blob);
-    std::ofstream file(path_of(golden.name), std::ios::binary);
-    file.write(reinterpret_cast<const char*>(blob->data()),
-               static_cast<std::streamsize>(blob->size()));
+    write_file(path_of(golden.name), *blob);
     WARN(golden.name << ": " << blob->size());
   }
+  for (const auto& golden : generated::golden_pages()) {
+    const auto page = generated::encode_golden_page(golden);
+    REQUIRE(page);
+    write_file(folder_of_goldens() + golden.file, *page);
+    WARN(golden.file << ": " << page->size());
+  }
+  write_file(folder_of_goldens() + "refused.csv", as_bytes(generated::refused_csv()));
 }

@@ -8,44 +8,52 @@
 namespace watertight {
 
 DelaunayEdges::DelaunayEdges(const CanonicalDelaunay& delaunay, Index vertex_count) {
-  // Each face under the lesser vertex of each of its edges, with the greater one.
+  // Each face under the lesser vertex of each of its edges.
   std::vector<Index> first(vertex_count + std::size_t{1}, 0);
   for (const Triangle& face : delaunay.faces) {
     first[face[0] + 1] += 2;
     first[face[1] + 1] += 1;
   }
   for (Index v = 0; v < vertex_count; ++v) first[v + 1] += first[v];
+  faces_.resize(first[vertex_count]);
+  std::vector<Index> end(first.begin(), first.end() - 1);
+  for (Index i = 0; i < delaunay.faces.size(); ++i) {
+    const Triangle& face = delaunay.faces[i];
+    faces_[end[face[0]]++] = i;
+    faces_[end[face[0]]++] = i;
+    faces_[end[face[1]]++] = i;
+  }
+
+  // Vertices and faces are one more than edges and tetrahedra (Euler).
+  const std::size_t edges = vertex_count + delaunay.faces.size() - delaunay.tetrahedra.size();
+  first_edge_.reserve(first.size());
+  greater_.reserve(edges);
+  first_face_.reserve(edges);
   struct Use {
     Index greater;
     Index face;
   };
-  std::vector<Use> uses(first[vertex_count]);
-  std::vector<Index> end(first.begin(), first.end() - 1);
-  for (Index i = 0; i < delaunay.faces.size(); ++i) {
-    const Triangle& face = delaunay.faces[i];
-    uses[end[face[0]]++] = {face[1], i};
-    uses[end[face[0]]++] = {face[2], i};
-    uses[end[face[1]]++] = {face[2], i};
-  }
-
-  first_edge_.reserve(first.size());
-  faces_.reserve(uses.size());
+  std::vector<Use> uses;                  // of one vertex: its edges with their faces
   std::vector<Index>& smaller_end = end;  // reused: per vertex the count of smaller neighbours
   std::fill(smaller_end.begin(), smaller_end.end(), 0);
   for (Index v = 0; v < vertex_count; ++v) {
     first_edge_.push_back(static_cast<Index>(greater_.size()));
-    const auto begin = uses.begin() + first[v];
-    const auto stop = uses.begin() + first[v + 1];
-    std::sort(begin, stop, [](const Use& x, const Use& y) {
+    uses.clear();
+    for (Index at = first[v]; at < first[v + 1]; ++at) {
+      const Triangle& face = delaunay.faces[faces_[at]];
+      if (face[0] == v) uses.push_back({face[1], faces_[at++]});
+      uses.push_back({face[2], faces_[at]});
+    }
+    std::sort(uses.begin(), uses.end(), [](const Use& x, const Use& y) {
       return x.greater != y.greater ? x.greater < y.greater : x.face < y.face;
     });
-    for (auto use = begin; use != stop; ++use) {
-      if (use == begin || use->greater != (use - 1)->greater) {
-        first_face_.push_back(static_cast<Index>(faces_.size()));
-        greater_.push_back(use->greater);
-        ++smaller_end[use->greater];
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      if (i == 0 || uses[i].greater != uses[i - 1].greater) {
+        first_face_.push_back(first[v] + static_cast<Index>(i));
+        greater_.push_back(uses[i].greater);
+        ++smaller_end[uses[i].greater];
       }
-      faces_.push_back(use->face);
+      faces_[first[v] + i] = uses[i].face;
     }
   }
   first_edge_.push_back(static_cast<Index>(greater_.size()));

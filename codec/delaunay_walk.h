@@ -46,7 +46,7 @@ extern const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies;
 /// On return, in either direction, `mesh` is complete and in the order of the walk.
 /// Errors: not_encodable (a surface that is not closed, has equal triangles, or edges that meet
 /// more than twice in one component; vertices of extreme degrees); reading: malformed.
-/// Cost: O(n log n), a few microseconds per triangle; bounded by about 1,000 steps per point.
+/// Cost: O(n log n), a few microseconds per triangle; bounded by 256 steps per point.
 Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
                           std::span<const Point> points, const CanonicalDelaunay& delaunay,
                           BoundaryMesh& mesh);

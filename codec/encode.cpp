@@ -16,6 +16,8 @@ struct Source {
   Acceptance acceptance;
 };
 
+constexpr std::size_t kModes = 5;
+
 constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
                            .vertices = kNone,
                            .facets = kNone,
@@ -40,7 +42,16 @@ Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
   return sources.size();
 }
 
-/// In automatic mode, what cannot be stored in the mode that seemed best is stored raw.
+/// Automatic mode will try another mode than the one that it took.
+void decline_mode(PageSolid& solid) {
+  if (solid.mode == Mode::raw) return;
+  solid.declined |= 1U << static_cast<unsigned>(solid.mode);
+  solid.mode = Mode::automatic;
+  solid.plain = {};
+}
+
+/// In automatic mode, what does not come back in the mode that seemed best is stored raw; where so
+/// few bytes tell so much that a decoder would refuse them, the next best modes are taken.
 Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
                               const EncodeOptions& options) {
   PageContents page;
@@ -50,18 +61,21 @@ Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
   }
   page.frame = frame_of(sources.front().boundary->solid(), sources.front().acceptance);
   const bool may_fall_back = options.mode == Mode::automatic;
-  for (std::size_t attempt = 0; attempt <= sources.size(); ++attempt) {
+  for (std::size_t attempt = 0; attempt <= sources.size() + kModes; ++attempt) {
     auto bytes = write_page_bytes(page, kind, options.certificate);
     if (!bytes) return bytes;
     const auto difference = first_difference(*bytes, kind, sources, page.solids, options);
     if (difference && *difference == sources.size()) return bytes;
+    const bool is_too_short = !difference && difference.error().code == ErrorCode::limit_exceeded;
     if (!may_fall_back) {
       std::string reason = "the blob decodes to another solid";
       if (!difference) reason = "the blob does not decode: " + difference.error().message;
+      if (is_too_short) reason = "so regular that its bytes would pass for a bomb";
       return Error{ErrorCode::not_encodable, std::move(reason)};
     }
     for (std::size_t i = 0; i < page.solids.size(); ++i) {
-      if (difference && *difference != i) continue;
+      if (is_too_short) decline_mode(page.solids[i]);
+      if (is_too_short || (difference && *difference != i)) continue;
       page.solids[i].mode = Mode::raw;
       page.solids[i].plain = {};
     }

@@ -332,6 +332,16 @@ Status SolidCoder::code_order(PageSolid& solid) {
   return Done{};
 }
 
+void SolidCoder::take_from_limits(const Solid& solid) {
+  const auto take = [](std::uint64_t& limit, std::uint64_t count) {
+    limit -= std::min(limit, count);
+  };
+  take(limits_.vertices, solid.vertex_count());
+  take(limits_.facets, solid.facet_count());
+  take(limits_.rings, solid.ring_count());
+  take(limits_.shells, solid.shell_count());
+}
+
 Status SolidCoder::code(PageSolid& solid) {
   const auto before = costs_of(stream_);
   stream_.enter(StreamPart::frame);
@@ -349,8 +359,7 @@ Status SolidCoder::code(PageSolid& solid) {
   for (std::size_t i = 0; i < kStreamParts; ++i) solid.costs[i] -= before[i];
   if (stream_.failed()) return Error{ErrorCode::malformed, "truncated or malformed solid"};
   if (!is_plain) memory_.add(solid.gridded.solid);
-  limits_.vertices -=
-      std::min<std::uint64_t>(limits_.vertices, solid.canonical->boundary.solid().vertex_count());
+  take_from_limits(solid.canonical->boundary.solid());
   return Done{};
 }
 
@@ -368,6 +377,7 @@ Mode SolidCoder::cheapest_mode(const PageSolid& solid) const {
   Mode best = Mode::automatic;
   std::uint64_t least = ~std::uint64_t{0};
   for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {
+    if ((solid.declined >> static_cast<unsigned>(mode) & 1U) != 0) continue;
     const auto needed = cost(solid, mode);
     if (needed && *needed < least) {
       least = *needed;

@@ -42,8 +42,9 @@ struct PageSolid {
   /// Reading: made by code(). With the identity as its order unless it keeps one.
   std::optional<CanonicalSolid> canonical;
   bool keeps_order = false;
-  GriddedSolid gridded;   // of raw and bitmap only the origin counts
-  bool has_grid = false;  // writing: it may take the modes for integers
+  GriddedSolid gridded;        // of raw and bitmap only the origin counts
+  bool has_grid = false;       // writing: it may take the modes for integers
+  std::uint32_t declined = 0;  // writing: bit m is set if automatic mode must not take mode m
   PlainSections plain;
   /// What mode bitmap found, when reading.
   Composition composition;
@@ -51,7 +52,7 @@ struct PageSolid {
   std::array<std::uint64_t, kStreamParts> costs{};
 };
 
-/// Codes the solids of one page, one after the other.
+/// Codes the solids of one page, one after the other. The limits are for all of them together.
 class SolidCoder {
  public:
   SolidCoder(EntropyStream& stream, ModelSet& models, const Frame& frame, const Limits& limits)
@@ -65,7 +66,8 @@ class SolidCoder {
   /// mode cannot hold it or is not for integers. Changes nothing.
   std::optional<std::uint64_t> cost(const PageSolid& solid, Mode mode) const;
 
-  /// The mode for integers that costs least, Mode::automatic if none can hold the solid.
+  /// The mode for integers that costs least, of those not declined; Mode::automatic if none can
+  /// hold the solid.
   Mode cheapest_mode(const PageSolid& solid) const;
 
  private:
@@ -75,6 +77,7 @@ class SolidCoder {
   void code_origin(PageSolid& solid);
   Status rebuild(PageSolid& solid) const;
   Status code_order(PageSolid& solid);
+  void take_from_limits(const Solid& solid);
 
   EntropyStream& stream_;
   ModelSet& models_;

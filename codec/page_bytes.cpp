@@ -21,10 +21,9 @@ constexpr std::uint8_t kMagic[2] = {'W', 'T'};
 constexpr std::uint8_t kPageFlag = 0x80;  // of the version byte
 constexpr std::size_t kHeaderBytes = 4;
 
-// What a stream of so many bytes may bring forth, whatever its caller allows: see docs/format.md,
-// "Limits".
+// What a stream of so many bytes may bring forth: docs/format.md, "Limits".
 constexpr std::uint64_t kFreeVertices = 4096;
-constexpr std::uint64_t kVerticesPerByte = 256;
+constexpr std::uint64_t kVerticesPerByte = 64;
 
 std::size_t checksum_bytes(PageKind kind) { return kind == PageKind::blob ? 3 : 4; }
 
@@ -92,21 +91,12 @@ Status choose_mode(const SolidCoder& coder, PageSolid& solid) {
   solid.mode = coder.cheapest_mode(solid);
   if (solid.mode != Mode::automatic) return Done{};
   if (auto status = make_plain(solid, Mode::raw, nullptr); !status) return status;
+  if ((solid.declined >> static_cast<unsigned>(Mode::bitmap) & 1U) != 0) return Done{};
   PageSolid bitmap = solid;
   if (make_plain(bitmap, Mode::bitmap, nullptr) && size_of(bitmap.plain) < size_of(solid.plain)) {
     solid = std::move(bitmap);
   }
   return Done{};
-}
-
-Limits bounded(const Limits& limits, std::size_t bytes) {
-  Limits result = limits;
-  const std::uint64_t most = kFreeVertices + kVerticesPerByte * bytes;
-  result.vertices = std::min(limits.vertices, most);
-  result.facets = std::min(limits.facets, most);
-  result.rings = std::min(limits.rings, most);
-  result.shells = std::min(limits.shells, most);
-  return result;
 }
 
 /// The header, what the decisions about each part took, the checksum.
@@ -205,6 +195,16 @@ Result<Bytes> write_page_bytes(PageContents& page, PageKind kind, const Certific
   return std::move(writer).bytes();
 }
 
+Limits limits_of_stream(std::size_t bytes, const Limits& limits) {
+  Limits result = limits;
+  const std::uint64_t most = kFreeVertices + kVerticesPerByte * bytes;
+  result.vertices = std::min(limits.vertices, most);
+  result.facets = std::min(limits.facets, 2 * most);
+  result.rings = std::min(limits.rings, 2 * most);
+  result.shells = std::min(limits.shells, most);
+  return result;
+}
+
 Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits) {
   if (bytes.size() > limits.bytes) {
     return Error{ErrorCode::limit_exceeded, "a blob of " + std::to_string(bytes.size()) +
@@ -233,7 +233,7 @@ Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits
   }
   page.kind = kind;
   page.frame_cost = stream.cost();
-  SolidCoder coder(stream, *models, page.frame, bounded(limits, size));
+  SolidCoder coder(stream, *models, page.frame, limits_of_stream(size, limits));
   for (std::uint64_t i = 0; i < count; ++i) {
     PageSolid solid;
     if (auto status = coder.code(solid); !status) return status.error();

@@ -29,7 +29,11 @@ struct PageContents {
 /// be null. Errors: not_encodable; unsupported (the models).
 Result<Bytes> write_page_bytes(PageContents& page, PageKind kind, const Certificate* certificate);
 
-/// Errors: malformed; unsupported; limit_exceeded.
+/// What a stream of so many bytes may bring forth, whatever its caller allows (docs/format.md,
+/// "Limits").
+Limits limits_of_stream(std::size_t bytes, const Limits& limits);
+
+/// The limits hold for all solids together. Errors: malformed; unsupported; limit_exceeded.
 Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits);
 
 /// The stored form of a solid but for its mode's own data: its canonical form and its grid.

@@ -134,12 +134,7 @@ Result<std::vector<Decoded>> decode_unchecked(ByteView bytes, const Limits& limi
   if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.frame); !status) {
     return status.error();
   }
-  Limits bounded = limits;  // docs/format.md, "Limits"
-  const std::uint64_t most = 4096 + 256 * rest.size();
-  for (std::uint64_t* limit : {&bounded.vertices, &bounded.facets, &bounded.rings}) {
-    *limit = std::min(*limit, most);
-  }
-  SolidCoder coder(stream, *models, page.frame, bounded);
+  SolidCoder coder(stream, *models, page.frame, limits_of_stream(rest.size(), limits));
   std::vector<Decoded> solids;
   for (std::uint64_t i = 0; i < count; ++i) {
     PageSolid solid;

@@ -7,9 +7,105 @@
 #include "codec/blob.h"
 #include "codec/columns.h"
 #include "codec/encode_boundary.h"
+#include "codec/page.h"
+#include "geometry/canonical_form.h"
 #include "mutated_blobs.h"
 
 using namespace watertight;
+
+namespace {
+
+/// Two plates of n x n squares, each two triangles, closed at the sides: as regular as can be.
+OrientedBoundary plate(Index n) {
+  SolidArrays arrays;
+  const auto at = [n](Index x, Index y, Index z) { return (z * (n + 1) + x) * (n + 1) + y; };
+  for (Index z = 0; z < 2; ++z) {
+    for (Index x = 0; x <= n; ++x) {
+      for (Index y = 0; y <= n; ++y) {
+        arrays.vertices.push_back(
+            {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+      }
+    }
+  }
+  const auto square = [&](Index a, Index b, Index c, Index d) {
+    generated::add_facet(arrays, {{a, b, c}});
+    generated::add_facet(arrays, {{a, c, d}});
+  };
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) {
+      square(at(i, j, 0), at(i, j + 1, 0), at(i + 1, j + 1, 0), at(i + 1, j, 0));
+      square(at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1));
+    }
+    square(at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1));
+    square(at(i + 1, n, 0), at(i, n, 0), at(i, n, 1), at(i + 1, n, 1));
+    square(at(0, i + 1, 0), at(0, i, 0), at(0, i, 1), at(0, i + 1, 1));
+    square(at(n, i, 0), at(n, i + 1, 0), at(n, i + 1, 1), at(n, i, 1));
+  }
+  arrays.end_shell();
+  return generated::boundary_of(std::move(arrays));
+}
+
+/// A cone over n points of a parabola: one vertex of degree n.
+OrientedBoundary cone(Index n) {
+  SolidArrays arrays;
+  std::vector<Index> base;
+  for (Index i = 0; i < n; ++i) {
+    arrays.vertices.push_back({static_cast<double>(i), static_cast<double>(i) * i, 0});
+    base.push_back(n - 1 - i);
+  }
+  arrays.vertices.push_back({1, 2, 9});
+  generated::add_facet(arrays, {base});
+  for (Index i = 0; i < n; ++i) generated::add_facet(arrays, {{i, (i + 1) % n, n}});
+  arrays.end_shell();
+  return generated::boundary_of(std::move(arrays));
+}
+
+void require_automatic_mode_encodes(const OrientedBoundary& boundary, Mode not_in) {
+  const auto blob = encode_boundary(boundary, {}, {.keep_order = false});
+  REQUIRE(blob);
+  const auto decoded = decode(*blob);
+  REQUIRE(decoded);
+  CHECK(decoded->solid == canonical_form(boundary).boundary.solid());
+  CHECK(decoded->info.mode != not_in);
+  CHECK(decoded->info.mode != Mode::raw);
+}
+
+}  // namespace
+
+TEST_CASE("a mode declines a solid whose few bytes a decoder would take for a bomb") {
+  const OrientedBoundary small = plate(50);
+  CHECK(encode_boundary(small, {}, {.mode = Mode::parallelogram, .keep_order = false}));
+  const OrientedBoundary large = plate(90);  // in about 100 bytes
+  const auto blob = encode_boundary(large, {}, {.mode = Mode::parallelogram, .keep_order = false});
+  REQUIRE_FALSE(blob);
+  CHECK(blob.error().code == ErrorCode::not_encodable);
+  require_automatic_mode_encodes(large, Mode::parallelogram);
+}
+
+TEST_CASE("mode walk declines a vertex of so many edges that the walk would take too long") {
+  const OrientedBoundary large = cone(2000);
+  CHECK(encode_boundary(cone(300), {}, {.mode = Mode::walk}));
+  const auto blob = encode_boundary(large, {}, {.mode = Mode::walk});
+  REQUIRE_FALSE(blob);
+  CHECK(blob.error().code == ErrorCode::not_encodable);
+  require_automatic_mode_encodes(large, Mode::walk);
+}
+
+TEST_CASE("limits hold for all solids of a page together") {
+  const OrientedBoundary box = generated::box();
+  const std::vector<const OrientedBoundary*> boxes(10, &box);
+  for (const Mode mode : {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon}) {
+    const auto page = encode_boundaries(boxes, {}, {.mode = mode});
+    REQUIRE(page);
+    CHECK(decode_page(*page, Limits{.vertices = 80, .facets = 60, .rings = 60, .shells = 10}));
+    for (const Limits& limits :
+         {Limits{.vertices = 79}, Limits{.facets = 59}, Limits{.rings = 59}, Limits{.shells = 9}}) {
+      const auto decoded = decode_page(*page, limits);
+      REQUIRE_FALSE(decoded);
+      CHECK(decoded.error().code == ErrorCode::limit_exceeded);
+    }
+  }
+}
 
 TEST_CASE("decode rejects truncated blobs") {
   for (const Bytes& blob : generated::seed_blobs(1)) {

@@ -167,7 +167,7 @@ class Walk:
         self.faces = Faces(points)
         self.triangles, self.twin, self.component_first = [], [], []
         self.in_any = [False] * self.n
-        self.steps_left = 1024 * self.n + 2**20
+        self.steps_left = 256 * self.n + 2**20
 
     def read(self):
         """All components."""

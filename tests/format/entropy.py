@@ -18,23 +18,37 @@ class Limits:
     """What a stream of so many bytes may bring, by "Limits"; no caller sets others here."""
 
     def __init__(self, size):
-        self.most = self.vertices_left = 4096 + 256 * size
+        most = 4096 + 64 * size
+        self.left = {"vertices": most, "facets": 2 * most, "rings": 2 * most, "shells": most}
 
-    @staticmethod
-    def check(count, most):
-        """Requires a count within a limit."""
-        if count > most:
-            raise LimitExceeded(f"{count} of at most {most}")
+    def check(self, what, count):
+        """Requires as many of the solid at hand to be within what is left."""
+        if count > self.left[what]:
+            raise LimitExceeded(f"{count} {what}, {self.left[what]} are left")
 
     def vertices(self, count):
         """Vertices of the solid at hand."""
-        self.check(count, self.vertices_left)
+        self.check("vertices", count)
 
     def facets(self, count):
-        """Facets of the solid at hand."""
-        self.check(count, self.most)
+        """Its facets."""
+        self.check("facets", count)
 
-    rings = shells = facets
+    def rings(self, count):
+        """Its rings."""
+        self.check("rings", count)
+
+    def shells(self, count):
+        """Its shells."""
+        self.check("shells", count)
+
+    def take(self, vertices, shells):
+        """These are no longer left for the solids that follow."""
+        facets = [facet for shell in shells for facet in shell]
+        self.left["vertices"] -= len(vertices)
+        self.left["facets"] -= len(facets)
+        self.left["rings"] -= sum(map(len, facets))
+        self.left["shells"] -= len(shells)
 
 
 def crc32c(data):

@@ -98,7 +98,7 @@ class Page:
             arrangement = Order(self.stream, self.banks["order"], solid).read()
         self.checksums.append(solid.checksum(self.frame, values, arrangement))
         self.solids.append((solid, values, arrangement))
-        self.limits.vertices_left -= len(points)
+        self.limits.take(points, shells)
         if on_grid:
             self.last_position = min(points)
             self.columns = sorted(set(self.columns) | {p[:2] for p in points})

@@ -2,7 +2,7 @@
 """Mode walk, the columns of the vertices, from docs/format-walk.md, "Columns"."""
 from entropy import Malformed, cap
 
-FAMILIES = {"Choice": ([80],), "Height": ([96, 48, 128],), "TopBits": ([24, 744],)}
+FAMILIES = {"Place": ([80],), "Height": ([96, 48, 128],), "TopBits": ([24, 744],)}
 NUMBERS = {"Position": ([6],), "Size": ([6, 186],), "Gap": ([31],), "Residual": ([16], 2),
            "Rank": ([16],), "Floors": ([6],)}
 LIMIT = 2**53
@@ -36,7 +36,7 @@ class Columns:
         for _ in range(min(n, 3)):
             node = 2 * node + self.m.decide("TopBits", 8 * k + node, 8 * (31 * k + n) + node)
         rest = n - min(n, 3)
-        return (node - (1 << min(n, 3))) << rest | self.m.stream.plain(rest)
+        return (node - (1 << min(n, 3))) << rest | (self.m.plain(rest) if rest else 0)
 
     def size(self, kind, before, bits):
         """A length of the box or a number of columns."""
@@ -71,7 +71,7 @@ class Columns:
         if not listed:
             return None
         c = min(len(listed), 7)
-        self.was_known = self.m.decide("Choice", 2 * c + self.was_known)
+        self.was_known = self.m.decide("Place", 2 * c + self.was_known)
         if not self.was_known:
             return None
         return listed[self.m.number("Rank", c, bits=6)]
@@ -92,7 +92,7 @@ class Columns:
         if not listed:
             return None
         k = min(len(listed), 7)
-        if not self.m.decide("Choice", 16 + 8 * k + min(i, 7)):
+        if not self.m.decide("Place", 16 + 8 * k + min(i, 7)):
             return None
         x, y = listed[self.m.number("Rank", 8 + k, bits=len(listed).bit_length())]
         dx = self.m.signed("Residual", 0, selector=0, bits=30)

@@ -62,12 +62,16 @@ def positive(points, chosen):
 
 
 def first_tetrahedron(points):
-    """One tetrahedron, by trying all."""
-    for chosen in itertools.combinations(range(len(points)), 4):
-        corners = positive(points, chosen)
-        if corners and not any(conflicts(corners, p) for i, p in enumerate(points)
-                               if i not in chosen):
-            return chosen
+    """One tetrahedron at the first point, by trying all, with near points first."""
+    near = sorted(range(1, len(points)), key=lambda i: sum(c * c for c in minus(points[i],
+                                                                                points[0])))
+    for last in range(2, len(near)):
+        for pair in itertools.combinations(near[:last], 2):
+            chosen = tuple(sorted((0, *pair, near[last])))
+            corners = positive(points, chosen)
+            if corners and not any(conflicts(corners, p) for i, p in enumerate(points)
+                                   if i not in chosen):
+                return chosen
     raise Malformed("no tetrahedron")
 
 

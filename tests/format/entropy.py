@@ -111,6 +111,7 @@ class Stream:
 
     def __init__(self, data):
         self.data, self.at, self.low, self.high, self.code = data, 0, 0, 0xFFFFFFFF, 0
+        self.bits, self.trace = [], []
         for _ in range(4):
             self.shift()
 
@@ -125,6 +126,7 @@ class Stream:
         """One decision that is 1 with the probability p / 65536."""
         split = self.low + ((self.high - self.low) * p >> 16)
         bit = int(self.code <= split)
+        self.bits.append((bit, p))
         if bit:
             self.high = split
         else:
@@ -134,6 +136,12 @@ class Stream:
             self.high = self.high << 8 & 0xFFFFFFFF | 255
             self.shift()
         return bit
+
+    def note(self, what, value):
+        """Keeps what the decisions since the last note have said."""
+        self.trace.append((what, value, self.bits))
+        self.bits = []
+        return value
 
     def plain(self, bits):
         """A number of that many plain bits, high ones first."""
@@ -317,16 +325,29 @@ class Models:
 
     def decide(self, name, *contexts, selector=0):
         """A decision of a family."""
-        return self.bank[name].read(self.stream, contexts, selector)
+        bit = self.bank[name].read(self.stream, contexts, selector)
+        return self.stream.note(self.label("decision", name, contexts, selector), bit)
 
     def number(self, name, *contexts, selector=0, bits=62):
         """A number."""
-        return self.bank[name].read(self.stream, contexts, selector, bits)
+        value = self.bank[name].read(self.stream, contexts, selector, bits)
+        return self.stream.note(self.label("number", name, contexts, selector), value)
 
     def signed(self, name, *contexts, selector=0, bits=62):
         """A signed number."""
-        return self.bank[name].read_signed(self.stream, contexts, selector, bits)
+        value = self.bank[name].read_signed(self.stream, contexts, selector, bits)
+        return self.stream.note(self.label("signed", name, contexts, selector), value)
 
     def uniform(self, n):
         """A number below n."""
-        return self.stream.uniform(n)
+        return self.stream.note(f"uniform below {n}", self.stream.uniform(n))
+
+    def plain(self, bits):
+        """Plain bits."""
+        return self.stream.note(f"{bits} plain bits", self.stream.plain(bits))
+
+    @staticmethod
+    def label(kind, name, contexts, selector):
+        """As the texts write it."""
+        return f"{kind} {name}{{{', '.join(map(str, contexts))}}}" + (f"/{selector}" if selector
+                                                                      else "")

@@ -5,7 +5,7 @@ import math
 from delaunay import orient
 from entropy import Malformed
 
-FAMILIES = {"Interior": ([16128, 162, 126, 567, 432, 288], 9), "Facets": ([3],)}
+FAMILIES = {"Interior": ([16128, 162, 126, 567, 432, 288], 9), "Exterior": ([3],)}
 
 
 class Flags:
@@ -19,7 +19,7 @@ class Flags:
 
     def read(self):
         """The shells, the exterior one first."""
-        if not self.m.decide("Facets", 0):
+        if not self.m.decide("Exterior", 0):
             for h, twin in enumerate(self.w.twin):
                 if twin < h:
                     self.read_flag(h, twin)
@@ -115,6 +115,6 @@ class Flags:
     def choose(self, listed, context):
         """The list with the chosen one first."""
         for i in range(len(listed) - 1):
-            if not self.m.decide("Facets", context):
+            if not self.m.decide("Exterior", context):
                 return [listed[i]] + listed[:i] + listed[i + 1:]
         return [listed[-1]] + listed[:-1]

@@ -22,10 +22,9 @@ class Frame:
     """Tolerances, proof, rule set, reference system and grid."""
 
     def __init__(self, m):
-        stream = m.stream
         self.tolerances = IMPLIED_TOLERANCES
         if not m.decide("implied", 0):
-            self.tolerances = tuple(struct.unpack("<d", struct.pack("<Q", stream.plain(64)))[0]
+            self.tolerances = tuple(struct.unpack("<d", struct.pack("<Q", m.plain(64)))[0]
                                     for _ in range(3))
             if self.tolerances == IMPLIED_TOLERANCES or not all(map(math.isfinite,
                                                                     self.tolerances)):

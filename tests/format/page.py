@@ -57,7 +57,7 @@ class Page:
 
     def read(self):
         """All solids; checks ending and checksum."""
-        count = self.stream.uniform(256) + 1 if self.kind == PAGE else 1
+        count = self.models["frame"].uniform(256) + 1 if self.kind == PAGE else 1
         self.frame = Frame(self.models["frame"])
         for _ in range(count):
             self.read_solid()
@@ -124,7 +124,7 @@ class Page:
     def read_section(self):
         """The bytes of a section."""
         size = self.models["frame"].number("section", 0, bits=40)
-        return Section(bytes(self.stream.plain(8) for _ in range(size)))
+        return Section(bytes(self.models["frame"].plain(8) for _ in range(size)))
 
     def read_raw(self):
         """Mode raw."""
@@ -134,7 +134,7 @@ class Page:
 
     def read_bitmap(self):
         """Mode bitmap."""
-        flags = self.stream.plain(8)
+        flags = self.models["frame"].plain(8)
         if flags & ~0x7C or flags & 0x60 == 0x60:
             raise Malformed("flags")
         points, steiner = self.read_section(), self.read_section() if flags & 4 else None

@@ -20,7 +20,7 @@ CODES = {Malformed: "malformed", Unsupported: "unsupported", LimitExceeded: "lim
 ERRORS = tuple(CODES)
 PAGE_FILE = "page file"
 KINDS = {".blob": BLOB, ".page": PAGE, ".wtpf": PAGE_FILE}
-LEAST_GOLDENS = 35
+LEAST_GOLDENS = 37
 
 
 def as_json(page):
@@ -72,7 +72,7 @@ def check(models, folder):
                     for name, checksum in zip(page.names, page.checksums)]
             print(f"{path.name}: {', '.join(sums)}")
         except ERRORS as error:
-            if path.stem.endswith("-parallelogram"):
+            if "parallelogram" in path.stem:
                 print(f"{path.name}: not read by this decoder")
                 continue
             print(f"FAILED: {path.name}: {CODES[type(error)]}: {error}")

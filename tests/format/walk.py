@@ -18,7 +18,7 @@ BENDS = [0.96592582628906828, 0.86602540378443865, 0.70710678118654752, 0.5, 0.2
 def walk_bank():
     """The bank of mode walk."""
     families = {"Candidate": CANDIDATE, "Distant": CANDIDATE, "Rare": ([7],), "Seed": ([84],),
-                "Likely": ([768, 1024, 768], 4), **flags.FAMILIES, **columns.FAMILIES}
+                "Choice": ([768, 1024, 768], 4), **flags.FAMILIES, **columns.FAMILIES}
     return Bank(families, columns.NUMBERS)
 
 
@@ -339,7 +339,7 @@ class Walk:
             following = self.candidates[i + 1].probability if i + 1 < len(self.candidates) else 0
             own, then, r = likelihood(c.probability), likelihood(following), min(i, 3)
             state, kind = divmod(c.selector, 3)
-            bit = self.m.decide("Likely", (4 * own + r) * 3 + kind, 32 * (own // 2) + then // 2,
+            bit = self.m.decide("Choice", (4 * own + r) * 3 + kind, 32 * (own // 2) + then // 2,
                                 (own // 2 * 6 + state) * 4 + r, selector=r)
             family = self.m.bank["Candidate"]
             inputs, p = family.mixed(c.contexts, c.selector)
@@ -357,7 +357,7 @@ class Walk:
         distant.sort(key=Candidate.key)
         if distant and self.m.decide("Rare", 1 + min(len(distant) // 4, 3)):
             for c in distant[:-1]:
-                if self.m.bank["Distant"].read(self.m.stream, c.contexts, c.selector):
+                if self.m.decide("Distant", *c.contexts, selector=c.selector):
                     return c.vertex
             return distant[-1].vertex
         w = self.m.uniform(self.n)

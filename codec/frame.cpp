@@ -198,6 +198,14 @@ bool are_in_range(const IntegerSolid& solid) {
   });
 }
 
+/// Of triangles only, and so large that mode walk is not tried: it takes twice the time and memory
+/// of mode parallelogram and has been larger on every such mesh (bench/results/dense.md).
+bool is_large_mesh(const IntegerSolid& solid) {
+  constexpr std::size_t kMostVertices = 20'000;
+  return solid.vertices.size() > kMostVertices &&
+         solid.ring_vertices.size() == 3 * std::size_t{solid.facet_count()};
+}
+
 }  // namespace
 
 const ModelLayout& frame_layout() { return kLayout; }
@@ -378,6 +386,7 @@ Mode SolidCoder::cheapest_mode(const PageSolid& solid) const {
   std::uint64_t least = ~std::uint64_t{0};
   for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {
     if ((solid.declined >> static_cast<unsigned>(mode) & 1U) != 0) continue;
+    if (mode == Mode::walk && is_large_mesh(solid.gridded.solid)) continue;
     const auto needed = cost(solid, mode);
     if (needed && *needed < least) {
       least = *needed;

@@ -4,6 +4,12 @@
 #include <algorithm>
 
 namespace watertight {
+namespace {
+
+/// Corners that wait and have changed since are thrown away when there are more.
+constexpr std::size_t kMostStale = 4096;
+
+}  // namespace
 
 double SurfaceFront::angle(Index at, Index from, Index to) const {
   return angle_between(centres_[from] - centres_[at], centres_[to] - centres_[at]);
@@ -38,6 +44,18 @@ void SurfaceFront::set_room(Index gate, double room) {
   changed.is_refused = false;
   waiting_.push_back({room, turns_++, gate, ++changed.version});
   std::push_heap(waiting_.begin(), waiting_.end(), is_later);
+  if (waiting_.size() > kMostStale + 2 * std::size_t{open_count_}) forget_stale();
+}
+
+/// Their order is total: what is taken next does not depend on what else waits.
+void SurfaceFront::forget_stale() {
+  std::erase_if(waiting_, [&](const Waiting& corner) { return is_stale(corner); });
+  std::make_heap(waiting_.begin(), waiting_.end(), is_later);
+}
+
+bool SurfaceFront::is_stale(const Waiting& corner) const {
+  const Gate& gate = gates_[corner.gate];
+  return !gate.is_open || gate.version != corner.version;
 }
 
 Index SurfaceFront::add_triangle(const Triangle& triangle) {
@@ -131,9 +149,7 @@ void SurfaceFront::join_corner(Index gate, Index other, const std::array<Index, 
 
 Index SurfaceFront::next_corner() {
   while (!waiting_.empty()) {
-    const Waiting first = waiting_.front();
-    const Gate& gate = gates_[first.gate];
-    if (gate.is_open && gate.version == first.version) return first.gate;
+    if (!is_stale(waiting_.front())) return waiting_.front().gate;
     std::pop_heap(waiting_.begin(), waiting_.end(), is_later);
     waiting_.pop_back();
   }

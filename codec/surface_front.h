@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "codec/vectors.h"
@@ -76,13 +77,15 @@ class SurfaceFront {
   Index add_gate(Index side, Index half_edge);
   void link(Index gate, Index next);
   void set_room(Index gate, double room);
+  void forget_stale();
+  bool is_stale(const Waiting& corner) const;
   /// Its first half-edge.
   Index add_triangle(const Triangle& triangle);
   void pair(Index side, Index other);
   void drop(Index gate);
 
   const std::vector<Vector>& centres_;
-  std::vector<Gate> gates_;
+  std::deque<Gate> gates_;  // of any number: never copied
   std::vector<Triangle> triangles_;
   std::vector<Index> twin_;
   std::vector<std::uint32_t> degrees_;

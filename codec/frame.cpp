@@ -189,6 +189,12 @@ std::array<std::uint64_t, kStreamParts> costs_of(const EntropyStream& stream) {
   return costs;
 }
 
+/// Mode parallelogram holds no other facets; its models are too large to be copied in vain.
+bool is_all_triangles(const IntegerSolid& solid) {
+  return solid.ring_vertices.size() == 3 * std::size_t{solid.facet_count()} &&
+         solid.ring_count() == solid.facet_count();
+}
+
 /// A coordinate leaves 53 bits if hostile deltas add up.
 bool are_in_range(const IntegerSolid& solid) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 53;
@@ -374,6 +380,7 @@ Status SolidCoder::code(PageSolid& solid) {
 std::optional<std::uint64_t> SolidCoder::cost(const PageSolid& solid, Mode mode) const {
   const ModeCoder coder = coder_of(mode);
   if (coder.code == nullptr || !solid.has_grid) return std::nullopt;
+  if (mode == Mode::parallelogram && !is_all_triangles(solid.gridded.solid)) return std::nullopt;
   EntropyStream meter = EntropyStream::meter();
   ModelBank models = models_[coder.part];
   IntegerSolid integers = solid.gridded.solid;

@@ -24,8 +24,8 @@ bool share_page(const ValidSolid& one, const ValidSolid& other);
 Result<Bytes> encode_page(std::span<const ValidSolid* const> solids,
                           const EncodeOptions& options = {});
 
-/// As decode(), for each solid of the page in the order given to encode_page(). `limits` count for
-/// each solid, and `limits.vertices` for all together. Errors: malformed; unsupported;
+/// As decode(), for each solid of the page in the order given to encode_page(). `limits` hold
+/// for all of them together. Errors: malformed; unsupported;
 /// limit_exceeded.
 Result<std::vector<Decoded>> decode_page(ByteView page, const Limits& limits = {});
 

@@ -4,9 +4,12 @@
 // alone and in pages, decodes them and compares. Each solid has a random state of its own, so that
 // a failure is found again by its number: round_trips 1 NUMBER.
 // round_trips CORPUS: the same for every solid of a corpus (bench/corpus/corpus.h), in all modes.
+#include <sys/resource.h>
+
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <map>
 #include <string>
 
@@ -20,12 +23,28 @@ namespace {
 
 using generated::RoundTrips;
 
-int report(const RoundTrips& trips, std::uint64_t solids) {
-  std::printf("%llu solids\n", static_cast<unsigned long long>(solids));
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// The slowest of the solids or pages: its number and its time.
+struct Slowest {
+  std::uint64_t number = 0;
+  double seconds = 0;
+  void note(std::uint64_t which, double took) {
+    if (took > seconds) *this = {which, took};
+  }
+};
+
+int report(const RoundTrips& trips, std::uint64_t solids, const Slowest& slowest) {
   for (const auto& [what, count] : trips.counts()) {
     std::printf("%12llu %s\n", static_cast<unsigned long long>(count), what.c_str());
   }
-  std::printf("%zu failures\n", trips.failures().size());
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf(
+      "%llu solids in %.0f s, %zu failures; the slowest took %.1f s (number %llu); at most %ld "
+      "MB\n",
+      static_cast<unsigned long long>(solids), cpu_seconds(), trips.failures().size(),
+      slowest.seconds, static_cast<unsigned long long>(slowest.number), usage.ru_maxrss / 1024);
   return trips.failures().empty() ? 0 : 1;
 }
 
@@ -39,12 +58,15 @@ int run_corpus(const char* path) {
   RoundTrips trips;
   std::size_t printed = 0;
   const auto solids = read_corpus(path);
+  Slowest slowest;
   for (std::size_t i = 0; i < solids.size(); ++i) {
+    const double start = cpu_seconds();
     trips.check_all_modes(solids[i].set + " " + std::to_string(i), solids[i].source,
                           solids[i].acceptance);
+    slowest.note(i, cpu_seconds() - start);
     print_new_failures(trips, printed);
   }
-  return report(trips, solids.size());
+  return report(trips, solids.size(), slowest);
 }
 
 }  // namespace
@@ -66,10 +88,14 @@ int main(int count, char** arguments) {
   RoundTrips trips;
   std::size_t printed = 0;
   std::uint64_t done = 0;
+  Slowest slowest;
   for (std::uint64_t i = 0; done < solids; ++i) {
+    const double start = cpu_seconds();
     done += trips.check_generated(seed + i, largest);
+    slowest.note(seed + i, cpu_seconds() - start);
     print_new_failures(trips, printed);
-    if (i % 10000 == 9999) std::fprintf(stderr, "%llu\n", static_cast<unsigned long long>(done));
+    if (i % 10'000 < 9'999) continue;
+    std::fprintf(stderr, "%llu, %.0f s\n", static_cast<unsigned long long>(done), cpu_seconds());
   }
-  return report(trips, done);
+  return report(trips, done, slowest);
 }

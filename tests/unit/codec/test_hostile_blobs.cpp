@@ -3,11 +3,16 @@
 // What the decoder does with bytes that no encoder wrote. Every blob that decodes must be a
 // well-formed boundary that encodes again.
 #include <catch2/catch_test_macros.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
 
 #include "codec/blob.h"
 #include "codec/columns.h"
 #include "codec/encode_boundary.h"
 #include "codec/page.h"
+#include "codec/page_file.h"
 #include "geometry/canonical_form.h"
 #include "mutated_blobs.h"
 
@@ -58,6 +63,12 @@ OrientedBoundary cone(Index n) {
   for (Index i = 0; i < n; ++i) generated::add_facet(arrays, {{i, (i + 1) % n, n}});
   arrays.end_shell();
   return generated::boundary_of(std::move(arrays));
+}
+
+bool read_any(ByteView bytes, const std::string& kind) {
+  if (kind == ".blob") return bool{decode(bytes)};
+  if (kind == ".page") return bool{decode_page(bytes)};
+  return bool{PageFileReader::open(bytes)};
 }
 
 void require_automatic_mode_encodes(const OrientedBoundary& boundary, Mode not_in) {
@@ -115,6 +126,24 @@ TEST_CASE("decode rejects truncated blobs") {
       REQUIRE_FALSE(decoded);
     }
   }
+}
+
+TEST_CASE("every prefix of every golden blob, page and page file is refused") {
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(WATERTIGHT_GOLDEN_BLOBS)) {
+    const std::string kind = entry.path().extension();
+    if (kind != ".blob" && kind != ".page" && kind != ".wtpf") continue;
+    ++files;
+    std::ifstream stream(entry.path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    REQUIRE(read_any(as_bytes(text), kind));
+    for (std::size_t size = 0; size < text.size(); ++size) {
+      const ByteView prefix = as_bytes(text).first(size);
+      if (read_any(prefix, kind)) FAIL(entry.path() << " cut off after " << size);
+      if (kind != ".wtpf") (void)generated::decode_unchecked(prefix);
+    }
+  }
+  CHECK(files > 40);
 }
 
 TEST_CASE("decode rejects bytes after the blob") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <map>
 #include <utility>
@@ -10,6 +11,7 @@ namespace watertight {
 namespace {
 
 constexpr std::uint64_t kLargestPage = 10'000;
+constexpr std::int64_t kBatchBytes = 16 << 20;  // of blobs and skeletons
 
 std::string collections_where(const char* condition) {
   return std::string(
@@ -157,6 +159,69 @@ Result<Rows> page_rows(Connection& connection, const FeatureQuery& query, std::i
   return connection.run(kFeatureColumns + matching(query) + rest, parameters);
 }
 
+/// A place in a walk: the features after it are those with a higher (place, id).
+struct WalkPlace {
+  std::int64_t place = -1;  // no feature's: place_number() is not negative
+  std::string id;
+};
+
+std::string to_string(const WalkPlace& after) {
+  std::string text = std::to_string(after.place);
+  text += ':';
+  return text += after.id;
+}
+
+Result<WalkPlace> walk_place(const std::string& text) {
+  WalkPlace after;
+  if (text.empty()) return after;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, after.place);
+  if (error == std::errc{} && after.place >= 0 && rest != end && *rest == ':') {
+    after.id.assign(rest + 1, end);
+    if (is_possible_id(after.id)) return after;
+  }
+  return Error{ErrorCode::invalid_argument, "a batch cannot start after '" + text + "'"};
+}
+
+/// `columns` and the place of the features that come next, in order of place and id.
+Result<Rows> walk_rows(Connection& connection, const std::string& columns,
+                       const std::string& collection, const WalkPlace& after, std::int64_t limit) {
+  return connection.run(columns +
+                            ", place FROM watertight.feature WHERE collection = $1"
+                            " AND (place, id) > ($2, $3) ORDER BY place, id LIMIT $4",
+                        Parameters().text(collection).int8(after.place).text(after.id).int8(limit));
+}
+
+/// How many of the next features (at most `limit`) make a batch, and whether more come after them.
+struct BatchSize {
+  std::int64_t features = 0;
+  bool is_last = true;
+};
+
+Result<BatchSize> batch_size(Connection& connection, const std::string& collection,
+                             const WalkPlace& after, std::int64_t limit) {
+  const Result<Rows> rows =
+      walk_rows(connection, "SELECT (blob_bytes + octet_length(skeleton))::int8", collection, after,
+                limit + 1);
+  if (!rows) return rows.error();
+  BatchSize size;
+  for (std::int64_t bytes = 0; size.features < rows->size() && size.features < limit;) {
+    bytes += rows->int8(static_cast<int>(size.features), 0);
+    if (bytes > kBatchBytes && size.features > 0) break;
+    ++size.features;
+  }
+  size.is_last = size.features == rows->size();
+  return size;
+}
+
+Status check_collection_exists(Connection& connection, const std::string& id) {
+  const Result<Rows> exists =
+      connection.run("SELECT id FROM watertight.collection WHERE id = $1", Parameters().text(id));
+  if (!exists) return exists.error();
+  if (exists->size() == 0) return no_collection(id);
+  return Done{};
+}
+
 Result<std::uint64_t> count_matched(Connection& connection, const FeatureQuery& query) {
   const Result<Rows> rows =
       connection.run("SELECT count(*)" + matching(query), filter_parameters(query));
@@ -203,10 +268,9 @@ Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query)
   if (!matched) return matched.error();
   page.matched = *matched;
   if (page.matched == 0) {
-    const Result<Rows> exists = connection.run("SELECT id FROM watertight.collection WHERE id = $1",
-                                               Parameters().text(query.collection));
-    if (!exists) return exists.error();
-    if (exists->size() == 0) return no_collection(query.collection);
+    if (Status exists = check_collection_exists(connection, query.collection); !exists) {
+      return std::move(exists).error();
+    }
     return page;
   }
   if (limit == 0) return page;
@@ -222,6 +286,49 @@ Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query)
     return std::move(done).error();
   }
   return page;
+}
+
+Result<FeatureBatch> read_batch(Connection& connection, const std::string& collection,
+                                std::uint64_t limit, const std::string& after) {
+  const Result<WalkPlace> start = walk_place(after);
+  if (!start) return start.error();
+  const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));
+  const Result<BatchSize> size = batch_size(connection, collection, *start, at_most);
+  if (!size) return size.error();
+  FeatureBatch batch;
+  if (size->features == 0) {
+    if (Status exists = check_collection_exists(connection, collection); !exists) {
+      return std::move(exists).error();
+    }
+    return batch;
+  }
+  const Result<Rows> rows =
+      walk_rows(connection, kFeatureColumns, collection, *start, size->features);
+  if (!rows) return rows.error();
+  batch.features = features_of(*rows, collection);
+  if (!size->is_last) {
+    batch.next = to_string({rows->int8(rows->size() - 1, 13), batch.features.back().id});
+  }
+  if (Status done = fill(connection, collection, batch.features); !done) {
+    return std::move(done).error();
+  }
+  return batch;
+}
+
+Result<std::vector<StoredHeader>> read_documents(Connection& connection,
+                                                 const std::string& collection,
+                                                 std::uint64_t limit) {
+  const Result<Rows> rows = connection.run(
+      "SELECT f.format, h.content FROM (SELECT DISTINCT format, header FROM watertight.feature"
+      " WHERE collection = $1) f JOIN watertight.document_header h ON h.digest = f.header"
+      " ORDER BY f.format, f.header LIMIT $2",
+      Parameters().text(collection).int8(static_cast<std::int64_t>(std::min(limit, kLargestPage))));
+  if (!rows) return rows.error();
+  std::vector<StoredHeader> found;
+  for (int row = 0; row < rows->size(); ++row) {
+    found.push_back({std::string(rows->text(row, 0)), std::string(rows->text(row, 1))});
+  }
+  return found;
 }
 
 }  // namespace watertight

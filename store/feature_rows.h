@@ -37,5 +37,10 @@ Result<StoredCollection> read_collection(Connection& connection, const std::stri
 Result<StoredFeature> read_feature(Connection& connection, const std::string& collection,
                                    const std::string& id);
 Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query);
+Result<FeatureBatch> read_batch(Connection& connection, const std::string& collection,
+                                std::uint64_t limit, const std::string& after);
+Result<std::vector<StoredHeader>> read_documents(Connection& connection,
+                                                 const std::string& collection,
+                                                 std::uint64_t limit);
 
 }  // namespace watertight

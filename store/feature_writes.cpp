@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "store/feature_rows.h"
+#include "store/place.h"
 
 namespace watertight {
 namespace {
@@ -161,7 +162,7 @@ Status check_crs(std::span<const StoredFeature> features,
 struct FeatureColumns {
   std::vector<std::string_view> collection, id, type, format;
   std::vector<ByteView> header, skeleton;
-  std::vector<std::int64_t> srid, solids, blob_bytes;
+  std::vector<std::int64_t> srid, solids, blob_bytes, place;
   std::array<std::vector<std::optional<double>>, 6> box;
   std::size_t bytes = 0;
 
@@ -177,6 +178,7 @@ struct FeatureColumns {
     std::size_t blobs = 0;
     for (const StoredSolid& solid : feature.solids) blobs += solid.blob.size();
     blob_bytes.push_back(static_cast<std::int64_t>(blobs));
+    place.push_back(place_number(feature.box));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box[axis].push_back(feature.box ? std::optional(feature.box->min[axis]) : std::nullopt);
       box[axis + 3].push_back(feature.box ? std::optional(feature.box->max[axis]) : std::nullopt);
@@ -189,6 +191,7 @@ struct FeatureColumns {
     p.int8_array(srid).bytea_array(header).bytea_array(skeleton);
     p.int8_array(solids).int8_array(blob_bytes);
     for (const auto& side : box) p.float8_array(side);
+    p.int8_array(place);
     return p;
   }
 };
@@ -196,16 +199,16 @@ struct FeatureColumns {
 // The new version is drawn after the row is locked: it is above every earlier one of the row.
 constexpr const char* kPutFeatures = R"(
   INSERT INTO watertight.feature AS f (collection, id, type, format, srid, header, skeleton,
-    solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z)
+    solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)
   SELECT * FROM unnest($1::text[], $2::text[], $3::text[], $4::text[], $5::int8[], $6::bytea[],
     $7::bytea[], $8::int8[], $9::int8[], $10::float8[], $11::float8[], $12::float8[],
-    $13::float8[], $14::float8[], $15::float8[])
+    $13::float8[], $14::float8[], $15::float8[], $16::int8[])
   ON CONFLICT (collection, id) DO UPDATE SET
     version = nextval('watertight.feature_version'), type = excluded.type,
     format = excluded.format, srid = excluded.srid, header = excluded.header,
     skeleton = excluded.skeleton, solids = excluded.solids, blob_bytes = excluded.blob_bytes,
     min_x = excluded.min_x, min_y = excluded.min_y, min_z = excluded.min_z,
-    max_x = excluded.max_x, max_y = excluded.max_y, max_z = excluded.max_z
+    max_x = excluded.max_x, max_y = excluded.max_y, max_z = excluded.max_z, place = excluded.place
   RETURNING f.version, f.id)";
 
 constexpr const char* kDropSolids = R"(

@@ -94,6 +94,15 @@ constexpr Migration kMigrations[] = {
               USING gist (watertight.index_box(min_x, min_y, max_x, max_y))
               WHERE min_x IS NOT NULL)",
      }},
+    {"an index of features by place",
+     {
+         // store/place.h; what was stored before has the place of features without a box.
+         R"(ALTER TABLE watertight.feature ADD COLUMN place bigint NOT NULL
+              DEFAULT 9223372036854775807)",
+         R"(COMMENT ON COLUMN watertight.feature.place IS
+              'Number of the box''s centre along a Hilbert curve: the order of exports')",
+         R"(CREATE INDEX feature_place ON watertight.feature (collection, place, id))",
+     }},
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);
 

@@ -127,6 +127,20 @@ class PostgresStore final : public SolidStore {
     return read<FeaturePage>([&](Connection& session) { return read_page(session, query); });
   }
 
+  Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
+                            const std::string& after) override {
+    if (!check_collection_id(collection)) return no_such_collection();
+    return read<FeatureBatch>(
+        [&](Connection& session) { return read_batch(session, collection, limit, after); });
+  }
+
+  Result<std::vector<StoredHeader>> documents(const std::string& collection,
+                                              std::uint64_t limit) override {
+    if (!check_collection_id(collection)) return no_such_collection();
+    return read<std::vector<StoredHeader>>(
+        [&](Connection& session) { return read_documents(session, collection, limit); });
+  }
+
   Status remove(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
     return write<Done>(

@@ -68,6 +68,17 @@ struct FeaturePage {
   std::string next;                     // `after` of the next page; "" = this is the last
 };
 
+/// A document that features came in: what they share.
+struct StoredHeader {
+  std::string format;
+  std::string header;
+};
+
+struct FeatureBatch {
+  std::vector<StoredFeature> features;
+  std::string next;  // `after` of the next batch; "" = this is the last
+};
+
 class SolidStore {
  public:
   virtual ~SolidStore() = default;
@@ -84,6 +95,17 @@ class SolidStore {
   virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;
   /// At most 10,000 features a page. Errors: not_found when there is no such collection.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
+  /// All features of a collection, a batch at a time, in order of place: along a Hilbert curve
+  /// through the centres of their boxes (store/place.h), those without a box last, ties by id,
+  /// bytewise. At most `limit` (10,000) features, fewer when they are large (16 MiB). `after` is
+  /// FeatureBatch::next, "" at the start. Errors: not_found when there is no such collection;
+  /// invalid_argument for an `after` that is none.
+  virtual Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
+                                    const std::string& after) = 0;
+  /// The documents that the features of a collection came in, at most `limit` of them; none of a
+  /// collection that does not exist.
+  virtual Result<std::vector<StoredHeader>> documents(const std::string& collection,
+                                                      std::uint64_t limit) = 0;
   /// Errors: not_found.
   virtual Status remove(const std::string& collection, const std::string& id) = 0;
 };

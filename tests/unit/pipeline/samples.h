@@ -5,8 +5,10 @@
 
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "store/solid_store.h"
@@ -101,6 +103,26 @@ class MemoryStore final : public SolidStore {
       page.features.push_back(feature);
     }
     return page;
+  }
+  Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
+                            const std::string& after) override {
+    const auto page = list({collection, limit, after, {}});
+    if (!page) return page.error();
+    return FeatureBatch{page->features, page->next};
+  }
+  Result<std::vector<StoredHeader>> documents(const std::string& collection,
+                                              std::uint64_t limit) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    std::set<std::pair<std::string, std::string>> distinct;
+    for (const auto& [id, feature] : features_[collection]) {
+      distinct.emplace(feature.format, feature.header);
+    }
+    std::vector<StoredHeader> found;
+    for (const auto& [format, header] : distinct) {
+      if (found.size() < limit) found.push_back({format, header});
+    }
+    return found;
   }
   Status remove(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One number for where a feature stands, so that features in its order have their neighbours near.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "store/solid_store.h"
+
+namespace watertight {
+
+/// The place of a feature without a box: after all others.
+inline constexpr std::int64_t kNoPlace = INT64_MAX;
+
+/// The number of the box's centre along a Hilbert curve through 2^31 by 2^31 cells, not negative.
+/// Cells are half a unit wide, or 2^-21 where all coordinates are within 360 and may be degrees;
+/// the outermost ones are endless. Requires finite numbers. Source: J. Skilling, "Programming the
+/// Hilbert curve", 2004 (in two dimensions, as commonly written).
+std::int64_t place_number(const std::optional<StoredBox>& box);
+
+}  // namespace watertight

@@ -163,23 +163,24 @@ Exit run(const ExportCommand& command) {
   auto store = opened ? open_postgres_store(opened->connection)
                       : Result<std::unique_ptr<SolidStore>>(opened.error());
   if (!store) return fail("store", store.error());
+  auto exporting = CollectionExport::start(
+      **store, command.collection, is_container ? ExportFormat::container : ExportFormat::sequence);
+  if (!exporting) return fail(command.collection, exporting.error());
   const std::string output = command.output == "-" ? "standard output" : command.output;
   auto writer = FileWriter::open(command.output);
   if (!writer) return fail(output, writer.error());
-  bool is_written = true;
-  const ByteSink sink = [&](ByteView bytes) {
-    Status status = writer->write(as_text(bytes));
-    is_written = status.has_value();
-    return status;
-  };
-  const auto exported = is_container ? export_container(**store, command.collection, sink)
-                                     : export_sequence(**store, command.collection, sink);
-  if (!exported) return fail(is_written ? command.collection : output, exported.error());
+  for (;;) {
+    const auto bytes = exporting->next();
+    if (!bytes) return fail(command.collection, bytes.error());
+    if (bytes->empty()) break;
+    const Status written = writer->write(as_text(*bytes));
+    if (!written) return fail(output, written.error());
+  }
   const Status status = writer->commit();
   if (!status) return fail(output, status.error());
   std::fprintf(stderr, "watertight: %llu features with %llu solids written\n",
-               static_cast<unsigned long long>(exported->features),
-               static_cast<unsigned long long>(exported->solids));
+               static_cast<unsigned long long>(exporting->exported().features),
+               static_cast<unsigned long long>(exporting->exported().solids));
   return Exit::valid;
 }
 

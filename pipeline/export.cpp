@@ -3,87 +3,106 @@
 
 #include <utility>
 
-#include "pipeline/container.h"
-
 namespace watertight {
 namespace {
 
 constexpr std::uint64_t kBatch = 500;
-
-using TakeFeature = std::function<Status(const StoredFeature&)>;
-
-/// Hands on every feature. Errors: those of the store and of `take`; not_found.
-Result<Exported> for_each_feature(SolidStore& store, const std::string& collection,
-                                  const TakeFeature& take) {
-  if (const auto found = store.collection(collection); !found) return found.error();
-  Exported exported;
-  FeatureQuery query{collection, kBatch, {}, {}};
-  do {
-    auto batch = store.list(query);
-    if (!batch) return std::move(batch).error();
-    for (const StoredFeature& feature : batch->features) {
-      if (Status status = take(feature); !status) return status.error();
-      ++exported.features;
-      exported.solids += feature.solids.size();
-    }
-    query.after = std::move(batch->next);
-  } while (!query.after.empty());
-  if (exported.features > 0) return exported;
-  return Error{ErrorCode::not_found, "collection '" + collection + "' has no features"};
-}
+constexpr std::size_t kWorthSending = 64U << 10U;
 
 Error about(const StoredFeature& feature, Error error) {
   error.message.insert(0, "feature '" + feature.id + "': ");
   return error;
 }
 
-bool is_city_model(const StoredFeature& feature) {
-  return feature.format == to_string(Format::city_json) ||
-         feature.format == to_string(Format::city_json_seq);
+bool is_city_model(const std::string& format) {
+  return format == to_string(Format::city_json) || format == to_string(Format::city_json_seq);
 }
+
+constexpr const char* kOtherDocument =
+    "of another document than those before, which a sequence cannot hold; a Watertight file (.wt) "
+    "can";
+
+/// The header of a sequence of all features. Errors: as CollectionExport::start().
+Result<std::string> sequence_header(SolidStore& store, const std::string& collection) {
+  const auto documents = store.documents(collection, 2);
+  if (!documents) return documents.error();
+  const std::string name = "collection '" + collection + "' ";
+  if (documents->empty()) return Error{ErrorCode::not_found, name + "has no features"};
+  for (const StoredHeader& document : *documents) {
+    if (is_city_model(document.format)) continue;
+    return Error{ErrorCode::unsupported,
+                 name + "has features of format " + document.format + ", not of a city model"};
+  }
+  if (documents->front().header != documents->back().header) {
+    return Error{ErrorCode::unsupported,
+                 name +
+                     "has features with different headers, which a sequence cannot hold; a "
+                     "Watertight file (.wt) can"};
+  }
+  return documents->front().header;
+}
+
+void append(Bytes& bytes, ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
 
 }  // namespace
 
-Result<Exported> export_container(SolidStore& store, const std::string& collection,
-                                  const ByteSink& sink, const EncodeOptions& pages) {
-  ContainerWriter writer(pages);
-  const auto take = [&](const StoredFeature& feature) -> Status {
-    if (Status status = writer.add(feature); !status) return status;
-    return sink(writer.take());
-  };
-  const auto exported = for_each_feature(store, collection, take);
-  if (!exported) return exported;
-  const auto rest = std::move(writer).finish();
-  if (!rest) return rest.error();
-  if (Status status = sink(*rest); !status) return status.error();
-  return exported;
+Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::string& collection,
+                                                 ExportFormat format, const EncodeOptions& pages) {
+  if (const auto found = store.collection(collection); !found) return found.error();
+  CollectionExport started(store, collection);
+  if (format == ExportFormat::container) {
+    started.container_.emplace(pages);
+    return started;
+  }
+  auto header = sequence_header(store, collection);
+  if (!header) return std::move(header).error();
+  started.header_ = *std::move(header);
+  return started;
 }
 
-Result<Exported> export_sequence(SolidStore& store, const std::string& collection,
-                                 const ByteSink& sink) {
-  std::string header;
-  bool is_first = true;
-  return for_each_feature(store, collection, [&](const StoredFeature& feature) -> Status {
-    if (!is_city_model(feature)) {
-      return about(feature, {ErrorCode::unsupported,
-                             "of format " + feature.format + ", not of a city model"});
+Result<Bytes> CollectionExport::next() {
+  Bytes bytes;
+  while (bytes.size() < kWorthSending && !is_last_) {
+    auto batch = store_->walk(collection_, kBatch, after_);
+    if (!batch) return std::move(batch).error();
+    if (is_first_ && batch->features.empty()) {
+      return Error{ErrorCode::not_found, "collection '" + collection_ + "' has no features"};
     }
-    if (is_first) {
-      header = feature.header;
-      if (Status status = sink(as_bytes(header + '\n')); !status) return status;
-      is_first = false;
+    if (is_first_ && !container_) append(bytes, as_bytes(header_ + '\n'));
+    is_first_ = false;
+    for (const StoredFeature& feature : batch->features) {
+      if (Status status = add(feature, bytes); !status) return status.error();
+      ++exported_.features;
+      exported_.solids += feature.solids.size();
     }
-    if (feature.header != header) {
-      return about(feature, {ErrorCode::unsupported,
-                             "of another document than those before, which a sequence cannot "
-                             "hold; a Watertight file (.wt) can"});
-    }
-    const auto document = from_stored(feature);
-    if (!document) return about(feature, document.error());
-    auto line = write_feature(*document, document->features.front());
-    if (!line) return about(feature, line.error());
-    return sink(as_bytes(*line + '\n'));
-  });
+    after_ = std::move(batch->next);
+    is_last_ = after_.empty();
+    if (!is_last_ || !container_) continue;
+    const auto rest = (*std::exchange(container_, std::nullopt)).finish();
+    if (!rest) return rest.error();
+    append(bytes, *rest);
+  }
+  return bytes;
+}
+
+Status CollectionExport::add(const StoredFeature& feature, Bytes& bytes) {
+  if (!container_) return add_line(feature, bytes);
+  if (Status status = container_->add(feature); !status) return status;
+  append(bytes, container_->take());
+  return Done{};
+}
+
+Status CollectionExport::add_line(const StoredFeature& feature, Bytes& bytes) {
+  // Those that were put after start() only.
+  if (!is_city_model(feature.format) || feature.header != header_) {
+    return about(feature, {ErrorCode::unsupported, kOtherDocument});
+  }
+  const auto document = from_stored(feature);
+  if (!document) return about(feature, document.error());
+  auto line = write_feature(*document, document->features.front());
+  if (!line) return about(feature, line.error());
+  append(bytes, as_bytes(*line + '\n'));
+  return Done{};
 }
 
 }  // namespace watertight

@@ -1,35 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A whole collection out of a store, in order of ids. Memory does not grow with the collection: a
-// batch of features at a time (of a Watertight file, a part). Features that are put or removed
-// meanwhile may be missing or there; each is whole.
+// A whole collection out of a store, in order of place (SolidStore::walk), so that neighbours share
+// pages. Memory does not grow with the collection: a batch of features at a time (of a Watertight
+// file, a part). A feature that is put or removed meanwhile may be missing or there, and one that
+// is put at another place may be there twice; each is whole.
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <string>
 
 #include "codec/blob.h"
+#include "pipeline/container.h"
 #include "store/solid_store.h"
 
 namespace watertight {
 
-/// Takes the next bytes of a file. An Error of it ends the export.
-using ByteSink = std::function<Status(ByteView)>;
+enum class ExportFormat : std::uint8_t {
+  container,  // a Watertight file: solids in pages, any number of documents
+  sequence    // a CityJSONSeq; for city models that came with one header
+};
 
 struct Exported {
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
 };
 
-/// As a Watertight file: solids in pages, any number of documents. Errors: those of the store and
-/// the sink; not_found (no collection, no features); malformed when what is stored is damaged.
-Result<Exported> export_container(SolidStore& store, const std::string& collection,
-                                  const ByteSink& sink, const EncodeOptions& pages = {});
+/// An export on its way. The store must outlive it. One thread at a time.
+class CollectionExport {
+ public:
+  /// Errors: those of the store; not_found (no collection, no features); unsupported when the
+  /// features cannot be in one sequence (not of city models, several headers: their coordinates and
+  /// references differ).
+  static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
+                                        ExportFormat format, const EncodeOptions& pages = {});
 
-/// As a CityJSONSeq. Errors: those of export_container(); unsupported when the features are not of
-/// city models or have several headers (their coordinates and references then differ).
-Result<Exported> export_sequence(SolidStore& store, const std::string& collection,
-                                 const ByteSink& sink);
+  /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file. Empty
+  /// after the last ones. Errors: those of the store; malformed when what is stored is damaged;
+  /// unsupported as start(). After one of them the file has no end.
+  Result<Bytes> next();
+
+  /// True when the next bytes are none: the last ones were returned.
+  bool is_at_end() const { return is_last_; }
+  /// What next() has read so far.
+  const Exported& exported() const { return exported_; }
+
+ private:
+  CollectionExport(SolidStore& store, std::string collection)
+      : store_(&store), collection_(std::move(collection)) {}
+  Status add(const StoredFeature& feature, Bytes& bytes);
+  Status add_line(const StoredFeature& feature, Bytes& bytes);
+
+  SolidStore* store_;
+  std::string collection_;
+  std::optional<ContainerWriter> container_;  // none for a sequence
+  std::string header_;                        // of a sequence
+  std::string after_;                         // of the next batch
+  bool is_first_ = true;
+  bool is_last_ = false;
+  Exported exported_;
+};
 
 }  // namespace watertight

@@ -50,6 +50,7 @@ Response get_items(const RoutedRequest& request);
 Response get_item(const RoutedRequest& request);
 Response post_items(const RoutedRequest& request);
 Response delete_item(const RoutedRequest& request);
+Response get_export(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 
 /// A plain problem.

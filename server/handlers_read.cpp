@@ -83,8 +83,12 @@ Json collection_json(const StoredCollection& collection) {
   json["features"] = collection.features;
   json["solids"] = collection.solids;
   json["blobBytes"] = collection.blob_bytes;
-  json["links"] = Json::array({link(self, "self", kJson, "this collection"),
-                               link(self + "/items", "items", kJson, "its features")});
+  json["links"] = Json::array(
+      {link(self, "self", kJson, "this collection"),
+       link(self + "/items", "items", kJson, "its features"),
+       link(self + "/export?f=wt", "enclosure", kContainer, "all of it as a Watertight file"),
+       link(self + "/export?f=cityjsonseq", "enclosure", kCityJsonSeq,
+            "all of it as a CityJSONSeq, if its features share a header")});
   return json;
 }
 

@@ -4,6 +4,7 @@
 // of HTTP the routes use: percent-decoding, query parameters, content types, Accept.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,11 +30,17 @@ struct Request {
   const std::string* header(std::string_view name) const;
 };
 
+/// The next part of a body; "" after the last. An Error cuts the answer off: its status is out.
+using BodyParts = std::function<Result<std::string>()>;
+
 struct Response {
   unsigned status = 200;
   std::string content_type;  // "" for a response without body
   std::string body;
   std::vector<HeaderField> headers = {};
+  /// What follows `body`, made while it is sent; none for a body that is whole. Asked by one thread
+  /// at a time, each time when the part before is out, and no more when the client is gone.
+  BodyParts rest = {};
 };
 
 /// The standard phrase of a status, e.g. "Not Found".

@@ -42,13 +42,14 @@ struct ServerOptions {
   double header_seconds = 10;                         // from the first byte of a header to its last
   double body_seconds = 120;                          // for the whole body
   double answer_seconds = 300;  // of computing, after which engines are cancelled
-  double write_seconds = 60;    // for the answer, plus one for each 100 kB
+  double write_seconds = 60;    // for the answer or a part of it, plus one for each 100 kB
   double drain_seconds = 30;    // for requests in flight when stopping
   std::size_t connections = 512;
   std::size_t computing_threads = 2;
   std::size_t reading_threads = 4;
   std::size_t computing_queue = 64;  // requests waiting for a computing thread; more get 503
   std::size_t reading_queue = 256;
+  std::size_t downloads = 16;  // answers in parts (Response::rest) at once; more get 503
 };
 
 /// A listening server with its threads.

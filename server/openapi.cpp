@@ -98,6 +98,16 @@ constexpr char kOpenApi[] = R"json({
 "responses": {"204": {"description": "Deleted"}, "400": {"description": "Not understood: parameter, path or body; byteOffset and pointer say where", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "404": {"description": "No such collection or feature", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "503": {"description": "Too busy, out of memory, or the database is away; try again", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}, "headers": {"Retry-After": {"description": "seconds to wait", "schema": {"type": "integer"}}}}}
 }
 },
+"/collections/{collectionId}/export": {
+"get": {
+"operationId": "getExport",
+"summary": "A whole collection as one file",
+"tags": ["collections"],
+"description": "In order of place: neighbours share pages. Larger files come in chunks while they are made; one that cannot be finished ends without its last chunk. A feature that is put or removed meanwhile may be missing or there, and one that is put at another place may be there twice; each is whole.",
+"parameters": [{"name": "collectionId", "in": "path", "description": "Collection", "schema": {"type": "string", "pattern": "^[A-Za-z0-9_.-]{1,64}$"}, "required": true}, {"name": "f", "in": "query", "description": "Format of the file, instead of Accept", "schema": {"type": "string", "enum": ["wt", "cityjsonseq"], "default": "wt"}}],
+"responses": {"200": {"description": "The file", "headers": {"Content-Disposition": {"description": "a name for the file", "schema": {"type": "string"}}, "Content-Crs": {"description": "the collection's storage CRS", "schema": {"type": "string"}}}, "content": {"application/vnd.watertight": {"schema": {"type": "string", "format": "binary"}}, "application/city+json-seq": {"schema": {"type": "string", "format": "binary"}}}}, "400": {"description": "Not understood: parameter or path", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "404": {"description": "No such collection, or one without features", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "406": {"description": "None of the accepted formats can be given; a CityJSONSeq takes city models with one header only", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "500": {"description": "What is stored is damaged", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}}, "503": {"description": "Too busy (downloads have a limit of their own), out of memory, or the database is away; try again", "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}, "headers": {"Retry-After": {"description": "seconds to wait", "schema": {"type": "integer"}}}}}
+}
+},
 "/validate": {
 "post": {
 "operationId": "postValidate",

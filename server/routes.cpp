@@ -111,6 +111,7 @@ const std::vector<Route>& routes() {
        get_item,
        {"f", "solid"}},
       {"DELETE", "/collections/{collectionId}/items/{itemId}", Lane::reading, delete_item, {}},
+      {"GET", "/collections/{collectionId}/export", Lane::computing, get_export, {"f"}},
       {"POST",
        "/validate",
        Lane::computing,

@@ -111,9 +111,10 @@ Request to_request(http::request<http::string_body>&& message) {
   return request;
 }
 
-http::response<http::string_body> to_message(Response&& response, bool is_head, bool keep_alive,
-                                             unsigned version) {
-  http::response<http::string_body> message;
+/// Status and header fields of an answer, but those that tell its length.
+template <class Body>
+http::response<Body> head_of(const Response& response, bool keep_alive, unsigned version) {
+  http::response<Body> message;
   message.version(version);
   message.result(response.status);
   message.reason(std::string(reason_phrase(response.status)));
@@ -124,6 +125,12 @@ http::response<http::string_body> to_message(Response&& response, bool is_head, 
   message.set("X-Content-Type-Options", "nosniff");
   for (const HeaderField& field : response.headers) message.insert(field.name, field.value);
   message.keep_alive(keep_alive);
+  return message;
+}
+
+http::response<http::string_body> to_message(Response&& response, bool is_head, bool keep_alive,
+                                             unsigned version) {
+  auto message = head_of<http::string_body>(response, keep_alive, version);
   const bool has_no_body = response.status == 204 || response.status == 304;
   if (!has_no_body) message.content_length(response.body.size());
   if (!is_head && !has_no_body) message.body() = std::move(response.body);
@@ -151,6 +158,16 @@ Response respond_guarded(const Application& application, const Request& request,
   }
 }
 
+Result<std::string> next_part_guarded(const BodyParts& parts) {
+  try {
+    return parts();
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::limit_exceeded, "not enough memory"};
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::unavailable, std::string("unexpected failure: ") + failure.what()};
+  }
+}
+
 /// The state of one run of run_session.
 class Session {
  public:
@@ -168,8 +185,12 @@ class Session {
   awaitable<std::optional<Response>> receive(Parser& parser);
   awaitable<Response> answer(const Request& request);
   awaitable<bool> send(Response response, bool keep_alive);
+  awaitable<Status> send_parts(Response response, bool keep_alive, std::uint64_t& sent);
+  awaitable<Result<std::string>> next_part(const BodyParts& parts);
+  awaitable<bool> download(Response response, bool keep_alive, Clock::time_point start);
   awaitable<void> linger();
-  void log_answer(const Response& response, Clock::time_point start);
+  void log_answer(unsigned status, std::uint64_t bytes, Clock::time_point start,
+                  const std::string& cut_off = {});
 
   std::shared_ptr<Connection> connection_;
   beast::tcp_stream& stream_;
@@ -272,7 +293,7 @@ awaitable<bool> Session::serve_one() {
   std::optional<Response> refusal = co_await receive(parser);
   if (refusal) {
     if (refusal->status == 0) co_return false;
-    log_answer(*refusal, start);
+    log_answer(refusal->status, refusal->body.size(), start);
     co_await send(*std::move(refusal), false);
     co_await linger();
     co_return false;
@@ -282,8 +303,12 @@ awaitable<bool> Session::serve_one() {
   stream_.expires_never();
   Response response = co_await answer(request);
   const bool goes_on = keep_alive && !environment_.is_draining;
-  log_answer(response, start);
   body_share_.reset();
+  if (response.rest) {
+    const bool is_whole = co_await download(std::move(response), goes_on, start);
+    co_return is_whole&& goes_on;
+  }
+  log_answer(response.status, response.body.size(), start);
   const bool is_sent = co_await send(std::move(response), goes_on);
   co_return is_sent&& goes_on;
 }
@@ -302,6 +327,68 @@ awaitable<bool> Session::send(Response response, bool keep_alive) {
   co_return !error;
 }
 
+/// Makes the next part on a thread for computing.
+awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
+  if (environment_.is_cancelled) co_return Error{ErrorCode::cancelled, "the server is stopping"};
+  using Made = std::optional<Result<std::string>>;  // co_spawn wants a default
+  auto work = [&parts]() -> awaitable<Made> { co_return next_part_guarded(parts); };
+  Made made = co_await asio::co_spawn(environment_.computing.get_executor(), std::move(work),
+                                      use_awaitable);
+  if (!made) co_return Error{ErrorCode::unavailable, "there is no next part"};
+  co_return *std::move(made);
+}
+
+/// Sends an answer in parts: chunked, or to the end of the connection where HTTP is 1.0. Each part
+/// is made when the one before is out, so that a slow client holds one.
+awaitable<Status> Session::send_parts(Response response, bool keep_alive, std::uint64_t& sent) {
+  auto message = head_of<http::buffer_body>(response, keep_alive, version_);
+  message.chunked(version_ > 10);
+  message.body().data = nullptr;
+  message.body().more = true;
+  http::serializer<false, http::buffer_body> serializer{message};
+  error_code error;
+  stream_.expires_after(seconds(options_.write_seconds));
+  co_await http::async_write_header(stream_, serializer, redirect_error(use_awaitable, error));
+  Result<std::string> part = std::move(response.body);
+  while (!error && !is_head_) {
+    message.body().data = part->empty() ? nullptr : part->data();
+    message.body().size = part->size();
+    message.body().more = !part->empty();
+    stream_.expires_after(
+        seconds(options_.write_seconds + static_cast<double>(part->size()) / kBytesPerSecond));
+    co_await http::async_write(stream_, serializer, redirect_error(use_awaitable, error));
+    if (error == http::error::need_buffer) error = {};
+    if (error || part->empty()) break;
+    sent += part->size();
+    stream_.expires_never();
+    part = co_await next_part(response.rest);
+    if (!part) co_return part.error();
+  }
+  if (error) co_return Error{ErrorCode::unavailable, error.message()};
+  co_return Done{};
+}
+
+/// An answer in parts, if there are not too many already. True when it was sent to its end; else
+/// the connection is reset, because without chunks its end alone would look like that of the body.
+awaitable<bool> Session::download(Response response, bool keep_alive, Clock::time_point start) {
+  const BudgetShare place(environment_.downloads, 1);
+  if (!place.is_granted()) {
+    Response refusal = busy("too many downloads are running");
+    log_answer(refusal.status, refusal.body.size(), start);
+    const bool is_sent = co_await send(std::move(refusal), keep_alive);
+    co_return is_sent;
+  }
+  const unsigned status = response.status;
+  std::uint64_t sent = 0;
+  const Status done = co_await send_parts(std::move(response), keep_alive && version_ > 10, sent);
+  log_answer(status, sent, start, done ? std::string() : to_string(done.error()));
+  if (done) co_return version_ > 10;
+  error_code ignored;
+  stream_.socket().set_option(asio::socket_base::linger(true, 0), ignored);
+  stream_.close();
+  co_return false;
+}
+
 /// Reads on for a moment after the answer: closing on unread bytes would reset the connection and
 /// could take the answer from the sender.
 awaitable<void> Session::linger() {
@@ -316,12 +403,13 @@ awaitable<void> Session::linger() {
   }
 }
 
-void Session::log_answer(const Response& response, Clock::time_point start) {
+void Session::log_answer(unsigned status, std::uint64_t bytes, Clock::time_point start,
+                         const std::string& cut_off) {
   const auto milliseconds = static_cast<std::int64_t>(std::llround(seconds_since(start) * 1e3));
   environment_.log("event=request peer=" + connection_->peer + " method=" + quoted(method_) +
-                   " target=" + quoted(target_) + " status=" + std::to_string(response.status) +
-                   " bytes=" + std::to_string(response.body.size()) +
-                   " ms=" + std::to_string(milliseconds));
+                   " target=" + quoted(target_) + " status=" + std::to_string(status) +
+                   " bytes=" + std::to_string(bytes) + " ms=" + std::to_string(milliseconds) +
+                   (cut_off.empty() ? std::string() : " cut-off=" + quoted(cut_off)));
 }
 
 }  // namespace
@@ -343,7 +431,8 @@ SessionEnvironment::SessionEnvironment(const ServerOptions& server_options,
       reading(std::max<std::size_t>(server_options.reading_threads, 1)),
       bodies(server_options.body_bytes_together),
       computing_places(server_options.computing_queue + server_options.computing_threads),
-      reading_places(server_options.reading_queue + server_options.reading_threads) {}
+      reading_places(server_options.reading_queue + server_options.reading_threads),
+      downloads(server_options.downloads) {}
 
 awaitable<void> run_session(std::shared_ptr<Connection> connection,
                             SessionEnvironment& environment) {

@@ -70,6 +70,7 @@ struct SessionEnvironment {
   Budget bodies;
   Budget computing_places;
   Budget reading_places;
+  Budget downloads;
   std::atomic<bool> is_draining = false;
   std::atomic<bool> is_cancelled = false;
 

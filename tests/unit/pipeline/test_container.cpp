@@ -65,11 +65,19 @@ void put(samples::MemoryStore& store, const std::string& text) {
   REQUIRE(store.put(document.features));
 }
 
-ByteSink into(Bytes& bytes) {
-  return [&bytes](ByteView part) -> Status {
-    bytes.insert(bytes.end(), part.begin(), part.end());
-    return Done{};
-  };
+/// All bytes of an export; the first error.
+Result<Bytes> export_all(SolidStore& store, ExportFormat format, Exported* exported = nullptr) {
+  auto exporting = CollectionExport::start(store, "town", format);
+  if (!exporting) return std::move(exporting).error();
+  Bytes all;
+  for (;;) {
+    const auto bytes = exporting->next();
+    if (!bytes) return bytes.error();
+    if (bytes->empty()) break;
+    all.insert(all.end(), bytes->begin(), bytes->end());
+  }
+  if (exported != nullptr) *exported = exporting->exported();
+  return all;
 }
 
 /// A file of one part with these texts, page file and blobs.
@@ -306,12 +314,12 @@ TEST_CASE("an export of a collection is a Watertight file of its documents") {
   std::string other = samples::sequence({samples::feature("zz")});
   other.replace(other.find("100.0"), 5, "900.0");
   put(store, other);
-  Bytes bytes;
-  const auto exported = export_container(store, "town", into(bytes));
-  REQUIRE(exported);
-  CHECK(exported->features == 601);
-  CHECK(exported->solids == 601);
-  const auto documents = decode_container(bytes);
+  Exported exported;
+  const auto bytes = export_all(store, ExportFormat::container, &exported);
+  REQUIRE(bytes);
+  CHECK(exported.features == 601);
+  CHECK(exported.solids == 601);
+  const auto documents = decode_container(*bytes);
   REQUIRE(documents);
   REQUIRE(documents->size() == 2);
   CHECK(text_of((*documents)[0]) == row);
@@ -322,38 +330,48 @@ TEST_CASE("an export as a sequence has the header and each feature's line") {
   samples::MemoryStore store;
   const std::string row = row_of_boxes(510);
   put(store, row);
-  Bytes bytes;
-  REQUIRE(export_sequence(store, "town", into(bytes)));
-  CHECK(as_text(bytes) == row);
+  const auto bytes = export_all(store, ExportFormat::sequence);
+  REQUIRE(bytes);
+  CHECK(as_text(*bytes) == row);
+  auto begun = CollectionExport::start(store, "town", ExportFormat::sequence);
+  REQUIRE(begun);
   std::string other = samples::sequence({samples::feature("zz")});
   other.replace(other.find("100.0"), 5, "900.0");
   put(store, other);
-  const auto mixed = export_sequence(store, "town", into(bytes));
+  const auto mixed = export_all(store, ExportFormat::sequence);
   REQUIRE_FALSE(mixed);
   CHECK(mixed.error().code == ErrorCode::unsupported);
-  CHECK(mixed.error().message.find("'zz'") != std::string::npos);
+  CHECK(mixed.error().message.find("different headers") != std::string::npos);
+  // A feature that came after the start is refused where it stands.
+  REQUIRE(begun->next());
+  const auto late = begun->next();
+  REQUIRE_FALSE(late);
+  CHECK(late.error().code == ErrorCode::unsupported);
+  CHECK(late.error().message.find("'zz'") != std::string::npos);
 }
 
-TEST_CASE("an export ends with the first error, of the store, a blob or the sink") {
+TEST_CASE("an export ends with the first error, of the store or of a blob") {
   samples::MemoryStore store;
-  Bytes bytes;
-  CHECK(export_container(store, "town", into(bytes)).error().code == ErrorCode::not_found);
+  CHECK(export_all(store, ExportFormat::container).error().code == ErrorCode::not_found);
   put(store, row_of_boxes(3));
-  const ByteSink full = [](ByteView) -> Status {
-    return Error{ErrorCode::unavailable, "no space left"};
-  };
-  CHECK(export_container(store, "town", full).error().code == ErrorCode::unavailable);
-  CHECK(export_sequence(store, "town", full).error().code == ErrorCode::unavailable);
   auto feature = store.get("town", "b10001");
   REQUIRE(feature);
+  REQUIRE(store.remove("town", "b10000"));
   feature->solids[0].blob.back() ^= 1U;
   REQUIRE(store.put({&*feature, 1}));
-  CHECK(export_container(store, "town", into(bytes)).error().code == ErrorCode::malformed);
-  const auto sequence = export_sequence(store, "town", into(bytes));
+  CHECK(export_all(store, ExportFormat::container).error().code == ErrorCode::malformed);
+  const auto sequence = export_all(store, ExportFormat::sequence);
   REQUIRE_FALSE(sequence);
   CHECK(sequence.error().message.find("'b10001'") != std::string::npos);
+  for (const char* id : {"b10001", "b10002"}) REQUIRE(store.remove("town", id));
+  for (const ExportFormat format : {ExportFormat::container, ExportFormat::sequence}) {
+    const auto empty = export_all(store, format);
+    REQUIRE_FALSE(empty);
+    CHECK(empty.error().code == ErrorCode::not_found);
+    CHECK(empty.error().message == "collection 'town' has no features");
+  }
   store.is_away = true;
-  CHECK(export_container(store, "town", into(bytes)).error().code == ErrorCode::unavailable);
+  CHECK(export_all(store, ExportFormat::container).error().code == ErrorCode::unavailable);
 }
 
 }  // namespace watertight

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "pipeline/container.h"
 #include "server/handlers.h"
 #include "tests/unit/pipeline/samples.h"
 
@@ -264,6 +265,85 @@ TEST_CASE_METHOD(Fixture, "ETags change with the feature and save a download") {
   CHECK(get("/collections/town/items/a?f=obj", {{"if-none-match", etag}}).status == 200);
   REQUIRE(post("/collections/town/items", kTwo).status == 201);
   CHECK(get("/collections/town/items/a", {{"if-none-match", etag}}).status == 200);
+}
+
+/// `count` buildings in one document, ids "b1000", ...
+std::string many(int count) {
+  std::vector<std::string> lines;
+  for (int i = 0; i < count; ++i) {
+    std::string id = std::to_string(1000 + i);
+    id.insert(id.begin(), 'b');
+    lines.push_back(samples::feature(id));
+  }
+  return samples::sequence(lines);
+}
+
+/// Body and rest of an answer.
+std::string whole(const Response& response) {
+  std::string text = response.body;
+  while (response.rest) {
+    const auto part = response.rest();
+    REQUIRE(part);
+    if (part->empty()) break;
+    text += *part;
+  }
+  return text;
+}
+
+TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is asked for") {
+  const std::string text = many(600);
+  REQUIRE(post("/collections/town/items", text).status == 201);
+  const Response sequence = get("/collections/town/export?f=cityjsonseq");
+  REQUIRE(sequence.status == 200);
+  CHECK(sequence.content_type == "application/city+json-seq");
+  CHECK(*header_of(sequence, "Content-Disposition") == "attachment; filename=\"town.city.jsonl\"");
+  CHECK(sequence.rest);
+  CHECK(sequence.body.size() < text.size());
+  CHECK(whole(sequence) == text);
+  const Response file = get("/collections/town/export");
+  REQUIRE(file.status == 200);
+  CHECK(file.content_type == "application/vnd.watertight");
+  CHECK_FALSE(file.rest);  // one part: its length is known
+  const auto documents = decode_container(as_bytes(file.body));
+  REQUIRE(documents);
+  REQUIRE(documents->size() == 1);
+  CHECK(as_text(*write_document(documents->front(), Format::city_json_seq)) == text);
+  CHECK(get("/collections/town/export", {{"accept", "application/city+json-seq"}}).content_type ==
+        "application/city+json-seq");
+  for (const Json& link : Json::parse(get("/collections/town").body)["links"]) {
+    INFO(link["href"]);
+    CHECK(get(link["href"]).status == 200);
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "an export that cannot be is refused before its first byte") {
+  const auto refused = [&](const std::string& target, unsigned status, const std::string& says) {
+    const Response response = get(target);
+    INFO(target << " " << response.body);
+    CHECK(response.status == status);
+    CHECK(problem_of(response)["detail"].get<std::string>().find(says) != std::string::npos);
+    CHECK_FALSE(response.rest);
+  };
+  refused("/collections/none/export", 404, "none");
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  refused("/collections/town/export?f=obj", 406, "application/vnd.watertight (f=wt)");
+  refused("/collections/town/export?limit=3", 400, "known here: f");
+  CHECK(get("/collections/town/export", {{"accept", "text/html"}}).status == 406);
+  CHECK(send({"POST", "/collections/town/export", {}, ""}).status == 405);
+  std::string other = samples::sequence({samples::feature("zz")});
+  other.replace(other.find("100.0"), 5, "900.0");
+  REQUIRE(post("/collections/town/items", other).status == 201);
+  refused("/collections/town/export?f=cityjsonseq", 406, "different headers");
+  auto feature = store.get("town", "a");
+  REQUIRE(feature);
+  feature->solids[0].blob.back() ^= 1U;
+  REQUIRE(store.put({&*feature, 1}));
+  refused("/collections/town/export", 500, "cannot be exported");
+  for (const char* id : {"a", "b", "zz"}) REQUIRE(store.remove("town", id));
+  refused("/collections/town/export", 404, "no features");
+  refused("/collections/town/export?f=cityjsonseq", 404, "no features");
+  store.is_away = true;
+  refused("/collections/town/export", 503, "away");
 }
 
 TEST_CASE_METHOD(Fixture, "delete removes an item once") {

@@ -8,6 +8,8 @@
 #include <atomic>
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -41,6 +43,12 @@ class Client {
     while (receive_some(text)) {
     }
     return text;
+  }
+  bool receive_at_least(std::size_t bytes, std::string& text) const {
+    while (text.size() < bytes) {
+      if (!receive_some(text)) return false;
+    }
+    return true;
   }
   /// Up to the end of the body of one answer, by its Content-Length.
   std::string receive_answer() const {
@@ -269,6 +277,129 @@ TEST_CASE("stopping cancels what does not finish in time") {
   server.wait_for_slow(1);
   server.server->stop();
   CHECK(busy.receive_all().ends_with("cancelled"));
+}
+
+/// Answers "/parts" with `parts` parts of `bytes` bytes; with `failing`, an error after them.
+struct Parts {
+  explicit Parts(std::size_t count, std::size_t bytes = 5, bool failing = false) {
+    ServerOptions options = Server::small();
+    options.port = 0;
+    options.downloads = 1;
+    options.write_seconds = 0.5;
+    Application application;
+    application.lane = [](const Request&) { return Lane::computing; };
+    application.respond = [=, this](const Request& request, const IsCancelled&) {
+      Response response{200, "text/plain", std::string(bytes, 'a'), {}};
+      if (request.target != "/parts") return response;
+      response.rest = [=, this, alive = alive, left = count - 1]() mutable -> Result<std::string> {
+        ++made;
+        if (left > 0) return std::string(bytes, static_cast<char>('a' + left--));
+        if (failing) return Error{ErrorCode::unavailable, "the database is away"};
+        return std::string();
+      };
+      return response;
+    };
+    auto started = HttpServer::start(options, application, [this](const std::string& line) {
+      const std::lock_guard lock(mutex);
+      log += line + "\n";
+    });
+    REQUIRE(started);
+    server = *std::move(started);
+  }
+  ~Parts() { server->stop(); }
+  /// Whether no download holds its state any more, soon.
+  bool is_idle() const {
+    for (int i = 0; i < 2500 && alive.use_count() > 1; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return alive.use_count() == 1;
+  }
+  bool has_logged(const std::string& text) {
+    for (int i = 0; i < 2500; ++i) {
+      {
+        const std::lock_guard lock(mutex);
+        if (log.find(text) != std::string::npos) return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+  }
+
+  std::shared_ptr<int> alive = std::make_shared<int>(0);
+  std::atomic<std::size_t> made = 0;
+  std::mutex mutex;
+  std::string log;
+  std::unique_ptr<HttpServer> server;
+};
+
+const std::string kGetParts = "GET /parts HTTP/1.1\r\nHost: x\r\n\r\n";
+
+TEST_CASE("an answer in parts comes in chunks, and the connection goes on") {
+  Parts parts(3);
+  const Client client(parts.server->port());
+  client.send(kGetParts + "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  const std::string answers = client.receive_all();
+  const std::size_t body = answers.find("\r\n\r\n") + 4;
+  CHECK(answers.substr(0, body).find("Transfer-Encoding: chunked\r\n") != std::string::npos);
+  CHECK(
+      answers.substr(body).starts_with("5\r\naaaaa\r\n5\r\nccccc\r\n5\r\nbbbbb\r\n0\r\n\r\nHTTP"));
+  CHECK(answers.ends_with("\r\n\r\naaaaa"));
+  CHECK(parts.has_logged("target=\"/parts\" status=200 bytes=15 "));
+}
+
+TEST_CASE("HTTP 1.0 gets the parts without chunks, and HEAD none") {
+  Parts parts(3);
+  const Client old(parts.server->port());
+  old.send("GET /parts HTTP/1.0\r\nConnection: keep-alive\r\n\r\n");
+  const std::string answer = old.receive_all();
+  CHECK(answer.find("chunked") == std::string::npos);
+  CHECK(answer.ends_with("\r\n\r\naaaaacccccbbbbb"));
+  const std::size_t made = parts.made;
+  const Client head(parts.server->port());
+  head.send("HEAD /parts HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  CHECK(head.receive_all().ends_with("\r\n\r\n"));
+  CHECK(parts.made == made);
+}
+
+TEST_CASE("parts that fail cut the answer off, which has no end then") {
+  Parts parts(2, 5, true);
+  const Client client(parts.server->port());
+  client.send(kGetParts);
+  CHECK_FALSE(client.receive_all().ends_with("0\r\n\r\n"));
+  CHECK(parts.has_logged("cut-off=\"unavailable: the database is away\""));
+  CHECK(parts.is_idle());
+}
+
+TEST_CASE("a client that leaves or stops reading leaves nothing behind, and blocks no other") {
+  Parts parts(100'000, 1 << 20);
+  {
+    const Client leaving(parts.server->port());
+    leaving.send(kGetParts);
+    std::string start;
+    REQUIRE(leaving.receive_at_least(1, start));
+    const Client second(parts.server->port());
+    second.send(kGetParts);
+    starts(second.receive_answer(), "503");
+  }
+  CHECK(parts.is_idle());
+  const Client asleep(parts.server->port());
+  asleep.send(kGetParts);
+  CHECK(parts.has_logged("status=503"));
+  CHECK(parts.has_logged("cut-off="));
+  CHECK(parts.is_idle());
+  CHECK(parts.made < 1000);
+}
+
+TEST_CASE("stopping cuts off an answer in parts that does not end in time") {
+  Parts parts(100'000, 5);
+  const Client client(parts.server->port());
+  client.send(kGetParts);
+  std::string start;
+  REQUIRE(client.receive_at_least(1000, start));
+  std::thread reader([&] { client.receive_all(); });
+  parts.server->stop();
+  reader.join();
+  CHECK(parts.is_idle());
 }
 
 TEST_CASE("an address that cannot be listened on is an error") {

@@ -79,6 +79,33 @@ if [ -n "$program" ]; then
   echo "3 blobs of SQL and command line are equal"
 fi
 
+# The extension writes the very bytes that the library writes, of every solid of these files, finds
+# the same ones invalid, and gives back what came in. Blobs of all versions decode to the same.
+if [ -x "$build/bin/encode_documents" ]; then
+  query() { run "$bin/psql" -X -q -At -v ON_ERROR_STOP=1 "${connect[@]}" -d regression "$@"; }
+  (cd "$source" && "$build/bin/encode_documents" examples/*.jsonl tests/data/*/* \
+    tests/golden/solids/* tests/golden/blobs/*/*) >"$folder/rows"
+  chmod a+r "$folder/rows"
+  query -c "CREATE TABLE documents (name text, ewkb bytea, blob bytea)"
+  query -c "COPY documents FROM STDIN" <"$folder/rows"
+  for file in "$source"/tests/golden/blobs/*/*.blob; do
+    printf '%s\t\\\\x%s\n' "${file#"$source"/}" "$(od -An -v -tx1 "$file" | tr -d ' \n')"
+  done >"$folder/goldens"
+  query -c "CREATE TABLE goldens (name text, blob bytea)"
+  query -c "COPY goldens FROM STDIN" <"$folder/goldens"
+  different=$(query -c "
+    SELECT 'another verdict', name FROM documents WHERE wt_is_valid(ewkb) <> (blob IS NOT NULL)
+    UNION ALL SELECT 'another blob', name FROM documents
+      WHERE CASE WHEN blob IS NOT NULL THEN wt_encode(ewkb) <> blob END
+    UNION ALL SELECT 'another solid', name FROM documents WHERE wt_decode(blob) <> ewkb
+    UNION ALL SELECT 'another golden', name FROM goldens g LEFT JOIN documents d USING (name)
+      WHERE d.ewkb IS DISTINCT FROM wt_decode(g.blob)")
+  [ -z "$different" ] || { echo "SQL and library differ:"; echo "$different"; exit 1; }
+  counts=$(query -c "SELECT count(blob), count(*) - count(blob) FROM documents")
+  [ "${counts%|*}" -ge 500 ] || { echo "only ${counts%|*} blobs were compared"; exit 1; }
+  echo "${counts%|*} blobs of SQL and library are equal, ${counts#*|} solids invalid in both"
+fi
+
 if [ -x "$build/bin/test_store" ]; then
   WATERTIGHT_POSTGRES_BIN=$bin "$build/bin/test_store" "the database has the extension*"
 fi

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A collection out of a private PostgreSQL as one file: export.sh PROGRAM SOURCE
+# The command line and the service give the same bytes, and they are what went in.
+set -euo pipefail
+program=$(readlink -f "$1")
+source=$(cd "$2" && pwd)
+folder=$(mktemp -d /tmp/watertight-export-XXXXXX)
+service=
+cleanup() {
+  status=$?
+  if [ -n "$service" ]; then
+    kill -TERM "$service" 2>/dev/null || true
+    wait "$service" || true
+  fi
+  for _ in $(seq 50); do # the cluster ends a moment after its last user
+    if rm -rf "$folder" 2>/dev/null; then break; fi
+    sleep 0.1
+  done
+  exit $status
+}
+trap cleanup EXIT
+fail() { echo "export.sh: $*" >&2 && exit 1; }
+
+# As root all is done by another user: PostgreSQL refuses root.
+run() { "$@"; }
+if [ "$(id -u)" -eq 0 ]; then
+  for user in postgres nobody; do
+    if id "$user" >/dev/null 2>&1; then break; fi
+  done
+  uid=$(id -u "$user")
+  gid=$(id -g "$user")
+  run() { setpriv --reuid="$uid" --regid="$gid" --clear-groups env HOME="$folder" "$@"; }
+  chown "$uid:$gid" "$folder"
+fi
+cd "$folder"
+cp "$source/examples/delft.city.jsonl" in.city.jsonl
+chmod a+r in.city.jsonl
+store=(--data-dir "$folder/data")
+
+run "$program" ingest in.city.jsonl "${store[@]}" --collection delft --invalid skip -q >said 2>&1 ||
+  [ $? -eq 1 ] || fail "$(cat said)" # 1: some are invalid
+run "$program" export delft -o all.wt "${store[@]}" 2>said
+grep -Eq '^watertight: [1-9][0-9]* features with [1-9][0-9]* solids written$' said || fail "$(cat said)"
+run "$program" export delft -o all.city.jsonl "${store[@]}" 2>/dev/null
+run "$program" export delft -o - "${store[@]}" 2>/dev/null | cmp - all.wt
+run "$program" decode all.wt -o back.city.jsonl
+cmp all.city.jsonl back.city.jsonl
+# Byte for byte the lines of the source, each once, in another order.
+[ "$(wc -l <all.city.jsonl)" -gt 100 ] || fail "$(wc -l <all.city.jsonl) lines"
+[ -z "$(sort all.city.jsonl | uniq -d)" ] || fail "a feature is there twice"
+[ -z "$(comm -23 <(sort all.city.jsonl) <(sort in.city.jsonl))" ] || fail "lines that never came in"
+[ "$(stat -c %s all.wt)" -lt "$(($(stat -c %s all.city.jsonl) / 4))" ] || fail "the pages save nothing"
+! run "$program" export none -o none.wt "${store[@]}" 2>said || fail "exported a collection that is none"
+grep -q "there is no collection 'none'" said || fail "$(cat said)"
+[ ! -e none.wt ] || fail "an export that failed left a file"
+
+run "$program" serve "${store[@]}" --listen 127.0.0.1:0 >listening 2>log &
+service=$!
+for _ in $(seq 300); do
+  if grep -q http listening; then break; fi
+  kill -0 "$service" 2>/dev/null || fail "$(cat log)"
+  sleep 0.1
+done
+url=$(sed -n 's/^listening on //p' listening)/collections/delft/export
+curl -fsS "$url" | cmp - all.wt
+curl -fsS "$url?f=cityjsonseq" | cmp - all.city.jsonl
+curl -fsS -H 'Accept: application/city+json-seq' "$url" | cmp - all.city.jsonl
+curl -fsS --http1.0 "$url" | cmp - all.wt
+curl -fsSI "$url" | tr -d '\r' | grep -Fxq 'Content-Disposition: attachment; filename="delft.wt"'
+curl -sS "${url/delft/none}" | grep -q '"status":404'
+# One that leaves in the middle.
+curl -sS --limit-rate 1000 --max-time 1 -o part "$url?f=cityjsonseq" 2>/dev/null || true
+curl -fsS "$url" | cmp - all.wt
+echo "$(wc -l <all.city.jsonl) lines, the same by command line and service"

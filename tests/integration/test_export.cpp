@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Bulk export against PostgreSQL: rows keep single blobs, the file has pages, and both are the same
+// solids.
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "codec/page_file.h"
+#include "fixture.h"
+#include "formats/ewkb.h"
+#include "pipeline/export.h"
+#include "server/routes.h"
+
+namespace watertight {
+namespace {
+
+using test::Database;
+
+Bytes file_bytes(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// The sample tile in a collection; solids that need an engine are left out. Returns its text.
+std::string ingest_tile(SolidStore& store) {
+  const Bytes bytes = file_bytes(WATERTIGHT_EXAMPLES "/delft.city.jsonl");
+  ReadOptions read;
+  read.keep_text = true;
+  auto document = read_document(bytes, Format::city_json_seq, read);
+  REQUIRE(document);
+  IngestOptions options;
+  options.collection = "delft";
+  options.invalid_features = InvalidFeatures::skip;
+  const auto outcome = ingest(*std::move(document), store, nullptr, options);
+  REQUIRE(outcome);
+  REQUIRE(outcome->stored > 20);
+  return std::string(as_text(bytes));
+}
+
+Bytes export_all(SolidStore& store, ExportFormat format, Exported* exported = nullptr) {
+  auto exporting = CollectionExport::start(store, "delft", format);
+  REQUIRE(exporting);
+  Bytes all;
+  for (;;) {
+    const auto bytes = exporting->next();
+    REQUIRE(bytes);
+    if (bytes->empty()) break;
+    all.insert(all.end(), bytes->begin(), bytes->end());
+  }
+  if (exported != nullptr) *exported = exporting->exported();
+  return all;
+}
+
+/// The page file of the only part of a Watertight file (docs/cli.md).
+ByteView page_file_of(ByteView file) {
+  ByteReader reader(file.subspan(9));
+  reader.take(reader.varint());
+  return reader.take(reader.varint());
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1);
+    lines.emplace_back(text.substr(0, end + 1));
+    text.remove_prefix(end + 1);
+  }
+  return lines;
+}
+
+TEST_CASE("an export holds every solid of the rows, in pages that are smaller, each found alone") {
+  const Database database;
+  const auto store = database.store();
+  ingest_tile(*store);
+  Exported exported;
+  const Bytes file = export_all(*store, ExportFormat::container, &exported);
+  const auto documents = decode_container(file);
+  REQUIRE(documents);
+  REQUIRE(documents->size() == 1);
+  REQUIRE(documents->front().features.size() == exported.features);
+  const auto pages = PageFileReader::open(page_file_of(file));
+  REQUIRE(pages);
+  REQUIRE(pages->size() == exported.solids);
+  std::uint64_t number = 0;
+  std::uint64_t blob_bytes = 0;
+  for (const Feature& feature : documents->front().features) {
+    const auto row = store->get("delft", feature.id);
+    REQUIRE(row);
+    REQUIRE(row->solids.size() == feature.solids.size());
+    for (std::size_t i = 0; i < row->solids.size(); ++i, ++number) {
+      const auto decoded = decode(row->solids[i].blob);
+      REQUIRE(decoded);
+      CHECK(write_ewkb(feature.solids[i].solid) == write_ewkb(decoded->solid));
+      blob_bytes += row->solids[i].blob.size();
+      if (number % 37 != 0) continue;
+      const auto alone = pages->solid(number);
+      REQUIRE(alone);
+      CHECK(write_ewkb(alone->solid) == write_ewkb(decoded->solid));
+    }
+  }
+  CHECK(number == exported.solids);
+  CHECK(page_file_of(file).size() * 3 < blob_bytes * 2);
+}
+
+TEST_CASE("an export as a sequence has the very lines that came in, the same each time") {
+  const Database database;
+  const auto store = database.store();
+  const std::vector<std::string> source = lines_of(ingest_tile(*store));
+  const Bytes bytes = export_all(*store, ExportFormat::sequence);
+  const std::vector<std::string> lines = lines_of(as_text(bytes));
+  REQUIRE(lines.size() == store->collection("delft")->features + 1);
+  for (const std::string& line : lines) {
+    CHECK(std::find(source.begin(), source.end(), line) != source.end());
+  }
+  CHECK(export_all(*store, ExportFormat::sequence) == bytes);
+  CHECK(export_all(*store, ExportFormat::container) == export_all(*store, ExportFormat::container));
+}
+
+TEST_CASE("the service's file is the command line's") {
+  const Database database;
+  const auto store = database.store();
+  ingest_tile(*store);
+  const Service service{store.get(), nullptr, {}};
+  for (const auto& [target, format] :
+       {std::pair{"/collections/delft/export", ExportFormat::container},
+        std::pair{"/collections/delft/export?f=cityjsonseq", ExportFormat::sequence}}) {
+    const Response response = respond(service, {"GET", target, {}, ""}, [] { return false; });
+    REQUIRE(response.status == 200);
+    std::string body = response.body;
+    while (response.rest) {
+      const auto part = response.rest();
+      REQUIRE(part);
+      if (part->empty()) break;
+      body += *part;
+    }
+    CHECK(body == as_text(export_all(*store, format)));
+  }
+}
+
+TEST_CASE("an export ends with an error when the database goes away, and can be begun again") {
+  const Database database;
+  const auto store = database.store();
+  ingest_tile(*store);
+  auto exporting = CollectionExport::start(*store, "delft", ExportFormat::sequence);
+  REQUIRE(exporting);
+  database.ask("ALTER TABLE watertight.solid RENAME TO hidden");
+  const auto bytes = exporting->next();
+  REQUIRE_FALSE(bytes);
+  CHECK_FALSE(bytes.error().message.empty());
+  database.ask("ALTER TABLE watertight.hidden RENAME TO solid");
+  REQUIRE(database.end_sessions());
+  CHECK_FALSE(export_all(*store, ExportFormat::sequence).empty());
+}
+
+}  // namespace
+}  // namespace watertight

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the library makes of the solids of files, as rows for COPY: name, EWKB, blob (\N when the
+// solid is not valid). Of a blob (a golden), the solid that it decodes to. run_regress.sh compares
+// them with what the extension makes of the same EWKB. Undecided solids and files that cannot be
+// read are left out.
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "codec/blob.h"
+#include "formats/document.h"
+#include "formats/ewkb.h"
+#include "validate/certify.h"
+
+using namespace watertight;
+
+namespace {
+
+std::string hex(ByteView bytes) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text = "\\\\x";
+  for (const std::uint8_t byte : bytes) {
+    text += kDigits[byte >> 4U];
+    text += kDigits[byte & 15U];
+  }
+  return text;
+}
+
+/// The SQL functions see EWKB, so this does: its doubles, vertices in order of first use.
+void print_row(const std::string& name, const Solid& solid, EngineWorkers& workers) {
+  const Bytes ewkb = write_ewkb(solid);
+  const auto submitted = read_ewkb(ewkb);
+  if (!submitted) return;
+  CertifyOptions options;
+  options.rounded = submitted->rounded;
+  const Inspection inspection = certify(submitted->solid, &workers, options);
+  if (inspection.report.verdict == Verdict::undecided) return;
+  std::string blob = "\\N";
+  if (inspection.certified) {
+    const auto encoded = encode(inspection.certified->solid);
+    blob = encoded ? hex(*encoded) : to_string(encoded.error());
+  }
+  std::printf("%s\t%s\t%s\n", name.c_str(), hex(ewkb).c_str(), blob.c_str());
+}
+
+void print_document(const std::string& file, ByteView bytes, EngineWorkers& workers) {
+  const auto format = detect_format(file, bytes);
+  if (!format) return;
+  const auto document = read_document(bytes, *format);
+  if (!document) return;
+  std::size_t number = 0;
+  for (const Feature& feature : document->features) {
+    for (const SubmittedSolid& submitted : feature.solids) {
+      print_row(file + " " + std::to_string(number++), submitted.solid, workers);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  EngineWorkers workers;
+  for (int i = 1; i < argc; ++i) {
+    const std::string file = argv[i];
+    std::ifstream stream(file, std::ios::binary);
+    const Bytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (const auto decoded = decode(bytes)) {
+      print_row(file, decoded->solid, workers);
+    } else {
+      print_document(file, bytes, workers);
+    }
+  }
+  return 0;
+}

@@ -65,6 +65,28 @@ OrientedBoundary cone(Index n) {
   return generated::boundary_of(std::move(arrays));
 }
 
+/// A tetrahedron with n vertices on each of two opposite edges, whose Delaunay tetrahedralization
+/// has (n - 1)^2 tetrahedra.
+OrientedBoundary opposite_edges(Index n) {
+  SolidArrays arrays;
+  std::vector<std::vector<Index>> rings(4);
+  for (Index i = 0; i < n; ++i) arrays.vertices.push_back({static_cast<double>(i), 0, 0});
+  for (Index i = 0; i < n; ++i) arrays.vertices.push_back({0, static_cast<double>(i), 100});
+  for (Index i = 0; i < n; ++i) {
+    rings[0].push_back(i);
+    rings[1].push_back(n - 1 - i);
+    rings[2].push_back(2 * n - 1 - i);
+    rings[3].push_back(n + i);
+  }
+  rings[0].push_back(n);
+  rings[1].push_back(2 * n - 1);
+  rings[2].push_back(n - 1);
+  rings[3].push_back(0);
+  for (const auto& ring : rings) generated::add_facet(arrays, {ring});
+  arrays.end_shell();
+  return generated::boundary_of(std::move(arrays));
+}
+
 bool read_any(ByteView bytes, const std::string& kind) {
   if (kind == ".blob") return bool{decode(bytes)};
   if (kind == ".page") return bool{decode_page(bytes)};
@@ -96,6 +118,15 @@ TEST_CASE("a mode declines a solid whose few bytes a decoder would take for a bo
 TEST_CASE("mode walk declines a vertex of so many edges that the walk would take too long") {
   const OrientedBoundary large = cone(2000);
   CHECK(encode_boundary(cone(300), {}, {.mode = Mode::walk}));
+  const auto blob = encode_boundary(large, {}, {.mode = Mode::walk});
+  REQUIRE_FALSE(blob);
+  CHECK(blob.error().code == ErrorCode::not_encodable);
+  require_automatic_mode_encodes(large, Mode::walk);
+}
+
+TEST_CASE("mode walk declines vertices that have too many Delaunay tetrahedra") {
+  CHECK(encode_boundary(opposite_edges(90), {}, {.mode = Mode::walk}));
+  const OrientedBoundary large = opposite_edges(150);
   const auto blob = encode_boundary(large, {}, {.mode = Mode::walk});
   REQUIRE_FALSE(blob);
   CHECK(blob.error().code == ErrorCode::not_encodable);

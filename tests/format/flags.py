@@ -4,6 +4,7 @@ import math
 
 from delaunay import orient
 from entropy import Malformed
+from vectors import cross, dot, minus
 
 FAMILIES = {"Interior": ([16128, 162, 126, 567, 432, 288], 9), "Exterior": ([3],)}
 
@@ -43,7 +44,6 @@ class Flags:
 
     def read_flag(self, h, twin):
         """Whether the edge of two half-edges lies inside a facet."""
-        from walk import cross, dot, minus
         w, at = self.w, self.points
         t, u = h // 3, twin // 3
         a, b = at[w.tail(twin)], at[w.head(twin)]

@@ -8,6 +8,7 @@ import columns
 import flags
 from delaunay import delaunay, orient
 from entropy import Bank, Malformed
+from vectors import cross, dot, minus
 
 CANDIDATE = ([504, 756, 1920, 630, 432, 1260, 3960, 1920], 18)
 BENDS = [0.96592582628906828, 0.86602540378443865, 0.70710678118654752, 0.5, 0.25881904510252076,
@@ -20,21 +21,6 @@ def walk_bank():
     families = {"Candidate": CANDIDATE, "Distant": CANDIDATE, "Rare": ([7],), "Seed": ([84],),
                 "Choice": ([768, 1024, 768], 4), **flags.FAMILIES, **columns.FAMILIES}
     return Bank(families, columns.NUMBERS)
-
-
-def minus(p, q):
-    """The difference of two points."""
-    return p[0] - q[0], p[1] - q[1], p[2] - q[2]
-
-
-def cross(u, v):
-    """The cross product."""
-    return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-
-
-def dot(u, v):
-    """The scalar product."""
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 def below(x, bounds):

@@ -88,8 +88,9 @@ def apex_beyond(points, face, inside):
     return apex
 
 
-def delaunay(points):
+def delaunay(points, most_per_point):
     """The tetrahedra, each found across a face of another."""
+    most = most_per_point * len(points) + 4096
     points = whole(points)
     found = {first_tetrahedron(points)}
     waiting, done = list(found), set()
@@ -104,6 +105,8 @@ def delaunay(points):
             if apex is not None:
                 done.add((face, apex))
                 beyond = tuple(sorted((*face, apex)))
+                if len(found) > most:
+                    raise Malformed("too many tetrahedra")
                 if beyond not in found:
                     found.add(beyond)
                     waiting.append(beyond)

@@ -144,7 +144,7 @@ class Page:
         nodes = points + (steiner.steiner() if steiner else [])
         if any(c and not 2.0**-100 <= abs(c) <= 2.0**100 for p in nodes for c in p):
             raise Malformed("a coordinate that mode bitmap does not hold")
-        faces = read_bitmap(Bits(bitmap.data, flags & 16), delaunay(nodes))
+        faces = read_bitmap(Bits(bitmap.data, flags & 16), delaunay(nodes, 64))
         if unrecovered:
             faces += unrecovered.unrecovered(len(nodes))
             if len(set(faces)) < len(faces):

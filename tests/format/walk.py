@@ -62,7 +62,7 @@ class Faces:
     def __init__(self, points):
         self.points = [tuple(float(c) for c in p) for p in points]
         self.apexes, self.at_edge, self.neighbours = {}, {}, [set() for _ in points]
-        for tetrahedron in delaunay(points):
+        for tetrahedron in delaunay(points, 24):
             for apex in tetrahedron:
                 face = tuple(v for v in tetrahedron if v != apex)
                 side = orient(*(points[v] for v in face), points[apex]) < 0

@@ -114,6 +114,7 @@ ModelBank::ModelBank(const ModelLayout& layout) {
 
 void ModelBank::add_family(const FamilyShape& shape) {
   Family family;
+  family.selectors = shape.selectors;
   family.first_weight = static_cast<std::uint32_t>(weights_.size());
   family.first_rate = static_cast<std::uint32_t>(mixed_.size());
   while (family.inputs < kMaxInputs && shape.contexts[family.inputs] != 0) {
@@ -243,27 +244,40 @@ std::int64_t ModelBank::code_signed(EntropyStream& stream, std::uint32_t number,
   return is_negative ? -result : result;
 }
 
-Bytes ModelBank::save(std::uint32_t max_count) const {
+Bytes ModelBank::save(const PriorShape& shape) const {
   ByteWriter writer;
+  const auto is_kept = [&](std::size_t i) {
+    return (counters_[i] & 1023U) >= std::max(shape.least_count, 1U);
+  };
   for (std::size_t i = 0; i < counters_.size();) {
-    const std::uint32_t count = std::min(counters_[i] & 1023U, std::min(max_count, 255U));
-    writer.u8(static_cast<std::uint8_t>(count));
-    if (count > 0) {
+    if (is_kept(i)) {
+      const std::uint32_t count = counters_[i] & 1023U;
+      writer.u8(static_cast<std::uint8_t>(std::min({count, shape.max_count, 255U})));
       writer.u16(static_cast<std::uint16_t>(counters_[i++] >> 16));
       continue;
     }
     std::size_t next = i;  // a run of counters that nobody observed
-    while (next < counters_.size() && (counters_[next] & 1023U) == 0) ++next;
-    if (next == i) ++next;
+    while (next < counters_.size() && !is_kept(next)) ++next;
+    writer.u8(0);
     writer.varint(next - i);
     i = next;
   }
-  for (const std::int32_t weight : weights_) {
+  const auto put_weight = [&](std::int32_t weight) {
     writer.u16(static_cast<std::uint16_t>(
         static_cast<std::int16_t>(std::clamp(weight >> 4, -32768, 32767))));
+  };
+  for (const Family& family : families_) {
+    for (std::uint32_t selector = 0; selector < family.selectors; ++selector) {
+      const std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+      for (std::uint32_t i = 0; i <= family.inputs; ++i) {
+        const std::int32_t neutral = i < family.inputs ? first_weight(family.inputs) : 0;
+        put_weight(shape.has_weights ? weight[i] : neutral);
+      }
+    }
   }
-  for (const std::uint32_t mixed : mixed_)
-    writer.u8(static_cast<std::uint8_t>(std::min(mixed, 255U)));
+  for (const std::uint32_t mixed : mixed_) {
+    writer.u8(static_cast<std::uint8_t>(shape.has_weights ? std::min(mixed, 255U) : 0));
+  }
   return std::move(writer).bytes();
 }
 

@@ -41,6 +41,13 @@ struct ModelLayout {
   std::span<const NumberShape> numbers;
 };
 
+/// What of a trained bank a prior keeps.
+struct PriorShape {
+  std::uint32_t max_count = 10;   // confidence in counters: a bank still adapts
+  std::uint32_t least_count = 1;  // counters seen less often are as good as new
+  bool has_weights = true;        // else the inputs count alike, and the weights adapt fast
+};
+
 class ModelBank {
  public:
   explicit ModelBank(const ModelLayout& layout);
@@ -67,10 +74,9 @@ class ModelBank {
                            std::initializer_list<std::uint32_t> contexts, std::int64_t value,
                            int max_length = 62);
 
-  /// The state as bytes, and back. Confidence in counters is capped at `max_count` observations,
-  /// so that a trained bank still adapts. load() is false (and the bank neutral) if the bytes are
+  /// The state as bytes, and back. load() is false (and the bank neutral) if the bytes are
   /// no state of this layout.
-  Bytes save(std::uint32_t max_count) const;
+  Bytes save(const PriorShape& shape) const;
   bool load(ByteView state);
 
   /// Sizes, for reports.
@@ -79,6 +85,7 @@ class ModelBank {
  private:
   struct Family {
     std::uint32_t inputs = 0;
+    std::uint32_t selectors = 0;
     std::uint32_t first_weight = 0;
     std::uint32_t first_rate = 0;
     std::array<std::uint32_t, kMaxInputs> first_counter{};

@@ -67,12 +67,13 @@ ModelBank& ModelSet::operator[](ModelPart part) {
   return *banks_[i];
 }
 
-Bytes write_models(const Priors& banks, std::uint8_t number, std::uint32_t max_count) {
+Bytes write_models(const Priors& banks, std::uint8_t number,
+                   const std::array<PriorShape, kModelParts>& shapes) {
   ByteWriter writer;
   writer.append(kMagic);
   writer.u8(number);
-  for (const ModelBank& bank : banks) {
-    const Bytes state = bank.save(max_count);
+  for (std::size_t i = 0; i < kModelParts; ++i) {
+    const Bytes state = banks[i].save(shapes[i]);
     writer.varint(state.size());
     writer.append(state);
   }

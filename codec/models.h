@@ -44,7 +44,7 @@ std::array<ModelBank, kModelParts> neutral_priors();
 
 /// A model file: "WTM", the number, and each bank's state after its length (varint).
 Bytes write_models(const std::array<ModelBank, kModelParts>& banks, std::uint8_t number,
-                   std::uint32_t max_count);
+                   const std::array<PriorShape, kModelParts>& shapes);
 /// Errors: malformed.
 Result<std::array<ModelBank, kModelParts>> read_models(ByteView file, std::uint8_t number);
 

@@ -63,6 +63,13 @@ inline std::uint32_t log_bucket(double x, int zero, std::uint32_t size) {
   return bucket(static_cast<double>(steps), size);
 }
 
+/// log2(x) for x > 0, linear between powers of two.
+inline double rough_log2(double x) {
+  int exponent = 0;
+  const double fraction = std::frexp(x, &exponent);
+  return exponent - 2 + 2 * fraction;
+}
+
 /// Where a cosine stands between -1 and 1, finer near 1: 0 to 7.
 inline std::uint32_t cosine_bucket(const Vector& a, const Vector& b) {
   constexpr std::array<double, 7> kBounds{-0.5, 0.0, 0.5, 0.8, 0.92, 0.98, 0.995};

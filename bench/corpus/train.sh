@@ -22,5 +22,5 @@ unseen=(hamburg_576_5950 capetown_cput_surface capetown_cput_solid vienna_fichte
   gml/small_delft* gml/small_sig*
 options=()
 for set in "${unseen[@]}"; do options+=(--exclude "$set"); done
-"$bin/train_models" "$corpus" "${options[@]}" ${model:+--out "$model"}
+"$bin/train_models" "$corpus" "${options[@]}" --meshes meshes ${model:+--out "$model"}
 echo "${options[@]/--exclude/--unseen}"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// train_models CORPUS [--out FILE] [--exclude SET]... [--only MODE] [--passes N]
+// train_models CORPUS [--meshes FOLDER] [--out FILE] [--exclude SET]... [--only MODE] [--passes N]
 //
 // Trains the priors of the codec on the training half of a corpus, and prints what the test half
 // takes, per set and mode: bytes per solid in pages of 64 and in blobs of their own (streams alone,
@@ -8,7 +8,8 @@
 // --out the set of priors is written as a model file.
 //
 // First each mode learns from every solid that it can hold. Then all go on learning, through the
-// coder of pages, each from the solids for which it is the cheapest.
+// coder of pages, each from the solids for which it is the cheapest. Mode parallelogram also learns
+// from the dense meshes of a folder (bench/corpus/training_meshes.h).
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -22,6 +23,7 @@
 
 #include "bench/corpus/corpus.h"
 #include "bench/corpus/split.h"
+#include "bench/corpus/training_meshes.h"
 #include "codec/frame.h"
 #include "codec/modes.h"
 #include "codec/page_bytes.h"
@@ -42,10 +44,12 @@ struct Page {
 struct Options {
   std::string corpus;
   std::string out;
+  std::string meshes;  // a folder
   std::set<std::string> excluded;
   std::string only;
   int passes = 2;
-  std::uint32_t max_count = 10;  // of observations that a prior counts for
+  std::uint32_t least_count = 16;  // of observations of a context of mode parallelogram
+  std::uint32_t max_count = 10;    // of observations that a prior counts for
 };
 
 struct Sums {
@@ -192,7 +196,10 @@ Options read_options(int count, char** arguments) {
     const std::string name = arguments[i];
     const std::string value = arguments[i + 1];
     if (name == "--out") options.out = value;
+    if (name == "--meshes") options.meshes = value;
     if (name == "--exclude") options.excluded.insert(value);
+    if (name == "--least-count")
+      options.least_count = static_cast<std::uint32_t>(std::atoi(value.c_str()));
     if (name == "--only") options.only = value;
     if (name == "--passes") options.passes = std::atoi(value.c_str());
     if (name == "--max-count")
@@ -201,9 +208,31 @@ Options read_options(int count, char** arguments) {
   return options;
 }
 
+/// What surfaces have in common are their decisions; how much the parts of a context say differs
+/// from mesh to mesh, so that weights adapt faster from neutral ones, and counters too.
+std::array<PriorShape, kModelParts> shapes_of(const Options& options) {
+  std::array<PriorShape, kModelParts> shapes{};
+  shapes.fill({.max_count = options.max_count});
+  shapes[static_cast<std::size_t>(ModelPart::parallelogram)] = {
+      .max_count = 2, .least_count = options.least_count, .has_weights = false};
+  return shapes;
+}
+
+void learn_meshes(const std::vector<IntegerSolid>& meshes, ModelBank& models) {
+  for (const IntegerSolid& mesh : meshes) {
+    EntropyStream meter = EntropyStream::meter();
+    ModelBank learning = models;
+    IntegerSolid solid = mesh;
+    if (code_parallelogram(meter, learning, PageMemory{}, solid, Limits{})) models = learning;
+  }
+}
+
 void train_all(const std::vector<Page>& pages, const Options& options) {
   const std::array<ModelBank, kModelParts> neutral = neutral_priors();
   ModelSet first(neutral);
+  const std::vector<IntegerSolid> meshes = training_meshes(options.meshes);
+  std::printf("%zu meshes\n", meshes.size());
+  learn_meshes(meshes, first[ModelPart::parallelogram]);
   for (const Mode mode : kModes) {
     if (!options.only.empty() && options.only != to_string(mode)) continue;
     const auto start = std::chrono::steady_clock::now();
@@ -225,13 +254,15 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   };
   ModelSet second(chosen_by);
   for (int pass = 0; pass < options.passes; ++pass) train(pages, second, cheapest);
-  const Bytes file = write_models(banks_of(second), kModelNumber, options.max_count);
+  learn_meshes(meshes, second[ModelPart::parallelogram]);
+  const auto shapes = shapes_of(options);
+  const Bytes file = write_models(banks_of(second), kModelNumber, shapes);
   const auto priors = read_models(file, kModelNumber);
   if (!priors) std::abort();
   measure("cheapest mode", pages, *priors, cheapest);
   std::printf("\nmodel file: %zu bytes\n", file.size());
   for (std::size_t i = 0; i < kModelParts; ++i) {
-    std::printf("part %zu: %zu bytes\n", i, (*priors)[i].save(options.max_count).size());
+    std::printf("part %zu: %zu bytes\n", i, (*priors)[i].save(shapes[i]).size());
   }
   if (options.out.empty()) return;
   std::ofstream out(options.out, std::ios::binary);

@@ -72,7 +72,7 @@ TEST_CASE("what an entropy stream writes it reads, and ends where it ended") {
       REQUIRE(read[i].number == written[i].number);
       REQUIRE(read[i].uniform == written[i].uniform);
     }
-    REQUIRE(models.save(250) == again.save(250));
+    REQUIRE(models.save({.max_count = 250}) == again.save({.max_count = 250}));
   }
 }
 
@@ -111,10 +111,10 @@ TEST_CASE("a bank learns, and starts where its prior left off") {
   EntropyStream first = EntropyStream::meter();
   code(first, trained, training);
 
-  const Bytes prior = trained.save(60);
+  const Bytes prior = trained.save({.max_count = 60});
   ModelBank loaded(kLayout);
   REQUIRE(loaded.load(prior));
-  REQUIRE(loaded.save(60) == prior);
+  REQUIRE(loaded.save({.max_count = 60}) == prior);
 
   std::vector<Sample> test = samples(12, 50);
   EntropyStream cold = EntropyStream::meter();
@@ -129,8 +129,8 @@ TEST_CASE("a prior of another layout is refused") {
   constexpr FamilyShape families[] = {{1, {3}}};
   ModelBank other(ModelLayout{families, {}});
   ModelBank models(kLayout);
-  CHECK_FALSE(other.load(models.save(30)));
-  CHECK_FALSE(models.load(other.save(30)));
+  CHECK_FALSE(other.load(models.save({.max_count = 30})));
+  CHECK_FALSE(models.load(other.save({.max_count = 30})));
   CHECK_FALSE(models.load({}));
 }
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/parallelogram_models.h"
+
+#include <array>
+
+#include "codec/axis_places.h"
+#include "codec/modes.h"
+
+namespace watertight {
+
+using namespace parallelogram;
+
+const ModelLayout& parallelogram_layout() {
+  static constexpr std::array<FamilyShape, kFamilyCount> kFamilies{
+      FamilyShape{1, {1}},
+      FamilyShape{1, {2}},
+      FamilyShape{1, {1}},
+      FamilyShape{
+          4,
+          {kRooms * kDegrees, kAngles * kRatios, 14 * 14, kCosines * kCosines * kAngles,
+           kDegrees * kDegrees * kDegrees, kRooms / 2 * 14 * kCosines, kRooms * kRatios, kRooms}},
+      FamilyShape{1, {32, 32}},
+      FamilyShape{3, {kPatterns * 12, 8 * 12, kPatterns * 24, kPatterns * 7}},
+      FamilyShape{5, {5 * kPatterns, 15 * 8}},
+      kPlacesFamily,
+      FamilyShape{1, {1}},
+      FamilyShape{kGuesses - 1,
+                  {kGuesses * kGuesses * kGuesses, kGuesses * kGuesses * kGuesses,
+                   kGuesses * kGuesses * kGuesses, kGuesses * kSpans, kGuesses * kErrors,
+                   kGuesses * kDistances * kDistances}}};
+  static constexpr std::array<NumberShape, kNumberCount> kNumbers{
+      NumberShape{1, {2, 64}}, NumberShape{1, {3, 64}},
+      NumberShape{
+          6,
+          {kErrors * kParts * 3, kErrors * kMisses * 3, (kSpans + kGuesses) * kMisses * kParts,
+           kErrors * kSpreads * kMisses, kErrors * kErrors * 3, kErrors}},
+      NumberShape{1, {1}}, kPlacesNumber};
+  static const ModelLayout kLayout{kFamilies, kNumbers};
+  return kLayout;
+}
+
+}  // namespace watertight

@@ -48,8 +48,8 @@ struct Options {
   std::set<std::string> excluded;
   std::string only;
   int passes = 2;
-  std::uint32_t least_count = 16;  // of observations of a context of mode parallelogram
-  std::uint32_t max_count = 10;    // of observations that a prior counts for
+  std::uint32_t least_count = 250;  // of observations of a context of mode parallelogram
+  std::uint32_t max_count = 10;     // of observations that a prior counts for
 };
 
 struct Sums {
@@ -262,7 +262,7 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   measure("cheapest mode", pages, *priors, cheapest);
   std::printf("\nmodel file: %zu bytes\n", file.size());
   for (std::size_t i = 0; i < kModelParts; ++i) {
-    std::printf("part %zu: %zu bytes\n", i, (*priors)[i].save(shapes[i]).size());
+    std::printf("part %zu: %zu bytes\n", i, banks_of(second)[i].save(shapes[i]).size());
   }
   if (options.out.empty()) return;
   std::ofstream out(options.out, std::ios::binary);

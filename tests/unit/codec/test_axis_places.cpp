@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The places of coordinates in mode parallelogram: which list is suggested, that it comes back,
+// that it pays, and damaged ones.
+#include <algorithm>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "codec/axis_places.h"
+#include "codec/modes.h"
+#include "generated_solids.h"
+#include "geometry/canonical_form.h"
+
+namespace watertight {
+namespace {
+
+using Kind = AxisPlaces::Kind;
+
+constexpr std::array<FamilyShape, 1> kFamilies{kPlacesFamily};
+constexpr std::array<NumberShape, 1> kNumbers{kPlacesNumber};
+constexpr ModelLayout kLayout{kFamilies, kNumbers};
+
+Bytes write(const AxisPlaces& places) {
+  ModelBank models(kLayout);
+  EntropyStream stream = EntropyStream::writer();
+  REQUIRE(AxisPlaces::code(stream, models, 0, 0, Kind::every, places, {}));
+  return std::move(stream).finish();
+}
+
+Result<AxisPlaces> read(ByteView bytes, const Limits& limits = {}) {
+  ModelBank models(kLayout);
+  EntropyStream stream = EntropyStream::reader(bytes);
+  return AxisPlaces::code(stream, models, 0, 0, Kind::every, {}, limits);
+}
+
+/// Each value has a place that gives it back, and places ascend with values.
+void check_values(const AxisPlaces& places, std::vector<std::int64_t> values) {
+  std::sort(values.begin(), values.end());
+  std::int64_t before = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::int64_t place = places.place_of(values[i]);
+    std::int64_t found = 0;
+    REQUIRE(places.find_value(place, found));
+    CHECK(found == values[i]);
+    if (i > 0 && values[i] != values[i - 1]) CHECK(place > before);
+    before = place;
+  }
+}
+
+std::vector<std::int64_t> steps(double step, double offset, int count) {
+  generated::Random random(5);
+  std::vector<std::int64_t> values{0};
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<double>(random.below(600)) - 200;
+    values.push_back(static_cast<std::int64_t>(std::floor(k * step + offset)));
+  }
+  return values;
+}
+
+IntegerSolid rough_torus() {
+  generated::Random random(7);
+  const CanonicalSolid canonical = canonical_form(generated::torus(16, 16));
+  const auto gridded = grid_solid(canonical.boundary.solid());
+  REQUIRE(gridded);
+  IntegerSolid solid = gridded->solid;
+  for (GridPoint& vertex : solid.vertices) {
+    for (std::int64_t& c : vertex) c = 20 * c + static_cast<std::int64_t>(random.below(18));
+  }
+  return solid;
+}
+
+template <class Change>
+IntegerSolid changed(IntegerSolid solid, const Change& change) {
+  for (GridPoint& vertex : solid.vertices) {
+    for (std::int64_t& coordinate : vertex) coordinate = change(coordinate);
+  }
+  return solid;
+}
+
+/// Writes a solid and reads it back. Returns the bytes.
+Bytes round_trip(const IntegerSolid& solid) {
+  ModelBank models(parallelogram_layout());
+  EntropyStream writer = EntropyStream::writer();
+  IntegerSolid source = solid;
+  REQUIRE(code_parallelogram(writer, models, {}, source, {}));
+  const Bytes bytes = std::move(writer).finish();
+  ModelBank again(parallelogram_layout());
+  EntropyStream reader = EntropyStream::reader(bytes);
+  IntegerSolid back;
+  REQUIRE(code_parallelogram(reader, again, {}, back, {}));
+  CHECK(reader.is_finished());
+  const auto triangles_of = [](const IntegerSolid& s) {
+    std::vector<std::array<GridPoint, 3>> result;
+    for (std::size_t i = 0; i < s.ring_vertices.size(); i += 3) {
+      std::array<GridPoint, 3> t{s.vertices[s.ring_vertices[i]], s.vertices[s.ring_vertices[i + 1]],
+                                 s.vertices[s.ring_vertices[i + 2]]};
+      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+      result.push_back(t);
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+  };
+  CHECK(triangles_of(back) == triangles_of(solid));
+  return bytes;
+}
+
+TEST_CASE("values of even steps are suggested as such and come back") {
+  for (const double step : {8.36, 10.0, 1274.999, 1e9 / 3}) {
+    const auto values = steps(step, 0.3, 400);
+    const AxisPlaces places = AxisPlaces::suggest(values);
+    REQUIRE(places.kind() == Kind::stepped);
+    check_values(places, values);
+    const auto back = read(write(places));
+    REQUIRE(back);
+    CHECK(back->kind() == Kind::stepped);
+    check_values(*back, values);
+  }
+}
+
+TEST_CASE("few uneven values are suggested as a list and come back") {
+  generated::Random random(9);
+  std::vector<std::int64_t> some{0, -5, 3, 90000};
+  for (int i = 0; i < 20; ++i)
+    some.push_back(static_cast<std::int64_t>(random.below(70000)) - 9000);
+  std::vector<std::int64_t> values;
+  for (int i = 0; i < 400; ++i) values.push_back(some[random.below(some.size())]);
+  const AxisPlaces places = AxisPlaces::suggest(values);
+  REQUIRE(places.kind() == Kind::listed);
+  check_values(places, values);
+  const auto back = read(write(places));
+  REQUIRE(back);
+  CHECK(back->kind() == Kind::listed);
+  check_values(*back, values);
+  std::int64_t value = 0;
+  CHECK_FALSE(back->find_value(-1, value));
+  CHECK_FALSE(back->find_value(1000, value));
+}
+
+TEST_CASE("nothing is suggested for values all over their range") {
+  generated::Random random(10);
+  std::vector<std::int64_t> values;
+  for (int i = 0; i < 300; ++i) values.push_back(static_cast<std::int64_t>(random.below(1000000)));
+  CHECK(AxisPlaces::suggest(values).kind() == Kind::every);
+  CHECK(AxisPlaces::suggest({}).kind() == Kind::every);
+  CHECK(AxisPlaces::suggest({0, 0, 0}).kind() == Kind::every);
+  CHECK(read(write({}))->kind() == Kind::every);
+}
+
+TEST_CASE("a solid on a grid finer than its source takes what it takes on the coarse one") {
+  const IntegerSolid coarse = rough_torus();
+  const IntegerSolid fine = changed(coarse, [](std::int64_t c) {
+    return static_cast<std::int64_t>(std::floor(8.36 * static_cast<double>(c) + 0.5));
+  });
+  generated::Random random(3);
+  const IntegerSolid anywhere =
+      changed(fine, [&](std::int64_t c) { return c + static_cast<std::int64_t>(random.below(8)); });
+  CHECK(10 * round_trip(fine).size() < 9 * round_trip(anywhere).size());
+}
+
+TEST_CASE("a solid of few distinct coordinates is smaller than one of many") {
+  generated::Random random(12);
+  const CanonicalSolid canonical = canonical_form(generated::torus(16, 16));
+  const auto gridded = grid_solid(canonical.boundary.solid());
+  REQUIRE(gridded);
+  std::map<std::int64_t, std::int64_t> values;
+  for (const GridPoint& vertex : gridded->solid.vertices) {
+    for (const std::int64_t c : vertex) values[c] = 0;
+  }
+  std::int64_t last = 0;
+  for (auto& [coordinate, value] : values) {
+    last += 2000 + static_cast<std::int64_t>(random.below(3000));
+    value = last;
+  }
+  const IntegerSolid few =
+      changed(gridded->solid, [&](std::int64_t coordinate) { return values[coordinate]; });
+  const IntegerSolid many = changed(
+      few, [&](std::int64_t c) { return c + static_cast<std::int64_t>(random.below(2000)); });
+  CHECK(10 * round_trip(few).size() < 7 * round_trip(many).size());
+}
+
+TEST_CASE("lists that are too long or too wide are refused") {
+  std::vector<std::int64_t> values;
+  for (std::int64_t i = 0; i < 400; ++i) values.push_back(i % 40 * (i % 40) * 77);
+  const AxisPlaces places = AxisPlaces::suggest(values);
+  REQUIRE(places.kind() == Kind::listed);
+  Limits few;
+  few.vertices = 20;
+  CHECK_FALSE(read(write(places), few));
+  few.vertices = 60;
+  CHECK(read(write(places), few));
+}
+
+TEST_CASE("noise makes no endless or unsound places") {
+  generated::Random random(11);
+  Limits limits;
+  limits.vertices = 2000;
+  int sound = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    Bytes noise(random.below(60));
+    for (auto& byte : noise) byte = static_cast<std::uint8_t>(random.next());
+    const auto places = read(noise, limits);
+    if (!places || places->kind() == Kind::every) continue;
+    ++sound;
+    std::int64_t low = 0;
+    std::int64_t high = 0;
+    if (places->find_value(0, low) && places->find_value(1, high)) CHECK(low < high);
+    for (const double at : {-9e15, -3.5, 0.0, 1e9, 9e15}) {
+      const double position = places->position_of(at);
+      CHECK(std::abs(position) <= 1e16);
+      CHECK(places->spread_of(at, 10) >= 0);
+      (void)places->find_value(static_cast<std::int64_t>(position), low);
+    }
+  }
+  CHECK(sound > 0);
+}
+
+}  // namespace
+}  // namespace watertight

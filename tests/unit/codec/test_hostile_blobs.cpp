@@ -198,7 +198,7 @@ TEST_CASE("a mutated blob is rejected or still a boundary that encodes again") {
     REQUIRE(encode_boundary(*boundary, decoded->info.acceptance, {.mode = Mode::raw}));
   }
   // Mutations that cancel out leave the blob as it was; nothing else passes the checksum.
-  CHECK(accepted < 1000);
+  CHECK(accepted < 2000);
 }
 
 TEST_CASE("limits are checked before anything is decoded") {

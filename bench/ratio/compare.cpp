@@ -5,9 +5,9 @@
 // bytes and its entry in an index; a blob all its bytes. Peers that keep no position or grid get
 // what ours takes for them added: three varints of the origin, and two bytes of grid for a blob.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 #include <set>
 #include <string>
@@ -48,7 +48,7 @@ struct Sums {
 };
 
 double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 std::size_t varint_bytes(std::int64_t value) {

@@ -12,6 +12,8 @@
 namespace watertight {
 namespace {
 
+__extension__ using Wide = __int128;
+
 constexpr std::int64_t kRange = std::int64_t{1} << 54;  // of values
 constexpr int kShiftBits = 6;
 constexpr int kMostShift = 40;
@@ -112,7 +114,6 @@ bool AxisPlaces::find_value(std::int64_t place, std::int64_t& value) const {
     value = list_[static_cast<std::size_t>(place)];
     return true;
   }
-  __extension__ using Wide = __int128;
   const Wide wide = kind_ == Kind::every
                         ? Wide{place}
                         : (Wide{place} * step_ + offset_) >> shift_;  // step and place below 2^63
@@ -126,10 +127,9 @@ std::int64_t AxisPlaces::place_of(std::int64_t value) const {
   if (kind_ == Kind::listed) {
     return std::lower_bound(list_.begin(), list_.end(), value) - list_.begin();
   }
-  auto place =
-      static_cast<std::int64_t>(std::floor(position_of(static_cast<double>(value)) + 0.5)) - 1;
-  for (std::int64_t found = 0; find_value(place, found) && found < value;) ++place;
-  return place;
+  // The first place whose value is not below: exactly, at any magnitude.
+  const Wide above = (Wide{value} << shift_) - offset_ + step_ - 1;
+  return static_cast<std::int64_t>(above / step_ - (above % step_ < 0 ? 1 : 0));
 }
 
 double AxisPlaces::position_of(double coordinate) const {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The worked examples of docs/format.md and the traces of golden files, made by the reference decoder.
+"""The worked examples and the table of model files of docs/format.md, and the traces of golden files.
 
   examples.py MODELS GOLDENS DOCUMENT           checks that they are up to date
   examples.py MODELS GOLDENS DOCUMENT --write   writes them
@@ -13,9 +13,10 @@ import itertools
 import pathlib
 import sys
 
+from entropy import crc32c
 from page import BLOB, PAGE, Page
 
-TRACED = ["box-neutral.blob", "box-walk-neutral.blob",
+TRACED = ["box-neutral.blob", "box-walk-neutral.blob", "schoenhardt-parallelogram-neutral.blob",
           "houses-neutral.page"]
 EXAMPLES = {"box-neutral.blob": 44, "houses-neutral.page": 24}  # items shown of each
 BYTES_IN_ROW = 8
@@ -73,6 +74,16 @@ def example_of(path, page, items):
     return "\n".join(lines) + "\n"
 
 
+def model_table(models):
+    """The files of priors."""
+    lines = ["| set | file | bytes | CRC-32C |", "|---|---|---|---|"]
+    for path in sorted(models.glob("model-*.bin")):
+        data = path.read_bytes()
+        lines.append(f"| {data[3]} | `codec/models/{path.name}` | {len(data):,} | "
+                     f"`{crc32c(data):08x}` |")
+    return "\n".join(lines) + "\n"
+
+
 def with_example(text, name, block):
     """The document with the example between its marks replaced."""
     begin, end = f"<!-- {name}: made by tests/format/examples.py -->\n", f"<!-- end of {name} -->\n"
@@ -84,7 +95,7 @@ def main(arguments):
     """Writes or checks."""
     models, goldens, document = (pathlib.Path(name) for name in arguments[:3])
     text = document.read_text(encoding="utf-8")
-    wanted, changed = text, []
+    wanted, changed = with_example(text, "models", model_table(models)), []
     contents = {}
     for name in TRACED:
         path = goldens / name

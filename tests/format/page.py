@@ -9,6 +9,7 @@ from entropy import (Limits, Malformed, Models, Stream, Unsupported, bank_bytes,
 from flags import Flags
 from frame import FLOAT64, Frame, frame_bank
 from order import Order, order_bank
+from parallelogram import Triangles, parallelogram_bank
 from polygon_positions import Positions
 from polygon_surface import Surface, polygon_bank
 from sections import Section
@@ -25,7 +26,7 @@ FILE_MAGIC = b"WTPF"
 def banks_of(models, number):
     """The banks, from the neutral set 0 or from a file."""
     banks = {"frame": frame_bank(), "order": order_bank(), "polygon": polygon_bank(),
-             "walk": walk_bank()}
+             "walk": walk_bank(), "parallelogram": parallelogram_bank()}
     if number:
         path = models / f"model-{number}.bin"
         if not path.exists():
@@ -74,7 +75,7 @@ class Page:
             node = 2 * node + m.decide("mode", 8 * before + node)
         self.mode = node - 8
         readers = {RAW: self.read_raw, BITMAP: self.read_bitmap, WALK: self.read_walk,
-                   POLYGON: self.read_polygon}
+                   POLYGON: self.read_polygon, PARALLELOGRAM: self.read_parallelogram}
         if self.mode not in readers:
             raise Unsupported(f"mode {self.mode}")
         self.names.append(MODE_NAMES[self.mode])
@@ -163,6 +164,13 @@ class Page:
         self.limits.shells(len(walk.component_first) - 1)
         self.limits.facets((len(walk.triangles) + 3) // 4)
         return points, Flags(m, walk).read(), False
+
+    def read_parallelogram(self):
+        """Mode parallelogram: vertices joined where they are at one place."""
+        triangles = Triangles(self.models["parallelogram"], self.last_position, not self.columns,
+                              self.limits)
+        points, shells = triangles.read()
+        return points, shells, False
 
     def read_polygon(self):
         """Mode polygon: fans, joined where they are copies."""

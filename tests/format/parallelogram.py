@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mode parallelogram, from docs/format-parallelogram.md."""
+import math
+
+from axis_places import EVERY, AxisPlaces
+from entropy import Bank, Malformed
+from front import Front
+from tip import Prediction, tamed
+from vectors import (angle_between, bucket, cosine_bucket, cross, dot, log_bucket, minus, size,
+                     times)
+
+GUESSES = 6
+FAMILIES = {
+    "HasRepeats": ([1],), "More": ([2],), "NewShell": ([1],),
+    "Close": ([320, 192, 196, 1024, 1000, 1792, 384, 32], 4), "New": ([32, 32],),
+    "Repeat": ([192, 96, 384, 112], 3), "Which": ([80, 120], 5), "Places": ([6],),
+    "HasGuesses": ([1],), "Guess": ([216, 216, 216, 96, 96, 384], 5)}
+NUMBERS = {"Origin": ([2, 64],), "Seed": ([3, 64],),
+           "Residual": ([192, 288, 528, 768, 768, 16], 6), "Rank": ([1],), "Place": ([32, 256], 2)}
+
+
+def parallelogram_bank():
+    """The bank of mode parallelogram."""
+    return Bank(FAMILIES, NUMBERS)
+
+
+class Vertices:
+    """Reads the places of vertices, relative to the first one."""
+
+    def __init__(self, models, last_position, is_first, limits):
+        self.m, self.limits = models, limits
+        self.last_position, self.is_first = last_position, is_first
+        self.cells, self.places, self.misses = [], [], []
+        self.repeats, self.guesses = [], []
+        self.axes, self.prediction = [AxisPlaces() for _ in range(3)], Prediction()
+        self.last_guesses, self.history, self.now = 0, [0, 0, 0], []
+        self.has_repeats = models.decide("HasRepeats", 0)
+        self.has_guesses = models.decide("HasGuesses", 0)
+
+    def add(self, cell, miss):
+        """A vertex more."""
+        if max(map(abs, cell)) >= 2**54:
+            raise Malformed("a coordinate out of range")
+        self.limits.vertices(len(self.cells) + 1)
+        self.cells.append(tuple(cell))
+        self.places.append(tuple(map(float, cell)))
+        self.misses.append(miss)
+        self.repeats.append([0, 0, 0])
+        self.guesses.append(0)
+
+    def read_cell(self, near, name, context):
+        """A place by its difference from another one."""
+        before, cell = 0, []
+        for k in range(3):
+            offset = self.m.signed(name, context, before, bits=54)
+            cell.append(self.axes[k].value(self.axes[k].place(near[k]) + offset))
+            before = abs(offset).bit_length()
+        return cell
+
+    def read_seed(self, number):
+        """A vertex of a first triangle."""
+        if self.cells:
+            self.add(self.read_cell(self.cells[-1], "Seed", number), 0.0)
+        else:
+            self.origin = self.read_cell(self.last_position, "Origin", 0 if self.is_first else 1)
+            before = EVERY
+            for k in range(3):
+                self.axes[k] = AxisPlaces.read(self.m, before, self.limits)
+                before = self.axes[k].kind
+            self.add((0, 0, 0), 0.0)
+        if number == 2:
+            miss = 0.5 * size(minus(self.places[-2], self.places[-3]))
+            self.misses[-3:] = [miss] * 3
+
+    def read_tip(self, gate):
+        """The vertex beyond a gate, for which the prediction was made."""
+        tip, misses = self.prediction, self.misses
+        axes = sorted(range(3), key=lambda k: abs(tip.normal[k]))
+        expected = 0.5 * (misses[gate.start] + misses[gate.end])
+        scale = log_bucket(expected, 4, 16)
+        guess = self.read_guess(gate, scale) if self.has_guesses else 0
+        predicted = tip.guesses[guess]
+        apart = size(minus(tip.guesses[0], tip.guesses[1]))
+        spread = log_bucket(apart / (0.3 * expected + 1), 3, 8)
+        least = log_bucket(min(misses[gate.start], misses[gate.end]), 4, 16)
+        apexes = log_bucket(misses[gate.apex] + misses[gate.next.end], 2, 16)
+        length = log_bucket(tip.size, 1, 16)
+        cell, place, slope, missed, self.now = [0] * 3, [0.0] * 3, 0.0, 0, []
+        third = 16 + guess if self.has_guesses else tip.spans
+        for rank, k in enumerate(axes):
+            expectation = predicted[k]
+            if rank == 2:
+                expectation = tamed(expectation + tip.shift_along(k, slope))
+            if self.has_repeats and self.read_repeat(gate, rank, k, cell):
+                place[k] = float(cell[k])
+                slope += tip.normal[k] * (place[k] - predicted[k])
+                continue
+            where = self.axes[k].position(expectation)
+            nearest = math.floor(where + 0.5)
+            part = where - float(nearest)
+            miss = log_bucket(self.axes[k].spread(expectation, expected), 4, 16)
+            parts = bucket(abs(part) * 2 * 4, 4)
+            offset = self.m.signed(
+                "Residual", (4 * miss + parts) * 3 + rank, (6 * length + missed) * 3 + rank,
+                (6 * third + missed) * 4 + parts, (8 * miss + spread) * 6 + missed,
+                (16 * least + apexes) * 3 + rank, miss,
+                selector=3 * int(self.has_guesses) + rank, bits=54)
+            cell[k] = self.axes[k].value(nearest + (-offset if part < 0 else offset))
+            place[k] = float(cell[k])
+            slope += tip.normal[k] * (place[k] - predicted[k])
+            if rank == 2:
+                tip.learn_shift(place[k] - predicted[k], expected)
+            missed = max(missed, log_bucket(abs(place[k] - predicted[k]), 2, 6))
+        tip.learn(tuple(place), expected)
+        self.add(cell, size(minus(place, predicted)))
+        self.guesses[-1] = guess
+        for rank, repeated in enumerate(self.now):
+            self.repeats[-1][axes[rank]] = repeated
+
+    def read_guess(self, gate, scale):
+        """Which of the guesses the residuals are from."""
+        tip, before = self.prediction, self.guesses
+        x, p = gate.next.end, gate.previous.start
+        pairs = [self.last_guesses, 6 * before[gate.start] + before[gate.end],
+                 6 * before[gate.apex] + max(before[x], before[p])]
+        unit = 0.1 * (self.misses[gate.start] + self.misses[gate.end]) + 1
+
+        def far(a, b):
+            return log_bucket(size(minus(tip.guesses[a], tip.guesses[b])) / unit, 1, 16) // 2
+
+        guess = 0
+        while guess < GUESSES - 1:
+            i = guess
+            if self.m.decide("Guess", *(6 * pair + i for pair in pairs), 6 * tip.spans + i,
+                             6 * scale + i, (8 * far(i, 0 if i else 1) + far(i, i + 1)) * 6 + i,
+                             selector=i):
+                break
+            guess += 1
+        self.last_guesses = self.last_guesses % 6 * 6 + guess
+        return guess
+
+    def read_repeat(self, gate, rank, k, cell):
+        """Whether a coordinate is that of a vertex nearby."""
+        u, v, o, x, p = (self.cells[w][k] for w in (gate.start, gate.end, gate.apex, gate.next.end,
+                                                   gate.previous.start))
+        mask = self.repeats[gate.start][k] + 2 * self.repeats[gate.end][k]
+        pattern = (u == v) + 2 * (v == o) + 4 * (u == o) + 8 * (u == p or v == x)
+        now = sum(bit << i for i, bit in enumerate(reversed(self.now)))
+        flat = bucket(abs(self.prediction.normal[k]) * 7.999, 8)
+        repeats = self.m.decide(
+            "Repeat", (3 * pattern + rank) * 4 + mask, (3 * self.history[k] + rank) * 4 + mask,
+            24 * pattern + 3 * flat + rank, 7 * pattern + (1 << rank) - 1 + now, selector=rank)
+        self.history[k] = (2 * self.history[k] + repeats) & 7
+        self.now.append(repeats)
+        if not repeats:
+            return False
+        around = [u, v, o, x, p]
+        for i, value in enumerate(around):
+            if value in around[:i]:
+                continue
+            cell[k] = value
+            if self.m.decide("Which", 16 * i + pattern, (3 * i + rank) * 8 + self.history[k],
+                             selector=i):
+                break
+        return True
+
+
+class Triangles:
+    """Reads the surface, triangle by triangle."""
+
+    def __init__(self, models, last_position, is_first, limits):
+        self.m, self.limits = models, limits
+        self.vertices = Vertices(models, last_position, is_first, limits)
+        self.front, self.mean_edge = Front(self.vertices.places), 1.0
+
+    def read(self):
+        """Vertices and shells of triangles."""
+        starts, component = [], 0
+        while True:
+            if component == 0 or self.m.decide("NewShell", 0):
+                starts.append(len(self.front.triangles))
+            self.component()
+            if not self.m.decide("More", min(component, 1)):
+                break
+            component += 1
+        self.limits.shells(len(starts))
+        origin = self.vertices.origin
+        places = [tuple(c + o for c, o in zip(cell, origin)) for cell in self.vertices.cells]
+        points = list(dict.fromkeys(places))
+        number = {place: i for i, place in enumerate(points)}
+        triangles = [[[number[places[v]] for v in triangle]] for triangle in self.front.triangles]
+        bounds = starts + [len(triangles)]
+        return points, [triangles[begin:end] for begin, end in zip(bounds, bounds[1:])]
+
+    def component(self):
+        """One connected surface."""
+        for number in range(3):
+            self.vertices.read_seed(number)
+        n = len(self.vertices.cells)
+        self.front.add_seed((n - 3, n - 2, n - 1))
+        while True:
+            gate = self.front.next_corner()
+            if gate is None:
+                break
+            self.limits.facets(len(self.front.triangles) + 1)
+            if not gate.is_refused and self.close(gate):
+                continue
+            if not gate.previous.is_refused and self.close(gate.previous):
+                continue
+            self.extend(gate)
+        if self.front.open:
+            raise Malformed("a surface that is not closed")
+
+    def close(self, gate):
+        """Whether a triangle fills a corner."""
+        at, front = self.vertices.places, self.front
+        after, before = gate.next, gate.previous
+        u, v, w = at[gate.start], at[gate.end], at[after.end]
+        across = minus(w, u)
+        angle = angle_between(minus(u, v), minus(w, v))
+        room_u = before.room - angle_between(minus(v, u), across)
+        room_w = after.room - angle_between(minus(u, w), minus(v, w))
+        span = size(across)
+        sides = 0.5 * (size(minus(u, v)) + size(minus(w, v)))
+        normal = cross(minus(w, v), minus(u, v))
+        b1 = cosine_bucket(normal, times(cross(minus(at[gate.apex], u), minus(v, u)), -1.0))
+        b2 = cosine_bucket(normal, times(cross(minus(at[after.apex], v), minus(w, v)), -1.0))
+        room = bucket(gate.room * 8, 32)
+        d_v, d_u, d_w = (min(front.degree[x], 9) for x in (gate.end, gate.start, after.end))
+        ratio = log_bucket(span / (sides + 1e-3), 6, 12)
+        least = bucket(min(room_u, room_w) * 4 + 2, 14)
+        most = bucket(max(room_u, room_w) * 3 + 1, 14)
+        selector = 3 if after.next is before else 1 if before.is_refused else 0
+        if self.m.decide("Close", 10 * room + d_v, bucket(angle * 5, 16) * 12 + ratio,
+                         14 * least + most, (8 * b1 + b2) * 16 + room // 2,
+                         (10 * d_v + min(d_u, d_w)) * 10 + max(d_u, d_w),
+                         (room // 2 * 14 + least) * 8 + min(b1, b2),
+                         12 * room + log_bucket(span / (self.mean_edge + 1e-3), 6, 12), room,
+                         selector=selector):
+            front.close(gate)
+            return True
+        gate.is_refused = True
+        return False
+
+    def extend(self, gate):
+        """A triangle with a new vertex, or one of the front elsewhere."""
+        front, vertices = self.front, self.vertices
+        is_new = self.m.decide("New", bucket(gate.room * 4, 32), bucket(gate.previous.room * 4, 32))
+        vertices.prediction.predict(front, gate)
+        if not is_new:
+            self.join(gate)
+            return
+        vertices.read_tip(gate)
+        w = len(vertices.cells) - 1
+        length = size(minus(vertices.places[w], vertices.places[gate.start]))
+        self.mean_edge += (length - self.mean_edge) / (1.0 + min(w, 1000))
+        front.add_tip(gate, w)
+
+    def join(self, gate):
+        """Which corner of the front."""
+        predicted, at = self.vertices.prediction.guesses[0], self.vertices.places
+        listed = set()
+        last, ahead = gate.previous.previous.previous, gate.next.next
+        for _ in range(256):
+            if ahead is last or ahead is gate:
+                break
+            listed.add(ahead)
+            ahead = ahead.next
+        behind = last
+        for _ in range(256):
+            if ahead is gate or behind is ahead:
+                break
+            listed.add(behind)
+            behind = behind.previous
+        if ahead is last and ahead is not gate:
+            listed.add(ahead)
+
+        def distance(other):
+            offset = minus(at[other.end], predicted)
+            return dot(offset, offset), other.number
+
+        candidates = sorted(listed, key=distance)
+        rank = self.m.number("Rank", 0, bits=32)
+        if rank > len(candidates):
+            raise Malformed("no such corner")
+        if rank:
+            other = candidates[rank - 1]
+        else:
+            other = self.front.gates[self.m.uniform(len(self.front.gates))]
+        if not other.is_open or other in (gate, gate.previous, gate.next, gate.previous.previous):
+            raise Malformed("a corner that cannot be joined")
+        self.front.join(gate, other)

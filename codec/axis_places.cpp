@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -175,11 +176,10 @@ bool AxisPlaces::code_steps(EntropyStream& stream, ModelBank& models, std::uint3
 bool AxisPlaces::code_list(EntropyStream& stream, ModelBank& models, std::uint32_t number,
                            const Limits& limits) {
   const std::vector<std::int64_t> truth = std::move(list_);
-  const auto zero =
-      static_cast<std::uint64_t>(std::lower_bound(truth.begin(), truth.end(), 0) - truth.begin());
+  const auto zero = std::lower_bound(truth.begin(), truth.end(), 0) - truth.begin();
   list_ = {0};
   for (const std::int64_t sign : {-1, 1}) {
-    const std::uint64_t there = sign < 0 ? zero : truth.size() - zero - 1;
+    const auto there = static_cast<std::uint64_t>(sign < 0 ? zero : std::ssize(truth) - zero - 1);
     const std::uint64_t count = models.code_number(stream, number, 0, {1, 0}, there, 32);
     if (count > limits.vertices) return false;
     std::int64_t value = 0;

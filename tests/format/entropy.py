@@ -176,19 +176,20 @@ class Family:
     """Decisions that share tables of counters and sets of weights."""
 
     def __init__(self, inputs, selectors=1):
-        self.tables = [[[1 << 21, 0] for _ in range(size)] for size in inputs]
+        self.chances = [[1 << 21] * size for size in inputs]
+        self.counts = [[0] * size for size in inputs]
         first = 262144 // (3 + len(inputs))
         self.weights = [[first] * len(inputs) + [0] for _ in range(selectors)]
         self.seen = [0] * selectors
 
     def mixed(self, contexts, selector):
         """The counters' inputs and the probability, of 65536, that they give together."""
-        if len(contexts) != len(self.tables) or min(contexts) < 0:
+        if len(contexts) != len(self.counts) or min(contexts) < 0:
             raise IndexError("contexts")
         inputs = []
-        for table, context in zip(self.tables, contexts):
-            p, n = table[context]
-            inputs.append(STRETCH[p >> 10] * (2560 * n // (10 * n + 4)) >> 8)
+        for chances, counts, context in zip(self.chances, self.counts, contexts):
+            n = counts[context]
+            inputs.append(STRETCH[chances[context] >> 10] * (2560 * n // (10 * n + 4)) >> 8)
         inputs.append(64)
         total = sum(w * x for w, x in zip(self.weights[selector], inputs))
         x = clamp(total >> 16, -2047, 2047)
@@ -201,11 +202,11 @@ class Family:
         self.seen[selector] = min(self.seen[selector] + 1, 1000)
         self.weights[selector] = [clamp(w + (error * rate * x >> 20), -524288, 524288)
                                   for w, x in zip(self.weights[selector], inputs)]
-        for table, context in zip(self.tables, contexts):
-            counter = table[context]
-            target = (1 << 22) - 1 if bit else 0
-            counter[0] += (target - counter[0]) * (131072 // (2 * counter[1] + 3)) >> 16
-            counter[1] = min(counter[1] + 1, 250)
+        target = (1 << 22) - 1 if bit else 0
+        for chances, counts, context in zip(self.chances, self.counts, contexts):
+            n = counts[context]
+            chances[context] += (target - chances[context]) * (131072 // (2 * n + 3)) >> 16
+            counts[context] = min(n + 1, 250)
 
     def read(self, stream, contexts, selector=0):
         """The next decision."""
@@ -290,20 +291,21 @@ class Bank:
     def load(self, state):
         """Starts from a prior, the saved state of a bank."""
         at, unobserved = 0, 0
-        for family in self.families:
-            for table in family.tables:
-                for counter in table:
-                    if unobserved:
-                        unobserved -= 1
-                        continue
-                    n = state[at]
-                    at += 1
-                    if n:
-                        counter[:] = int.from_bytes(state[at:at + 2], "little") << 6, n
-                        at += 2
-                    else:
-                        unobserved, at = varint(state, at)
-                        unobserved -= 1
+        for chances, counts in ((chances, counts) for family in self.families
+                                for chances, counts in zip(family.chances, family.counts)):
+            i = 0
+            while i < len(counts):
+                if unobserved:
+                    skipped = min(unobserved, len(counts) - i)
+                    i, unobserved = i + skipped, unobserved - skipped
+                elif state[at]:
+                    chances[i] = int.from_bytes(state[at + 1:at + 3], "little") << 6
+                    counts[i] = state[at]
+                    i, at = i + 1, at + 3
+                else:
+                    unobserved, at = varint(state, at + 1)
+                    if unobserved == 0:
+                        raise Malformed("a run of no counters")
         for family in self.families:
             for weights in family.weights:
                 for i in range(len(weights)):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The order of the source, from docs/format.md, "Order"."""
-from entropy import Bank, Malformed, Models
+from entropy import Bank, Malformed
 
 
 def order_bank():
@@ -17,8 +17,8 @@ def sign(u, v):
 class Order:
     """Reads how the source arranged a canonical solid."""
 
-    def __init__(self, stream, bank, solid):
-        self.m, self.solid = Models(stream, bank), solid
+    def __init__(self, models, solid):
+        self.m, self.solid = models, solid
         self.first_facet, self.first_ring = [], []
         facet = ring = 0
         for shell in solid.shells:

@@ -23,18 +23,28 @@ BLOB, PAGE = 0x01, 0x81
 FILE_MAGIC = b"WTPF"
 
 
-def banks_of(models, number):
-    """The banks, from the neutral set 0 or from a file."""
-    banks = {"frame": frame_bank(), "order": order_bank(), "polygon": polygon_bank(),
-             "walk": walk_bank(), "parallelogram": parallelogram_bank()}
-    if number:
-        path = models / f"model-{number}.bin"
-        if not path.exists():
-            raise Unsupported("model set")
-        states = bank_bytes(path.read_bytes(), number)
-        for name, bank in banks.items():
-            bank.load(states[name])
-    return banks
+BANKS = {"frame": frame_bank, "order": order_bank, "polygon": polygon_bank, "walk": walk_bank,
+         "parallelogram": parallelogram_bank}
+
+
+class ModelSet:
+    """The banks of a set of priors, each bound to the stream when it is first used."""
+
+    def __init__(self, folder, number, stream):
+        self.stream, self.states, self.bound = stream, {}, {}
+        if number:
+            path = folder / f"model-{number}.bin"
+            if not path.exists():
+                raise Unsupported("model set")
+            self.states = bank_bytes(path.read_bytes(), number)
+
+    def __getitem__(self, name):
+        if name not in self.bound:
+            bank = BANKS[name]()
+            if self.states:
+                bank.load(self.states[name])
+            self.bound[name] = Models(self.stream, bank)
+        return self.bound[name]
 
 
 class Page:
@@ -49,9 +59,8 @@ class Page:
         if data[2] != kind or len(data) < 4 + tail:
             raise Malformed("a page for a blob, a blob for a page, or too short")
         self.kind, self.stored, data = kind, data[-tail:], data[:-tail]
-        self.banks = banks_of(models, data[3])
         self.stream, self.limits = Stream(data[4:]), Limits(len(data) - 4)
-        self.models = {name: Models(self.stream, bank) for name, bank in self.banks.items()}
+        self.models = ModelSet(models, data[3], self.stream)
         self.mode, self.last_origin, self.origin_habit, self.order_kept = 7, (0, 0, 0), 0, 0
         self.last_position, self.columns = (0, 0, 0), []
         self.names, self.solids, self.checksums = [], [], []
@@ -96,7 +105,7 @@ class Page:
             raise Malformed("listed facets in another order")
         self.order_kept, arrangement = m.decide("order", self.order_kept), None
         if self.order_kept:
-            arrangement = Order(self.stream, self.banks["order"], solid).read()
+            arrangement = Order(self.models["order"], solid).read()
         self.checksums.append(solid.checksum(self.frame, values, arrangement))
         self.solids.append((solid, values, arrangement))
         self.limits.take(points, shells)

@@ -216,12 +216,11 @@ class Positions:
         back, forth = w.previous(h), w.next(h)
         self.before, self.before2 = self.known_pair(w.origin[back], w.origin[w.previous(back)])
         self.after, self.after2 = self.known_pair(w.origin[forth], w.origin[w.next(forth)])
-        self.corners, corner = [], h
-        while len(self.corners) < 12:
-            self.corners.append(corner)
+        self.fan, corner = [h], w.twin[w.previous(h)]
+        while corner != h:
+            self.fan.append(corner)
             corner = w.twin[w.previous(corner)]
-            if corner == h:
-                break
+        self.corners = self.fan[:12]
 
     def known_pair(self, near, far):
         """Both neighbours, each if known, the further only if the nearer is."""
@@ -253,7 +252,7 @@ class Positions:
         if place[2] in self.heights:
             self.heights.remove(place[2])
         self.heights = [place[2]] + self.heights[:11]
-        for h in self.corners:
+        for h in self.fan:
             self.planes[w.facet_of[h]].add(place)
             u = w.end(h)
             if u < v and self.place[u][:2] == place[:2]:

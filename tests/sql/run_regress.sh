@@ -83,8 +83,8 @@ fi
 # the same ones invalid, and gives back what came in. Blobs of all versions decode to the same.
 if [ -x "$build/bin/encode_documents" ]; then
   query() { run "$bin/psql" -X -q -At -v ON_ERROR_STOP=1 "${connect[@]}" -d regression "$@"; }
-  (cd "$source" && "$build/bin/encode_documents" examples/*.jsonl tests/data/*/* \
-    tests/golden/solids/* tests/golden/blobs/*/*) >"$folder/rows"
+  (cd "$source" && find examples tests/data tests/golden/solids tests/golden/blobs -type f |
+    LC_ALL=C sort | xargs "$build/bin/encode_documents") >"$folder/rows"
   chmod a+r "$folder/rows"
   query -c "CREATE TABLE documents (name text, ewkb bytea, blob bytea)"
   query -c "COPY documents FROM STDIN" <"$folder/rows"

@@ -332,7 +332,7 @@ class SurfaceCoder {
 };
 
 /// What the options are measured on: so many triangles of a surface.
-constexpr std::size_t kTrialTriangles = 4000;
+constexpr std::size_t kTrialTriangles = 2500;
 
 /// Smaller ones are not worth the time of trying all.
 constexpr std::size_t kFewTriangles = 64;
@@ -391,24 +391,31 @@ Result<VertexOptions> choose_options(const CutSurface& surface, const ModelBank&
                                      const PageMemory& memory, const Limits& limits) {
   OptionTrials trials(surface, models, memory, limits);
   const bool is_small = surface.triangles.size() < kFewTriangles;
-  for (const bool has_guesses : {false, true}) {
-    for (const bool has_repeats : {false, true}) {
-      if (is_small && has_guesses) continue;
-      const Status tried = trials.attempt({has_repeats, has_guesses, {}});
-      if (!tried) return tried.error();
-    }
+  std::vector<VertexOptions> options{{}, {.has_repeats = true}};
+  if (!is_small) options.push_back({.has_guesses = true});
+  for (const VertexOptions& tried : options) {
+    if (const Status status = trials.attempt(tried); !status) return status.error();
   }
   if (is_small) return trials.best();
+  if (trials.best().has_guesses || trials.best().has_repeats) {
+    const Status status = trials.attempt({.has_repeats = true, .has_guesses = true});
+    if (!status) return status.error();
+  }
   VertexOptions base = trials.best();
   base.places = suggest_places(surface);
   const bool has_places = std::any_of(
       base.places.begin(), base.places.end(),
       [](const AxisPlaces& places) { return places.kind() != AxisPlaces::Kind::every; });
   for (unsigned change = 0; has_places && change < 3; ++change) {
-    VertexOptions options = base;
-    if (change == 1) options.has_repeats = !options.has_repeats;
-    if (change == 2) options.has_guesses = !options.has_guesses;
-    if (const Status tried = trials.attempt(options); !tried) return tried.error();
+    VertexOptions changed = base;
+    if (change == 1) changed.has_repeats = !changed.has_repeats;
+    if (change == 2) changed.has_guesses = !changed.has_guesses;
+    if (const Status tried = trials.attempt(changed); !tried) return tried.error();
+  }
+  if (trials.best().has_guesses) {
+    VertexOptions changed = trials.best();
+    changed.habit = 1;
+    if (const Status tried = trials.attempt(changed); !tried) return tried.error();
   }
   return trials.best();
 }

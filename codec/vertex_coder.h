@@ -25,6 +25,7 @@ struct VertexOptions {
   bool has_repeats = false;  // whether coordinates of vertices nearby come again
   bool has_guesses = false;  // whether each tip names the guess that it is coded from
   std::array<AxisPlaces, 3> places{};
+  double habit = 0.5;  // what a bit for naming a guess counts for in choosing it; not in the stream
 };
 
 /// Positions are given when writing or measuring and are nothing when reading. All others are
@@ -69,6 +70,7 @@ class VertexCoder {
   Limits limits_;
   bool has_repeats_ = false;
   bool has_guesses_ = false;
+  double habit_ = 0;                           // writing
   std::array<AxisPlaces, 3> chosen_places_{};  // writing
   std::array<AxisPlaces, 3> places_{};         // of every number until the origin is known
   GridPoint origin_{};

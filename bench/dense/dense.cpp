@@ -2,9 +2,10 @@
 //
 // dense [--grid 11|14|16|source]... [--listed FACETS] FILE...: the closed meshes of the files as
 // triangles on each grid. Whole stand-alone blobs that decode to the same canonical solid, with the
-// shipped priors and with neutral ones, beside Draco and meshoptimizer, which get what a blob takes
+// shipped priors, beside Draco and meshoptimizer, which get what a blob takes
 // for origin and grid added (as in bench/ratio/compare.cpp). Meshes below --listed facets (1,000)
-// are only summed up.
+// are only summed up. If the files are all those of the training data in the order of their paths,
+// those that the priors have seen are set apart (bench/corpus/training_meshes.h).
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -53,7 +54,6 @@ std::optional<MeshRow> measure(const std::string& name, const Solid& source,
   row.vertices = mesh->vertices.size();
   row.facets = mesh->facet_count();
   row.blob = whole_blob(*boundary, kModelNumber);
-  row.neutral_bytes = whole_blob(*boundary, 0).bytes;
   row.validity = validity(*boundary);
   const std::size_t placement = placement_bytes(*boundary);
   if (const std::size_t bytes = draco_bytes(*mesh); bytes > 0) row.draco = bytes + placement;
@@ -68,7 +68,8 @@ void report(const std::string& grid, const std::vector<std::filesystem::path>& f
       grid == "source" ? std::nullopt : std::optional<int>(std::atoi(grid.c_str()));
   Summary summary(listed);
   print_heading(grid);
-  for (const auto& path : files) {
+  for (std::size_t number = 0; number < files.size(); ++number) {
+    const auto& path = files[number];
     std::ifstream stream(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const auto format = detect_format(path.filename().string(), as_bytes(text));
@@ -77,8 +78,9 @@ void report(const std::string& grid, const std::vector<std::filesystem::path>& f
     if (!document) continue;
     for (const Feature& feature : document->features) {
       for (const SubmittedSolid& submitted : feature.solids) {
-        const auto row = measure(path.filename().string(), submitted.solid, bits);
+        auto row = measure(path.filename().string(), submitted.solid, bits);
         if (!row) continue;
+        row->is_seen = number % 2 == 0 && row->facets <= 60000;
         if (row->facets >= listed) print_row(*row);
         summary.add(*row);
       }

@@ -31,18 +31,18 @@ double geometric_mean(const std::vector<double>& values) {
 
 void print_ratios(const std::vector<MeshRow>& rows, const char* which) {
   std::vector<double> ratios;
-  std::vector<double> neutral;
+  std::vector<double> unseen;
   const MeshRow* worst = nullptr;
   for (const MeshRow& row : rows) {
     if (row.draco == 0) continue;
     ratios.push_back(ratio_of(row));
-    neutral.push_back(static_cast<double>(row.neutral_bytes) / static_cast<double>(row.draco));
+    if (!row.is_seen) unseen.push_back(ratios.back());
     if (worst == nullptr || ratios.back() > ratio_of(*worst)) worst = &row;
   }
   if (worst == nullptr) return;
-  std::printf("%s: %zu meshes, geometric mean %.3f (neutral priors %.3f), worst %.3f (%s)\n", which,
-              ratios.size(), geometric_mean(ratios), geometric_mean(neutral), ratio_of(*worst),
-              worst->name.c_str());
+  std::printf("%s: %zu meshes, geometric mean %.3f (of the %zu unseen %.3f), worst %.3f (%s)\n",
+              which, ratios.size(), geometric_mean(ratios), unseen.size(), geometric_mean(unseen),
+              ratio_of(*worst), worst->name.c_str());
 }
 
 void print_exceptions(const std::vector<MeshRow>& rows) {
@@ -90,7 +90,7 @@ void print_costs(const std::vector<MeshRow>& rows) {
 
 void print_heading(const std::string& grid) {
   std::printf(
-      "### Grid %s\n\n| mesh | vertices | facets | verdict | mode | blob | neutral priors | Draco "
+      "### Grid %s\n\n| mesh | vertices | facets | verdict | mode | seen | blob | Draco "
       "| "
       "meshopt+zstd | blob/Draco | bits/vertex | connectivity | Draco's | encode s/Mfacet | decode "
       "s/Mfacet | peak B/vertex |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---"
@@ -100,10 +100,10 @@ void print_heading(const std::string& grid) {
 
 void print_row(const MeshRow& row) {
   const double facets = static_cast<double>(row.facets);
-  std::printf("| %s | %zu | %zu | %s | %s | %zu | %zu | %zu | %zu | %.3f |", row.name.c_str(),
+  std::printf("| %s | %zu | %zu | %s | %s | %s | %zu | %zu | %zu | %.3f |", row.name.c_str(),
               row.vertices, row.facets, row.validity.c_str(),
-              std::string(to_string(row.blob.mode)).c_str(), row.blob.bytes, row.neutral_bytes,
-              row.draco, row.meshopt, ratio_of(row));
+              std::string(to_string(row.blob.mode)).c_str(), row.is_seen ? "yes" : "no",
+              row.blob.bytes, row.draco, row.meshopt, ratio_of(row));
   std::printf(" %.2f | %.2f | %.2f | %.1f | %.1f | %.0f |\n",
               bits_per_vertex(row, static_cast<double>(row.blob.bytes)),
               bits_per_vertex(row, row.blob.connectivity_bytes),

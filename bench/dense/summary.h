@@ -17,7 +17,7 @@ struct MeshRow {
   std::size_t facets = 0;
   std::string validity;
   WholeBlob blob;                      // with the shipped priors
-  std::size_t neutral_bytes = 0;       // with neutral ones
+  bool is_seen = false;                // by the priors
   std::size_t draco = 0;               // 0: it refuses
   std::size_t meshopt = 0;             // 0: coordinates too wide for it
   std::size_t draco_connectivity = 0;  // the mesh with all positions 0

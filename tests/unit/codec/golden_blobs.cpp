@@ -5,6 +5,33 @@
 #include "generated_solids.h"
 
 namespace watertight::generated {
+namespace {
+
+/// A tower with a pointed roof: a vertex with sixteen facets around it.
+OrientedBoundary spire() {
+  constexpr Index kSides = 16;
+  constexpr int kX[kSides] = {50, 46, 35, 19, 0, -19, -35, -46, -50, -46, -35, -19, 0, 19, 35, 46};
+  SolidArrays arrays;
+  std::vector<Index> base;
+  for (const double z : {0.0, 90.0}) {
+    for (Index i = 0; i < kSides; ++i) {
+      const int y = kX[(i + kSides - kSides / 4) % kSides];
+      arrays.vertices.push_back({1000.0 + kX[i], 1000.0 + y, z});
+    }
+  }
+  arrays.vertices.push_back({1000, 1000, 240});
+  for (Index i = 0; i < kSides; ++i) {
+    const Index j = (i + 1) % kSides;
+    base.insert(base.begin(), i);
+    add_facet(arrays, {{i, j, kSides + j, kSides + i}});
+    add_facet(arrays, {{kSides + i, kSides + j, 2 * kSides}});
+  }
+  add_facet(arrays, {base});
+  arrays.end_shell();
+  return boundary_of(std::move(arrays));
+}
+
+}  // namespace
 
 std::vector<Golden> version_0_goldens() {
   Random random(1);
@@ -43,6 +70,7 @@ std::vector<Golden> goldens() {
   add("edge", boxes_touching_at_edge());
   add("torus", torus(9, 5));
   add("terrain", random_terrain(random, 5));
+  add("spire", spire());
   // Traced in docs/format.md: with the neutral set of priors they never change.
   const auto add_neutral = [&](const char* name, const OrientedBoundary& boundary, Mode mode) {
     all.push_back({name, 0, boundary, {}, mode});

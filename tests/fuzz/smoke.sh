@@ -28,7 +28,7 @@ for name in "${names[@]}"; do
     folder=${seed%/*}  # goldens of several versions have the same names
     cp "$seed" "$corpus/seed-${folder##*/}-${seed##*/}"
   done <"$build/tests/fuzz/$name.seeds"
-  options=(-max_total_time="$seconds" -max_len=32768 -timeout=20 -rss_limit_mb=2048
+  options=(-max_total_time="$seconds" -max_len=32768 -timeout=600 -rss_limit_mb=2048
     -artifact_prefix="$build/corpora/$name-" -print_final_stats=1)
   case $name in
     city_json* | skeleton | json_fg) options+=(-dict="$here/json.dict") ;;

@@ -47,9 +47,7 @@ struct Sums {
   std::vector<const Solid*> all;
 };
 
-double now() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
+double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 std::size_t varint_bytes(std::int64_t value) {
   ByteWriter writer;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads blobs, pages and page files of format version 1: written from docs/format*.md alone.
+"""Reads blobs, pages and page files of format version 1: as docs/format*.md describes it.
 
   reference_decoder.py MODELS FILE...          prints the solids as JSON
   reference_decoder.py MODELS --check FOLDER   reads the golden files of a folder

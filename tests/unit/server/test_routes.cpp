@@ -75,7 +75,8 @@ TEST_CASE_METHOD(Fixture, "the landing page is HTML for browsers and JSON for pr
   CHECK(json.content_type == "application/json");
   const Response html = get("/?f=html");
   CHECK(html.content_type == "text/html; charset=utf-8");
-  for (const Json& link : Json::parse(json.body)["links"]) {
+  const Json page = Json::parse(json.body);
+  for (const Json& link : page["links"]) {
     CHECK(html.body.find("href=\"" + link["href"].get<std::string>() + "\"") != std::string::npos);
   }
   CHECK(get("/?f=pdf").status == 406);
@@ -310,7 +311,8 @@ TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is as
   CHECK(as_text(*write_document(documents->front(), Format::city_json_seq)) == text);
   CHECK(get("/collections/town/export", {{"accept", "application/city+json-seq"}}).content_type ==
         "application/city+json-seq");
-  for (const Json& link : Json::parse(get("/collections/town").body)["links"]) {
+  const Json collection = Json::parse(get("/collections/town").body);
+  for (const Json& link : collection["links"]) {
     INFO(link["href"]);
     CHECK(get(link["href"]).status == 200);
   }

@@ -23,16 +23,17 @@ trap cleanup EXIT
 fail() { echo "export.sh: $*" >&2 && exit 1; }
 
 # As root all is done by another user: PostgreSQL refuses root.
-run() { "$@"; }
+as=()
 if [ "$(id -u)" -eq 0 ]; then
   for user in postgres nobody; do
     if id "$user" >/dev/null 2>&1; then break; fi
   done
   uid=$(id -u "$user")
   gid=$(id -g "$user")
-  run() { setpriv --reuid="$uid" --regid="$gid" --clear-groups env HOME="$folder" "$@"; }
+  as=(setpriv --reuid="$uid" --regid="$gid" --clear-groups env HOME="$folder")
   chown "$uid:$gid" "$folder"
 fi
+run() { "${as[@]}" "$@"; }
 cd "$folder"
 cp "$source/examples/delft.city.jsonl" in.city.jsonl
 chmod a+r in.city.jsonl
@@ -55,7 +56,7 @@ cmp all.city.jsonl back.city.jsonl
 grep -q "there is no collection 'none'" said || fail "$(cat said)"
 [ ! -e none.wt ] || fail "an export that failed left a file"
 
-run "$program" serve "${store[@]}" --listen 127.0.0.1:0 >listening 2>log &
+"${as[@]}" "$program" serve "${store[@]}" --listen 127.0.0.1:0 >listening 2>log &
 service=$!
 for _ in $(seq 300); do
   if grep -q http listening; then break; fi

@@ -10,8 +10,7 @@ service=
 cleanup() {
   status=$?
   if [ -n "$service" ]; then
-    kill -TERM "$service" 2>/dev/null || true
-    wait "$service" || true
+    kill -KILL "$service" || echo "the service was gone already"
   fi
   for _ in $(seq 50); do # the cluster ends a moment after its last user
     if rm -rf "$folder" 2>/dev/null; then break; fi
@@ -71,6 +70,14 @@ curl -fsS --http1.0 "$url" | cmp - all.wt
 curl -fsSI "$url" | tr -d '\r' | grep -Fxq 'Content-Disposition: attachment; filename="delft.wt"'
 curl -sS "${url/delft/none}" | grep -q '"status":404'
 # One that leaves in the middle.
-curl -sS --limit-rate 1000 --max-time 1 -o part "$url?f=cityjsonseq" 2>/dev/null || true
+left=0
+curl -sS --limit-rate 1000 --max-time 1 -o part "$url?f=cityjsonseq" 2>/dev/null || left=$?
+[ "$left" -eq 28 ] || fail "a download of a second at 1000 bytes a second ended with $left, not with a time-out"
+[ "$(stat -c %s part)" -lt "$(stat -c %s all.city.jsonl)" ] || fail "the download was not cut off"
 curl -fsS "$url" | cmp - all.wt
+kill -TERM "$service"
+ended=0
+wait "$service" || ended=$?
+service=
+[ "$ended" -eq 0 ] || fail "the service ended with $ended: $(cat log)"
 echo "$(wc -l <all.city.jsonl) lines, the same by command line and service"

@@ -60,7 +60,17 @@ struct InlinePredicates {
   /// More than a product can lose by underflow (2^-1075).
   static constexpr double kUnderflow = 1e-200;
 
+  /// True if both are integers whose difference is exact and shorter than `longest`.
+  static bool has_short_difference(double p, double q, double longest = kLongest) {
+    constexpr double kEnd = 4503599627370496.0;  // 2^52
+    return std::abs(p) < kEnd && std::abs(q) < kEnd && std::abs(p - q) < longest &&
+           static_cast<double>(static_cast<std::int64_t>(p)) == p &&
+           static_cast<double>(static_cast<std::int64_t>(q)) == q;
+  }
+
  private:
+  static constexpr double kLongest = 1099511627776.0;  // 2^40
+
   /// The sign of `value` if rounding cannot have changed it, else 0. `factor` is the size of what
   /// products of differences are multiplied with.
   static int certain_sign(double value, double size, double factor) {
@@ -72,15 +82,6 @@ struct InlinePredicates {
 
   static Point difference(const Point& p, const Point& q) {
     return {p.x - q.x, p.y - q.y, p.z - q.z};
-  }
-
-  /// True if both are integers whose difference is exact and below 2^40.
-  static bool has_short_difference(double p, double q) {
-    constexpr double kEnd = 4503599627370496.0;   // 2^52
-    constexpr double kLongest = 1099511627776.0;  // 2^40
-    return std::abs(p) < kEnd && std::abs(q) < kEnd && std::abs(p - q) < kLongest &&
-           static_cast<double>(static_cast<std::int64_t>(p)) == p &&
-           static_cast<double>(static_cast<std::int64_t>(q)) == q;
   }
 
   template <class Integer>

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <vector>
@@ -39,11 +41,13 @@ class BoxColumns {
   void for_overlapping(const BoxMember<D>& member, std::size_t first, Visit visit) const {
     for (std::size_t block = first / 4 * 4; block < size_; block += 4) {
       const Mask mask = overlapping(member, block);
-      std::array<std::int64_t, 2> halves{};
+      std::array<std::uint64_t, 2> halves{};
       std::memcpy(halves.data(), &mask, sizeof(mask));
       if ((halves[0] | halves[1]) == 0) continue;
-      for (std::size_t lane = 0; lane < 4; ++lane) {
-        if (mask[lane] != 0 && block + lane >= first) visit(block + lane);
+      unsigned lanes = lane_bits(halves[0]) | lane_bits(halves[1]) << 2U;
+      if (block < first) lanes &= ~0U << (first - block);
+      for (; lanes != 0; lanes &= lanes - 1) {
+        visit(block + static_cast<std::size_t>(std::countr_zero(lanes)));
       }
     }
   }
@@ -51,6 +55,13 @@ class BoxColumns {
  private:
   using Floats [[gnu::vector_size(16)]] = float;
   using Mask [[gnu::vector_size(16)]] = std::int32_t;
+
+  /// One bit for each of two lanes that are all ones or all zeros, in whichever order bytes lie.
+  static unsigned lane_bits(std::uint64_t half) {
+    std::array<std::uint32_t, 2> lanes{};
+    std::memcpy(lanes.data(), &half, sizeof(half));
+    return (lanes[0] & 1U) | (lanes[1] & 2U);
+  }
 
   static Floats load(const float* values) {
     Floats result;

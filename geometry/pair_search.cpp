@@ -146,10 +146,12 @@ bool PairSearch::compare(const PartMembers<D>& members, const PartBounds<D>& bou
   BoxColumns<D> columns;
   const auto partners = members.is_within ? members.first : members.second;
   columns.fill(partners);
+  if (members.first.empty()) return true;
+  const Point& origin = context_.tester.origin(members.first.front().triangle);
   const auto fill = [&](std::vector<PlaneTriangle>& planes, std::span<const BoxMember<D>> side) {
     planes.clear();
     for (const auto& member : side) {
-      planes.push_back(context_.tester.plane_triangle(member.triangle));
+      planes.push_back(context_.tester.plane_triangle(member.triangle, origin));
     }
   };
   fill(first_planes_, members.first);
@@ -160,7 +162,8 @@ bool PairSearch::compare(const PartMembers<D>& members, const PartBounds<D>& bou
     const std::size_t begin = members.is_within ? i + 1 : 0;
     columns.for_overlapping(member, begin, [&](std::size_t j) {
       const BoxMember<D>& partner = partners[j];
-      if (!bounds.owns(member, partner) || !outer.owns(member, partner)) return;
+      // In space the bounds and the outer ones are the same.
+      if (!bounds.owns(member, partner) || (D > 3 && !outer.owns(member, partner))) return;
       if (context_.are_of_one_group(member.triangle, partner.triangle)) return;
       const ContactClass contact = context_.tester.contact(first_planes_[i], partner_planes[j]);
       if (!is_intersection(contact)) return;

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/box_partition.h"
 #include "geometry/predicates.h"
 
 namespace watertight::test {
@@ -105,7 +106,9 @@ void place_on_first(TrianglePair& pair, std::size_t vertex, Random& random) {
 }
 
 TrianglePair candidate(Random& random) {
-  constexpr std::array<std::uint64_t, 7> kGrids{2, 3, 4, 6, 10, 1000, 1U << 28U};
+  // 6 x 2^16 and 6 x 2^17: about the size up to which planes are exact.
+  constexpr std::array<std::uint64_t, 9> kGrids{2,    3,         4,         6,        10,
+                                                1000, 1U << 16U, 1U << 17U, 1U << 28U};
   TrianglePair pair{{}, {0, 1, 2}, {3, 4, 5}};
   const std::uint64_t grid = kGrids[random.below(kGrids.size())];
   for (Point& p : pair.points) {
@@ -174,6 +177,14 @@ std::optional<std::string> disagreement(const TrianglePair& pair, Random& random
   shuffle(second, random);
   const auto turned = classify_contact(pair.points, second, first);
   if (turned != expected) return "turned: " + description(pair, expected, turned);
+  // The box partition decides most pairs by shorter ways.
+  const std::array<Triangle, 2> both{first, second};
+  const auto searched = intersecting_pairs(pair.points, both);
+  const bool is_found = searched && searched->size() == 1;
+  const ContactClass contact = is_found ? searched->front().contact : ContactClass::disjoint;
+  if (is_found != is_intersection(expected) || (is_found && contact != expected)) {
+    return "searched: " + description(pair, expected, contact);
+  }
   return std::nullopt;
 }
 

@@ -30,7 +30,8 @@ TrianglePair random_pair(Random& random);
 ContactClass constructed_class(const TrianglePair& pair);
 
 /// Nothing if the classification agrees with the construction for both orders of the triangles and
-/// for shuffled vertices, and if the witness lies where it should; else what differs.
+/// for shuffled vertices, and if the box partition finds the pair exactly when it intersects; else
+/// what differs.
 std::optional<std::string> disagreement(const TrianglePair& pair, Random& random);
 
 }  // namespace watertight::test

@@ -82,10 +82,6 @@ constexpr std::uint32_t kMaxMixed = 1000;
 /// The step size of a weight set that has seen `mixed` decisions, in 1/4096.
 std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
 
-std::int32_t first_weight(std::uint32_t inputs) {
-  return static_cast<std::int32_t>((4U << 16) / (3U + inputs));
-}
-
 // The families of a number: its length in unary, the bits after the first, the sign.
 constexpr std::uint32_t kLengths = 48;        // longer ones share the last context
 constexpr std::uint32_t kMantissaStates = 7;  // none, one or two of the bits after the first known
@@ -94,7 +90,7 @@ constexpr int kModelledBits = 3;
 
 }  // namespace
 
-ModelBank::ModelBank(const ModelLayout& layout) {
+ModelBank::ModelBank(const ModelLayout& layout) : is_agile_(layout.is_agile) {
   for (const FamilyShape& shape : layout.families) add_family(shape);
   number_base_ = families_.size();
   for (const NumberShape& number : layout.numbers) {
@@ -110,6 +106,10 @@ ModelBank::ModelBank(const ModelLayout& layout) {
     add_family(mantissa);
     add_family(sign);
   }
+}
+
+std::int32_t ModelBank::first_weight(std::uint32_t inputs) const {
+  return static_cast<std::int32_t>(is_agile_ ? (1U << 16) / inputs : (4U << 16) / (3U + inputs));
 }
 
 void ModelBank::add_family(const FamilyShape& shape) {
@@ -158,8 +158,8 @@ bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32
 
   std::uint32_t& seen = mixed_[family.first_rate + selector];
   std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
-  const std::int64_t step =
-      ((bit ? 65536 : 0) - static_cast<std::int64_t>(mixed.ones)) * mixing_rate(seen);
+  const std::int64_t step = ((bit ? 65536 : 0) - static_cast<std::int64_t>(mixed.ones)) *
+                            mixing_rate(seen) * (is_agile_ ? 2 : 1);
   for (std::uint32_t i = 0; i <= family.inputs; ++i) {
     weight[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(
         weight[i] + ((step * mixed.input[i]) >> 20), -kWeightLimit, kWeightLimit));

@@ -19,7 +19,7 @@
 namespace watertight {
 
 /// At most this many contexts of a decision are mixed.
-inline constexpr std::size_t kMaxInputs = 8;
+inline constexpr std::size_t kMaxInputs = 24;
 
 /// The shape of a family: one weight set per selector, one table of `contexts[i]` counters per
 /// input; inputs end at the first 0.
@@ -39,6 +39,7 @@ struct NumberShape {
 struct ModelLayout {
   std::span<const FamilyShape> families;
   std::span<const NumberShape> numbers;
+  bool is_agile = false;  // weights begin at the mean of the inputs and move twice as fast
 };
 
 /// What of a trained bank a prior keeps.
@@ -98,10 +99,12 @@ class ModelBank {
     std::uint32_t ones = 0;
   };
   void add_family(const FamilyShape& shape);
+  std::int32_t first_weight(std::uint32_t inputs) const;
   Mix mix(const Family& family, std::uint32_t selector, const std::uint32_t* contexts) const;
   bool code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
                const std::uint32_t* contexts, bool value);
 
+  bool is_agile_ = false;
   std::vector<Family> families_;
   std::size_t number_base_ = 0;          // first family of numbers
   std::vector<std::uint32_t> counters_;  // 22 bits of probability, 10 of count

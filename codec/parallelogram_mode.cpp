@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "codec/corner_contexts.h"
 #include "codec/modes.h"
 #include "codec/parallelogram_models.h"
 #include "codec/surface_front.h"
@@ -127,31 +128,7 @@ class SurfaceCoder {
   bool code_close(Index corner) {
     const Gate& gate = front_[corner];
     const Gate& after = front_[gate.next];
-    const Gate& before = front_[gate.previous];
-    const Vector& u = centres_[gate.start];
-    const Vector& v = centres_[gate.end];
-    const Vector& w = centres_[after.end];
-    const Vector to_u = u - v;
-    const Vector to_w = w - v;
-    const Vector across = w - u;
-    const double angle = angle_between(to_u, to_w);
-    const double room_u = before.room - angle_between(v - u, across);
-    const double room_w = after.room - angle_between(u - w, v - w);
-    const double span = length(across);
-    const double sides = 0.5 * (length(to_u) + length(to_w));
-    const Vector normal = cross(to_w, to_u);
-    const std::uint32_t bend = cosine_bucket(normal, cross(centres_[gate.apex] - u, v - u) * -1.0);
-    const std::uint32_t other_bend =
-        cosine_bucket(normal, cross(centres_[after.apex] - v, w - v) * -1.0);
     const bool ends = after.next == gate.previous;
-    const std::uint32_t room = bucket(gate.room * 8, kRooms);
-    const std::uint32_t degree = std::min(front_.degree(gate.end), kDegrees - 1);
-    const std::uint32_t degree_u = std::min(front_.degree(gate.start), kDegrees - 1);
-    const std::uint32_t degree_w = std::min(front_.degree(after.end), kDegrees - 1);
-    const std::uint32_t ratio = log_bucket(span / (sides + 1e-3), 6, kRatios);
-    const std::uint32_t least = bucket(std::min(room_u, room_w) * 4 + 2, 14);
-    const std::uint32_t most = bucket(std::max(room_u, room_w) * 3 + 1, 14);
-
     Index half_edge = kNone;
     bool truth = false;
     if (is_writing()) {
@@ -163,25 +140,30 @@ class SurfaceCoder {
         is_stuck_ = surface_->twin[half_edge] != front_[gate.previous].half_edge;
       }
     }
-    const bool closes =
-        models_.code(stream_, kClose,
-                     ends                               ? 3U
-                     : front_[gate.previous].is_refused ? 1U
-                                                        : 0U,
-                     {room * kDegrees + degree, bucket(angle * 5, kAngles) * kRatios + ratio,
-                      least * 14 + most, (bend * kCosines + other_bend) * kAngles + room / 2,
-                      (degree * kDegrees + std::min(degree_u, degree_w)) * kDegrees +
-                          std::max(degree_u, degree_w),
-                      (room / 2 * 14 + least) * kCosines + std::min(bend, other_bend),
-                      room * kRatios + log_bucket(span / (mean_edge_ + 1e-3), 6, kRatios), room},
-                     truth);
+    const CornerView view{front_,
+                          centres_,
+                          corner,
+                          vertices_.predict(front_, corner),
+                          vertices_.predict(front_, gate.next),
+                          mean_edge_,
+                          closings_};
+    const bool closes = models_.code(stream_, kClose,
+                                     ends                               ? 2U
+                                     : front_[gate.previous].is_refused ? 1U
+                                                                        : 0U,
+                                     corner_contexts(view), truth);
+    closings_ = (closings_ * 2 + (closes ? 1U : 0U)) & 255U;
     if (closes) {
       front_.close_corner(corner, half_edge);
       if (!ends) note_gates(1);
-    } else {
-      front_.refuse(corner);
+      return true;
     }
-    return closes;
+    front_.refuse(corner);
+    if (ends) {  // the same triangle at all three corners
+      front_.refuse(gate.next);
+      front_.refuse(gate.previous);
+    }
+    return false;
   }
 
   /// The triangle beyond the gate has a new vertex or joins the front elsewhere.
@@ -194,9 +176,12 @@ class SurfaceCoder {
       half_edges = {next_of(beyond), previous_of(beyond)};
       tip = true_vertex(half_edges[1]);
     }
-    const bool is_new = models_.code(
-        stream_, kNew, 0, {bucket(gate.room * 4, 32), bucket(front_[gate.previous].room * 4, 32)},
-        is_writing() && code_of_[tip] == kNone);
+    const bool is_new =
+        models_.code(stream_, kNew, 0,
+                     {bucket(gate.room * 4, 32), bucket(front_[gate.previous].room * 4, 32), news_,
+                      (news_ & 7U) * 64 + (closings_ & 63U)},
+                     is_writing() && code_of_[tip] == kNone);
+    news_ = (news_ * 2 + (is_new ? 1U : 0U)) & 63U;
     const Vector predicted = vertices_.predict(front_, corner);
     if (!is_new) return join(corner, half_edges, predicted);
     if (Status coded =
@@ -328,7 +313,9 @@ class SurfaceCoder {
   std::vector<Candidate> candidates_;
   std::size_t most_triangles_ = ~std::size_t{0};
   double mean_edge_ = 1;
-  bool is_stuck_ = false;  // writing: the surface has edges between the same two vertices
+  std::uint32_t closings_ = 0;  // the last answers of Close, latest lowest
+  std::uint32_t news_ = 0;      // of New
+  bool is_stuck_ = false;       // writing: the surface has edges between the same two vertices
 };
 
 /// What the options are measured on: so many triangles of a surface.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "codec/parallelogram_models.h"
 
+#include <algorithm>
 #include <array>
 
 #include "codec/axis_places.h"
@@ -10,16 +11,23 @@ namespace watertight {
 
 using namespace parallelogram;
 
+namespace {
+
+constexpr FamilyShape close_family() {
+  FamilyShape family{3, {}};
+  std::copy(kCloseSizes.begin(), kCloseSizes.end(), family.contexts.begin());
+  return family;
+}
+
+}  // namespace
+
 const ModelLayout& parallelogram_layout() {
   static constexpr std::array<FamilyShape, kFamilyCount> kFamilies{
       FamilyShape{1, {1}},
       FamilyShape{1, {2}},
       FamilyShape{1, {1}},
-      FamilyShape{
-          4,
-          {kRooms * kDegrees, kAngles * kRatios, 14 * 14, kCosines * kCosines * kAngles,
-           kDegrees * kDegrees * kDegrees, kRooms / 2 * 14 * kCosines, kRooms * kRatios, kRooms}},
-      FamilyShape{1, {32, 32}},
+      close_family(),
+      FamilyShape{1, {32, 32, 64, 8 * 64}},
       FamilyShape{3, {kPatterns * 12, 8 * 12, kPatterns * 24, kPatterns * 7}},
       FamilyShape{5, {5 * kPatterns, 15 * 8}},
       kPlacesFamily,
@@ -35,7 +43,7 @@ const ModelLayout& parallelogram_layout() {
           {kErrors * kParts * 3, kErrors * kMisses * 3, (kSpans + kGuesses) * kMisses * kParts,
            kErrors * kSpreads * kMisses, kErrors * kErrors * 3, kErrors}},
       NumberShape{1, {1}}, kPlacesNumber};
-  static const ModelLayout kLayout{kFamilies, kNumbers};
+  static const ModelLayout kLayout{kFamilies, kNumbers, true};
   return kLayout;
 }
 

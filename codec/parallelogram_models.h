@@ -3,6 +3,7 @@
 // The families of decisions of mode parallelogram, and how many values their contexts take.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "codec/tip_prediction.h"
@@ -22,6 +23,27 @@ inline constexpr std::uint32_t kParts = 4;
 inline constexpr std::uint32_t kMisses = 6;
 inline constexpr std::uint32_t kGuesses = TipPrediction::kGuesses;
 inline constexpr std::uint32_t kDistances = 8;
+
+/// How many values the contexts of Close take.
+inline constexpr std::array<std::uint32_t, 18> kCloseSizes{kAngles * kRatios,
+                                                           kCosines* kCosines * 16,
+                                                           kDegrees* kDegrees* kDegrees,
+                                                           14 * kDegrees* kDegrees,
+                                                           kRooms* kRatios,
+                                                           32 * kRooms,
+                                                           32 * kDegrees,
+                                                           24 * 24,
+                                                           16 * 16,
+                                                           16 * kAngles * 16,
+                                                           16 * 16,
+                                                           20 * 16,
+                                                           20 * 20,
+                                                           20 * 20,
+                                                           16 * 16,
+                                                           14 * 14,
+                                                           12 * 12 * 12,
+                                                           256};
+using CloseContexts = std::array<std::uint32_t, kCloseSizes.size()>;
 
 enum Family : std::uint32_t {
   kHasRepeats,

@@ -8,6 +8,12 @@ namespace {
 
 std::uint32_t span(double room) { return room < 1.7 ? 0U : room < 2.7 ? 1U : room < 3.8 ? 2U : 3U; }
 
+/// Of the triangle that a gate belongs to, of any length.
+Vector normal_of(const Gate& gate, const std::vector<Vector>& centres) {
+  const Vector& start = centres[gate.start];
+  return cross(centres[gate.end] - start, centres[gate.apex] - start);
+}
+
 }  // namespace
 
 const TipPrediction::Tip& TipPrediction::predict(const SurfaceFront& front,
@@ -22,6 +28,8 @@ const TipPrediction::Tip& TipPrediction::predict(const SurfaceFront& front,
   const Vector along = v - u;
   tip_.size = length(along);
   tip_.normal = unit(cross(along, apex - u));
+  tip_.bends = cosine_bucket(tip_.normal, normal_of(after, centres)) * 8 +
+               cosine_bucket(tip_.normal, normal_of(before, centres));
   const Vector outward = unit(cross(along, tip_.normal));
   const Index right = front.beyond(gate.side % 3 == 2 ? gate.side - 2 : gate.side + 1);
   const Index left = front.beyond(gate.side % 3 == 0 ? gate.side + 2 : gate.side - 1);
@@ -54,13 +62,17 @@ const TipPrediction::Tip& TipPrediction::predict(const SurfaceFront& front,
 
 double TipPrediction::shift_along(std::size_t axis, double slope) {
   shift_ = 0;
+  predicted_shift_ = 0;
   if (tip_.normal[axis] == 0) return 0;
   shift_ = std::clamp(-slope / tip_.normal[axis], -tip_.size - 1, tip_.size + 1);
-  return shift_predictor_.predict({shift_});
+  predicted_shift_ = shift_predictors_[tip_.bends].predict({shift_});
+  return predicted_shift_;
 }
 
 void TipPrediction::learn_shift(double missed, double expected) {
-  shift_predictor_.learn({shift_}, missed, 1 / (expected * expected + 1));
+  const double rest = missed - predicted_shift_;
+  shift_predictors_[tip_.bends].learn({shift_}, missed,
+                                      1 / (rest * rest + expected * expected + 1));
 }
 
 void TipPrediction::learn(const Vector& centre, double expected) {
@@ -71,7 +83,7 @@ void TipPrediction::learn(const Vector& centre, double expected) {
     predictor.learn(features_[k], centre[k] - middle_[k], weight);
   }
   predictor.solve(kMemory);
-  shift_predictor_.solve(kMemory);
+  shift_predictors_[tip_.bends].solve(kMemory);
 }
 
 }  // namespace watertight

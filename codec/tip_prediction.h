@@ -25,9 +25,11 @@ class TipPrediction {
     std::array<Vector, kGuesses> guesses{};
     Vector normal{};          // of the known triangle
     double size = 0;          // of the gate
+    std::uint32_t bends = 0;  // how flat the surface is at both sides, of kBendClasses
     std::uint32_t spans = 0;  // how far both corners of the gate are open, of kSpanClasses
   };
   static constexpr std::uint32_t kSpanClasses = 16;
+  static constexpr std::uint32_t kBendClasses = 64;
 
   /// Predicts the tip beyond the gate of `corner`. `centres` are of the vertices.
   const Tip& predict(const SurfaceFront& front, const std::vector<Vector>& centres, Index corner);
@@ -49,9 +51,10 @@ class TipPrediction {
   Tip tip_;
   std::array<Predictor::Features, 3> features_{};  // by axis
   Vector middle_{};                                // of the gate
-  double shift_ = 0;
+  double shift_ = 0;                               // to the plane of the known triangle
+  double predicted_shift_ = 0;
   std::vector<Predictor> predictors_{kSpanClasses, Predictor{{1, 0, 0, 0, 0, 0, 0, 0, 0}, 3}};
-  LeastSquares<1> shift_predictor_{{0.5}, 4};
+  std::vector<LeastSquares<1>> shift_predictors_{kBendClasses, LeastSquares<1>{{0.5}, 4}};
 };
 
 /// Within the range of coordinates, also if it is no number.

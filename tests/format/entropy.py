@@ -175,10 +175,11 @@ class Stream:
 class Family:
     """Decisions that share tables of counters and sets of weights."""
 
-    def __init__(self, inputs, selectors=1):
+    def __init__(self, inputs, selectors=1, agile=False):
+        self.agile = agile
         self.chances = [[1 << 21] * size for size in inputs]
         self.counts = [[0] * size for size in inputs]
-        first = 262144 // (3 + len(inputs))
+        first = 65536 // len(inputs) if agile else 262144 // (3 + len(inputs))
         self.weights = [[first] * len(inputs) + [0] for _ in range(selectors)]
         self.seen = [0] * selectors
 
@@ -198,7 +199,7 @@ class Family:
     def learn(self, contexts, selector, inputs, p, bit):
         """Moves weights and counters towards the bit."""
         error = (65536 if bit else 0) - p
-        rate = 10 + 1600 // (16 + self.seen[selector])
+        rate = (10 + 1600 // (16 + self.seen[selector])) * (2 if self.agile else 1)
         self.seen[selector] = min(self.seen[selector] + 1, 1000)
         self.weights[selector] = [clamp(w + (error * rate * x >> 20), -524288, 524288)
                                   for w, x in zip(self.weights[selector], inputs)]
@@ -219,10 +220,10 @@ class Family:
 class Number:
     """The three families of a number."""
 
-    def __init__(self, inputs, selectors=1):
-        self.length = Family([48 * size for size in inputs], selectors)
-        self.mantissa = Family([48 * 7] + [16 * 7 * size for size in inputs], 3)
-        self.sign = Family(inputs, selectors)
+    def __init__(self, inputs, selectors=1, agile=False):
+        self.length = Family([48 * size for size in inputs], selectors, agile)
+        self.mantissa = Family([48 * 7] + [16 * 7 * size for size in inputs], 3, agile)
+        self.sign = Family(inputs, selectors, agile)
         self.families = [self.length, self.mantissa, self.sign]
 
     def read(self, stream, contexts, selector=0, bits=62):
@@ -281,9 +282,9 @@ def bank_bytes(data, number):
 class Bank:
     """Families and numbers by their names, in the order of the format."""
 
-    def __init__(self, families, numbers):
-        self.named = {name: Family(*shape) for name, shape in families.items()}
-        self.named.update({name: Number(*shape) for name, shape in numbers.items()})
+    def __init__(self, families, numbers, agile=False):
+        self.named = {name: Family(*shape, agile=agile) for name, shape in families.items()}
+        self.named.update({name: Number(*shape, agile=agile) for name, shape in numbers.items()})
         self.families = []
         for model in self.named.values():
             self.families += model.families if isinstance(model, Number) else [model]

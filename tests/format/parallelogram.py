@@ -6,22 +6,29 @@ from axis_places import EVERY, AxisPlaces
 from entropy import Bank, Malformed
 from front import Front
 from tip import Prediction, tamed
-from vectors import (angle_between, bucket, cosine_bucket, cross, dot, log_bucket, minus, size,
-                     times)
+from vectors import (HALF_TURN, angle_between, bucket, cosine_bucket, cross, dot, log_bucket, minus,
+                     size, times)
 
 GUESSES = 6
 FAMILIES = {
     "HasRepeats": ([1],), "More": ([2],), "NewShell": ([1],),
-    "Close": ([320, 192, 196, 1024, 1000, 1792, 384, 32], 4), "New": ([32, 32],),
+    "Close": ([192, 1024, 1000, 1400, 384, 1024, 320, 576, 256, 4096, 256, 320, 400, 400, 256, 196,
+               1728, 256], 3),
+    "New": ([32, 32, 64, 512],),
     "Repeat": ([192, 96, 384, 112], 3), "Which": ([80, 120], 5), "Places": ([6],),
     "HasGuesses": ([1],), "Guess": ([216, 216, 216, 96, 96, 384], 5)}
 NUMBERS = {"Origin": ([2, 64],), "Seed": ([3, 64],),
            "Residual": ([192, 288, 528, 768, 768, 16], 6), "Rank": ([1],), "Place": ([32, 256], 2)}
 
 
+def quotient(a, b):
+    """a / b as IEEE 754 has it."""
+    return a / b if b else math.copysign(math.inf, a) if a else math.nan
+
+
 def parallelogram_bank():
     """The bank of mode parallelogram."""
-    return Bank(FAMILIES, NUMBERS)
+    return Bank(FAMILIES, NUMBERS, agile=True)
 
 
 class Vertices:
@@ -172,6 +179,7 @@ class Triangles:
         self.m, self.limits = models, limits
         self.vertices = Vertices(models, last_position, is_first, limits)
         self.front, self.mean_edge = Front(self.vertices.places), 1.0
+        self.closings = self.news = 0
 
     def read(self):
         """Vertices and shells of triangles."""
@@ -213,39 +221,82 @@ class Triangles:
 
     def close(self, gate):
         """Whether a triangle fills a corner."""
-        at, front = self.vertices.places, self.front
-        after, before = gate.next, gate.previous
+        before = gate.previous
+        selector = 2 if gate.next.next is before else 1 if before.is_refused else 0
+        closes = self.m.decide("Close", *self.corner(gate), selector=selector)
+        self.closings = (2 * self.closings + closes) & 255
+        if closes:
+            self.front.close(gate)
+        else:
+            gate.is_refused = True
+            if selector == 2:
+                gate.next.is_refused = before.is_refused = True
+        return closes
+
+    def corner(self, gate):
+        """The contexts of the triangle that would fill a corner."""
+        at, front, prediction = self.vertices.places, self.front, self.vertices.prediction
+        after, before, room = gate.next, gate.previous, gate.room
         u, v, w = at[gate.start], at[gate.end], at[after.end]
-        across = minus(w, u)
-        angle = angle_between(minus(u, v), minus(w, v))
-        room_u = before.room - angle_between(minus(v, u), across)
-        room_w = after.room - angle_between(minus(u, w), minus(v, w))
-        span = size(across)
-        sides = 0.5 * (size(minus(u, v)) + size(minus(w, v)))
+        o, o2, p, x = at[gate.apex], at[after.apex], at[before.start], at[after.next.end]
+        prediction.predict(front, gate)
+        tip = prediction.guesses[0]
+        prediction.predict(front, after)
+        next_tip = prediction.guesses[0]
+
+        def angle(vertex, a, b):
+            return angle_between(minus(a, vertex), minus(b, vertex))
+
+        def length(a, b):
+            return size(minus(b, a))
+
+        angle_u, angle_v, angle_w = angle(u, v, w), angle(v, u, w), angle(w, u, v)
+        room_u, room_w = before.room - angle_u, after.room - angle_w
         normal = cross(minus(w, v), minus(u, v))
-        b1 = cosine_bucket(normal, times(cross(minus(at[gate.apex], u), minus(v, u)), -1.0))
-        b2 = cosine_bucket(normal, times(cross(minus(at[after.apex], v), minus(w, v)), -1.0))
-        room = bucket(gate.room * 8, 32)
-        d_v, d_u, d_w = (min(front.degree[x], 9) for x in (gate.end, gate.start, after.end))
-        ratio = log_bucket(span / (sides + 1e-3), 6, 12)
-        least = bucket(min(room_u, room_w) * 4 + 2, 14)
-        most = bucket(max(room_u, room_w) * 3 + 1, 14)
-        selector = 3 if after.next is before else 1 if before.is_refused else 0
-        if self.m.decide("Close", 10 * room + d_v, bucket(angle * 5, 16) * 12 + ratio,
-                         14 * least + most, (8 * b1 + b2) * 16 + room // 2,
-                         (10 * d_v + min(d_u, d_w)) * 10 + max(d_u, d_w),
-                         (room // 2 * 14 + least) * 8 + min(b1, b2),
-                         12 * room + log_bucket(span / (self.mean_edge + 1e-3), 6, 12), room,
-                         selector=selector):
-            front.close(gate)
-            return True
-        gate.is_refused = True
-        return False
+        span, area = length(u, w), size(normal)
+        sides, edge = 0.5 * (length(v, u) + length(v, w)) + 1e-3, self.mean_edge + 1e-3
+        near = (length(v, u) + length(v, w) + length(u, o) + length(v, o) + length(v, o2)
+                + length(w, o2)) / 6 + 1e-3
+        n1 = cross(minus(o, u), minus(v, u))
+        n2 = cross(minus(o2, v), minus(w, v))
+        b1, b2 = (cosine_bucket(normal, times(n, -1.0)) for n in (n1, n2))
+        near_area = 0.5 * (size(n1) + size(n2)) + 1
+        opposite = angle(o, u, v) + angle_w, angle(o2, v, w) + angle_u
+        shorter, longer = sorted((length(v, u), length(v, w)))
+        over = angle_v + max(angle(p, u, w), angle(x, u, w))
+        miss = length(w, tip) / sides, length(u, next_tip) / sides
+        d_v, d_u, d_w = (min(front.degree[y], 9) for y in (gate.end, gate.start, after.end))
+        missing = quotient(room * front.degree[gate.end], 2 * HALF_TURN - room + 0.01)
+        rooms, least = bucket(room * 8, 32), bucket(min(room_u, room_w) * 4 + 2, 14)
+        spans = bucket(span / edge * 12, 32)
+        overs = bucket((over - 2.2) * 10, 20)
+        turn = bucket(quotient(angle(v, u, tip), room + 0.01) * 12, 16)
+        next_turn = bucket(quotient(angle(v, w, next_tip), room + 0.01) * 12, 16)
+        wide = bucket(angle_v * 5, 16)
+        return (wide * 12 + log_bucket(span / sides, 6, 12), (8 * b1 + b2) * 16 + rooms // 2,
+                (10 * d_v + min(d_u, d_w)) * 10 + max(d_u, d_w),
+                (10 * least + (d_u if room_u < room_w else d_w)) * 10 + d_v,
+                12 * rooms + log_bucket(span / edge, 6, 12),
+                32 * bucket(span / near * 12, 32) + rooms, 10 * spans + d_v,
+                24 * bucket(shorter / edge * 8, 24) + bucket(longer / edge * 8, 24),
+                spans // 2 * 16 + bucket((max(opposite) - 1.2) * 5, 16),
+                (spans // 2 * 16 + wide) * 16 + bucket(missing * 4, 16),
+                16 * log_bucket(area / near_area, 8, 16) + rooms // 2,
+                16 * log_bucket(area / (edge * edge), 10, 20) + rooms // 2,
+                20 * bucket((max(opposite) - 2.2) * 10, 20) + overs,
+                20 * bucket((min(opposite) - 1.2) * 10, 20) + overs,
+                16 * turn + next_turn,
+                14 * log_bucket(min(miss), 8, 14) + log_bucket(max(miss), 8, 14),
+                (bucket(missing * 4, 12) * 12 + bucket(min(miss) * 8, 12)) * 12
+                + bucket((max(opposite) - 2) * 5, 12),
+                self.closings)
 
     def extend(self, gate):
         """A triangle with a new vertex, or one of the front elsewhere."""
         front, vertices = self.front, self.vertices
-        is_new = self.m.decide("New", bucket(gate.room * 4, 32), bucket(gate.previous.room * 4, 32))
+        is_new = self.m.decide("New", bucket(gate.room * 4, 32), bucket(gate.previous.room * 4, 32),
+                               self.news, (self.news & 7) * 64 + (self.closings & 63))
+        self.news = (2 * self.news + is_new) & 63
         vertices.prediction.predict(front, gate)
         if not is_new:
             self.join(gate)

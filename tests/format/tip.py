@@ -2,7 +2,7 @@
 """Mode parallelogram, where a tip is expected, from docs/format-parallelogram.md, "Prediction"."""
 import math
 
-from vectors import cross, dot, minus, plus, size, times, unit
+from vectors import cosine_bucket, cross, dot, minus, plus, size, times, unit
 
 MEMORY = 0.995
 
@@ -79,7 +79,7 @@ class Prediction:
 
     def __init__(self):
         self.predictors = [LeastSquares([1.0] + [0.0] * 8, 3.0) for _ in range(16)]
-        self.shift_predictor = LeastSquares([0.5], 4.0)
+        self.shift_predictors = [LeastSquares([0.5], 4.0) for _ in range(64)]
 
     def predict(self, front, gate):
         """Guesses, normal, size and spans at a gate."""
@@ -88,6 +88,13 @@ class Prediction:
         middle, along = times(plus(u, v), 0.5), minus(v, u)
         self.size = size(along)
         self.normal = unit(cross(along, minus(o, u)))
+
+        def bend(other):
+            start = at[other.start]
+            normal = cross(minus(at[other.end], start), minus(at[other.apex], start))
+            return cosine_bucket(self.normal, normal)
+
+        self.bends = 8 * bend(after) + bend(before)
         outward = unit(cross(along, self.normal))
         side = gate.side
         right = front.beyond(side - 2 if side % 3 == 2 else side + 1)
@@ -116,15 +123,18 @@ class Prediction:
 
     def shift_along(self, axis, slope):
         """The shift along the last axis."""
-        self.shift = 0.0
+        self.shift = self.predicted_shift = 0.0
         if self.normal[axis] == 0:
             return 0.0
         self.shift = max(-self.size - 1, min(self.size + 1, -slope / self.normal[axis]))
-        return self.shift_predictor.predict([self.shift])
+        self.predicted_shift = self.shift_predictors[self.bends].predict([self.shift])
+        return self.predicted_shift
 
     def learn_shift(self, missed, expected):
         """What the shift should have been."""
-        self.shift_predictor.learn([self.shift], missed, 1 / (expected * expected + 1))
+        rest = missed - self.predicted_shift
+        weight = 1 / (rest * rest + expected * expected + 1)
+        self.shift_predictors[self.bends].learn([self.shift], missed, weight)
 
     def learn(self, place, expected):
         """The tip that came."""
@@ -134,4 +144,4 @@ class Prediction:
         for k in range(3):
             predictor.learn(self.features[k], place[k] - self.middle[k], weight)
         predictor.solve()
-        self.shift_predictor.solve()
+        self.shift_predictors[self.bends].solve()

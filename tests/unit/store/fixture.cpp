@@ -78,6 +78,16 @@ std::string Database::ask(const std::string& statement) const {
   return test::ask(connection_, statement);
 }
 
+void Database::add_many_features() const {
+  ask("INSERT INTO watertight.document_header VALUES ('h', 'h')");
+  ask("INSERT INTO watertight.collection (id, srid, header) VALUES ('c', 0, 'h')");
+  ask("INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, "
+      "solids,"
+      " blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)"
+      " SELECT 'c', i::text, '', '', 0, 'h', '', 0, 0, i, i, 0, i + 1, i + 1, 9, i * 1000"
+      " FROM generate_series(1, 20000) i");
+}
+
 bool Database::end_sessions() const {
   auto opened = Connection::open(cluster_->connection());
   auto* session = std::get_if<std::unique_ptr<Connection>>(&opened);

@@ -325,14 +325,7 @@ TEST_CASE("a box finds exactly the features whose closed boxes share a point wit
 TEST_CASE("an index serves the box filter") {
   const Database database;
   const auto store = database.store();
-  database.ask("INSERT INTO watertight.document_header VALUES ('h', 'h')");
-  database.ask("INSERT INTO watertight.collection (id, srid, header) VALUES ('c', 0, 'h')");
-  database.ask(
-      "INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, "
-      "solids,"
-      " blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z)"
-      " SELECT 'c', i::text, '', '', 0, 'h', '', 0, 0, i, i, 0, i + 1, i + 1, 9"
-      " FROM generate_series(1, 20000) i");
+  database.add_many_features();
   const auto page = store->list({"c", 10, "", StoredBox{{500.5, 500.5, 0}, {501.5, 501.5, 1}}});
   REQUIRE(page);
   CHECK(page->matched == 2);

@@ -204,13 +204,7 @@ TEST_CASE("a walk starts nowhere else than where a batch ended") {
 TEST_CASE("an index serves walks") {
   const Database database;
   const auto store = database.store();
-  database.ask("INSERT INTO watertight.document_header VALUES ('h', 'h')");
-  database.ask("INSERT INTO watertight.collection (id, srid, header) VALUES ('c', 0, 'h')");
-  database.ask(
-      "INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, "
-      "solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)"
-      " SELECT 'c', i::text, '', '', 0, 'h', '', 0, 0, i, i, 0, i + 1, i + 1, 9, i * 1000"
-      " FROM generate_series(1, 20000) i");
+  database.add_many_features();
   database.ask("ANALYZE watertight.feature");
   const std::string plan = database.ask(
       "EXPLAIN (FORMAT JSON) SELECT id FROM watertight.feature WHERE collection = 'c'"

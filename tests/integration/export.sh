@@ -3,6 +3,8 @@
 # A collection out of a private PostgreSQL as one file: export.sh PROGRAM SOURCE
 # The command line and the service give the same bytes, and they are what went in.
 set -euo pipefail
+# shellcheck source=tests/unprivileged.sh
+. "$(dirname "$0")/../unprivileged.sh"
 program=$(readlink -f "$1")
 source=$(cd "$2" && pwd)
 folder=$(mktemp -d /tmp/watertight-export-XXXXXX)
@@ -21,18 +23,7 @@ cleanup() {
 trap cleanup EXIT
 fail() { echo "export.sh: $*" >&2 && exit 1; }
 
-# As root all is done by another user: PostgreSQL refuses root.
-as=()
-if [ "$(id -u)" -eq 0 ]; then
-  for user in postgres nobody; do
-    if id "$user" >/dev/null 2>&1; then break; fi
-  done
-  uid=$(id -u "$user")
-  gid=$(id -g "$user")
-  as=(setpriv --reuid="$uid" --regid="$gid" --clear-groups env HOME="$folder")
-  chown "$uid:$gid" "$folder"
-fi
-run() { "${as[@]}" "$@"; }
+hand_over "$folder"
 cd "$folder"
 cp "$source/examples/delft.city.jsonl" in.city.jsonl
 chmod a+r in.city.jsonl

@@ -4,6 +4,8 @@
 # With PROGRAM (watertight) it also compares the blobs of SQL and command line. The store's own tests
 # then see whether a private cluster of such a server has the extension.
 set -euo pipefail
+# shellcheck source=tests/unprivileged.sh
+. "$(dirname "$0")/../unprivileged.sh"
 source=$(cd "$1" && pwd)
 build=$(cd "$2" && pwd)
 program=${3:-}
@@ -11,7 +13,6 @@ tests=(functions encode hostile helpers)
 
 folder=$(mktemp -d /tmp/watertight-sql-XXXXXX)
 started=no
-run() { "$@"; }
 cleanup() {
   status=$?
   if [ $started = yes ]; then
@@ -21,16 +22,6 @@ cleanup() {
   exit $status
 }
 trap cleanup EXIT
-
-# As root everything that PostgreSQL does is done by another user.
-if [ "$(id -u)" -eq 0 ]; then
-  for user in postgres nobody; do
-    if id "$user" >/dev/null 2>&1; then break; fi
-  done
-  uid=$(id -u "$user")
-  gid=$(id -g "$user")
-  run() { setpriv --reuid="$uid" --regid="$gid" --clear-groups env HOME="$folder" "$@"; }
-fi
 
 bin=$("$source/scripts/relocated-postgres" "$build" "$folder/prefix")
 regress=$(dirname "$(pg_config --pgxs)")/../test/regress/pg_regress
@@ -43,7 +34,7 @@ for fake in crashing hanging; do
   chmod +x "$folder/$fake/watertight-worker"
   cp "$folder/$fake/watertight-worker" "$folder/$fake/watertight-tetgen"
 done
-if [ "$(id -u)" -eq 0 ]; then chown -R "$uid:$gid" "$folder"; fi
+hand_over "$folder"
 chmod 0700 "$folder"
 
 cd "$folder"

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# To be sourced by tests that start a PostgreSQL, which refuses root: `hand_over FOLDER` gives the
+# folder to another user where the script runs as root, and from then on `run COMMAND...` runs as that
+# user. In the background write "${as[@]}" COMMAND... & instead: then $! is the command's own id.
+as=()
+run() { "${as[@]}" "$@"; }
+hand_over() {
+  [ "$(id -u)" -eq 0 ] || return 0
+  local user
+  for user in postgres nobody; do
+    if id "$user" >/dev/null 2>&1; then break; fi
+  done
+  as=(setpriv --reuid="$user" --regid="$(id -g "$user")" --clear-groups env HOME="$1")
+  chown -R "$user:" "$1"
+}

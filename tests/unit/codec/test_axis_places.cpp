@@ -50,6 +50,19 @@ void check_values(const AxisPlaces& places, std::vector<std::int64_t> values) {
   }
 }
 
+/// These places are suggested for the values, true to them, and still so when written and read.
+/// Returns those read.
+AxisPlaces check_suggestion(const std::vector<std::int64_t>& values, Kind kind) {
+  const AxisPlaces places = AxisPlaces::suggest(values);
+  REQUIRE(places.kind() == kind);
+  check_values(places, values);
+  const auto back = read(write(places));
+  REQUIRE(back);
+  CHECK(back->kind() == kind);
+  check_values(*back, values);
+  return *back;
+}
+
 std::vector<std::int64_t> steps(double step, double offset, int count) {
   generated::Random random(5);
   std::vector<std::int64_t> values{0};
@@ -60,16 +73,11 @@ std::vector<std::int64_t> steps(double step, double offset, int count) {
   return values;
 }
 
-IntegerSolid rough_torus() {
-  generated::Random random(7);
+IntegerSolid gridded_torus() {
   const CanonicalSolid canonical = canonical_form(generated::torus(16, 16));
   const auto gridded = grid_solid(canonical.boundary.solid());
   REQUIRE(gridded);
-  IntegerSolid solid = gridded->solid;
-  for (GridPoint& vertex : solid.vertices) {
-    for (std::int64_t& c : vertex) c = 20 * c + static_cast<std::int64_t>(random.below(18));
-  }
-  return solid;
+  return gridded->solid;
 }
 
 template <class Change>
@@ -109,14 +117,7 @@ Bytes round_trip(const IntegerSolid& solid) {
 
 TEST_CASE("values of even steps are suggested as such and come back") {
   for (const double step : {8.36, 10.0, 1274.999, 1e9 / 3}) {
-    const auto values = steps(step, 0.3, 400);
-    const AxisPlaces places = AxisPlaces::suggest(values);
-    REQUIRE(places.kind() == Kind::stepped);
-    check_values(places, values);
-    const auto back = read(write(places));
-    REQUIRE(back);
-    CHECK(back->kind() == Kind::stepped);
-    check_values(*back, values);
+    check_suggestion(steps(step, 0.3, 400), Kind::stepped);
   }
 }
 
@@ -127,16 +128,10 @@ TEST_CASE("few uneven values are suggested as a list and come back") {
     some.push_back(static_cast<std::int64_t>(random.below(70000)) - 9000);
   std::vector<std::int64_t> values;
   for (int i = 0; i < 400; ++i) values.push_back(some[random.below(some.size())]);
-  const AxisPlaces places = AxisPlaces::suggest(values);
-  REQUIRE(places.kind() == Kind::listed);
-  check_values(places, values);
-  const auto back = read(write(places));
-  REQUIRE(back);
-  CHECK(back->kind() == Kind::listed);
-  check_values(*back, values);
+  const AxisPlaces places = check_suggestion(values, Kind::listed);
   std::int64_t value = 0;
-  CHECK_FALSE(back->find_value(-1, value));
-  CHECK_FALSE(back->find_value(1000, value));
+  CHECK_FALSE(places.find_value(-1, value));
+  CHECK_FALSE(places.find_value(1000, value));
 }
 
 TEST_CASE("nothing is suggested for values all over their range") {
@@ -150,7 +145,10 @@ TEST_CASE("nothing is suggested for values all over their range") {
 }
 
 TEST_CASE("a solid on a grid finer than its source takes what it takes on the coarse one") {
-  const IntegerSolid coarse = rough_torus();
+  generated::Random bump(7);
+  const IntegerSolid coarse = changed(gridded_torus(), [&](std::int64_t c) {
+    return 20 * c + static_cast<std::int64_t>(bump.below(18));
+  });
   const IntegerSolid fine = changed(coarse, [](std::int64_t c) {
     return static_cast<std::int64_t>(std::floor(8.36 * static_cast<double>(c) + 0.5));
   });
@@ -162,11 +160,9 @@ TEST_CASE("a solid on a grid finer than its source takes what it takes on the co
 
 TEST_CASE("a solid of few distinct coordinates is smaller than one of many") {
   generated::Random random(12);
-  const CanonicalSolid canonical = canonical_form(generated::torus(16, 16));
-  const auto gridded = grid_solid(canonical.boundary.solid());
-  REQUIRE(gridded);
+  const IntegerSolid solid = gridded_torus();
   std::map<std::int64_t, std::int64_t> values;
-  for (const GridPoint& vertex : gridded->solid.vertices) {
+  for (const GridPoint& vertex : solid.vertices) {
     for (const std::int64_t c : vertex) values[c] = 0;
   }
   std::int64_t last = 0;
@@ -175,7 +171,7 @@ TEST_CASE("a solid of few distinct coordinates is smaller than one of many") {
     value = last;
   }
   const IntegerSolid few =
-      changed(gridded->solid, [&](std::int64_t coordinate) { return values[coordinate]; });
+      changed(solid, [&](std::int64_t coordinate) { return values[coordinate]; });
   const IntegerSolid many = changed(
       few, [&](std::int64_t c) { return c + static_cast<std::int64_t>(random.below(2000)); });
   CHECK(10 * round_trip(few).size() < 7 * round_trip(many).size());

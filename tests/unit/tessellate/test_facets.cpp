@@ -8,36 +8,15 @@
 
 #include "geometry/predicates.h"
 #include "tessellate/facets.h"
+#include "tests/unit/tessellate/facet_solid.h"
 
 using namespace watertight;
 
 namespace {
 
-using Ring = std::vector<Point>;
+using test::facet_solid;
+using test::Ring;
 using PointTriangle = std::array<Point, 3>;
-
-/// A solid of one facet. Equal points are one vertex; vertices are numbered by `random`.
-Solid facet_solid(const std::vector<Ring>& rings, std::mt19937* random = nullptr) {
-  std::vector<Point> points;
-  for (const Ring& ring : rings) points.insert(points.end(), ring.begin(), ring.end());
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (random != nullptr) std::shuffle(points.begin(), points.end(), *random);
-  std::map<Point, Index> number;
-  for (const Point& p : points) number.emplace(p, static_cast<Index>(number.size()));
-  SolidArrays arrays;
-  arrays.vertices = points;
-  for (const Point& p : points) number[p] = static_cast<Index>(&p - points.data());
-  for (const Ring& ring : rings) {
-    for (const Point& p : ring) arrays.ring_vertices.push_back(number[p]);
-    arrays.end_ring();
-  }
-  arrays.end_facet();
-  arrays.end_shell();
-  auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
-  REQUIRE(solid);
-  return *solid;
-}
 
 std::vector<PointTriangle> point_triangles(const Solid& solid) {
   std::vector<PointTriangle> result;

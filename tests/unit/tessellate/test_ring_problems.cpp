@@ -3,35 +3,18 @@
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <random>
 
 #include "tessellate/ring_problems.h"
+#include "tests/unit/tessellate/facet_solid.h"
 
 using namespace watertight;
 
 namespace {
 
-using Ring = std::vector<Point>;
+using test::facet_solid;
+using test::Ring;
 using Kinds = std::vector<RingProblemKind>;
-
-Solid facet_solid(const std::vector<Ring>& rings) {
-  SolidArrays arrays;
-  std::map<Point, Index> number;
-  for (const Ring& ring : rings) {
-    for (const Point& p : ring) {
-      const auto [place, is_new] = number.emplace(p, static_cast<Index>(number.size()));
-      if (is_new) arrays.vertices.push_back(p);
-      arrays.ring_vertices.push_back(place->second);
-    }
-    arrays.end_ring();
-  }
-  arrays.end_facet();
-  arrays.end_shell();
-  auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
-  REQUIRE(solid);
-  return *solid;
-}
 
 std::vector<RingProblem> problems_of(const std::vector<Ring>& rings) {
   const RingProblems result = ring_problems(facet_solid(rings), 0, 100);

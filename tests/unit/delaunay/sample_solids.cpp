@@ -6,44 +6,24 @@
 #include <numeric>
 #include <random>
 
+#include "tests/unit/geometry/solids.h"
+
 namespace watertight::samples {
 
 Solid make_solid(const Shape& shape) {
-  SolidArrays arrays;
-  arrays.vertices = shape.vertices;
-  for (const Shell& shell : shape.shells) {
-    for (const Facet& facet : shell) {
-      for (const Ring& ring : facet) {
-        arrays.ring_vertices.insert(arrays.ring_vertices.end(), ring.begin(), ring.end());
-        arrays.end_ring();
-      }
-      arrays.end_facet();
-    }
-    arrays.end_shell();
-  }
-  Result<Solid> solid = Solid::make(std::move(arrays), Lattice{}, 0);
+  Result<Solid> solid = Solid::make(test::arrays_of(shape.vertices, shape.shells), Lattice{}, 0);
   REQUIRE(solid.has_value());
   return std::move(*solid);
 }
 
 void add_box_facets(Shape& shape, const Point& low, const Point& high, bool is_cavity) {
-  const auto first = static_cast<Index>(shape.vertices.size());
-  for (int i = 0; i < 8; ++i) {
-    shape.vertices.push_back({(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
-                              (i & 4) != 0 ? high.z : low.z});
-  }
-  const std::vector<Ring> rings = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                   {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  for (Ring ring : rings) {
-    for (Index& vertex : ring) vertex += first;
-    if (is_cavity) std::reverse(ring.begin(), ring.end());
-    shape.shells.back().push_back({ring});
-  }
+  const Shell facets = test::box_shell(shape.vertices, low, high, !is_cavity);
+  Shell& last = shape.shells.back();
+  last.insert(last.end(), facets.begin(), facets.end());
 }
 
 void add_box(Shape& shape, const Point& low, const Point& high, bool is_cavity) {
-  shape.shells.emplace_back();
-  add_box_facets(shape, low, high, is_cavity);
+  shape.shells.push_back(test::box_shell(shape.vertices, low, high, !is_cavity));
 }
 
 Shape box(const Point& low, const Point& high) {

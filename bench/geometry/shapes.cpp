@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "tests/unit/geometry/random.h"
+#include "tests/random.h"
 
 namespace watertight::bench {
 namespace {

@@ -6,19 +6,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 
 namespace watertight::solids {
 namespace {
 
-std::vector<Index> permutation(Index size, Random& random, Index fixed) {
-  std::vector<Index> order(size);
-  std::iota(order.begin(), order.end(), Index{0});
-  for (Index i = size; i > fixed + 1; --i) {
-    std::swap(order[i - 1], order[fixed + static_cast<Index>(random.below(i - fixed))]);
-  }
-  return order;
-}
+using test::permutation;
 
 void append_ring(SolidArrays& arrays, std::vector<Index> ring, Random& random) {
   if (!ring.empty()) {
@@ -30,19 +22,6 @@ void append_ring(SolidArrays& arrays, std::vector<Index> ring, Random& random) {
 }
 
 }  // namespace
-
-std::uint64_t Random::next() {
-  state_ += 0x9E3779B97F4A7C15ULL;
-  std::uint64_t z = state_;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-  return z ^ (z >> 31);
-}
-
-double Random::within(std::int64_t low, std::int64_t high) {
-  return static_cast<double>(
-      low + static_cast<std::int64_t>(below(static_cast<std::uint64_t>(high - low) + 1)));
-}
 
 Lattice millimetres() {
   Lattice lattice;

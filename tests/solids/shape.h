@@ -11,28 +11,17 @@
 #include <vector>
 
 #include "geometry/solid.h"
+#include "tests/random.h"
 #include "validate/report.h"
 
 namespace watertight::solids {
+
+using test::Random;
 
 using Ring = std::vector<Point>;
 using Facet = std::vector<Ring>;   // the exterior ring first
 using Shell = std::vector<Facet>;  // facets outward; those of a cavity turned inside
 using Shape = std::vector<Shell>;  // the exterior shell first
-
-/// A small integer generator of its own (SplitMix64), the same everywhere.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next();
-  /// In [0, size). Requires size > 0.
-  std::uint64_t below(std::uint64_t size) { return next() % size; }
-  /// An integer in [low, high].
-  double within(std::int64_t low, std::int64_t high);
-
- private:
-  std::uint64_t state_;
-};
 
 /// Millimetres: the lattice of most city models.
 Lattice millimetres();

@@ -5,10 +5,11 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <numeric>
 
 namespace watertight::generated {
 namespace {
+
+using test::permutation;
 
 [[noreturn]] void give_up(const Error& error) {
   std::fprintf(stderr, "a generated solid is broken: %s\n", to_string(error).c_str());
@@ -104,24 +105,7 @@ SolidArrays terrain(Random& random, Index size, double scale) {
   return arrays;
 }
 
-std::vector<Index> permutation(Index size, Random& random, Index fixed) {
-  std::vector<Index> order(size);
-  std::iota(order.begin(), order.end(), Index{0});
-  for (Index i = size; i > fixed + 1; --i) {
-    std::swap(order[i - 1], order[fixed + random.below(i - fixed)]);
-  }
-  return order;
-}
-
 }  // namespace
-
-std::uint64_t Random::next() {
-  state_ += 0x9E3779B97F4A7C15ULL;
-  std::uint64_t z = state_;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-  return z ^ (z >> 31);
-}
 
 void add_facet(SolidArrays& arrays, const std::vector<std::vector<Index>>& rings) {
   for (const auto& ring : rings) add_ring(arrays, ring);

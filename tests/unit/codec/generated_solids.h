@@ -10,20 +10,11 @@
 
 #include "delaunay/certificate.h"
 #include "geometry/valid_solid.h"
+#include "tests/random.h"
 
 namespace watertight::generated {
 
-/// A small integer generator of its own (SplitMix64), the same everywhere.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next();
-  /// In [0, size).
-  std::uint64_t below(std::uint64_t size) { return next() % size; }
-
- private:
-  std::uint64_t state_;
-};
+using test::Random;
 
 struct NamedBoundary {
   std::string name;

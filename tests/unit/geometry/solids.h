@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/valid_solid.h"
-#include "tests/unit/geometry/random.h"
+#include "tests/random.h"
 
 namespace watertight::test {
 

@@ -6,7 +6,7 @@
 
 #include "geometry/box_partition.h"
 #include "geometry/predicates.h"
-#include "tests/unit/geometry/random.h"
+#include "tests/random.h"
 
 namespace watertight::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "geometry/triangle_triangle.h"
-#include "tests/unit/geometry/random.h"
+#include "tests/random.h"
 
 namespace watertight::test {
 

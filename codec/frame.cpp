@@ -189,7 +189,7 @@ std::array<std::uint64_t, kStreamParts> costs_of(const EntropyStream& stream) {
   return costs;
 }
 
-/// Mode parallelogram holds no other facets; its models are too large to be copied in vain.
+/// Mode parallelogram holds no other facets.
 bool is_all_triangles(const IntegerSolid& solid) {
   return solid.ring_vertices.size() == 3 * std::size_t{solid.facet_count()} &&
          solid.ring_count() == solid.facet_count();
@@ -382,8 +382,9 @@ std::optional<std::uint64_t> SolidCoder::cost(const PageSolid& solid, Mode mode)
   if (coder.code == nullptr || !solid.has_grid) return std::nullopt;
   if (mode == Mode::parallelogram && !is_all_triangles(solid.gridded.solid)) return std::nullopt;
   EntropyStream meter = EntropyStream::meter();
-  ModelBank models = models_[coder.part];
   IntegerSolid integers = solid.gridded.solid;
+  ModelBank& models = models_[coder.part];
+  const BankTrial trial(models, integers.vertices.size());
   if (!coder.code(meter, models, memory_, integers, limits_)) return std::nullopt;
   return meter.cost();
 }

@@ -154,6 +154,7 @@ ModelBank::Mix ModelBank::mix(const Family& family, std::uint32_t selector,
 bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
                         const std::uint32_t* contexts, bool value) {
   const Mix mixed = mix(family, selector, contexts);
+  if (trials_ > 0) note_changes(family, selector, mixed);
   const bool bit = stream.code(value, mixed.ones);
 
   std::uint32_t& seen = mixed_[family.first_rate + selector];
@@ -170,6 +171,51 @@ bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32
     counter = learned(counter, bit);
   }
   return bit;
+}
+
+void ModelBank::note_changes(const Family& family, std::uint32_t selector, const Mix& mixed) {
+  const auto weights = static_cast<std::uint32_t>(counters_.size());
+  const auto seen = static_cast<std::uint32_t>(weights + weights_.size());
+  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+    changes_.push_back({mixed.counter[i], counters_[mixed.counter[i]]});
+  }
+  const std::uint32_t first = family.first_weight + selector * (family.inputs + 1);
+  for (std::uint32_t i = first; i <= first + family.inputs; ++i) {
+    changes_.push_back({weights + i, static_cast<std::uint32_t>(weights_[i])});
+  }
+  changes_.push_back({seen + family.first_rate + selector, mixed_[family.first_rate + selector]});
+}
+
+void ModelBank::undo(const Change& change) {
+  const std::size_t weight = change.place - counters_.size();
+  if (change.place < counters_.size()) {
+    counters_[change.place] = change.before;
+  } else if (weight < weights_.size()) {
+    weights_[weight] = static_cast<std::int32_t>(change.before);
+  } else {
+    mixed_[weight - weights_.size()] = change.before;
+  }
+}
+
+BankTrial::BankTrial(ModelBank& bank, std::size_t vertices)
+    : bank_(bank), begin_(bank.changes_.size()) {
+  // A vertex changes some hundred numbers, each noted for several times the cost of copying one.
+  constexpr std::size_t kCountersPerVertex = 1000;
+  if (vertices > bank.counter_count() / kCountersPerVertex) {
+    before_ = bank;
+  } else {
+    ++bank.trials_;
+  }
+}
+
+BankTrial::~BankTrial() {
+  if (before_) {
+    bank_ = *std::move(before_);
+    return;
+  }
+  std::vector<ModelBank::Change>& changes = bank_.changes_;
+  for (; changes.size() > begin_; changes.pop_back()) bank_.undo(changes.back());
+  --bank_.trials_;
 }
 
 std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selector,

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -98,6 +99,16 @@ class ModelBank {
     std::array<std::int32_t, kMaxInputs + 1> input{};
     std::uint32_t ones = 0;
   };
+  /// A change of a trial: the place (counters, then weights, then decisions seen) and what was
+  /// there.
+  struct Change {
+    std::uint32_t place = 0;
+    std::uint32_t before = 0;
+  };
+  friend class BankTrial;
+  [[gnu::noinline]] void note_changes(const Family& family, std::uint32_t selector,
+                                      const Mix& mixed);
+  void undo(const Change& change);
   void add_family(const FamilyShape& shape);
   std::int32_t first_weight(std::uint32_t inputs) const;
   Mix mix(const Family& family, std::uint32_t selector, const std::uint32_t* contexts) const;
@@ -110,6 +121,24 @@ class ModelBank {
   std::vector<std::uint32_t> counters_;  // 22 bits of probability, 10 of count
   std::vector<std::int32_t> weights_;    // 16.16
   std::vector<std::uint32_t> mixed_;     // decisions seen by each weight set
+  std::vector<Change> changes_;          // since the first trial that goes on
+  int trials_ = 0;                       // that go on
+};
+
+/// While it lives, the bank may code what is only measured; then the bank is as before. Trials may
+/// be nested. Cost: for a solid of few vertices that of noting each change, else a copy of the
+/// bank.
+class BankTrial {
+ public:
+  BankTrial(ModelBank& bank, std::size_t vertices);
+  ~BankTrial();
+  BankTrial(const BankTrial&) = delete;
+  BankTrial& operator=(const BankTrial&) = delete;
+
+ private:
+  ModelBank& bank_;
+  std::optional<ModelBank> before_;  // of many vertices
+  std::size_t begin_;                // of few: in the changes
 };
 
 }  // namespace watertight

@@ -327,15 +327,15 @@ constexpr std::size_t kFewTriangles = 64;
 /// Tries options on a part of a surface.
 class OptionTrials {
  public:
-  OptionTrials(const CutSurface& surface, const ModelBank& models, const PageMemory& memory,
+  OptionTrials(const CutSurface& surface, ModelBank& models, const PageMemory& memory,
                const Limits& limits)
       : surface_(surface), models_(models), memory_(memory), limits_(limits) {}
 
   Status attempt(const VertexOptions& options) {
     EntropyStream meter = EntropyStream::meter();
-    ModelBank trial = models_;
+    const BankTrial trial(models_, surface_.positions.size());
     IntegerSolid unused;
-    SurfaceCoder coder(meter, trial, memory_, limits_);
+    SurfaceCoder coder(meter, models_, memory_, limits_);
     coder.stop_after(kTrialTriangles);
     if (Status coded = coder.code(&surface_, unused, options); !coded) return coded;
     // The lists of values come once, the rest goes on for all triangles.
@@ -353,7 +353,7 @@ class OptionTrials {
 
  private:
   const CutSurface& surface_;
-  const ModelBank& models_;
+  ModelBank& models_;  // as it was, after each trial
   const PageMemory& memory_;
   Limits limits_;
   VertexOptions best_;
@@ -374,7 +374,7 @@ std::array<AxisPlaces, 3> suggest_places(const CutSurface& surface) {
 
 /// The options that take least: of all with places for every number, and of those near the best
 /// of them with the places that the coordinates take.
-Result<VertexOptions> choose_options(const CutSurface& surface, const ModelBank& models,
+Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& models,
                                      const PageMemory& memory, const Limits& limits) {
   OptionTrials trials(surface, models, memory, limits);
   const bool is_small = surface.triangles.size() < kFewTriangles;

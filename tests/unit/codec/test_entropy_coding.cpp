@@ -125,6 +125,39 @@ TEST_CASE("a bank learns, and starts where its prior left off") {
   CHECK(warm.cost() < cold.cost() * 95 / 100);
 }
 
+TEST_CASE("after a trial, and trials within it, a bank goes on as if there had been none") {
+  for (const std::size_t vertices : {std::size_t{0}, std::size_t{1'000'000}}) {
+    ModelBank models(kLayout);
+    EntropyStream meter = EntropyStream::meter();
+    std::vector<Sample> coded = samples(13, 500);
+    code(meter, models, coded);
+    ModelBank untouched = models;
+    const auto attempt = [&](std::uint32_t seed) {
+      EntropyStream unused = EntropyStream::meter();
+      std::vector<Sample> tried = samples(seed, 700);
+      code(unused, models, tried);
+    };
+    {
+      const BankTrial trial(models, vertices);
+      attempt(14);
+      {
+        const BankTrial inner(models, 0);
+        attempt(15);
+      }
+      attempt(16);
+    }
+    const PriorShape whole{.max_count = 250};
+    CHECK(models.save(whole) == untouched.save(whole));
+    EntropyStream one = EntropyStream::meter();
+    EntropyStream other = EntropyStream::meter();
+    std::vector<Sample> next = samples(17, 500);
+    code(one, models, next);
+    code(other, untouched, next);
+    CHECK(one.cost() == other.cost());
+    CHECK(models.save(whole) == untouched.save(whole));
+  }
+}
+
 TEST_CASE("a prior of another layout is refused") {
   constexpr FamilyShape families[] = {{1, {3}}};
   ModelBank other(ModelLayout{families, {}});

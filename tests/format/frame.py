@@ -73,7 +73,7 @@ class Frame:
         else:
             scaled = step[0] * self.base ** apart[0]
             mantissa = g * scaled + phase[0] * self.base ** apart[1]
-            if max(abs(g * scaled), abs(mantissa)) >= 2**127:
+            if not all(-2**127 <= number < 2**127 for number in (g * scaled, mantissa)):
                 raise Malformed("an origin out of range")
             exponent = exponent if mantissa else 0
             while mantissa and mantissa % self.base == 0:

@@ -60,6 +60,15 @@ struct InlinePredicates {
   /// More than a product can lose by underflow (2^-1075).
   static constexpr double kUnderflow = 1e-200;
 
+  static Point difference(const Point& p, const Point& q) {
+    return {p.x - q.x, p.y - q.y, p.z - q.z};
+  }
+
+  template <class Number>
+  static int sign_of(Number value) {
+    return value > 0 ? 1 : value < 0 ? -1 : 0;
+  }
+
   /// True if both are integers whose difference is exact and shorter than `longest`.
   static bool has_short_difference(double p, double q, double longest = kLongest) {
     constexpr double kEnd = 4503599627370496.0;  // 2^52
@@ -78,15 +87,6 @@ struct InlinePredicates {
     const double error = kRelativeError * size + kUnderflow * factor + kUnderflow;
     if (!(size < kLargest)) return 0;
     return value > error ? 1 : value < -error ? -1 : 0;
-  }
-
-  static Point difference(const Point& p, const Point& q) {
-    return {p.x - q.x, p.y - q.y, p.z - q.z};
-  }
-
-  template <class Integer>
-  static int sign_of(Integer value) {
-    return value > 0 ? 1 : value < 0 ? -1 : 0;
   }
 
   using Rows = std::array<std::array<std::int64_t, 3>, 3>;

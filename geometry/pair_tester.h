@@ -31,7 +31,7 @@ class PairTester {
   PairTester(std::span<const Point> points, std::span<const Triangle> triangles)
       : points_(points), triangles_(triangles), classifier_(points) {}
 
-  /// Any point of the input, for all triangles that are compared.
+  /// What the corners of all triangles that are compared are measured from: one of this triangle's.
   const Point& origin(Index triangle) const { return points_[triangles_[triangle][0]]; }
 
   PlaneTriangle plane_triangle(Index triangle, const Point& origin) const {
@@ -42,8 +42,8 @@ class PairTester {
       result.corner[i] = points_[result.vertices[i]];
       result.is_small = result.is_small && is_near(result.corner[i], origin);
     }
-    const Point u = difference(result.corner[1], result.corner[0]);
-    const Point v = difference(result.corner[2], result.corner[0]);
+    const Point u = InlinePredicates::difference(result.corner[1], result.corner[0]);
+    const Point v = InlinePredicates::difference(result.corner[2], result.corner[0]);
     result.normal = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
     const double size = std::abs(u.y * v.z) + std::abs(u.z * v.y) + std::abs(u.z * v.x) +
                         std::abs(u.x * v.z) + std::abs(u.x * v.y) + std::abs(u.y * v.x);
@@ -88,18 +88,12 @@ class PairTester {
   }
 
  private:
-  static Point difference(const Point& p, const Point& q) {
-    return {p.x - q.x, p.y - q.y, p.z - q.z};
-  }
-
   ContactClass exact(const PlaneTriangle& a, const PlaneTriangle& b) const {
     return classifier_.classify(a.vertices, b.vertices);
   }
 
   static constexpr int kUnknown = 2;
   static constexpr std::array<std::size_t, 3> kNext{1, 2, 0};
-
-  static int sign_of(auto value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
   static bool is_near(const Point& x, const Point& origin) {
     constexpr double kNear = 524288.0;  // 2^19: differences are below 2^20
@@ -112,12 +106,12 @@ class PairTester {
   /// orient3d of a and a corner of b, or kUnknown.
   static int side(const PlaneTriangle& a, const PlaneTriangle& b, std::size_t corner) {
     constexpr double kLargest = 1e300;  // nothing has overflowed
-    const Point d = difference(b.corner[corner], a.corner[0]);
+    const Point d = InlinePredicates::difference(b.corner[corner], a.corner[0]);
     const double value = a.normal.x * d.x + a.normal.y * d.y + a.normal.z * d.z;
     const double largest = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
     const double error = a.error * largest + InlinePredicates::kUnderflow;
     if (std::abs(value) > error && error < kLargest * InlinePredicates::kRelativeError) {
-      return sign_of(value);
+      return InlinePredicates::sign_of(value);
     }
     return a.is_small && b.is_small ? exact_side(a.normal, d) : kUnknown;
   }
@@ -125,8 +119,8 @@ class PairTester {
   /// Three products of a number below 2^41 and one below 2^20.
   static int exact_side(const Point& normal, const Point& d) {
     const auto whole = [](double number) { return static_cast<std::int64_t>(number); };
-    return sign_of(whole(normal.x) * whole(d.x) + whole(normal.y) * whole(d.y) +
-                   whole(normal.z) * whole(d.z));
+    return InlinePredicates::sign_of(whole(normal.x) * whole(d.x) + whole(normal.y) * whole(d.y) +
+                                     whole(normal.z) * whole(d.z));
   }
 
   ContactClass without_common_vertex(const PlaneTriangle& a, const PlaneTriangle& b) const {

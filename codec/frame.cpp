@@ -11,7 +11,6 @@
 #include "codec/blob_header.h"
 #include "codec/coordinates.h"
 #include "codec/facet_listing.h"
-#include "codec/modes.h"
 #include "codec/source_order.h"
 
 namespace watertight {
@@ -258,7 +257,8 @@ Status SolidCoder::code_geometry(PageSolid& solid) {
   if (frame_.grid.kind == LatticeKind::float64) {
     return Error{ErrorCode::malformed, "a mode for integers in a blob of doubles"};
   }
-  return coder.code(stream_, models_[coder.part], memory_, solid.gridded.solid, limits_);
+  return coder.code(stream_, models_[coder.part], memory_, solid.gridded.solid, solid.choice,
+                    limits_);
 }
 
 Status SolidCoder::code_plain(PageSolid& solid) {
@@ -377,19 +377,19 @@ Status SolidCoder::code(PageSolid& solid) {
   return Done{};
 }
 
-std::optional<std::uint64_t> SolidCoder::cost(const PageSolid& solid, Mode mode) const {
+std::optional<std::uint64_t> SolidCoder::cost(PageSolid& solid, Mode mode) const {
   const ModeCoder coder = coder_of(mode);
   if (coder.code == nullptr || !solid.has_grid) return std::nullopt;
   if (mode == Mode::parallelogram && !is_all_triangles(solid.gridded.solid)) return std::nullopt;
   EntropyStream meter = EntropyStream::meter();
-  IntegerSolid integers = solid.gridded.solid;
   ModelBank& models = models_[coder.part];
+  IntegerSolid& integers = solid.gridded.solid;
   const BankTrial trial(models, integers.vertices.size());
-  if (!coder.code(meter, models, memory_, integers, limits_)) return std::nullopt;
+  if (!coder.code(meter, models, memory_, integers, solid.choice, limits_)) return std::nullopt;
   return meter.cost();
 }
 
-Mode SolidCoder::cheapest_mode(const PageSolid& solid) const {
+Mode SolidCoder::cheapest_mode(PageSolid& solid) const {
   Mode best = Mode::automatic;
   std::uint64_t least = ~std::uint64_t{0};
   for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {

@@ -12,6 +12,7 @@
 #include "codec/entropy_stream.h"
 #include "codec/integer_solid.h"
 #include "codec/models.h"
+#include "codec/modes.h"
 #include "geometry/canonical_form.h"
 
 namespace watertight {
@@ -45,6 +46,7 @@ struct PageSolid {
   GriddedSolid gridded;        // of raw and bitmap only the origin counts
   bool has_grid = false;       // writing: it may take the modes for integers
   std::uint32_t declined = 0;  // writing: bit m is set if automatic mode must not take mode m
+  WriterChoice choice;         // writing: made by cost()
   PlainSections plain;
   /// What mode bitmap found, when reading.
   Composition composition;
@@ -63,12 +65,12 @@ class SolidCoder {
   Status code(PageSolid& solid);
 
   /// What the solid's own part of the stream would cost in `mode`, in 1/65536 bit; nothing if the
-  /// mode cannot hold it or is not for integers. Changes nothing.
-  std::optional<std::uint64_t> cost(const PageSolid& solid, Mode mode) const;
+  /// mode cannot hold it or is not for integers. Changes nothing but the choice, for code().
+  std::optional<std::uint64_t> cost(PageSolid& solid, Mode mode) const;
 
   /// The mode for integers that costs least, of those not declined; Mode::automatic if none can
   /// hold the solid.
-  Mode cheapest_mode(const PageSolid& solid) const;
+  Mode cheapest_mode(PageSolid& solid) const;
 
  private:
   Mode code_mode(Mode mode);

@@ -93,11 +93,13 @@ class ModelBank {
     std::array<std::uint32_t, kMaxInputs> first_counter{};
     std::array<std::uint32_t, kMaxInputs> sizes{};
   };
-  /// What a decision is coded with: the counters' opinions and their weighted sum.
+  /// What a decision is coded with: the counters' opinions and their weighted sum. Only as many as
+  /// the family has inputs are ever set: clearing the rest took a third of the time of mix().
   struct Mix {
-    std::array<std::uint32_t, kMaxInputs> counter{};
-    std::array<std::int32_t, kMaxInputs + 1> input{};
-    std::uint32_t ones = 0;
+    Mix() {}  // NOLINT(modernize-use-equals-default, cppcoreguidelines-pro-type-member-init)
+    std::array<std::uint32_t, kMaxInputs> counter;
+    std::array<std::int32_t, kMaxInputs + 1> input;
+    std::uint32_t ones;
   };
   /// A change of a trial: the place (counters, then weights, then decisions seen) and what was
   /// there.

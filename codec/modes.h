@@ -4,13 +4,22 @@
 // measures a solid on its page's grid (docs/format.md). For encode, decode and training.
 #pragma once
 
+#include <optional>
+
 #include "base/limits.h"
 #include "base/result.h"
 #include "codec/entropy_stream.h"
 #include "codec/integer_solid.h"
 #include "codec/model_bank.h"
+#include "codec/vertex_coder.h"
 
 namespace watertight {
+
+/// What a mode chose for a solid when it was measured: writing takes the same instead of choosing
+/// again.
+struct WriterChoice {
+  std::optional<VertexOptions> vertex_options;  // of mode parallelogram
+};
 
 /// What every mode takes. `memory` is only looked at; the caller extends it after each solid.
 /// Writing and measuring: requires a canonical solid; errors: not_encodable where the mode cannot
@@ -18,7 +27,7 @@ namespace watertight {
 /// and facets come in any order; errors: malformed; limit_exceeded before anything large is
 /// allocated.
 using CodeSolid = Status(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                         IntegerSolid& solid, const Limits& limits);
+                         IntegerSolid& solid, WriterChoice& choice, const Limits& limits);
 
 /// Mode `polygon` (B): connectivity first, then coordinates by planes and right angles.
 const ModelLayout& polygon_layout();

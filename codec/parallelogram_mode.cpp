@@ -410,15 +410,19 @@ Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& model
 }  // namespace
 
 Status code_parallelogram(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                          IntegerSolid& solid, const Limits& limits) {
+                          IntegerSolid& solid, WriterChoice& choice, const Limits& limits) {
   if (stream.is_reading()) {
     return SurfaceCoder(stream, models, memory, limits).code(nullptr, solid, {});
   }
   const Result<CutSurface> surface = cut_surface(solid);
   if (!surface) return surface.error();
-  const auto options = choose_options(*surface, models, memory, limits);
-  if (!options) return options.error();
-  return SurfaceCoder(stream, models, memory, limits).code(&*surface, solid, *options);
+  if (!choice.vertex_options) {
+    auto options = choose_options(*surface, models, memory, limits);
+    if (!options) return options.error();
+    choice.vertex_options = std::move(options).value();
+  }
+  return SurfaceCoder(stream, models, memory, limits)
+      .code(&*surface, solid, *choice.vertex_options);
 }
 
 }  // namespace watertight

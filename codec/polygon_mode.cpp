@@ -82,7 +82,7 @@ const ModelLayout& polygon_layout() {
 }
 
 Status code_polygon(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                    IntegerSolid& solid, const Limits& limits) {
+                    IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
   std::optional<SurfaceTruth> truth;
   if (!stream.is_reading()) {
     auto surface = surface_of(solid, memory);

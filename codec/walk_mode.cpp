@@ -89,7 +89,7 @@ const ModelLayout& walk_layout() {
 }
 
 Status code_walk(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                 IntegerSolid& solid, const Limits& limits) {
+                 IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
   if (!stream.is_reading() && solid.vertices.size() < 4) {
     return Error{ErrorCode::not_encodable, "the vertices span no volume"};
   }

@@ -223,7 +223,10 @@ void learn_meshes(const std::vector<IntegerSolid>& meshes, ModelBank& models) {
     EntropyStream meter = EntropyStream::meter();
     ModelBank learning = models;
     IntegerSolid solid = mesh;
-    if (code_parallelogram(meter, learning, PageMemory{}, solid, Limits{})) models = learning;
+    WriterChoice choice;
+    if (code_parallelogram(meter, learning, PageMemory{}, solid, choice, Limits{})) {
+      models = learning;
+    }
   }
 }
 
@@ -236,7 +239,7 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   for (const Mode mode : kModes) {
     if (!options.only.empty() && options.only != to_string(mode)) continue;
     const auto start = std::chrono::steady_clock::now();
-    const auto choose = [mode](const SolidCoder& coder, const PageSolid& solid) {
+    const auto choose = [mode](const SolidCoder& coder, PageSolid solid) {
       return coder.cost(solid, mode) ? mode : Mode::automatic;
     };
     for (int pass = 0; pass < options.passes; ++pass) train(pages, first, choose);
@@ -249,7 +252,7 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   if (!options.only.empty()) return;
 
   const std::array<ModelBank, kModelParts> chosen_by = banks_of(first);
-  const auto cheapest = [](const SolidCoder& coder, const PageSolid& solid) {
+  const auto cheapest = [](const SolidCoder& coder, PageSolid solid) {
     return coder.cheapest_mode(solid);
   };
   ModelSet second(chosen_by);

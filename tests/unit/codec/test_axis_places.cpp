@@ -93,12 +93,13 @@ Bytes round_trip(const IntegerSolid& solid) {
   ModelBank models(parallelogram_layout());
   EntropyStream writer = EntropyStream::writer();
   IntegerSolid source = solid;
-  REQUIRE(code_parallelogram(writer, models, {}, source, {}));
+  WriterChoice choice;
+  REQUIRE(code_parallelogram(writer, models, {}, source, choice, {}));
   const Bytes bytes = std::move(writer).finish();
   ModelBank again(parallelogram_layout());
   EntropyStream reader = EntropyStream::reader(bytes);
   IntegerSolid back;
-  REQUIRE(code_parallelogram(reader, again, {}, back, {}));
+  REQUIRE(code_parallelogram(reader, again, {}, back, choice, {}));
   CHECK(reader.is_finished());
   const auto triangles_of = [](const IntegerSolid& s) {
     std::vector<std::array<GridPoint, 3>> result;

@@ -43,7 +43,8 @@ Result<Bytes> write(const IntegerSolid& solid, const PageMemory& memory = {}) {
   ModelBank models(parallelogram_layout());
   EntropyStream stream = EntropyStream::writer();
   IntegerSolid source = solid;
-  const Status coded = code_parallelogram(stream, models, memory, source, {});
+  WriterChoice choice;
+  const Status coded = code_parallelogram(stream, models, memory, source, choice, {});
   if (!coded) return coded.error();
   return std::move(stream).finish();
 }
@@ -53,7 +54,8 @@ Result<IntegerSolid> read(ByteView bytes, const PageMemory& memory = {},
   ModelBank models(parallelogram_layout());
   EntropyStream stream = EntropyStream::reader(bytes);
   IntegerSolid solid;
-  const Status coded = code_parallelogram(stream, models, memory, solid, limits);
+  WriterChoice unused;
+  const Status coded = code_parallelogram(stream, models, memory, solid, unused, limits);
   if (!coded) return coded.error();
   if (!stream.is_finished()) return Error{ErrorCode::malformed, "bytes are left over"};
   return solid;

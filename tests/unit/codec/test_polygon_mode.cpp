@@ -29,7 +29,8 @@ Coded write(const OrientedBoundary& boundary, const PageMemory& memory = {}) {
   EntropyStream stream = EntropyStream::writer();
   ModelBank models(polygon_layout());
   IntegerSolid solid = on_grid->solid;
-  const Status status = code_polygon(stream, models, memory, solid, Limits{});
+  WriterChoice unused;
+  const Status status = code_polygon(stream, models, memory, solid, unused, Limits{});
   REQUIRE(status);
   result.bytes = std::move(stream).finish();
   return result;
@@ -39,7 +40,8 @@ Status read(ByteView bytes, IntegerSolid& solid, bool& is_finished, const Limits
             const PageMemory& memory = {}) {
   EntropyStream stream = EntropyStream::reader(bytes);
   ModelBank models(polygon_layout());
-  const Status status = code_polygon(stream, models, memory, solid, limits);
+  WriterChoice unused;
+  const Status status = code_polygon(stream, models, memory, solid, unused, limits);
   is_finished = stream.is_finished();
   return status;
 }
@@ -147,7 +149,8 @@ TEST_CASE("mode polygon holds coordinates up to its bound, and refuses those bey
     const IntegerSolid truth = solid;
     EntropyStream writer = EntropyStream::writer();
     ModelBank models(polygon_layout());
-    const Status written = code_polygon(writer, models, {}, solid, Limits{});
+    WriterChoice unused;
+    const Status written = code_polygon(writer, models, {}, solid, unused, Limits{});
     CHECK(written.has_value() == (bound == most));
     if (!written) continue;
     const Bytes bytes = std::move(writer).finish();

@@ -22,7 +22,8 @@ std::optional<Bytes> write(const IntegerSolid& solid, const PageMemory& memory =
   EntropyStream stream = EntropyStream::writer();
   ModelBank models(walk_layout());
   IntegerSolid written = solid;
-  if (!code_walk(stream, models, memory, written, Limits{})) return std::nullopt;
+  WriterChoice unused;
+  if (!code_walk(stream, models, memory, written, unused, Limits{})) return std::nullopt;
   return std::move(stream).finish();
 }
 
@@ -30,7 +31,8 @@ Status read(const Bytes& bytes, IntegerSolid& solid, const PageMemory& memory = 
             const Limits& limits = {}) {
   EntropyStream stream = EntropyStream::reader(bytes);
   ModelBank models(walk_layout());
-  Status status = code_walk(stream, models, memory, solid, limits);
+  WriterChoice unused;
+  Status status = code_walk(stream, models, memory, solid, unused, limits);
   if (status && !stream.is_finished()) return Error{ErrorCode::malformed, "bytes left"};
   return status;
 }
@@ -160,7 +162,8 @@ TEST_CASE("a measuring stream walks as a writing one, and both the same way ever
   EntropyStream meter = EntropyStream::meter();
   ModelBank models(walk_layout());
   IntegerSolid measured = solid->solid;
-  REQUIRE(code_walk(meter, models, PageMemory{}, measured, Limits{}));
+  WriterChoice unused;
+  REQUIRE(code_walk(meter, models, PageMemory{}, measured, unused, Limits{}));
   const auto bits = meter.cost() >> kCostBits;
   CHECK(bits / 8 <= bytes->size() + 2);
   CHECK(bits / 8 + 4 >= bytes->size());

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// dense [--grid 11|14|16|source]... [--listed FACETS] FILE...: the closed meshes of the files as
-// triangles on each grid. Whole stand-alone blobs that decode to the same canonical solid, with the
-// shipped priors, beside Draco and meshoptimizer, which get what a blob takes
-// for origin and grid added (as in bench/ratio/compare.cpp). Meshes below --listed facets (1,000)
-// are only summed up. If the files are all those of the training data in the order of their paths,
-// those that the priors have seen are set apart (bench/corpus/training_meshes.h).
+// dense [--grid 11|14|16|source]... [--listed FACETS] [--parallelogram] FILE...: the closed meshes
+// of the files as triangles on each grid, in automatic mode or in mode parallelogram. Whole
+// stand-alone blobs that decode to the same canonical solid, with the shipped priors, beside Draco
+// and meshoptimizer, which get what a blob takes for origin and grid added (as in
+// bench/ratio/compare.cpp). Meshes below --listed facets (1,000) are only summed up. If the files
+// are all those of the training data in the order of their paths, those that the priors have seen
+// are set apart (bench/corpus/training_meshes.h).
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -41,7 +42,7 @@ std::string_view validity(const OrientedBoundary& boundary) {
 }
 
 std::optional<MeshRow> measure(const std::string& name, const Solid& source,
-                               std::optional<int> bits) {
+                               std::optional<int> bits, Mode mode) {
   const auto mesh = quantize(source, bits);
   if (!mesh) return std::nullopt;
   const auto boundary = boundary_of(*mesh, bits ? nullptr : &source.lattice());
@@ -53,7 +54,7 @@ std::optional<MeshRow> measure(const std::string& name, const Solid& source,
   row.name = name;
   row.vertices = mesh->vertices.size();
   row.facets = mesh->facet_count();
-  row.blob = whole_blob(*boundary, kModelNumber);
+  row.blob = whole_blob(*boundary, mode);
   row.validity = validity(*boundary);
   const std::size_t placement = placement_bytes(*boundary);
   if (const std::size_t bytes = draco_bytes(*mesh); bytes > 0) row.draco = bytes + placement;
@@ -63,7 +64,7 @@ std::optional<MeshRow> measure(const std::string& name, const Solid& source,
 }
 
 void report(const std::string& grid, const std::vector<std::filesystem::path>& files,
-            std::size_t listed) {
+            std::size_t listed, Mode mode) {
   const std::optional<int> bits =
       grid == "source" ? std::nullopt : std::optional<int>(std::atoi(grid.c_str()));
   Summary summary(listed);
@@ -78,7 +79,7 @@ void report(const std::string& grid, const std::vector<std::filesystem::path>& f
     if (!document) continue;
     for (const Feature& feature : document->features) {
       for (const SubmittedSolid& submitted : feature.solids) {
-        auto row = measure(path.filename().string(), submitted.solid, bits);
+        auto row = measure(path.filename().string(), submitted.solid, bits, mode);
         if (!row) continue;
         row->is_seen = number % 2 == 0 && row->facets <= 60000;
         if (row->facets >= listed) print_row(*row);
@@ -95,17 +96,20 @@ int main(int count, char** arguments) {
   std::vector<std::string> grids;
   std::vector<std::filesystem::path> files;
   std::size_t listed = 1000;
+  Mode mode = Mode::automatic;
   for (int i = 1; i < count; ++i) {
     const std::string word = arguments[i];
     if (word == "--grid" && i + 1 < count) {
       grids.emplace_back(arguments[++i]);
     } else if (word == "--listed" && i + 1 < count) {
       listed = static_cast<std::size_t>(std::atoi(arguments[++i]));
+    } else if (word == "--parallelogram") {
+      mode = Mode::parallelogram;
     } else {
       files.emplace_back(word);
     }
   }
   if (grids.empty()) grids = {"11", "14", "16", "source"};
-  for (const std::string& grid : grids) report(grid, files, listed);
+  for (const std::string& grid : grids) report(grid, files, listed, mode);
   return 0;
 }

@@ -69,11 +69,11 @@ Result<OrientedBoundary> boundary_of(const IntegerSolid& mesh, const Lattice* la
   return OrientedBoundary::make(std::move(solid).value());
 }
 
-WholeBlob whole_blob(const OrientedBoundary& boundary, std::uint8_t models) {
+WholeBlob whole_blob(const OrientedBoundary& boundary, Mode mode) {
   const Solid wanted = canonical_form(boundary).boundary.solid();
   EncodeOptions options;
   options.keep_order = false;
-  options.models = models;
+  options.mode = mode;
   const double resident = begin_peak();
   const double start = processor_seconds();
   const auto blob = encode_boundary(boundary, {}, options);

@@ -25,7 +25,7 @@ struct WholeBlob {
 /// The mesh on `lattice`, or on the lattice of its integers. Errors: as OrientedBoundary::make().
 Result<OrientedBoundary> boundary_of(const IntegerSolid& mesh, const Lattice* lattice);
 
-/// Automatic mode without source order. Ends the program if another solid comes back.
-WholeBlob whole_blob(const OrientedBoundary& boundary, std::uint8_t models);
+/// With the shipped priors, without source order. Ends the program if another solid comes back.
+WholeBlob whole_blob(const OrientedBoundary& boundary, Mode mode);
 
 }  // namespace watertight

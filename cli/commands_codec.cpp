@@ -9,9 +9,12 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/printable.h"
 #include "cli/progress.h"
 #include "codec/explain.h"
+#include "codec/page_file.h"
 #include "pipeline/container.h"
+#include "validate/finding_kinds.h"
 
 namespace watertight {
 namespace {
@@ -25,6 +28,30 @@ Exit fail(const std::string& file, const Error& error) {
 
 Exit fail_to_write(const std::string& file, const Error& error) {
   return fail(file == "-" ? "standard output" : file, error);
+}
+
+bool replaces(const std::string& output, const std::string& input) {
+  return output != "-" && is_same_file(output, input);
+}
+
+Exit refuse_to_replace(const std::string& input) {
+  return fail(input, {ErrorCode::invalid_argument, "the output would replace the input"});
+}
+
+/// What is stored is not what the source says, so that even a valid solid must not pass in silence.
+void tell_rounded(const std::string& file, const IngestOutcome& outcome) {
+  for (const FeatureOutcome& feature : outcome.features) {
+    for (const SolidOutcome& solid : feature.solids) {
+      for (const Finding& finding : solid.report.findings) {
+        if (finding.code != kCoordinatesRounded) continue;
+        const std::string& place = solid.source.pointer;
+        const std::string text =
+            "warning 805: " + finding.detail + (place.empty() ? "" : " at " + place);
+        std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(),
+                     printable(text).c_str());
+      }
+    }
+  }
 }
 
 Result<Input> load(const std::string& path, bool keep_text = false) {
@@ -186,6 +213,7 @@ Status explain_features(const std::vector<StoredFeature>& features, std::FILE* o
 Exit run(const EncodeCommand& command) {
   const auto contract = contract_named(command.contract);
   if (!contract) return fail("--contract", contract.error());
+  if (replaces(command.output, command.input)) return refuse_to_replace(command.input);
   auto input = load(command.input, *contract == Contract::exact);
   if (!input) return fail(command.input, input.error());
   EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
@@ -209,6 +237,7 @@ Exit run(const EncodeCommand& command) {
                  command.input.c_str());
     return exit;
   }
+  tell_rounded(command.input, encoded->outcome);
   const auto packed = pack(command, encoded->document);
   if (!packed) return fail(command.input, packed.error());
   const Status status = write_file(command.output, *packed);
@@ -220,6 +249,7 @@ Exit run(const EncodeCommand& command) {
 }
 
 Exit run(const DecodeCommand& command) {
+  if (replaces(command.output, command.input)) return refuse_to_replace(command.input);
   const auto documents = load_encoded(command.input);
   if (!documents) return fail(command.input, documents.error());
   if (documents->empty()) return fail(command.input, {ErrorCode::malformed, "no document in it"});
@@ -234,6 +264,7 @@ Exit run(const DecodeCommand& command) {
 }
 
 Exit run(const ConvertCommand& command) {
+  if (replaces(command.output, command.input)) return refuse_to_replace(command.input);
   const auto input = load(command.input);
   if (!input) return fail(command.input, input.error());
   return save(input->document, command.output);
@@ -245,6 +276,8 @@ Exit run(const InfoCommand& command) {
   Result<Json> json = Json();
   if (is_container(*bytes)) {
     json = info_of_container(*bytes);
+  } else if (is_page_file(*bytes)) {
+    json = page_file_error();
   } else {
     const auto info = describe(*bytes);
     json = info ? Result<Json>(json_of(*info)) : Result<Json>(info.error());

@@ -88,20 +88,6 @@ void print_groups(const std::string& file, const std::vector<InspectedGroup>& gr
   }
 }
 
-/// Whether writing the one would destroy the other. Devices and pipes can be written many times.
-bool is_same_file(const std::string& a, const std::string& b) {
-  namespace fs = std::filesystem;
-  if (a == "-" || b == "-") return a == b;
-  std::error_code ignored;
-  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
-  if (a == b || fs::equivalent(a, b, ignored)) return true;
-  // Of a relative path without anything that exists, weakly_canonical() makes no absolute one.
-  const auto place = [&](const std::string& path) {
-    return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
-  };
-  return place(a) == place(b);
-}
-
 std::string output_name(const std::string& path) { return path == "-" ? "standard output" : path; }
 
 /// One of the files that a run writes beside its output.

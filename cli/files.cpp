@@ -11,7 +11,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
+#include "codec/page_file.h"
 #include "pipeline/container.h"
 
 namespace watertight {
@@ -79,6 +81,20 @@ Result<std::size_t> read_some(int descriptor, std::span<std::uint8_t> bytes) {
     if (count >= 0) return static_cast<std::size_t>(count);
     if (errno != EINTR) return file_error(errno);
   }
+}
+
+}  // namespace
+
+Error page_file_error() {
+  return {ErrorCode::unsupported, "a page file; the commands take Watertight files and blobs"};
+}
+
+namespace {
+
+/// Magic and a version byte, which no text has: a blob or a page, be it damaged.
+bool is_blob(ByteView bytes) {
+  constexpr std::uint8_t kLeastText = 9;  // a tabulator
+  return bytes.size() > 2 && bytes[0] == 'W' && bytes[1] == 'T' && (bytes[2] & 0x7FU) < kLeastText;
 }
 
 /// Errors: those of the source; limit_exceeded.
@@ -172,6 +188,19 @@ Status write_file(const std::string& path, ByteView bytes) {
   return status ? writer->commit() : status;
 }
 
+bool is_same_file(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  if (a == "-" || b == "-") return a == b;
+  std::error_code ignored;
+  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
+  if (a == b || fs::equivalent(a, b, ignored)) return true;
+  // Of a relative path without anything that exists, weakly_canonical() makes no absolute one.
+  const auto place = [&](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+  };
+  return place(a) == place(b);
+}
+
 Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options) {
   Input input;
   if (is_container(bytes)) {
@@ -185,7 +214,10 @@ Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOpti
     input.document = std::move(documents->front());
     return input;
   }
-  if (describe(bytes, options.limits)) {
+  if (is_page_file(bytes)) {
+    return page_file_error();
+  }
+  if (is_blob(bytes)) {
     auto decoded = decode(bytes, options.limits);
     if (!decoded) return std::move(decoded).error();
     Feature feature;

@@ -37,6 +37,9 @@ class FileWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Whether writing the one would destroy the other. Devices and pipes can be written many times.
+bool is_same_file(const std::string& a, const std::string& b);
+
 /// What an input file was.
 enum class InputKind : std::uint8_t { document, container, blob };
 
@@ -48,6 +51,9 @@ struct Input {
 /// Reads a document of any format, a Watertight file or a bare blob, told apart by content and
 /// name. Errors: those of the readers.
 Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options);
+
+/// No command reads page files by themselves: they are parts of Watertight files.
+Error page_file_error();
 
 /// A document that is read feature by feature; Watertight files and bare blobs are read whole.
 struct OpenedInput {

@@ -50,10 +50,11 @@ void decline_mode(PageSolid& solid) {
   solid.plain = {};
 }
 
-/// In automatic mode, what does not come back in the mode that seemed best is stored raw; where so
-/// few bytes tell so much that a decoder would refuse them, the next best modes are taken.
-Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
-                              const EncodeOptions& options) {
+/// In automatic mode each solid takes the mode that is smallest after those before it; what does
+/// not come back in the mode that seemed best is stored raw; where so few bytes tell so much that a
+/// decoder would refuse them, the next best modes are taken.
+Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
+                           const EncodeOptions& options) {
   PageContents page;
   page.models = options.models;
   for (const Source& source : sources) {
@@ -81,6 +82,25 @@ Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
     }
   }
   return Error{ErrorCode::not_encodable, "no mode brings the solid back"};
+}
+
+/// Automatic mode looks no further than the next solid, while models learn from those before. Where
+/// little is to be coded, one mode for the whole page can therefore be smaller: each is tried too.
+/// Larger pages win next to nothing (The Hague: 2 bytes of 20,717) for a third of the time.
+constexpr std::size_t kFewBytes = 2048;
+
+Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,
+                              const EncodeOptions& options) {
+  auto best = encode_modes(sources, kind, options);
+  if (!best || options.mode != Mode::automatic) return best;
+  if (kind == PageKind::blob || best->size() > kFewBytes) return best;
+  for (const Mode mode : {Mode::walk, Mode::polygon, Mode::parallelogram}) {
+    EncodeOptions one = options;
+    one.mode = mode;
+    auto bytes = encode_modes(sources, kind, one);
+    if (bytes && bytes->size() < best->size()) best = std::move(bytes);
+  }
+  return best;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 // Integers only. Source: the carry-less coder of M. Mahoney's lpaq (32-bit interval).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -43,6 +44,8 @@ class EntropyStream {
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
 
+  /// Reading: how many bytes were looked at, with the few that the coder reads ahead.
+  std::size_t position() const { return std::min(position_, source_.size()); }
   /// What the decisions so far take, in 1/65536 bit; within 0.1 % of the bytes.
   std::uint64_t cost() const;
   std::uint64_t cost(StreamPart part) const { return costs_[static_cast<std::size_t>(part)]; }

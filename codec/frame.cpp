@@ -255,7 +255,9 @@ Status SolidCoder::code_geometry(PageSolid& solid) {
                  "mode " + std::to_string(static_cast<unsigned>(solid.mode)) + " is unknown"};
   }
   if (frame_.grid.kind == LatticeKind::float64) {
-    return Error{ErrorCode::malformed, "a mode for integers in a blob of doubles"};
+    const ErrorCode code = stream_.is_reading() ? ErrorCode::malformed : ErrorCode::not_encodable;
+    return Error{code, "mode " + std::string(to_string(solid.mode)) +
+                           " is for integers, and the coordinates are on no grid"};
   }
   return coder.code(stream_, models_[coder.part], memory_, solid.gridded.solid, solid.choice,
                     limits_);

@@ -236,7 +236,12 @@ Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits
   SolidCoder coder(stream, *models, page.frame, limits_of_stream(size, limits));
   for (std::uint64_t i = 0; i < count; ++i) {
     PageSolid solid;
-    if (auto status = coder.code(solid); !status) return status.error();
+    if (auto status = coder.code(solid); !status) {
+      Error error = std::move(status).error();
+      if (kind == PageKind::page) error.message += "; solid " + std::to_string(i);
+      if (!error.byte_offset) error.byte_offset = kHeaderBytes + stream.position();
+      return error;
+    }
     page.solids.push_back(std::move(solid));
   }
   if (!stream.is_finished()) {

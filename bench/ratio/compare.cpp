@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// compare CORPUS [--page N] [--unseen SET]... [--mode MODE]: bytes of files that decode, per set of
+// compare CORPUS [--page N] [--unseen SET]...: bytes of files that decode, per set of
 // the test half (bench/corpus/split.h), beside the peers on the same grid. A page counts all its
-// bytes and its entry in an index; a blob all its bytes. Peers that keep no position or grid get
-// what ours takes for them added: three varints of the origin, and two bytes of grid for a blob.
+// bytes and those of a page file with nothing else in it; a blob all its bytes. Peers that keep no
+// position or grid get what ours takes for them added: three varints of the origin, and two bytes
+// of grid for a blob.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -23,7 +24,9 @@ using namespace watertight;
 
 namespace {
 
-constexpr std::size_t kIndexEntry = 8;  // bytes of a page's entry in the index of a file
+// What a file of one page takes beside it: head and tail (17 bytes), the index with its numbers of
+// pages and solids (up to 8) and a byte for each solid (codec/page_file.h).
+constexpr std::size_t kFileBytes = 25;
 
 struct Options {
   std::string corpus;
@@ -114,7 +117,7 @@ Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
   for (std::size_t i = 0; i < sums.all.size(); ++i) {
     if (require(decoded, "decode page")[i].solid != *sums.all[i]) std::abort();
   }
-  sums.paged = static_cast<double>(bytes->size() + kIndexEntry);
+  sums.paged = static_cast<double>(bytes->size() + kFileBytes + sums.solids);
   return sums;
 }
 

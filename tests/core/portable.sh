@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # The decoder on its own: it refers to no files, memory maps, threads, clocks, sockets, processes or
-# environment, to no CGAL, and decodes the golden blobs.
+# environment, does not contain the tetrahedralization of CGAL (of which exact numbers remain), and decodes the golden blobs.
 # usage: portable.sh PORTABLE_DECODER GOLDEN_BLOBS
 set -eu
 

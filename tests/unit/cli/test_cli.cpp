@@ -316,6 +316,51 @@ TEST_CASE_METHOD(Fixture, "convert follows the ending of the output") {
   CHECK(run("convert cube.obj -o no/such/folder.off").status == 2);
 }
 
+TEST_CASE_METHOD(Fixture, "what is wrong with a blob is said, whatever the file is called") {
+  write("cube.obj", kCubeObj);
+  REQUIRE(run("encode cube.obj --bare -o cube.blob").status == 0);
+  const std::string whole = read("cube.blob");
+  write("short.json", whole.substr(0, whole.size() - 1));
+  std::string later = whole;
+  later[2] = 2;
+  write("later.wkt", later);
+  for (const std::string command : {"decode ", "convert ", "encode "}) {
+    const Ran refused = run(command + "short.json -o y.wkt");
+    CHECK(refused.status == 2);
+    CHECK(refused.output.find("checksum does not match") != std::string::npos);
+  }
+  CHECK(run("validate later.wkt").output.find("format version 2") != std::string::npos);
+  write("pages", "WTPF\x01 and so on");
+  CHECK(run("info pages").output.find("a page file") != std::string::npos);
+  CHECK(run("decode pages -o y.wkt").output.find("a page file") != std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "an output does not replace its own input") {
+  write("cube.obj", kCubeObj);
+  fs::create_symlink("cube.obj", folder / "link.obj");
+  for (const std::string arguments :
+       {"encode cube.obj -o cube.obj --contract boundary", "convert cube.obj -o ./cube.obj",
+        "convert link.obj -o cube.obj", "decode cube.obj -o cube.obj"}) {
+    const Ran refused = run(arguments);
+    CHECK(refused.status == 2);
+    CHECK(refused.output.find("would replace the input") != std::string::npos);
+  }
+  CHECK(read("cube.obj") == kCubeObj);
+}
+
+TEST_CASE_METHOD(Fixture, "encode tells coordinates that had to be rounded") {
+  std::string fine = kCubeObj;
+  for (const std::string corner : {"v 0 0 1", "v 1 0 1", "v 1 1 1", "v 0 1 1"}) {
+    fine.replace(fine.find(corner), corner.size(), corner + ".12345678901234567890123456789");
+  }
+  write("fine.obj", fine);
+  const Ran encoded = run("encode fine.obj -o fine.wt");
+  CHECK(encoded.status == 0);
+  CHECK(encoded.output.find("warning 805") != std::string::npos);
+  write("cube.obj", kCubeObj);
+  CHECK(run("encode cube.obj -o cube.wt").output.empty());
+}
+
 TEST_CASE_METHOD(Fixture, "damaged Watertight files are refused") {
   write("in.city.jsonl", kValid);
   REQUIRE(run("encode in.city.jsonl -o x.wt").status == 0);

@@ -177,6 +177,31 @@ TEST_CASE("a page of like solids is smaller than their blobs") {
   CHECK(2 * bytes->size() < alone);
 }
 
+TEST_CASE("a page of few bytes in automatic mode is no larger than in any one mode") {
+  const auto solids = generated::all(6);
+  for (const Boundaries& group : groups_of(solids)) {
+    const auto automatic = encode_boundaries(group, {});
+    REQUIRE(automatic);
+    if (automatic->size() > 2048) continue;
+    for (const Mode mode : {Mode::walk, Mode::polygon, Mode::parallelogram}) {
+      const auto page = encode_boundaries(group, {}, {.mode = mode});
+      if (page) CHECK(automatic->size() <= page->size());
+    }
+  }
+}
+
+TEST_CASE("an error in a page names the solid and the byte") {
+  const OrientedBoundary box = generated::box();
+  auto page = encode_boundaries(Boundaries{&box, &box, &box}, {});
+  REQUIRE(page);
+  page->erase(page->end() - 12, page->end() - 4);  // of the stream; the checksum follows
+  const auto refused = decode_page(*page);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::malformed);
+  CHECK(refused.error().message.find("solid ") != std::string::npos);
+  CHECK(refused.error().byte_offset.value_or(0) > 4);
+}
+
 TEST_CASE("solids that share no page are refused by name") {
   const auto solids = interleaved(5);
   const auto mixed = encode_boundaries(Boundaries{&solids[0], &solids[1]}, {});

@@ -114,11 +114,12 @@ std::string numbered(const std::string& output, std::size_t number) {
   return result + output.substr(ending);
 }
 
-Exit save(const Document& document, const std::string& output) {
+/// `input` is what the document was read from: a conversion that fails is for what stands there.
+Exit save(const Document& document, const std::string& input, const std::string& output) {
   const auto format = output == "-" ? Result<Format>(document.format) : format_of_name(output);
   if (!format) return fail_to_write(output, format.error());
   const auto bytes = convert_document(document, *format);
-  if (!bytes) return fail_to_write(output, bytes.error());
+  if (!bytes) return fail(input, bytes.error());
   const Status status = write_file(output, *bytes);
   return status ? Exit::valid : fail_to_write(output, status.error());
 }
@@ -257,7 +258,7 @@ Exit run(const DecodeCommand& command) {
     return fail(command.input, {ErrorCode::unsupported, "several documents need names: -o FILE"});
   }
   for (std::size_t i = 0; i < documents->size(); ++i) {
-    const Exit exit = save((*documents)[i], numbered(command.output, i));
+    const Exit exit = save((*documents)[i], command.input, numbered(command.output, i));
     if (exit != Exit::valid) return exit;
   }
   return Exit::valid;
@@ -267,7 +268,7 @@ Exit run(const ConvertCommand& command) {
   if (replaces(command.output, command.input)) return refuse_to_replace(command.input);
   const auto input = load(command.input);
   if (!input) return fail(command.input, input.error());
-  return save(input->document, command.output);
+  return save(input->document, command.input, command.output);
 }
 
 Exit run(const InfoCommand& command) {

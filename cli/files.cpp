@@ -97,6 +97,40 @@ bool is_blob(ByteView bytes) {
   return bytes.size() > 2 && bytes[0] == 'W' && bytes[1] == 'T' && (bytes[2] & 0x7FU) < kLeastText;
 }
 
+/// The file that a link leads to: like `cp`, writing keeps the link.
+std::string behind_links(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(path, error)) return path;
+  const auto place = std::filesystem::canonical(path, error);
+  return error ? path : place.string();
+}
+
+/// A new file in the folder of `path`: without a name where the system can do that, so that
+/// nothing is left of a program that is killed; else `name` becomes its name.
+int open_beside(const std::string& path, std::string& name) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  if (::access("/proc/self/fd", X_OK) == 0) {
+    const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+    if (descriptor >= 0) return descriptor;
+  }
+  name = path + ".XXXXXX";
+  return ::mkstemp(name.data());
+}
+
+/// Gives a file without a name one beside `path`. Returns 0 or the error number.
+int name_beside(const std::string& path, int descriptor, std::string& name) {
+  const std::string file = "/proc/self/fd/" + std::to_string(descriptor);
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    name = path + "." + std::to_string(::getpid()) + "-" + std::to_string(attempt);
+    if (::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return 0;
+    if (errno != EEXIST) break;
+  }
+  const int error = errno;
+  name.clear();
+  return error;
+}
+
 /// Errors: those of the source; limit_exceeded.
 Result<Bytes> read_all(const ByteSource& source, const Limits& limits) {
   Bytes bytes;
@@ -125,15 +159,15 @@ Result<Bytes> read_file(const std::string& path, const Limits& limits) {
 
 struct FileWriter::State {
   std::string path;
-  std::string temporary;  // "" when the target itself is written: standard output, a device, a pipe
+  std::string temporary;   // its name while it has one and is not the target
+  bool is_direct = false;  // the target itself is written: standard output, a device, a pipe
   Descriptor file;
   std::string buffer;
-  bool is_committed = false;
 
-  State(std::string target, std::string name, int descriptor)
-      : path(std::move(target)), temporary(std::move(name)), file(descriptor) {}
+  State(std::string target, std::string name, bool direct, int descriptor)
+      : path(std::move(target)), temporary(std::move(name)), is_direct(direct), file(descriptor) {}
   ~State() {
-    if (!temporary.empty() && !is_committed) ::unlink(temporary.c_str());
+    if (!temporary.empty()) ::unlink(temporary.c_str());
   }
   Status flush() {
     const int error = write_all(file.number(), as_bytes(buffer));
@@ -147,17 +181,18 @@ FileWriter::FileWriter(std::unique_ptr<State> state) : state_(std::move(state)) 
 FileWriter::FileWriter(FileWriter&&) noexcept = default;
 FileWriter::~FileWriter() = default;
 
-Result<FileWriter> FileWriter::open(const std::string& path) {
+Result<FileWriter> FileWriter::open(const std::string& target) {
+  const std::string path = behind_links(target);
   const bool is_direct = path == "-" || is_special(path);
-  std::string temporary = is_direct ? "" : path + ".XXXXXX";
+  std::string temporary;
   int descriptor = STDOUT_FILENO;
   if (!is_direct) {
-    descriptor = ::mkstemp(temporary.data());
+    descriptor = open_beside(path, temporary);
   } else if (path != "-") {
     descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   }
   if (descriptor < 0) return file_error(errno);
-  return FileWriter(std::make_unique<State>(path, std::move(temporary), descriptor));
+  return FileWriter(std::make_unique<State>(path, std::move(temporary), is_direct, descriptor));
 }
 
 Status FileWriter::write(std::string_view text) {
@@ -169,16 +204,18 @@ Status FileWriter::write(std::string_view text) {
 Status FileWriter::commit() {
   State& state = *state_;
   if (Status status = state.flush(); !status) return status;
-  state.is_committed = true;
-  if (state.temporary.empty()) return Done{};
+  if (state.is_direct) return Done{};
   const int number = state.file.number();
   int error = ::fchmod(number, permissions_for(state.path)) == 0 ? 0 : errno;
   if (error == 0 && ::fsync(number) != 0) error = errno;
+  if (error == 0 && state.temporary.empty()) {
+    error = name_beside(state.path, number, state.temporary);
+  }
   if (state.file.close() != 0 && error == 0) error = errno;
   if (error == 0 && std::rename(state.temporary.c_str(), state.path.c_str()) != 0) error = errno;
-  if (error == 0) return Done{};
-  ::unlink(state.temporary.c_str());
-  return file_error(error);
+  if (error != 0) return file_error(error);
+  state.temporary.clear();
+  return Done{};
 }
 
 Status write_file(const std::string& path, ByteView bytes) {

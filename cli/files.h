@@ -22,7 +22,7 @@ Status write_file(const std::string& path, ByteView bytes);
 class FileWriter {
  public:
   /// Errors: unavailable with the reason.
-  static Result<FileWriter> open(const std::string& path);
+  static Result<FileWriter> open(const std::string& target);
   FileWriter(FileWriter&&) noexcept;
   FileWriter& operator=(FileWriter&&) = delete;
   ~FileWriter();  // without commit(), leaves what was there before

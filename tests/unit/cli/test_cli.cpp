@@ -335,6 +335,24 @@ TEST_CASE_METHOD(Fixture, "what is wrong with a blob is said, whatever the file 
   CHECK(run("decode pages -o y.wkt").output.find("a page file") != std::string::npos);
 }
 
+TEST_CASE_METHOD(Fixture, "a run that is killed leaves nothing behind") {
+  const std::string script = "cd " + folder.string() + " && mkfifo in.city.jsonl && { " +
+                             WATERTIGHT_EXECUTABLE +
+                             " validate in.city.jsonl --report r.json & p=$!; sleep 0.3; "
+                             "kill -9 $p; wait $p; } 2>/dev/null";
+  CHECK(std::system(("bash -c '" + script + "'").c_str()) != 0);
+  CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "an output behind a link is written there") {
+  write("cube.obj", kCubeObj);
+  write("old.off", "old");
+  fs::create_symlink("old.off", folder / "link.off");
+  CHECK(run("convert cube.obj -o link.off").status == 0);
+  CHECK(fs::is_symlink(folder / "link.off"));
+  CHECK(read("old.off").starts_with("OFF"));
+}
+
 TEST_CASE_METHOD(Fixture, "an output does not replace its own input") {
   write("cube.obj", kCubeObj);
   fs::create_symlink("cube.obj", folder / "link.obj");

@@ -272,12 +272,33 @@ class Examination {
     return std::nullopt;
   }
 
+  /// The first facet of the part of the interior with the fewest facets: whatever the
+  /// tetrahedralization, the same.
+  Index facet_of_smallest_part() const {
+    std::vector<std::vector<Index>> facets(region_count_);
+    for (const OrientedFace& face : oriented_) facets[region(face.inner)].push_back(face.facet);
+    std::vector<Index> smallest;
+    for (Index part = 0; part < region_count_; ++part) {
+      if (parity_[part] != 1) continue;
+      std::sort(facets[part].begin(), facets[part].end());
+      facets[part].erase(std::unique(facets[part].begin(), facets[part].end()), facets[part].end());
+      const bool is_first = smallest.empty();
+      if (is_first || std::pair(facets[part].size(), facets[part].front()) <
+                          std::pair(smallest.size(), smallest.front())) {
+        smallest = std::move(facets[part]);
+      }
+    }
+    return smallest.front();
+  }
+
   Checked check_interior() {
     const auto interior = std::count(parity_.begin(), parity_.end(), Index{1});
     if (interior == 0) return refuse(CertificateRefusal::not_a_boundary, "there is no interior");
     if (interior > 1) {
       return refuse(CertificateRefusal::interior_disconnected,
-                    "the interior has " + std::to_string(interior) + " parts");
+                    "the interior has " + std::to_string(interior) +
+                        " parts; this facet bounds the one with the fewest facets",
+                    facet_of_smallest_part());
     }
     certificate_.is_interior.resize(data_.tetrahedra.size());
     for (Index t = 0; t < data_.tetrahedra.size(); ++t) {

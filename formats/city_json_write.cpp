@@ -41,7 +41,10 @@ Result<std::vector<std::string>> solid_vertex_texts(const Solid& solid,
   if (are_integers || transform) {
     auto integers =
         integers_under(solid.lattice(), solid.vertices(), transform.value_or(Transform{}));
-    if (!integers) return std::move(integers).error();
+    if (!integers) {
+      return Error{ErrorCode::unsupported,
+                   integers.error().message + ": the coordinates had to be rounded"};
+    }
     for (const auto& [x, y, z] : *integers) {
       texts.push_back(vertex_text({std::to_string(x), std::to_string(y), std::to_string(z)}));
     }

@@ -60,6 +60,8 @@ struct SubmittedSolid {
   std::vector<Index> unclosed_rings = {};
   /// gml:id of each facet's polygon, "" for those without one; empty when none has one.
   std::vector<std::string> facet_ids = {};
+  /// Of a file whose vertices are for this solid alone.
+  UnusedVertices unused = {};
 };
 
 /// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one

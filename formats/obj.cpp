@@ -124,6 +124,12 @@ class ObjReader {
         return error_at(line, words[3], "a vertex with a weight other than 1");
       }
     }
+    if (words.size() == 5 || words.size() > 7) {
+      return error_at(line, words[3], "a vertex has three numbers, a weight or a colour");
+    }
+    for (const std::string_view word : words.subspan(std::min<std::size_t>(words.size(), 3))) {
+      if (!exact_number(word)) return error_at(line, word, "not a number");
+    }
     return append_vertex(line, words, vertices_);
   }
 
@@ -194,6 +200,7 @@ class ObjReader {
       auto solid = indexed_solid(std::move(object.arrays), vertices_,
                                  SolidSource{object.name, "Mesh", "", 0, 0, ""}, limits_);
       if (!solid) return std::move(solid).error();
+      if (objects_.size() > 1) solid->unused = {};  // the vertices are for all objects
       Feature feature;
       feature.id = object.name;
       feature.solids.push_back(std::move(*solid));

@@ -18,6 +18,20 @@ Result<SubmittedSolid> submitted(SolidArrays arrays, std::span<const Index> vert
   return SubmittedSolid{std::move(*solid), std::move(source), {}};
 }
 
+/// What of `all` is not in `used`.
+UnusedVertices unused_vertices(const std::vector<std::array<GridNumber, 3>>& all,
+                               const std::vector<Index>& used) {
+  UnusedVertices unused{all.size() - used.size(), 0, {}};
+  if (unused.count == 0) return unused;
+  std::vector<bool> is_used(all.size(), false);
+  for (const Index vertex : used) is_used[vertex] = true;
+  const auto first = std::find(is_used.begin(), is_used.end(), false) - is_used.begin();
+  unused.first = static_cast<std::uint64_t>(first);
+  const auto point = lattice_of_decimals(std::span(&all[unused.first], 1));
+  if (point) unused.place = point->lattice.world(point->points.front());
+  return unused;
+}
+
 }  // namespace
 
 std::vector<Index> number_by_first_use(SolidArrays& arrays, std::vector<Index>& number_of) {
@@ -52,6 +66,7 @@ Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertic
   for (Index i = 0; i < used.size(); ++i) {
     if (is_rounded[i] || vertices.is_rounded[used[i]]) solid->rounded.push_back(i);
   }
+  solid->unused = unused_vertices(vertices.positions, used);
   return solid;
 }
 

@@ -38,6 +38,13 @@ struct SolidArrays {
   friend bool operator==(const SolidArrays&, const SolidArrays&) = default;
 };
 
+/// Vertices that a source lists and no ring uses, where a reader leaves them out of the solid.
+struct UnusedVertices {
+  std::uint64_t count = 0;
+  std::uint64_t first = 0;  // its number in the source, from 0
+  std::array<double, 3> place{};
+};
+
 /// A solid with its lattice and coordinate reference system. The closing vertex of a ring is not
 /// repeated. Rings may be short, facets may be empty, vertices may repeat or be unused: those are
 /// findings, not errors. Cheap to move, thread-safe to read.

@@ -175,11 +175,11 @@ InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyO
   InspectedFeature inspected;
   inspected.solids.reserve(feature.solids.size());
   for (const SubmittedSolid& submitted : feature.solids) {
-    CertifyOptions with_rounding = options;
-    with_rounding.rounded = submitted.rounded;
-    with_rounding.unclosed_rings = submitted.unclosed_rings;
-    inspected.solids.push_back(
-        {submitted.source, certify(submitted.solid, workers, with_rounding)});
+    CertifyOptions own = options;
+    own.rounded = submitted.rounded;
+    own.unclosed_rings = submitted.unclosed_rings;
+    own.unused = submitted.unused;
+    inspected.solids.push_back({submitted.source, certify(submitted.solid, workers, own)});
   }
   inspected.feature = std::move(feature);
   GroupOptions own = groups;

@@ -19,7 +19,7 @@ struct Picture {
 
 struct PictureOptions {
   std::size_t most_facets = 160;    // shown; the nearest ones
-  std::size_t most_corners = 4000;  // shown; longer rings are thinned out
+  std::size_t most_corners = 4000;  // shown; longer rings are thinned out, later ones left out
 };
 
 /// Nothing when the finding has no place to show. Coordinates are rounded to a thousandth of the

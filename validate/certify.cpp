@@ -71,15 +71,15 @@ void Certifier::apply_exact_rules() {
   check_not_empty(examined_);
   check_rings(examined_);
   check_closed_rings(examined_, options_.unclosed_rings);
-  check_facets(examined_);
+  const std::string unmeasured = check_facets(examined_);
   shells_ = check_shells(examined_);
   const std::vector<Index> duplicate_of = check_duplicate_shells(examined_);
   const ShellContacts contacts =
       check_intersections(examined_, duplicate_of, options_.ladder.cancel, options_.threads);
-  incomplete_ = contacts.incomplete;
+  incomplete_ = contacts.incomplete.empty() ? unmeasured : contacts.incomplete;
   check_diagonals(examined_, contacts);
   check_solid(examined_, shells_, duplicate_of, contacts);
-  check_vertices(examined_);
+  check_vertices(examined_, options_.unused);
   check_rounded(examined_, options_.rounded);
   if (examined_.was_cancelled() && incomplete_.empty())
     incomplete_ = "the validation was cancelled";
@@ -175,6 +175,8 @@ void Certifier::report_property(const LadderResult& result) {
   }
   if (result.facet != kNone && result.facet < examined_.solid().facet_count()) {
     finding.place = examined_.at_facet(result.facet);
+    const Solid& solid = examined_.solid();
+    finding.witness = examined_.world(solid.ring(solid.rings_of(result.facet).begin).front());
   }
   finding.detail = result.detail;
   examined_.findings.add(std::move(finding));

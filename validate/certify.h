@@ -20,6 +20,8 @@ struct CertifyOptions {
   LadderOptions ladder;
   /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
   std::span<const Index> rounded = {};
+  /// Vertices that the reader left out (SubmittedSolid::unused): warning 802.
+  UnusedVertices unused = {};
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
   std::span<const Index> unclosed_rings = {};
   bool also_tolerant = false;  // fill Report::tolerant

@@ -68,6 +68,16 @@ Vector ring_normal(const std::vector<Corner>& corners, const std::vector<Vector>
   return unit(normal);
 }
 
+/// Products of four lengths below it, as measures need them, are finite.
+constexpr double kMostMetres = 1e70;
+
+bool is_measurable(const ExaminedSolid& examined, const std::vector<Corner>& corners) {
+  return std::all_of(corners.begin(), corners.end(), [&](const Corner& corner) {
+    const Vector d = examined.metres(corners.front().vertex, corner.vertex);
+    return std::all_of(d.begin(), d.end(), [](double x) { return std::abs(x) < kMostMetres; });
+  });
+}
+
 /// False if 203 was found.
 bool check_distance(ExaminedSolid& examined, Index facet, const std::vector<Corner>& corners) {
   const double limit = examined.tolerances().planarity_metres;
@@ -253,24 +263,28 @@ bool has_good_points(const Solid& solid, IndexRange rings) {
   return rings.size() > 0;
 }
 
-void check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
+/// False if the facet is too large to be measured.
+bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
   const Solid& solid = examined.solid();
   const std::vector<Corner> corners = corners_of(solid, facet);
   if (!is_exactly_planar(examined, corners)) {
     if (is_triangulated) examined.mark_not_planar(facet);
+    if (!is_measurable(examined, corners)) return false;
     if (check_distance(examined, facet, corners) && is_triangulated) {
       check_normals(examined, facet);
     }
   }
-  if (!is_triangulated || solid.rings_of(facet).size() < 2) return;
+  if (!is_triangulated || solid.rings_of(facet).size() < 2) return true;
   check_connected(examined, facet, corners);
   check_turns(examined, facet);
+  return true;
 }
 
 }  // namespace
 
-void check_facets(ExaminedSolid& examined) {
+std::string check_facets(ExaminedSolid& examined) {
   const Solid& solid = examined.solid();
+  std::string too_large;
   Index unmeasured = kNone;
   for (Index facet = 0; facet < solid.facet_count(); ++facet) {
     if (examined.is_cancelled()) {
@@ -282,7 +296,9 @@ void check_facets(ExaminedSolid& examined) {
     if (!is_triangulated && unmeasured == kNone) unmeasured = facet;
     if (rings.size() == 1 && solid.ring(rings.begin).size() == 3) continue;
     if (is_triangulated || has_good_points(solid, rings)) {
-      check_facet(examined, facet, is_triangulated);
+      if (check_facet(examined, facet, is_triangulated) || !too_large.empty()) continue;
+      too_large = "facet " + std::to_string(facet) + " is too large to be measured";
+      examined.findings.skip({203, 204}, too_large);
     }
   }
   if (unmeasured != kNone) {
@@ -290,6 +306,7 @@ void check_facets(ExaminedSolid& examined) {
                            "not on facets whose rings bound no region (first: facet " +
                                std::to_string(unmeasured) + ")");
   }
+  return too_large;
 }
 
 }  // namespace watertight

@@ -14,7 +14,7 @@ namespace {
 /// The first search stops at this many pairs: enough for any report. When all of them are allowed
 /// contacts of shells, the search is repeated with more.
 constexpr std::uint64_t kFirstLimit = 20'000;
-constexpr std::uint64_t kLastLimit = 200'000'000;
+constexpr std::uint64_t kLastLimit = 10'000'000;  // some 550 MB
 
 struct FacetPair {
   Index first = 0;
@@ -38,7 +38,9 @@ class IntersectionExaminer {
   ShellContacts examine() {
     mark_common_vertices();
     std::uint64_t limit = kFirstLimit;
-    while (!search(limit) && limit < kLastLimit) limit *= 100;
+    while (!search(limit) && limit < kLastLimit) {
+      limit = std::min(100 * limit, kLastLimit);
+    }
     std::sort(contacts_.intersecting.begin(), contacts_.intersecting.end());
     auto& list = contacts_.intersecting;
     list.erase(std::unique(list.begin(), list.end()), list.end());

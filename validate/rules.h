@@ -20,7 +20,8 @@ void check_rings(ExaminedSolid& examined);
 /// 103: rings that the reader found open.
 void check_closed_rings(ExaminedSolid& examined, std::span<const Index> unclosed);
 /// 203, 204, 205, 208.
-void check_facets(ExaminedSolid& examined);
+/// Why a facet could not be measured, "" if all were.
+std::string check_facets(ExaminedSolid& examined);
 
 /// What is known of a shell's topology after check_shells.
 struct ShellTopology {
@@ -64,8 +65,8 @@ void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts);
 /// 401 (shells that cross in vertices and edges, nested cavities), 403, 405; warning 806.
 void check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
                  const std::vector<Index>& duplicate_of, const ShellContacts& contacts);
-/// Warnings: 801, 802, 803.
-void check_vertices(ExaminedSolid& examined);
+/// Warnings: 801, 802 (with those that the reader left out), 803.
+void check_vertices(ExaminedSolid& examined, const UnusedVertices& left_out);
 /// Warning 805: vertices that the reader rounded.
 void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded);
 

@@ -56,9 +56,10 @@ void check_near(ExaminedSolid& examined) {
   examined.findings.add(std::move(finding));
 }
 
-void check_unused(ExaminedSolid& examined) {
+/// `left_out` are those that the reader has left out of the solid.
+void check_unused(ExaminedSolid& examined, const UnusedVertices& left_out) {
   Index first = kNone;
-  Index count = 0;
+  std::uint64_t count = left_out.count;
   for (Index vertex = 0; vertex < examined.submitted().vertex_count(); ++vertex) {
     if (examined.merged_of()[vertex] != kNone) continue;
     if (first == kNone) first = vertex;
@@ -68,12 +69,15 @@ void check_unused(ExaminedSolid& examined) {
   Finding finding;
   finding.code = kUnusedVertices;
   finding.place.vertex = first;
-  finding.witness = examined.submitted().world(first);
+  finding.witness = left_out.count > 0 ? left_out.place : examined.submitted().world(first);
   finding.measured = static_cast<double>(count);
   finding.limit = 0;
   finding.unit = "vertices";
   finding.detail = std::to_string(count) + (count == 1 ? " vertex is" : " vertices are") +
-                   " used by no ring; this is the first";
+                   " used by no ring; " +
+                   (left_out.count > 0 ? "the first is number " + std::to_string(left_out.first) +
+                                             " of the file, counted from 0"
+                                       : "this is the first");
   examined.findings.add(std::move(finding));
 }
 
@@ -109,9 +113,9 @@ void check_slivers(ExaminedSolid& examined) {
 
 }  // namespace
 
-void check_vertices(ExaminedSolid& examined) {
+void check_vertices(ExaminedSolid& examined, const UnusedVertices& left_out) {
   check_near(examined);
-  check_unused(examined);
+  check_unused(examined, left_out);
   check_slivers(examined);
 }
 

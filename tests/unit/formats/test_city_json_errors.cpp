@@ -160,6 +160,25 @@ TEST_CASE("a city object that is its own ancestor is an error") {
   CHECK(error_of(text).pointer == "/CityObjects/a/parents");
 }
 
+TEST_CASE("coordinates that had to be rounded are not written on the grid they came from") {
+  const auto document = read_document(
+      as_bytes(
+          R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.001,0.001,0.001],)"
+          R"("translate":[9007199254740993935109.076729,36718248634.330447258,0.0]},"CityObjects":{},"vertices":[]})"
+          "\n"
+          R"({"type":"CityJSONFeature","id":"a","CityObjects":{"a":{"type":"Building",)"
+          R"("geometry":[{"type":"Solid","lod":"1","boundaries":)"
+          R"([[[[0,2,1]],[[0,1,3]],[[1,2,3]],[[2,0,3]]]]}]}},)"
+          R"("vertices":[[1798,33,506480],[-12579,-268,521778],[-31320,-667,521721],[-31500,6285,512841]]})"
+          "\n"),
+      Format::city_json_seq);
+  REQUIRE(document);
+  CHECK_FALSE(document->features[0].solids[0].rounded.empty());
+  const auto written = write_document(*document, Format::city_json_seq);
+  REQUIRE_FALSE(written);
+  CHECK(written.error().code == ErrorCode::unsupported);
+}
+
 TEST_CASE("errors in a sequence name line, byte and pointer") {
   const auto document = read(kTwoBuildings, Format::city_json);
   REQUIRE(document);

@@ -72,6 +72,29 @@ TEST_CASE("OBJ errors name line and byte") {
   CHECK(error_of("v 0 0 0\nf 1 1 \\\n 7", Format::obj).byte_offset == 17);
 }
 
+TEST_CASE("what follows the coordinates of an OBJ vertex is a weight or a colour") {
+  CHECK(read_document(as_bytes("v 0 0 0 1\nv 0 0 1 0.5 0.25 1\nv 1 0 0\nf 1 2 3\n"), Format::obj));
+  for (const std::string vertex : {"v 0 0 0 rubbish", "v 0 0 0 0.5 0.5", "v 0 0 0 0.5 0.5 nan",
+                                   "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3"}) {
+    CHECK(error_of(vertex + "\n", Format::obj).code == ErrorCode::malformed);
+  }
+}
+
+TEST_CASE("vertices of a file that no face uses are left out and told") {
+  const auto off = read_document(
+      as_bytes("OFF\n5 1 0\n9 9 9\n0 0 0\n1 0 0\n0 1 0\n2.5 0 0\n3 1 2 3\n"), Format::off);
+  REQUIRE(off);
+  const SubmittedSolid& solid = off->features[0].solids[0];
+  CHECK(solid.solid.vertex_count() == 3);
+  CHECK(solid.unused.count == 2);
+  CHECK(solid.unused.first == 0);
+  CHECK(solid.unused.place == std::array<double, 3>{9, 9, 9});
+  const auto objects = read_document(
+      as_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\no a\nf 1 2 3\no b\nf 3 2 1\n"), Format::obj);
+  REQUIRE(objects);
+  CHECK(objects->features[0].solids[0].unused.count == 0);
+}
+
 TEST_CASE("OBJ faces may come before their vertices") {
   CHECK(read("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", Format::obj));
 }

@@ -34,6 +34,7 @@ struct Sample {
   Solid solid;
   std::vector<Index> rounded;
   std::vector<Index> unclosed;
+  UnusedVertices unused;
   std::string pointer;
 };
 
@@ -58,7 +59,8 @@ Sample read_sample(const std::filesystem::path& path) {
   const std::vector<SubmittedSolid> solids = read_solids(path);
   REQUIRE(solids.size() == 1);
   const SubmittedSolid& submitted = solids[0];
-  return {submitted.solid, submitted.rounded, submitted.unclosed_rings, submitted.source.pointer};
+  return {submitted.solid, submitted.rounded, submitted.unclosed_rings, submitted.unused,
+          submitted.source.pointer};
 }
 
 /// Compares with the expected report, or writes it.
@@ -68,37 +70,6 @@ void check_expected(int code, const char* suffix, const std::string& text) {
     std::ofstream(expected, std::ios::binary) << text;
   }
   CHECK(text == text_of(expected));
-}
-
-/// Documents never hold unused vertices once read: this sample keeps those of its OFF file.
-Sample read_all_vertices(const std::filesystem::path& path) {
-  std::istringstream in(text_of(path));
-  std::string off;
-  std::size_t vertices = 0;
-  std::size_t facets = 0;
-  std::size_t edges = 0;
-  in >> off >> vertices >> facets >> edges;
-  SolidArrays arrays;
-  for (std::size_t i = 0; i < vertices; ++i) {
-    Point p;
-    in >> p.x >> p.y >> p.z;
-    arrays.vertices.push_back(p);
-  }
-  for (std::size_t i = 0; i < facets; ++i) {
-    std::size_t corners = 0;
-    in >> corners;
-    for (std::size_t c = 0; c < corners; ++c) {
-      Index vertex = 0;
-      in >> vertex;
-      arrays.ring_vertices.push_back(vertex);
-    }
-    arrays.end_ring();
-    arrays.end_facet();
-  }
-  arrays.end_shell();
-  auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
-  REQUIRE(solid);
-  return {*solid, {}, {}, ""};
 }
 
 std::filesystem::path sample_path(int code) {
@@ -118,11 +89,11 @@ TEST_CASE("every finding about a solid has a sample that shows it and an expecte
     INFO("finding " << kind.code);
     const std::filesystem::path path = sample_path(kind.code);
     REQUIRE_FALSE(path.empty());
-    const Sample sample =
-        kind.code == kUnusedVertices ? read_all_vertices(path) : read_sample(path);
+    const Sample sample = read_sample(path);
     CertifyOptions options;
     options.rounded = sample.rounded;
     options.unclosed_rings = sample.unclosed;
+    options.unused = sample.unused;
     options.also_tolerant = true;
     const Report report = certify(sample.solid, nullptr, options).report;
     const Finding* finding = first_finding(report, kind.code);

@@ -165,6 +165,28 @@ TEST_CASE("the tolerant verdict snaps a millimetre and decides nothing") {
   CHECK_FALSE(report_of({cube(4)}).tolerant);
 }
 
+TEST_CASE("a facet too large to be measured is not taken for planar") {
+  for (const double scale : {1e69, 1e77, 1e154, 1e300}) {
+    Shell shell = cube(1);
+    for (Facet& facet : shell) {
+      for (auto& ring : facet) {
+        for (Point& p : ring) {
+          if (p == Point{1, 1, 1}) p.z = 2;
+          p = {p.x * scale, p.y * scale, p.z * scale};
+        }
+      }
+    }
+    const Report report = report_of({shell});
+    INFO(scale);
+    if (scale < 1e70) {
+      CHECK(first_finding(report, 203));
+      continue;
+    }
+    CHECK(report.verdict == Verdict::undecided);
+    CHECK(report.undecided_reason.find("too large") != std::string::npos);
+  }
+}
+
 TEST_CASE("a cube of half a millimetre is valid, and collapses under the tolerant snap") {
   CertifyOptions options;
   options.also_tolerant = true;

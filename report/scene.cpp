@@ -140,8 +140,7 @@ SceneFacet facet_of(const Candidate& candidate, const Frame& frame, std::size_t 
   const IndexRange rings = candidate.solid->rings_of(candidate.facet);
   std::size_t corners = 0;
   for (Index ring = rings.begin; ring < rings.end && corners < most_corners; ++ring) {
-    std::vector<Triple> points =
-        ring_points(*candidate.solid, ring, frame, most_corners - corners);
+    std::vector<Triple> points = ring_points(*candidate.solid, ring, frame, most_corners - corners);
     if (points.empty()) continue;
     corners += points.size();
     facet.rings.push_back(std::move(points));

@@ -274,7 +274,7 @@ void measure_case(const std::string& name, std::size_t facets) {
   lap();
   check_solid(examined, shells, duplicates, contacts);
   lap();
-  check_vertices(examined);
+  check_vertices(examined, {});
   lap();
   CertifyOptions options;
   options.proof = Proof::boundary;

@@ -267,17 +267,18 @@ bool has_good_points(const Solid& solid, IndexRange rings) {
 bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
   const Solid& solid = examined.solid();
   const std::vector<Corner> corners = corners_of(solid, facet);
+  bool is_measured = true;
   if (!is_exactly_planar(examined, corners)) {
     if (is_triangulated) examined.mark_not_planar(facet);
-    if (!is_measurable(examined, corners)) return false;
-    if (check_distance(examined, facet, corners) && is_triangulated) {
+    is_measured = is_measurable(examined, corners);
+    if (is_measured && check_distance(examined, facet, corners) && is_triangulated) {
       check_normals(examined, facet);
     }
   }
-  if (!is_triangulated || solid.rings_of(facet).size() < 2) return true;
+  if (!is_triangulated || solid.rings_of(facet).size() < 2) return is_measured;
   check_connected(examined, facet, corners);
   check_turns(examined, facet);
-  return true;
+  return is_measured;
 }
 
 }  // namespace

@@ -9,8 +9,6 @@
 namespace watertight {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 struct ReadModel {
   CityModel model;
   ModelIndex index;

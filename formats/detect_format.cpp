@@ -117,7 +117,7 @@ bool is_text_stl_head(std::string_view text) {
 
 // By the first bytes of the first line that is neither blank nor a comment.
 Result<Format> format_of_text(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t start = text.find_first_not_of(" \t\r\n\x1E");
   while (start != std::string_view::npos && text[start] == '#') {
     start = text.find('\n', start);

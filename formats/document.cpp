@@ -100,11 +100,9 @@ Result<Format> format_named(std::string_view name) {
   return Error{ErrorCode::malformed, "stored in an unknown format '" + std::string(name) + "'"};
 }
 
-Result<Document> read_document(ByteView bytes, Format format, const ReadOptions& options) {
-  if (bytes.size() > options.limits.bytes) {
-    return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +
-                                                std::to_string(options.limits.bytes)};
-  }
+namespace {
+
+Result<Document> read_as(ByteView bytes, Format format, const ReadOptions& options) {
   switch (format) {
     case Format::city_json:
       return read_city_json(as_text(bytes), options);
@@ -132,6 +130,40 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
       break;
   }
   return Error{ErrorCode::unsupported, "no reader for " + std::string(to_string(format))};
+}
+
+// Before the text of a mesh or of WKT. The readers of JSON and XML know it themselves.
+bool has_byte_order_mark(ByteView bytes, Format format) {
+  switch (format) {
+    case Format::obj:
+    case Format::off:
+    case Format::ply:
+    case Format::poly:
+    case Format::wkt:
+      return as_text(bytes).starts_with(kByteOrderMark);
+    case Format::stl:
+      return as_text(bytes).starts_with(kByteOrderMark) && !is_binary_stl(bytes);
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+Result<Document> read_document(ByteView bytes, Format format, const ReadOptions& options) {
+  if (bytes.size() > options.limits.bytes) {
+    return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +
+                                                std::to_string(options.limits.bytes)};
+  }
+  if (!has_byte_order_mark(bytes, format)) return read_as(bytes, format, options);
+  auto document = read_as(bytes.subspan(kByteOrderMark.size()), format, options);
+  if (!document) {
+    Error error = std::move(document).error();
+    if (error.byte_offset) *error.byte_offset += kByteOrderMark.size();
+    return error;
+  }
+  document->notes.emplace_back("byte order mark skipped");
+  return document;
 }
 
 Result<std::string> write_feature(const Document& document, const Feature& feature) {

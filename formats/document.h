@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/bytes.h"
@@ -17,6 +18,9 @@
 #include "geometry/solid.h"
 
 namespace watertight {
+
+/// U+FEFF in UTF-8, which some programs write before a text.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 enum class Format : std::uint8_t {
   city_json,

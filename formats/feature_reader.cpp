@@ -10,7 +10,6 @@ namespace {
 constexpr std::size_t kChunk = std::size_t{1} << 18U;
 /// Bytes after the first line that tell a sequence from a document written over several lines.
 constexpr std::size_t kGlimpse = 4096;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// Without the record separator of RFC 8142 and the blanks before the text.
 std::size_t text_start(std::string_view line) {

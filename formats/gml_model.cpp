@@ -45,6 +45,9 @@ class GmlBuilder : public XmlHandler {
       ++skipped_;
       return Done{};
     }
+    if (frames_.empty()) root_ = {std::string(element.name), element.place};
+    is_of_ogc_ = is_of_ogc_ || element.space.starts_with("http://www.opengis.net/") ||
+                 !gml_id(element).empty();
     if (gml_id(element).size() > kLongestId) {
       return error_at(element.place, ErrorCode::limit_exceeded,
                       "a gml:id of more than " + std::to_string(kLongestId) + " bytes");
@@ -84,7 +87,13 @@ class GmlBuilder : public XmlHandler {
     return Done{};
   }
 
-  GmlModel take() { return std::move(model_); }
+  /// malformed for XML of something else, as a page of HTML that was saved instead of the data.
+  Result<GmlModel> take() {
+    if (is_of_ogc_) return std::move(model_);
+    return error_at(root_.place, ErrorCode::malformed,
+                    "not GML: the root element is '" + root_.name +
+                        "', and nothing is in a namespace http://www.opengis.net/...");
+  }
 
  private:
   enum class FrameKind : std::uint8_t {
@@ -460,6 +469,12 @@ class GmlBuilder : public XmlHandler {
   std::vector<Frame> frames_;
   std::vector<OpenObject> objects_;
   Numbers numbers_;
+  struct Root {
+    std::string name;
+    XmlPlace place;
+  };
+  Root root_;
+  bool is_of_ogc_ = false;     // some element that was not passed over
   std::uint64_t skipped_ = 0;  // open elements of a part that is passed over
 };
 

@@ -256,7 +256,8 @@ class PlyReader {
       const auto place = element.property(kAxes[axis]);
       if (!place || element.properties[*place].list_length) {
         return Error{ErrorCode::malformed,
-                     "the element 'vertex' has no property " + std::string(kAxes[axis])};
+                     "the element 'vertex' has no property " + std::string(kAxes[axis]),
+                     element.offset};
       }
       place_of[axis] = *place;
     }
@@ -305,7 +306,7 @@ class PlyReader {
     if (!corners || !element.properties[*corners].list_length ||
         !is_integer(element.properties[*corners].type)) {
       return Error{ErrorCode::malformed,
-                   "the element 'face' has no list of integers vertex_indices"};
+                   "the element 'face' has no list of integers vertex_indices", element.offset};
     }
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (std::size_t place = 0; place < element.properties.size(); ++place) {

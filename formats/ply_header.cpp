@@ -98,7 +98,7 @@ class HeaderReader {
     for (const PlyElement& other : header_.elements) {
       if (other.name == words_[1]) return wrong(1, "the element occurs twice");
     }
-    header_.elements.push_back({std::string(words_[1]), *count, {}});
+    header_.elements.push_back({std::string(words_[1]), *count, {}, line_.offset});
     return Done{};
   }
 

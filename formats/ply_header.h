@@ -30,6 +30,7 @@ struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
+  std::uint64_t offset = 0;  // of the line that declares it
 
   std::optional<std::size_t> property(std::string_view name) const;
 };

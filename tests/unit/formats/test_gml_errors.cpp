@@ -170,6 +170,16 @@ TEST_CASE("GML: XML that is broken is refused where it breaks") {
   CHECK(says(gml_error("<a>\xC3(</a>"), "invalid token"));
 }
 
+TEST_CASE("GML: XML of something else is refused, and its root named") {
+  const Error page = gml_error("<?xml version=\"1.0\"?>\n<html><body>Not found</body></html>");
+  CHECK(page.code == ErrorCode::malformed);
+  CHECK(says(page, "line 2: not GML: the root element is 'html'"));
+  CHECK(says(gml_error("<svg xmlns=\"http://www.w3.org/2000/svg\"/>"), "'svg'"));
+  CHECK(gml_of("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\"/>").features.empty());
+  CHECK(gml_of("<data><m xmlns:g=\"http://www.opengis.net/gml\"><g:name/></m></data>")
+            .features.empty());
+}
+
 TEST_CASE("GML: nothing but the five entities of XML is known, and no other file is opened") {
   for (const char* start :
        {"<!DOCTYPE a SYSTEM \"file:///etc/passwd\">",

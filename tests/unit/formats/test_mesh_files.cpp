@@ -253,6 +253,11 @@ TEST_CASE("PLY headers that say too little or something unknown are refused") {
         "vertex_index\nend_header\n"}) {
     CHECK_FALSE(read(text, Format::ply));
   }
+  CHECK(error_of("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n",
+                 Format::ply)
+            .byte_offset == 21);
+  CHECK(error_of("ply\nformat ascii 1.0\nelement face 1\nend_header\n", Format::ply).byte_offset ==
+        21);
   CHECK(only_solid("ply\nformat ascii 1.0\nend_header\n", Format::ply).facet_count() == 0);
   CHECK_FALSE(read(text_ply("0 7 nan 0\n.1 7 0 0\n0 7 .1 0\n0 7 0 0.10\n"), Format::ply));
 }

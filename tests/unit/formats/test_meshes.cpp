@@ -161,6 +161,35 @@ TEST_CASE("OFF errors name the byte") {
   CHECK(error_of("OFF\n1 2 0\n0 0 0\n3 0 0 0\n", Format::off).byte_offset == 24);
 }
 
+TEST_CASE("a byte order mark before a text is skipped, noted and counted in places") {
+  const std::string mark = "\xEF\xBB\xBF";
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n";
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+  const std::string stl =
+      "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n"
+      "endloop\nendfacet\nendsolid t\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n";
+  const std::string poly = "3 3\n1 0 0 0\n2 1 0 0\n3 1 1 0\n1\n1\n3 1 2 3\n0\n0\n";
+  const std::string wkt = "POLYHEDRALSURFACE Z(((0 0 0,1 0 0,1 1 0,0 0 0)))";
+  for (const auto& [text, format] :
+       {std::pair{off, Format::off}, std::pair{obj, Format::obj}, std::pair{stl, Format::stl},
+        std::pair{ply, Format::ply}, std::pair{poly, Format::poly}, std::pair{wkt, Format::wkt}}) {
+    INFO(text);
+    const auto plain = read(text, format);
+    const auto marked = read(mark + text, format);
+    REQUIRE(plain);
+    REQUIRE(marked);
+    CHECK(marked->features[0].solids[0].solid == plain->features[0].solids[0].solid);
+    REQUIRE_FALSE(marked->notes.empty());
+    CHECK(marked->notes.back() == "byte order mark skipped");
+    CHECK_FALSE(read(mark + mark + text, format));
+  }
+  CHECK(error_of(mark + "OFF\n3\n", Format::off).byte_offset == 7);
+}
+
 TEST_CASE("real mesh files read as documented") {
   const auto facets = [](const std::string& name, Format format) {
     const auto document = read(test::file_text("meshes/" + name), format);

@@ -9,10 +9,10 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/inputs.h"
 #include "cli/printable.h"
 #include "cli/progress.h"
 #include "codec/explain.h"
-#include "codec/page_file.h"
 #include "pipeline/container.h"
 #include "validate/finding_kinds.h"
 
@@ -92,7 +92,7 @@ Result<Bytes> pack(const EncodeCommand& command, const StoredDocument& document)
 Result<std::vector<Document>> load_encoded(const std::string& path) {
   const auto bytes = read_file(path, {});
   if (!bytes) return bytes.error();
-  if (is_container(*bytes)) return decode_container(*bytes);
+  if (kind_of_input(*bytes) == InputKind::container) return decode_container(*bytes);
   auto input = load_input(path, *bytes, {});
   if (!input) return std::move(input).error();
   if (input->kind == InputKind::document) {
@@ -173,6 +173,15 @@ Result<Json> info_of_container(ByteView bytes) {
   json["documentBytes"] = bytes.size() - info->solid_bytes;
   json["parts"] = info->parts;
   return json;
+}
+
+Result<Json> info_of(ByteView bytes) {
+  const InputKind kind = kind_of_input(bytes);
+  if (kind == InputKind::container) return info_of_container(bytes);
+  if (kind == InputKind::page_file) return page_file_error();
+  const auto info = describe(bytes);
+  if (!info) return info.error();
+  return json_of(*info);
 }
 
 /// Bytes of all solids in one mode.
@@ -274,15 +283,7 @@ Exit run(const ConvertCommand& command) {
 Exit run(const InfoCommand& command) {
   const auto bytes = read_file(command.input, {});
   if (!bytes) return fail(command.input, bytes.error());
-  Result<Json> json = Json();
-  if (is_container(*bytes)) {
-    json = info_of_container(*bytes);
-  } else if (is_page_file(*bytes)) {
-    json = page_file_error();
-  } else {
-    const auto info = describe(*bytes);
-    json = info ? Result<Json>(json_of(*info)) : Result<Json>(info.error());
-  }
+  const auto json = info_of(*bytes);
   if (!json) return fail(command.input, json.error());
   if (command.is_json) {
     std::printf("%s\n", json->dump().c_str());

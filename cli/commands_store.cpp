@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/inputs.h"
 #include "cli/progress.h"
 #include "pipeline/export.h"
 #include "pipeline/outcome_json.h"

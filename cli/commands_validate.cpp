@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/inputs.h"
 #include "cli/printable.h"
 #include "cli/progress.h"
 #include "formats/interior_shells.h"

@@ -5,16 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-
-#include "codec/page_file.h"
-#include "pipeline/container.h"
 
 namespace watertight {
 namespace {
@@ -83,20 +78,6 @@ Result<std::size_t> read_some(int descriptor, std::span<std::uint8_t> bytes) {
   }
 }
 
-}  // namespace
-
-Error page_file_error() {
-  return {ErrorCode::unsupported, "a page file; the commands take Watertight files and blobs"};
-}
-
-namespace {
-
-/// Magic and a version byte, which no text has: a blob or a page, be it damaged.
-bool is_blob(ByteView bytes) {
-  constexpr std::uint8_t kLeastText = 9;  // a tabulator
-  return bytes.size() > 2 && bytes[0] == 'W' && bytes[1] == 'T' && (bytes[2] & 0x7FU) < kLeastText;
-}
-
 /// The file that a link leads to: like `cp`, writing keeps the link.
 std::string behind_links(const std::string& path) {
   std::error_code error;
@@ -131,7 +112,22 @@ int name_beside(const std::string& path, int descriptor, std::string& name) {
   return error;
 }
 
-/// Errors: those of the source; limit_exceeded.
+}  // namespace
+
+Result<OpenedFile> open_file(const std::string& path) {
+  auto file = std::make_shared<Descriptor>(open_to_read(path));
+  if (file->number() < 0) return file_error(errno);
+  OpenedFile opened;
+  struct stat status {};
+  if (::fstat(file->number(), &status) == 0 && S_ISREG(status.st_mode)) {
+    opened.bytes = static_cast<std::uint64_t>(status.st_size);
+  }
+  opened.source = [file](std::span<std::uint8_t> bytes) {
+    return read_some(file->number(), bytes);
+  };
+  return opened;
+}
+
 Result<Bytes> read_all(const ByteSource& source, const Limits& limits) {
   Bytes bytes;
   for (;;) {
@@ -148,13 +144,10 @@ Result<Bytes> read_all(const ByteSource& source, const Limits& limits) {
   }
 }
 
-}  // namespace
-
 Result<Bytes> read_file(const std::string& path, const Limits& limits) {
-  const Descriptor file(open_to_read(path));
-  if (file.number() < 0) return file_error(errno);
-  return read_all([&](std::span<std::uint8_t> bytes) { return read_some(file.number(), bytes); },
-                  limits);
+  const auto file = open_file(path);
+  if (!file) return file.error();
+  return read_all(file->source, limits);
 }
 
 struct FileWriter::State {
@@ -236,91 +229,6 @@ bool is_same_file(const std::string& a, const std::string& b) {
     return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
   };
   return place(a) == place(b);
-}
-
-Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options) {
-  Input input;
-  if (is_container(bytes)) {
-    auto documents = decode_container(bytes, options.limits);
-    if (!documents) return std::move(documents).error();
-    if (documents->size() != 1) {
-      return Error{ErrorCode::unsupported, "features of " + std::to_string(documents->size()) +
-                                               " documents; decode writes a file for each"};
-    }
-    input.kind = InputKind::container;
-    input.document = std::move(documents->front());
-    return input;
-  }
-  if (is_page_file(bytes)) {
-    return page_file_error();
-  }
-  if (is_blob(bytes)) {
-    auto decoded = decode(bytes, options.limits);
-    if (!decoded) return std::move(decoded).error();
-    Feature feature;
-    feature.id = path;
-    feature.srid = decoded->info.srid;
-    feature.solids.push_back(SubmittedSolid{std::move(decoded->solid), {}, {}});
-    input.kind = InputKind::blob;
-    input.document.format = Format::ewkb;
-    input.document.features.push_back(std::move(feature));
-    return input;
-  }
-  const auto format = detect_format(path == "-" ? "" : path, bytes);
-  if (!format) return format.error();
-  auto document = read_document(bytes, *format, options);
-  if (!document) return std::move(document).error();
-  input.document = *std::move(document);
-  return input;
-}
-
-Result<OpenedInput> open_input(const std::string& path, const ReadOptions& options) {
-  auto file = std::make_shared<Descriptor>(open_to_read(path));
-  if (file->number() < 0) return file_error(errno);
-  struct stat status {};
-  std::optional<std::uint64_t> size;
-  if (::fstat(file->number(), &status) == 0 && S_ISREG(status.st_mode)) {
-    size = static_cast<std::uint64_t>(status.st_size);
-  }
-  // Watertight files and blobs are told by their first bytes, which are then given again.
-  std::array<std::uint8_t, 8> first{};
-  std::size_t count = 0;
-  while (count < first.size()) {
-    const auto more = read_some(file->number(), std::span(first).subspan(count));
-    if (!more) return more.error();
-    if (*more == 0) break;
-    count += *more;
-  }
-  std::size_t given = 0;
-  ByteSource source = [file, first, count,
-                       given](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
-    if (given == count) return read_some(file->number(), bytes);
-    const std::size_t part = std::min(bytes.size(), count - given);
-    std::copy_n(first.begin() + static_cast<std::ptrdiff_t>(given), part, bytes.begin());
-    given += part;
-    return part;
-  };
-  const ByteView start = ByteView(first).first(count);
-  const bool is_ours = is_container(start) || (count > 1 && start[0] == 'W' && start[1] == 'T');
-  if (!is_ours) {
-    auto reader = FeatureReader::open(std::move(source), path == "-" ? "" : path, options);
-    if (!reader) return std::move(reader).error();
-    return OpenedInput{*std::move(reader), size};
-  }
-  auto bytes = read_all(source, options.limits);
-  if (!bytes) return std::move(bytes).error();
-  auto input = load_input(path, *bytes, options);
-  if (!input) return std::move(input).error();
-  return OpenedInput{FeatureReader::of(std::move(input->document)), size};
-}
-
-Result<Format> format_of_name(const std::string& path) {
-  const auto format = detect_format(path, {});
-  if (format) return format;
-  return Error{ErrorCode::unsupported,
-               "the ending of '" + path +
-                   "' names no format; known: .city.json .json .city.jsonl .jsonl .obj .off .wkt "
-                   ".wkb .ewkb"};
 }
 
 }  // namespace watertight

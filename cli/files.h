@@ -1,17 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Files of the command line: read whole, written atomically; "-" is standard input or output.
+// Files of the command line: read whole or in pieces, written atomically; "-" is standard input or
+// output.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
+#include "base/bytes.h"
+#include "base/limits.h"
+#include "base/result.h"
 #include "formats/feature_reader.h"
-#include "pipeline/pipeline.h"
 
 namespace watertight {
 
-/// Errors: unavailable naming the file and the system's reason; limit_exceeded.
+/// A file or standard input, read piece by piece.
+struct OpenedFile {
+  ByteSource source;
+  std::optional<std::uint64_t> bytes;  // when it has a size
+};
+
+/// Errors: unavailable with the system's reason.
+Result<OpenedFile> open_file(const std::string& path);
+
+/// Errors: those of the source; limit_exceeded.
+Result<Bytes> read_all(const ByteSource& source, const Limits& limits);
+
+/// Errors: those of open_file() and read_all().
 Result<Bytes> read_file(const std::string& path, const Limits& limits);
 
 /// Writes beside the target and renames, so that nobody sees half a file and a failure leaves the
@@ -39,32 +57,5 @@ class FileWriter {
 
 /// Whether writing the one would destroy the other. Devices and pipes can be written many times.
 bool is_same_file(const std::string& a, const std::string& b);
-
-/// What an input file was.
-enum class InputKind : std::uint8_t { document, container, blob };
-
-struct Input {
-  InputKind kind = InputKind::document;
-  Document document;
-};
-
-/// Reads a document of any format, a Watertight file or a bare blob, told apart by content and
-/// name. Errors: those of the readers.
-Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options);
-
-/// No command reads page files by themselves: they are parts of Watertight files.
-Error page_file_error();
-
-/// A document that is read feature by feature; Watertight files and bare blobs are read whole.
-struct OpenedInput {
-  FeatureReader reader;
-  std::optional<std::uint64_t> bytes;  // of the file, when it has a size
-};
-
-/// Errors: unavailable with the reason; those of the readers.
-Result<OpenedInput> open_input(const std::string& path, const ReadOptions& options);
-
-/// The format that an output file's name asks for. Errors: unsupported naming the known endings.
-Result<Format> format_of_name(const std::string& path);
 
 }  // namespace watertight

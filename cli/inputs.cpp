@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/inputs.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "cli/files.h"
+#include "codec/page_file.h"
+#include "pipeline/container.h"
+
+namespace watertight {
+namespace {
+
+/// Enough to tell the kind.
+constexpr std::size_t kFirstBytes = 8;
+
+Result<Input> input_of_container(ByteView bytes, const Limits& limits) {
+  auto documents = decode_container(bytes, limits);
+  if (!documents) return std::move(documents).error();
+  if (documents->size() != 1) {
+    return Error{ErrorCode::unsupported, "features of " + std::to_string(documents->size()) +
+                                             " documents; decode writes a file for each"};
+  }
+  return Input{InputKind::container, std::move(documents->front())};
+}
+
+Result<Input> input_of_blob(const std::string& path, ByteView bytes, const Limits& limits) {
+  auto decoded = decode(bytes, limits);
+  if (!decoded) return std::move(decoded).error();
+  Feature feature;
+  feature.id = path;
+  feature.srid = decoded->info.srid;
+  feature.solids.push_back(SubmittedSolid{std::move(decoded->solid), {}, {}});
+  Input input{InputKind::blob, {}};
+  input.document.format = Format::ewkb;
+  input.document.features.push_back(std::move(feature));
+  return input;
+}
+
+/// The bytes of `first`, then those of `rest`.
+ByteSource source_of(Bytes first, ByteSource rest) {
+  return [first = std::move(first), rest = std::move(rest),
+          given = std::size_t{0}](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
+    if (given == first.size()) return rest(bytes);
+    const std::size_t part = std::min(bytes.size(), first.size() - given);
+    std::copy_n(first.begin() + static_cast<std::ptrdiff_t>(given), part, bytes.begin());
+    given += part;
+    return part;
+  };
+}
+
+/// Fewer than kFirstBytes only where the source ends.
+Result<Bytes> first_bytes(const ByteSource& source) {
+  Bytes first(kFirstBytes);
+  std::size_t count = 0;
+  while (count < first.size()) {
+    const auto more = source(std::span<std::uint8_t>(first).subspan(count));
+    if (!more) return more.error();
+    if (*more == 0) break;
+    count += *more;
+  }
+  first.resize(count);
+  return first;
+}
+
+}  // namespace
+
+InputKind kind_of_input(ByteView bytes) {
+  constexpr std::uint8_t kLeastText = 9;  // a tabulator
+  if (is_container(bytes)) return InputKind::container;
+  if (is_page_file(bytes)) return InputKind::page_file;
+  // Magic and a version byte, which no text has.
+  const bool is_blob =
+      bytes.size() > 2 && bytes[0] == 'W' && bytes[1] == 'T' && (bytes[2] & 0x7FU) < kLeastText;
+  return is_blob ? InputKind::blob : InputKind::document;
+}
+
+Error page_file_error() {
+  return {ErrorCode::unsupported, "a page file; the commands take Watertight files and blobs"};
+}
+
+Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options) {
+  switch (kind_of_input(bytes)) {
+    case InputKind::container:
+      return input_of_container(bytes, options.limits);
+    case InputKind::page_file:
+      return page_file_error();
+    case InputKind::blob:
+      return input_of_blob(path, bytes, options.limits);
+    case InputKind::document:
+      break;
+  }
+  const auto format = detect_format(path == "-" ? "" : path, bytes);
+  if (!format) return format.error();
+  auto document = read_document(bytes, *format, options);
+  if (!document) return std::move(document).error();
+  return Input{InputKind::document, *std::move(document)};
+}
+
+Result<OpenedInput> open_input(const std::string& path, const ReadOptions& options) {
+  auto file = open_file(path);
+  if (!file) return std::move(file).error();
+  auto first = first_bytes(file->source);
+  if (!first) return std::move(first).error();
+  const InputKind kind = kind_of_input(*first);
+  ByteSource source = source_of(*std::move(first), std::move(file->source));
+  if (kind == InputKind::document) {
+    auto reader = FeatureReader::open(std::move(source), path == "-" ? "" : path, options);
+    if (!reader) return std::move(reader).error();
+    return OpenedInput{*std::move(reader), file->bytes};
+  }
+  const auto bytes = read_all(source, options.limits);
+  if (!bytes) return bytes.error();
+  auto input = load_input(path, *bytes, options);
+  if (!input) return std::move(input).error();
+  return OpenedInput{FeatureReader::of(std::move(input->document)), file->bytes};
+}
+
+Result<Format> format_of_name(const std::string& path) {
+  const auto format = detect_format(path, {});
+  if (format) return format;
+  return Error{ErrorCode::unsupported,
+               "the ending of '" + path +
+                   "' names no format; known: .city.json .json .city.jsonl .jsonl .obj .off .wkt "
+                   ".wkb .ewkb"};
+}
+
+}  // namespace watertight

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a file of the command line holds: a document of any format, a Watertight file or a blob.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "base/bytes.h"
+#include "formats/feature_reader.h"
+#include "pipeline/pipeline.h"
+
+namespace watertight {
+
+enum class InputKind : std::uint8_t {
+  document,
+  container,  // a Watertight file
+  blob,       // or a page, which no command reads by itself
+  page_file   // a part of a Watertight file; no command reads one by itself
+};
+
+/// By the first 8 bytes, whatever the name and however damaged the rest is.
+InputKind kind_of_input(ByteView bytes);
+
+struct Input {
+  InputKind kind = InputKind::document;
+  Document document;
+};
+
+/// Errors: those of the readers; unsupported for page files.
+Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options);
+
+/// What to say to a page file.
+Error page_file_error();
+
+/// A document that is read feature by feature; Watertight files and blobs are read whole.
+struct OpenedInput {
+  FeatureReader reader;
+  std::optional<std::uint64_t> bytes;  // of the file, when it has a size
+};
+
+/// Errors: unavailable with the reason; those of the readers.
+Result<OpenedInput> open_input(const std::string& path, const ReadOptions& options);
+
+/// The format that an output file's name asks for. Errors: unsupported naming the known endings.
+Result<Format> format_of_name(const std::string& path);
+
+}  // namespace watertight

@@ -2,6 +2,7 @@
 //
 // encode, decode, info, convert: files to files.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -171,7 +172,8 @@ Result<Json> info_of_container(ByteView bytes) {
   json["pages"] = info->pages;
   json["solidBytes"] = info->solid_bytes;
   json["documentBytes"] = bytes.size() - info->solid_bytes;
-  json["parts"] = info->parts;
+  // Sums of hundredths are no hundredths.
+  for (const auto& [name, size] : info->parts) json["parts"][name] = std::round(size * 100) / 100;
   return json;
 }
 

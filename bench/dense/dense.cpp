@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// dense [--grid 11|14|16|source]... [--listed FACETS] [--parallelogram] FILE...: the closed meshes
-// of the files as triangles on each grid, in automatic mode or in mode parallelogram. Whole
+// dense [--grid 11|14|16|source]... [--listed FACETS] [--mode MODE] FILE...: the closed meshes of
+// the files as triangles on each grid, in automatic mode or in mode walk or parallelogram. Whole
 // stand-alone blobs that decode to the same canonical solid, with the shipped priors, beside Draco
 // and meshoptimizer, which get what a blob takes for origin and grid added (as in
 // bench/ratio/compare.cpp). Meshes below --listed facets (1,000) are only summed up. If the files
@@ -14,6 +14,7 @@
 #include <iterator>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/dense/mesh_peers.h"
@@ -90,6 +91,14 @@ void report(const std::string& grid, const std::vector<std::filesystem::path>& f
   summary.print();
 }
 
+Mode mode_named(std::string_view name) {
+  for (const Mode mode : {Mode::walk, Mode::parallelogram}) {
+    if (to_string(mode) == name) return mode;
+  }
+  std::fprintf(stderr, "--mode is walk or parallelogram\n");
+  std::exit(2);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -103,8 +112,8 @@ int main(int count, char** arguments) {
       grids.emplace_back(arguments[++i]);
     } else if (word == "--listed" && i + 1 < count) {
       listed = static_cast<std::size_t>(std::atoi(arguments[++i]));
-    } else if (word == "--parallelogram") {
-      mode = Mode::parallelogram;
+    } else if (word == "--mode" && i + 1 < count) {
+      mode = mode_named(arguments[++i]);
     } else {
       files.emplace_back(word);
     }

@@ -27,6 +27,13 @@ if nm -C "$decoder" | grep -E 'CGAL::Triangulation_3|Delaunay_triangulation_3' |
   exit 1
 fi
 
+# Languages' own libraries, and GMP, which does without an operating system too.
+if readelf -d "$decoder" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
+  grep -vE '^(libgmp|libstdc\+\+|libm|libgcc_s|libc|ld-linux[a-z0-9_-]*)\.so'; then
+  echo "the decoder needs another library"
+  exit 1
+fi
+
 decoded=0
 declined=0
 for blob in "$goldens"/version-1/*.blob; do

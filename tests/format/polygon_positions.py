@@ -152,6 +152,8 @@ class LongEdges:
 
     def take(self, e):
         """Learns an edge."""
+        if e == (0, 0):
+            return
         for i, v in enumerate(self.list):
             if self.along(e, v) or self.along(e, (-v[1], v[0])):
                 if square(e) > square(v):

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "golden_blobs.h"
 
+#include <array>
+#include <utility>
+
 #include "codec/encode_boundary.h"
 #include "generated_solids.h"
+#include "generated_variety.h"
 
 namespace watertight::generated {
 namespace {
@@ -29,6 +33,66 @@ OrientedBoundary spire() {
   add_facet(arrays, {base});
   arrays.end_shell();
   return boundary_of(std::move(arrays));
+}
+
+void add_tetrahedron(SolidArrays& arrays, Point corner, double size, Turn turn) {
+  const auto first = static_cast<Index>(arrays.vertices.size());
+  for (int axis = -1; axis < 3; ++axis) {
+    arrays.vertices.push_back(corner);
+    if (axis >= 0) arrays.vertices.back()[axis] += size;
+  }
+  for (std::array<Index, 3> t : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) {
+    if (turn == Turn::inward) std::swap(t[1], t[2]);
+    add_facet(arrays, {{first + t[0], first + t[1], first + t[2]}});
+  }
+  arrays.end_shell();
+}
+
+/// Triangles in three shells.
+OrientedBoundary tetrahedron_with_cavities() {
+  SolidArrays arrays;
+  add_tetrahedron(arrays, {0, 0, 0}, 100, Turn::outward);
+  add_tetrahedron(arrays, {11, 12, 13}, 10, Turn::inward);
+  add_tetrahedron(arrays, {30, 31, 17}, 7, Turn::inward);
+  return boundary_of(std::move(arrays));
+}
+
+/// A torus of 8 x 8, uneven, on every fourth or fifth step of its grid: 37 / 8, rounded down.
+OrientedBoundary torus_on_coarse_steps() {
+  const OrientedBoundary smooth = torus(8, 8);
+  Random random(9);
+  SolidArrays arrays;
+  for (const Point& vertex : smooth.solid().vertices()) {
+    Point& moved = arrays.vertices.emplace_back(vertex);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto coordinate = static_cast<std::int64_t>(vertex[axis]);
+      const auto uneven = coordinate + static_cast<std::int64_t>(random.below(600));
+      moved[axis] = static_cast<double>(uneven * 37 / 8);
+    }
+  }
+  for (Index facet = 0; facet < smooth.solid().facet_count(); ++facet) {
+    const auto ring = smooth.solid().ring(facet);
+    add_facet(arrays, {{ring.begin(), ring.end()}});
+  }
+  arrays.end_shell();
+  return boundary_of(std::move(arrays));
+}
+
+/// A box whose lattice begins at a place that is no multiple of any unit of its steps.
+OrientedBoundary box_with_far_origin() {
+  Lattice lattice;
+  lattice.step.fill(GridNumber{1, 0});
+  lattice.origin[0] = GridNumber{7, -30};
+  SolidArrays arrays;
+  add_box(arrays, {0, 0, 0}, {3, 4, 5});
+  return boundary_of(std::move(arrays), lattice, 7415);
+}
+
+/// One of generated_variety.h, of 4 to some 60 vertices.
+OrientedBoundary varied(std::uint64_t seed) {
+  Random random(seed);
+  const Index size = 4 + static_cast<Index>(random.below(40));
+  return random_solid(random, size).boundary;
 }
 
 }  // namespace
@@ -71,6 +135,21 @@ std::vector<Golden> goldens() {
   add("torus", torus(9, 5));
   add("terrain", random_terrain(random, 5));
   add("spire", spire());
+  // What the others leave out of a decoder, found by its lines that they did not run.
+  const auto add_one = [&](const std::string& name, const OrientedBoundary& boundary, Mode mode) {
+    all.push_back({name + "-" + std::string(to_string(mode)), 0, boundary, {}, mode});
+  };
+  add_one("nested", tetrahedron_with_cavities(), Mode::parallelogram);
+  add_one("coarse-torus", torus_on_coarse_steps(), Mode::parallelogram);
+  add_one("far-origin", box_with_far_origin(), Mode::polygon);
+  add_one("hole-touches-ring", block_with_touching_hole(), Mode::polygon);
+  add_one("holes", pierced_block(2), Mode::raw);
+  for (const std::uint64_t seed : {9, 28, 126}) {
+    add_one("varied-" + std::to_string(seed), varied(seed), Mode::polygon);
+  }
+  for (const std::uint64_t seed : {17, 154}) {
+    add_one("varied-" + std::to_string(seed), varied(seed), Mode::walk);
+  }
   // Traced in docs/format.md: with the neutral set of priors they never change.
   const auto add_neutral = [&](const char* name, const OrientedBoundary& boundary, Mode mode) {
     all.push_back({name, 0, boundary, {}, mode});

@@ -4,6 +4,7 @@
 // output, messages to standard error.
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -99,6 +100,6 @@ void complain(const std::string& file, const Error& error);
 /// The findings of a feature's solids and groups, as lines on standard output.
 void print_findings(const std::string& file, const InspectedFeature& feature);
 /// The same of all features of a document.
-void print_findings(const std::string& file, const IngestOutcome& outcome);
+void print_findings(const std::string& file, const IngestOutcome& outcome, std::FILE* out = stdout);
 
 }  // namespace watertight

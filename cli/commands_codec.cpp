@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "cli/commands.h"
 #include "cli/files.h"
@@ -35,8 +36,9 @@ bool replaces(const std::string& output, const std::string& input) {
   return output != "-" && is_same_file(output, input);
 }
 
-Exit refuse_to_replace(const std::string& input) {
-  return fail(input, {ErrorCode::invalid_argument, "the output would replace the input"});
+Exit refuse_to_replace(const std::string& input, const std::string& output) {
+  return fail(input,
+              {ErrorCode::invalid_argument, "the output '" + output + "' would replace the input"});
 }
 
 /// What is stored is not what the source says, so that even a valid solid must not pass in silence.
@@ -108,21 +110,38 @@ Result<std::vector<Document>> load_encoded(const std::string& path) {
 std::string numbered(const std::string& output, std::size_t number) {
   if (number == 0) return output;
   const std::size_t name = output.rfind('/') + 1;  // 0 without a folder
-  const std::size_t ending = std::min(output.find('.', name + 1), output.size());
+  std::size_t ending = output.find('.', name + 1);
+  if (ending == std::string::npos) ending = std::min(output.find('.', name), output.size());
   std::string result = output.substr(0, ending);
   result += '-';
   result += std::to_string(number + 1);
   return result + output.substr(ending);
 }
 
-/// `input` is what the document was read from: a conversion that fails is for what stands there.
-Exit save(const Document& document, const std::string& input, const std::string& output) {
-  const auto format = output == "-" ? Result<Format>(document.format) : format_of_name(output);
-  if (!format) return fail_to_write(output, format.error());
-  const auto bytes = convert_document(document, *format);
-  if (!bytes) return fail(input, bytes.error());
-  const Status status = write_file(output, *bytes);
-  return status ? Exit::valid : fail_to_write(output, status.error());
+/// Writes each document to a file of its own, all or none. `input` is what they were read from: a
+/// conversion that fails is for what stands there.
+Exit save(std::span<const Document> documents, const std::string& input,
+          const std::string& output) {
+  std::vector<std::string> names;
+  std::vector<FileWriter> files;
+  for (const Document& document : documents) {
+    const std::string& name = names.emplace_back(numbered(output, names.size()));
+    if (replaces(name, input)) return refuse_to_replace(input, name);
+    const auto format = name == "-" ? Result<Format>(document.format) : format_of_name(name);
+    if (!format) return fail_to_write(name, format.error());
+    const auto bytes = convert_document(document, *format);
+    if (!bytes) return fail(input, bytes.error());
+    auto file = FileWriter::open(name);
+    if (!file) return fail_to_write(name, file.error());
+    const Status written = file->write(as_text(*bytes));
+    if (!written) return fail_to_write(name, written.error());
+    files.push_back(*std::move(file));
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Status status = files[i].commit();
+    if (!status) return fail_to_write(names[i], status.error());
+  }
+  return Exit::valid;
 }
 
 Json json_of(const BlobInfo& info) {
@@ -157,8 +176,22 @@ void print_info(const Json& json, const std::string& indent) {
       continue;
     }
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-    std::printf("%s%-20s %s\n", indent.c_str(), name.c_str(), text.c_str());
+    std::printf("%s%-20s %s\n", indent.c_str(), name.c_str(), printable(text).c_str());
   }
+}
+
+/// Each once, in their order.
+std::string names_of(const std::vector<Format>& formats) {
+  std::string names;
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    if (std::find(formats.begin(), formats.begin() + static_cast<std::ptrdiff_t>(i), formats[i]) !=
+        formats.begin() + static_cast<std::ptrdiff_t>(i)) {
+      continue;
+    }
+    if (!names.empty()) names += ", ";
+    names += to_string(formats[i]);
+  }
+  return names;
 }
 
 Result<Json> info_of_container(ByteView bytes) {
@@ -166,7 +199,7 @@ Result<Json> info_of_container(ByteView bytes) {
   if (!info) return info.error();
   Json json{{"file", "Watertight file"}, {"bytes", bytes.size()}};
   json["documents"] = info->formats.size();
-  json["format"] = info->formats.empty() ? "" : info->formats.front();
+  json["format"] = names_of(info->formats);
   json["features"] = info->features;
   json["solids"] = info->solids;
   json["pages"] = info->pages;
@@ -225,7 +258,8 @@ Status explain_features(const std::vector<StoredFeature>& features, std::FILE* o
 Exit run(const EncodeCommand& command) {
   const auto contract = contract_named(command.contract);
   if (!contract) return fail("--contract", contract.error());
-  if (replaces(command.output, command.input)) return refuse_to_replace(command.input);
+  if (replaces(command.output, command.input))
+    return refuse_to_replace(command.input, command.output);
   auto input = load(command.input, *contract == Contract::exact);
   if (!input) return fail(command.input, input.error());
   EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
@@ -244,9 +278,9 @@ Exit run(const EncodeCommand& command) {
   if (!encoded) return fail(command.input, encoded.error());
   const Exit exit = exit_of(encoded->outcome.verdict);
   if (exit != Exit::valid) {
-    if (command.output != "-") print_findings(command.input, encoded->outcome);
+    print_findings(command.input, encoded->outcome, command.output == "-" ? stderr : stdout);
     std::fprintf(stderr, "watertight: %s: not all solids are valid; nothing was written\n",
-                 command.input.c_str());
+                 printable(command.input).c_str());
     return exit;
   }
   tell_rounded(command.input, encoded->outcome);
@@ -261,25 +295,21 @@ Exit run(const EncodeCommand& command) {
 }
 
 Exit run(const DecodeCommand& command) {
-  if (replaces(command.output, command.input)) return refuse_to_replace(command.input);
   const auto documents = load_encoded(command.input);
   if (!documents) return fail(command.input, documents.error());
   if (documents->empty()) return fail(command.input, {ErrorCode::malformed, "no document in it"});
   if (documents->size() > 1 && command.output == "-") {
     return fail(command.input, {ErrorCode::unsupported, "several documents need names: -o FILE"});
   }
-  for (std::size_t i = 0; i < documents->size(); ++i) {
-    const Exit exit = save((*documents)[i], command.input, numbered(command.output, i));
-    if (exit != Exit::valid) return exit;
-  }
-  return Exit::valid;
+  return save(*documents, command.input, command.output);
 }
 
 Exit run(const ConvertCommand& command) {
-  if (replaces(command.output, command.input)) return refuse_to_replace(command.input);
+  if (replaces(command.output, command.input))
+    return refuse_to_replace(command.input, command.output);
   const auto input = load(command.input);
   if (!input) return fail(command.input, input.error());
-  return save(input->document, command.input, command.output);
+  return save({&input->document, 1}, command.input, command.output);
 }
 
 Exit run(const InfoCommand& command) {

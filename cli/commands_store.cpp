@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
+#include "cli/printable.h"
 #include "cli/progress.h"
 #include "pipeline/export.h"
 #include "pipeline/outcome_json.h"
@@ -59,18 +61,48 @@ Status read_listen(const std::string& text, ServerOptions& options) {
   return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
 }
 
+/// Which file each feature of this run came from, by id.
+using FilesOfFeatures = std::map<std::string, std::string>;
+
+/// Features of formats without ids are named after their file: house, house-2, ... Errors: conflict
+/// where a file of this run has given that name already, as such features would replace each other.
+Status name_features(Document& document, const std::string& file, const FilesOfFeatures& files) {
+  const std::string stem = std::filesystem::path(file).stem().string();
+  std::size_t unnamed = 0;
+  for (Feature& feature : document.features) {
+    if (!feature.id.empty()) continue;
+    feature.id = ++unnamed == 1 ? stem : stem + '-' + std::to_string(unnamed);
+    const auto other = files.find(feature.id);
+    if (other == files.end()) continue;
+    return Error{ErrorCode::conflict, "its features have no ids and would be called '" +
+                                          feature.id + "', as one of '" + other->second + "' is"};
+  }
+  return Done{};
+}
+
+/// Remembers what was stored, and tells what it replaced of this run.
+void tell_replaced(const IngestOutcome& outcome, const std::string& file, FilesOfFeatures& files) {
+  for (const FeatureOutcome& feature : outcome.features) {
+    if (!feature.is_stored) continue;
+    const auto [known, is_new] = files.try_emplace(feature.id, file);
+    if (is_new) continue;
+    const std::string text =
+        "feature '" + feature.id + "' replaces the one from '" + known->second + "'";
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(text).c_str());
+    known->second = file;
+  }
+}
+
 Result<IngestOutcome> ingest_file(const IngestCommand& command, const std::string& file,
-                                  const Bytes& bytes, SolidStore& store, EngineWorkers& workers) {
+                                  const Bytes& bytes, SolidStore& store, EngineWorkers& workers,
+                                  const FilesOfFeatures& files) {
   const auto contract = contract_named(command.contract);
   if (!contract) return contract.error();
   ReadOptions read_options;
   read_options.keep_text = *contract == Contract::exact;
   auto input = load_input(file, bytes, read_options);
   if (!input) return std::move(input).error();
-  // Formats without ids: the file's name is the feature's.
-  for (Feature& feature : input->document.features) {
-    if (feature.id.empty()) feature.id = std::filesystem::path(file).stem().string();
-  }
+  if (Status named = name_features(input->document, file, files); !named) return named.error();
   IngestOptions options;
   options.collection = command.collection;
   options.threads = command.jobs;
@@ -120,11 +152,13 @@ Exit run(const IngestCommand& command) {
   }
   EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
   Summary summary;
+  FilesOfFeatures files;
   Exit exit = Exit::valid;
   for (std::size_t i = 0; i < command.files.size(); ++i) {
     const std::string& file = command.files[i];
-    const auto outcome = contents[i] ? ingest_file(command, file, *contents[i], **store, workers)
-                                     : Result<IngestOutcome>(contents[i].error());
+    const auto outcome = contents[i]
+                             ? ingest_file(command, file, *contents[i], **store, workers, files)
+                             : Result<IngestOutcome>(contents[i].error());
     if (!outcome) {
       complain(file, outcome.error());
       exit = Exit::error;
@@ -133,8 +167,9 @@ Exit run(const IngestCommand& command) {
     if (!command.is_quiet && !command.is_json) print_findings(file, *outcome);
     if (outcome->verdict != Verdict::valid) {
       std::fprintf(stderr, "watertight: %s: not all features are valid; %zu of %zu were stored\n",
-                   file.c_str(), outcome->stored, outcome->features.size());
+                   printable(file).c_str(), outcome->stored, outcome->features.size());
     }
+    tell_replaced(*outcome, file, files);
     summary.add(*outcome, contents[i]->size());
     contents[i] = Bytes();
     exit = worse(exit, exit_of(outcome->verdict));

@@ -58,23 +58,26 @@ ReportHead head_of(const ValidateCommand& command, const StreamOptions& options)
   return head;
 }
 
-void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void print(const std::string& text, std::FILE* out = stdout) {
+  std::fwrite(text.data(), 1, text.size(), out);
+}
 
 std::string place_of(const SolidSource& source) {
   if (!source.pointer.empty()) return source.pointer;
   return source.object_id.empty() ? "solid " + std::to_string(source.ordinal) : source.object_id;
 }
 
-void print_solid(const std::string& file, const SolidSource& source, const Report& report) {
+void print_solid(const std::string& file, const SolidSource& source, const Report& report,
+                 std::FILE* out) {
   if (report.verdict == Verdict::valid && report.findings.empty()) return;
-  print(printable(file + ": " + place_of(source)) + "\n");
-  for (const std::string& line : report_text(report)) print("  " + printable(line) + "\n");
+  print(printable(file + ": " + place_of(source)) + "\n", out);
+  for (const std::string& line : report_text(report)) print("  " + printable(line) + "\n", out);
 }
 
 /// `source_of(i)` is where the feature's solid i stands.
 template <class SourceOf>
 void print_groups(const std::string& file, const std::vector<InspectedGroup>& groups,
-                  const SourceOf& source_of) {
+                  const SourceOf& source_of, std::FILE* out) {
   for (const InspectedGroup& group : groups) {
     for (const Finding& finding : group.report.findings) {
       std::string line = file + ": " + group.object_id;
@@ -84,7 +87,7 @@ void print_groups(const std::string& file, const std::vector<InspectedGroup>& gr
         if (!place || place->solid >= group.members.size()) continue;
         line += "\n    " + printable(place_of(source_of(group.members[place->solid])));
       }
-      print(line + "\n");
+      print(line + "\n", out);
     }
   }
 }
@@ -311,15 +314,19 @@ void complain(const std::string& file, const Error& error) {
 
 void print_findings(const std::string& file, const InspectedFeature& feature) {
   for (const InspectedSolid& solid : feature.solids) {
-    print_solid(file, solid.source, solid.inspection.report);
+    print_solid(file, solid.source, solid.inspection.report, stdout);
   }
-  print_groups(file, feature.groups, [&](std::size_t i) { return feature.solids[i].source; });
+  const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
+  print_groups(file, feature.groups, source_of, stdout);
 }
 
-void print_findings(const std::string& file, const IngestOutcome& outcome) {
+void print_findings(const std::string& file, const IngestOutcome& outcome, std::FILE* out) {
   for (const FeatureOutcome& feature : outcome.features) {
-    for (const SolidOutcome& solid : feature.solids) print_solid(file, solid.source, solid.report);
-    print_groups(file, feature.groups, [&](std::size_t i) { return feature.solids[i].source; });
+    for (const SolidOutcome& solid : feature.solids) {
+      print_solid(file, solid.source, solid.report, out);
+    }
+    const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
+    print_groups(file, feature.groups, source_of, out);
   }
 }
 

@@ -78,12 +78,23 @@ Result<std::size_t> read_some(int descriptor, std::span<std::uint8_t> bytes) {
   }
 }
 
-/// The file that a link leads to: like `cp`, writing keeps the link.
-std::string behind_links(const std::string& path) {
+/// The file that a link leads to, be it there or not: like `cp`, writing keeps the link.
+Result<std::string> behind_links(const std::string& path) {
+  constexpr int kMostLinks = 40;
   std::error_code error;
-  if (!std::filesystem::is_symlink(path, error)) return path;
-  const auto place = std::filesystem::canonical(path, error);
-  return error ? path : place.string();
+  std::filesystem::path place = path;
+  for (int links = 0; std::filesystem::is_symlink(place, error); ++links) {
+    const auto next = std::filesystem::read_symlink(place, error);
+    if (error) return file_error(error.value());
+    if (links == kMostLinks) return file_error(ELOOP);
+    place = place.parent_path() / next;
+  }
+  return place.string();
+}
+
+/// A file that may not be written is not replaced, although its folder would allow that.
+bool is_read_only(const std::string& path) {
+  return ::access(path.c_str(), F_OK) == 0 && ::access(path.c_str(), W_OK) != 0;
 }
 
 /// A new file in the folder of `path`: without a name where the system can do that, so that
@@ -175,8 +186,11 @@ FileWriter::FileWriter(FileWriter&&) noexcept = default;
 FileWriter::~FileWriter() = default;
 
 Result<FileWriter> FileWriter::open(const std::string& target) {
-  const std::string path = behind_links(target);
-  const bool is_direct = path == "-" || is_special(path);
+  const bool is_direct = target == "-" || is_special(target);
+  const auto place = is_direct ? Result<std::string>(target) : behind_links(target);
+  if (!place) return place.error();
+  const std::string& path = *place;
+  if (!is_direct && is_read_only(path)) return file_error(EACCES);
   std::string temporary;
   int descriptor = STDOUT_FILENO;
   if (!is_direct) {

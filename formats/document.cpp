@@ -22,6 +22,11 @@ bool is_city(Format format) {
 
 // The solids of all features, one after the other.
 Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
+  const auto has_solids = [](const Feature& feature) { return !feature.solids.empty(); };
+  if (std::none_of(features.begin(), features.end(), has_solids)) {
+    return Error{ErrorCode::unsupported,
+                 "there is no solid to write as " + std::string(to_string(format))};
+  }
   if (format == Format::obj || format == Format::off) {
     auto text = format == Format::obj ? write_obj(features) : write_off(features);
     if (!text) return std::move(text).error();

@@ -114,11 +114,20 @@ Status FeatureReader::read_header() {
                    **text);
   }
   header_ = *std::move(header);
-  document_.header = options_.keep_text ? (*text)->line : header_.text;
   auto templates = read_geometry_templates(header_, options_.limits);
   if (!templates) return in_line(std::move(templates).error(), **text);
   document_.templates = *std::move(templates);
+  document_.header = options_.keep_text ? header_line(*std::move(*text)) : header_.text;
   return Done{};
+}
+
+/// Without the blanks of its end, which go to the framing: files that differ there only (in line
+/// ends) have one header.
+std::string FeatureReader::header_line(FeatureText text) {
+  const std::size_t size = text.line.find_last_not_of(" \t\r") + 1;
+  gap_.insert(0, text.line, size);
+  text.line.resize(size);
+  return std::move(text.line);
 }
 
 Result<std::optional<FeatureText>> FeatureReader::next_line() {

@@ -65,6 +65,7 @@ class FeatureReader {
   Status read_whole(std::string_view file_name);
   Status read_header();
   Result<std::optional<FeatureText>> next_line();
+  std::string header_line(FeatureText text);
   void note_gap(std::string_view blanks, bool has_text);
 
   ByteSource source_;

@@ -126,7 +126,7 @@ Result<std::string> write_off(std::span<const Feature> features) {
       solid = &submitted.solid;
     }
   }
-  if (solid == nullptr) return Error{ErrorCode::unsupported, "there is no solid to write"};
+  if (solid == nullptr) return Error{ErrorCode::unsupported, "there is no solid to write as off"};
   if (solid->shell_count() > 1) {
     return Error{ErrorCode::unsupported, "OFF has no cavities: the solid has inner shells"};
   }

@@ -225,7 +225,9 @@ Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
     if (!part) return std::move(part).error();
     if (!*part) return info;
     for (ContainerDocument& added : (*part)->new_documents) {
-      info.formats.push_back(std::move(added.format));
+      const auto format = format_named(added.format);
+      if (!format) return format.error();
+      info.formats.push_back(*format);
     }
     info.features += (*part)->features.size();
     info.pages += (*part)->pages;

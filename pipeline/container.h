@@ -57,7 +57,7 @@ Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& lim
 
 /// What a Watertight file is made of.
 struct ContainerInfo {
-  std::vector<std::string> formats;  // of each document
+  std::vector<Format> formats;  // of each document
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t pages = 0;

@@ -46,6 +46,20 @@ cmp all.city.jsonl back.city.jsonl
 grep -q "there is no collection 'none'" said || fail "$(cat said)"
 [ ! -e none.wt ] || fail "an export that failed left a file"
 
+# Formats without ids: features have the names of their files, which must differ.
+mkdir a b
+echo 'SOLID Z((((0 0 0,0 1 0,1 0 0,0 0 0)),((0 0 0,1 0 0,0 0 1,0 0 0)),((0 0 0,0 0 1,0 1 0,0 0 0)),((1 0 0,0 1 0,0 0 1,1 0 0))))' |
+  tee a/house.wkt b/house.wkt >b/pair.wkt
+cat a/house.wkt >>b/pair.wkt
+chmod -R a+rX a b
+! run "$program" ingest a/house.wkt b/house.wkt "${store[@]}" --collection wkt -q >said 2>&1 || fail "$(cat said)"
+grep -q "would be called 'house', as one of 'a/house.wkt' is" said || fail "$(cat said)"
+run "$program" ingest b/pair.wkt "${store[@]}" --collection wkt -q >said 2>&1 || fail "$(cat said)"
+run "$program" export wkt -o wkt.wt "${store[@]}" 2>said
+grep -q '^watertight: 3 features with 3 solids written$' said || fail "$(cat said)"
+run "$program" ingest in.city.jsonl in.city.jsonl "${store[@]}" --collection twice --invalid skip -q >said 2>&1 || [ $? -eq 1 ]
+grep -q "replaces the one from 'in.city.jsonl'" said || fail "$(cat said)"
+
 "${as[@]}" "$program" serve "${store[@]}" --listen 127.0.0.1:0 >listening 2>log &
 service=$!
 for _ in $(seq 300); do

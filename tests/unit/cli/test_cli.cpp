@@ -351,19 +351,89 @@ TEST_CASE_METHOD(Fixture, "an output behind a link is written there") {
   CHECK(run("convert cube.obj -o link.off").status == 0);
   CHECK(fs::is_symlink(folder / "link.off"));
   CHECK(read("old.off").starts_with("OFF"));
+  // To a file that is yet to be, and to nowhere.
+  fs::create_symlink("new.off", folder / "early.off");
+  CHECK(run("convert cube.obj -o early.off").status == 0);
+  CHECK(fs::is_symlink(folder / "early.off"));
+  CHECK(read("new.off").starts_with("OFF"));
+  fs::create_symlink("b.off", folder / "a.off");
+  fs::create_symlink("a.off", folder / "b.off");
+  CHECK(run("convert cube.obj -o a.off").status == 2);
+  CHECK(fs::is_symlink(folder / "a.off"));
 }
 
 TEST_CASE_METHOD(Fixture, "an output does not replace its own input") {
   write("cube.obj", kCubeObj);
   fs::create_symlink("cube.obj", folder / "link.obj");
+  REQUIRE(run("encode cube.obj -o packed.obj").status == 0);
+  const std::string packed = read("packed.obj");
   for (const std::string arguments :
        {"encode cube.obj -o cube.obj --contract boundary", "convert cube.obj -o ./cube.obj",
-        "convert link.obj -o cube.obj", "decode cube.obj -o cube.obj"}) {
+        "convert link.obj -o cube.obj", "decode packed.obj -o packed.obj"}) {
     const Ran refused = run(arguments);
     CHECK(refused.status == 2);
     CHECK(refused.output.find("would replace the input") != std::string::npos);
   }
   CHECK(read("cube.obj") == kCubeObj);
+  CHECK(read("packed.obj") == packed);
+}
+
+/// A Watertight file of two documents, the second in another place.
+std::string two_documents() {
+  std::string moved = kValid;
+  moved.replace(moved.find("100.0"), 5, "900.0");
+  ContainerWriter writer;
+  for (const std::string& text : {kValid, moved}) {
+    ReadOptions options;
+    options.keep_text = true;
+    auto document = read_document(as_bytes(text), Format::city_json_seq, options);
+    REQUIRE(document);
+    const auto encoded = encode_document(*std::move(document), nullptr, {});
+    REQUIRE(encoded);
+    for (const StoredFeature& feature : encoded->document.features) REQUIRE(writer.add(feature));
+  }
+  const auto file = std::move(writer).finish();
+  REQUIRE(file);
+  return std::string(as_text(*file));
+}
+
+TEST_CASE_METHOD(Fixture, "decode writes each of several documents, or none") {
+  const std::string file = two_documents();
+  write("both.wt", file);
+  CHECK(run("info both.wt").output.find("documents            2") != std::string::npos);
+  CHECK(run("decode both.wt -o out.city.jsonl").status == 0);
+  CHECK(read("out.city.jsonl") == kValid);
+  CHECK(read("out-2.city.jsonl").find("900.0") != std::string::npos);
+  CHECK(run("decode both.wt -o .jsonl").status == 0);
+  CHECK(fs::exists(folder / "-2.jsonl"));
+  // The second name is the input, a link to it, a folder.
+  write("in-2.city.jsonl", file);
+  fs::create_symlink("in-2.city.jsonl", folder / "link-2.city.jsonl");
+  fs::create_directory(folder / "taken-2.city.jsonl");
+  write("taken.city.jsonl", "old");
+  for (const std::string name : {"in", "link", "taken"}) {
+    CHECK(run("decode in-2.city.jsonl -o " + name + ".city.jsonl").status == 2);
+  }
+  CHECK(read("in-2.city.jsonl") == file);
+  CHECK(read("taken.city.jsonl") == "old");
+  CHECK_FALSE(fs::exists(folder / "in.city.jsonl"));
+}
+
+TEST_CASE_METHOD(Fixture, "a document without solids is not written where only solids are") {
+  write("none.city.jsonl", samples::sequence({}));
+  for (const std::string name : {"x.obj", "x.off", "x.wkt", "x.wkb"}) {
+    const Ran refused = run("convert none.city.jsonl -o " + name);
+    CHECK(refused.status == 2);
+    CHECK(refused.output.find("there is no solid to write") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / name));
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "findings do not mix with a file on standard output") {
+  write("bad.city.jsonl", kInvalid);
+  run("encode bad.city.jsonl -o - 2>errors.txt | cat >out.wt");
+  CHECK(read("out.wt").empty());
+  CHECK(read("errors.txt").find("error 302") != std::string::npos);
 }
 
 TEST_CASE_METHOD(Fixture, "encode tells coordinates that had to be rounded") {

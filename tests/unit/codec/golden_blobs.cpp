@@ -67,7 +67,8 @@ OrientedBoundary torus_on_coarse_steps() {
     for (int axis = 0; axis < 3; ++axis) {
       const auto coordinate = static_cast<std::int64_t>(vertex[axis]);
       const auto uneven = coordinate + static_cast<std::int64_t>(random.below(600));
-      moved[axis] = static_cast<double>(uneven * 37 / 8);
+      const std::int64_t step = uneven * 37 / 8;
+      moved[axis] = static_cast<double>(step);
     }
   }
   for (Index facet = 0; facet < smooth.solid().facet_count(); ++facet) {
@@ -144,10 +145,10 @@ std::vector<Golden> goldens() {
   add_one("far-origin", box_with_far_origin(), Mode::polygon);
   add_one("hole-touches-ring", block_with_touching_hole(), Mode::polygon);
   add_one("holes", pierced_block(2), Mode::raw);
-  for (const std::uint64_t seed : {9, 28, 126}) {
+  for (const std::uint64_t seed : {9U, 28U, 126U}) {
     add_one("varied-" + std::to_string(seed), varied(seed), Mode::polygon);
   }
-  for (const std::uint64_t seed : {17, 154}) {
+  for (const std::uint64_t seed : {17U, 154U}) {
     add_one("varied-" + std::to_string(seed), varied(seed), Mode::walk);
   }
   // Traced in docs/format.md: with the neutral set of priors they never change.

@@ -225,6 +225,18 @@ TEST_CASE("a file of several documents gives back each") {
   CHECK(text_of((*decoded)[1]) == second);
 }
 
+TEST_CASE("documents that differ in their line ends only are one") {
+  const std::string plain = samples::sequence({samples::feature("a"), samples::feature("b")});
+  std::string other;
+  for (const char c : plain) other += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  const StoredDocument one = encoded(plain);
+  const StoredDocument two = encoded(other);
+  CHECK(one.header == two.header);
+  const auto decoded = decode_container(container_of(other));
+  REQUIRE(decoded);
+  CHECK(text_of(decoded->front()) == other);
+}
+
 TEST_CASE("features of several documents are no document") {
   StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
   document.header += ' ';

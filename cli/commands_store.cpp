@@ -116,6 +116,11 @@ Result<IngestOutcome> ingest_file(const IngestCommand& command, const std::strin
   return ingest(std::move(input->document), store, &workers, options);
 }
 
+Result<Bytes> read_and_close(Result<OpenedFile> file) {
+  if (!file) return file.error();
+  return read_all(file->source, {});
+}
+
 }  // namespace
 
 Exit run(const ServeCommand& command) {
@@ -140,9 +145,8 @@ Exit run(const ServeCommand& command) {
 
 Exit run(const IngestCommand& command) {
   const auto start = std::chrono::steady_clock::now();
-  // Read first: as root, opening the store gives up the right to read other users' files.
-  std::vector<Result<Bytes>> contents;
-  for (const std::string& file : command.files) contents.push_back(read_file(file, {}));
+  // Before the store: as root, opening that gives up the right to open other users' files.
+  auto opened_files = open_files(command.files);
   auto opened = open_store(command.store);
   auto store = opened ? open_postgres_store(opened->connection)
                       : Result<std::unique_ptr<SolidStore>>(opened.error());
@@ -156,9 +160,9 @@ Exit run(const IngestCommand& command) {
   Exit exit = Exit::valid;
   for (std::size_t i = 0; i < command.files.size(); ++i) {
     const std::string& file = command.files[i];
-    const auto outcome = contents[i]
-                             ? ingest_file(command, file, *contents[i], **store, workers, files)
-                             : Result<IngestOutcome>(contents[i].error());
+    const auto bytes = read_and_close(std::move(opened_files[i]));
+    const auto outcome = bytes ? ingest_file(command, file, *bytes, **store, workers, files)
+                               : Result<IngestOutcome>(bytes.error());
     if (!outcome) {
       complain(file, outcome.error());
       exit = Exit::error;
@@ -170,8 +174,7 @@ Exit run(const IngestCommand& command) {
                    printable(file).c_str(), outcome->stored, outcome->features.size());
     }
     tell_replaced(*outcome, file, files);
-    summary.add(*outcome, contents[i]->size());
-    contents[i] = Bytes();
+    summary.add(*outcome, bytes->size());
     exit = worse(exit, exit_of(outcome->verdict));
   }
   const double seconds =

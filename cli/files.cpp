@@ -2,9 +2,11 @@
 #include "cli/files.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -137,6 +139,18 @@ Result<OpenedFile> open_file(const std::string& path) {
     return read_some(file->number(), bytes);
   };
   return opened;
+}
+
+std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths) {
+  rlimit most{};
+  constexpr std::size_t kOthers = 256;  // the store's, the workers'
+  if (::getrlimit(RLIMIT_NOFILE, &most) == 0 && most.rlim_cur < paths.size() + kOthers) {
+    most.rlim_cur = std::min<rlim_t>(most.rlim_max, paths.size() + kOthers);
+    ::setrlimit(RLIMIT_NOFILE, &most);  // else those beyond say so when they are opened
+  }
+  std::vector<Result<OpenedFile>> files;
+  for (const std::string& path : paths) files.push_back(open_file(path));
+  return files;
 }
 
 Result<Bytes> read_all(const ByteSource& source, const Limits& limits) {

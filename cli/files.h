@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/limits.h"
@@ -25,6 +27,9 @@ struct OpenedFile {
 
 /// Errors: unavailable with the system's reason.
 Result<OpenedFile> open_file(const std::string& path);
+
+/// All at once, be they more than a process usually may have open.
+std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths);
 
 /// Errors: those of the source; limit_exceeded.
 Result<Bytes> read_all(const ByteSource& source, const Limits& limits);

@@ -15,6 +15,7 @@
 #include "base/bytes.h"
 #include "base/limits.h"
 #include "base/result.h"
+#include "base/shared_text.h"
 #include "geometry/solid.h"
 
 namespace watertight {
@@ -86,7 +87,7 @@ struct Document {
   Format format = Format::city_json;
   /// What features share (CityJSON: version, transform, metadata, templates, ...), as the first
   /// line of a CityJSONSeq: UTF-8 JSON. "" for formats that share nothing.
-  std::string header;
+  SharedText header;
   std::vector<Feature> features;
   std::vector<std::string> notes;  // readings of doubtful input, one clause each
   /// Solids of CityJSON geometry templates, for validation only: writing takes them from `header`.

@@ -114,12 +114,12 @@ void ContainerWriter::write(ByteView bytes) {
   written_.insert(written_.end(), bytes.begin(), bytes.end());
 }
 
-void ContainerWriter::add_document(const std::string& format, const std::string& header,
+void ContainerWriter::add_document(const std::string& format, const SharedText& header,
                                    Bytes framing) {
   if (!documents_.try_emplace({format, header}, documents_.size()).second) return;
   ++new_documents_;
   write_text(new_document_texts_, format);
-  write_text(new_document_texts_, header);
+  write_text(new_document_texts_, header.str());
   write_text(new_document_texts_, ByteView(framing));
 }
 

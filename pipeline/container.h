@@ -24,7 +24,7 @@ class ContainerWriter {
 
   /// The document that features of this format and header belong to; without one, their first
   /// feature makes it. Cost: linear in the number of documents.
-  void add_document(const std::string& format, const std::string& header, Bytes framing = {});
+  void add_document(const std::string& format, const SharedText& header, Bytes framing = {});
   /// Features of a document keep their order. Errors: malformed (what is stored is damaged);
   /// limit_exceeded; not_encodable.
   Status add(const StoredFeature& feature);
@@ -38,7 +38,7 @@ class ContainerWriter {
   void write(ByteView bytes);
 
   EncodeOptions pages_;
-  std::map<std::pair<std::string, std::string>, std::uint64_t> documents_;  // format, header
+  std::map<std::pair<std::string, SharedText>, std::uint64_t> documents_;  // format, header
   std::uint64_t new_documents_ = 0;
   ByteWriter new_document_texts_;
   std::vector<std::pair<std::uint64_t, StoredFeature>> features_;  // of the part, with document

@@ -61,7 +61,7 @@ enum class SteinerVertices : std::uint8_t { leave_out, keep };
 /// A document with its solids encoded: what the features share, as Document has it, and they.
 struct StoredDocument {
   std::string format;  // to_string(Format)
-  std::string header;
+  SharedText header;
   Bytes framing;
   std::vector<StoredFeature> features;
 };

@@ -78,7 +78,7 @@ std::vector<StoredFeature> features_of(const Rows& rows, const std::string& coll
     feature.type = rows.text(row, 2);
     feature.format = rows.text(row, 3);
     feature.srid = static_cast<std::uint32_t>(rows.int8(row, 4));
-    feature.header = rows.text(row, 5);  // its digest, until fill_headers()
+    feature.header = std::string(rows.text(row, 5));  // its digest, until fill_headers()
     feature.skeleton = rows.text(row, 6);
     feature.box = box_of(rows, row, 7);
   }
@@ -87,7 +87,7 @@ std::vector<StoredFeature> features_of(const Rows& rows, const std::string& coll
 
 /// Replaces digests by headers: each distinct one travels once.
 Status fill_headers(Connection& connection, std::vector<StoredFeature>& features) {
-  std::map<std::string, std::string> contents;
+  std::map<std::string, SharedText> contents;
   for (const StoredFeature& feature : features) contents.try_emplace(feature.header);
   std::vector<ByteView> digests;
   for (const auto& [digest, content] : contents) digests.push_back(as_bytes(digest));
@@ -96,7 +96,7 @@ Status fill_headers(Connection& connection, std::vector<StoredFeature>& features
       Parameters().bytea_array(digests));
   if (!rows) return rows.error();
   for (int row = 0; row < rows->size(); ++row) {
-    contents[std::string(rows->text(row, 0))] = rows->text(row, 1);
+    contents[std::string(rows->text(row, 0))] = std::string(rows->text(row, 1));
   }
   for (StoredFeature& feature : features) feature.header = contents.at(feature.header);
   return Done{};

@@ -104,15 +104,15 @@ Order sorted_by_key(std::span<const StoredFeature> features) {
 }
 
 /// Puts each distinct header into its table. Returns header -> SHA-256 of it.
-Result<std::map<std::string_view, Bytes>> write_headers(Connection& connection,
-                                                        std::span<const StoredFeature> features) {
-  std::map<std::string_view, Bytes> digests;
+Result<std::map<SharedText, Bytes>> write_headers(Connection& connection,
+                                                  std::span<const StoredFeature> features) {
+  std::map<SharedText, Bytes> digests;
   for (const StoredFeature& feature : features) digests.try_emplace(feature.header);
   for (auto& [header, digest] : digests) {
     const Result<Rows> rows = connection.run(
         "WITH added AS (INSERT INTO watertight.document_header (digest, content)"
         " VALUES (sha256($1), $1) ON CONFLICT DO NOTHING) SELECT sha256($1)",
-        Parameters().bytea(as_bytes(header)));
+        Parameters().bytea(as_bytes(header.str())));
     if (!rows) return rows.error();
     const ByteView found = as_bytes(rows->text(0, 0));
     digest.assign(found.begin(), found.end());
@@ -123,7 +123,7 @@ Result<std::map<std::string_view, Bytes>> write_headers(Connection& connection,
 /// Creates the collections that do not exist; returns the CRS of each.
 Result<std::map<std::string_view, std::uint32_t>> write_collections(
     Connection& connection, std::span<const StoredFeature> features, const Order& order,
-    const std::map<std::string_view, Bytes>& digests) {
+    const std::map<SharedText, Bytes>& digests) {
   std::map<std::string_view, std::uint32_t> srids;
   for (const std::size_t i : order) {
     const StoredFeature& feature = features[i];
@@ -219,7 +219,7 @@ constexpr const char* kDropSolids = R"(
 /// Writes features[order[begin, end)]; their versions go to `versions` at the features' places.
 Status write_feature_rows(Connection& connection, std::span<const StoredFeature> features,
                           std::span<const std::size_t> places,
-                          const std::map<std::string_view, Bytes>& digests,
+                          const std::map<SharedText, Bytes>& digests,
                           std::span<std::uint64_t> versions) {
   FeatureColumns columns;
   for (const std::size_t i : places) columns.add(features[i], digests.at(features[i].header));

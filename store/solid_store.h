@@ -14,6 +14,7 @@
 
 #include "base/bytes.h"
 #include "base/result.h"
+#include "base/shared_text.h"
 
 namespace watertight {
 
@@ -48,7 +49,7 @@ struct StoredFeature {
   std::string type;
   std::uint32_t srid = 0;  // EPSG code, 0 when not stated; one for all features of a collection
   std::string format;      // to_string(Format) of the document it came in
-  std::string header;      // document header it needs (may differ from the collection's)
+  SharedText header;       // document header it needs (may differ from the collection's)
   std::string skeleton;
   std::optional<StoredBox> box;  // world coordinates, over its solids
   std::vector<StoredSolid> solids;

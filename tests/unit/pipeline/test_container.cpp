@@ -188,7 +188,7 @@ TEST_CASE("solids in pages have the mode that is asked for, and those with Stein
   StoredFeature feature;
   feature.format = "off";
   for (int i = 0; i < 40; ++i) feature.solids.emplace_back().blob = i == 7 ? *proven : *box;
-  const auto file = write_container({"off", "", {}, {feature}}, {.mode = Mode::raw});
+  const auto file = write_container({"off", {}, {}, {feature}}, {.mode = Mode::raw});
   REQUIRE(file);
   auto reader = ContainerReader::open(*file, {});
   REQUIRE(reader);
@@ -225,6 +225,13 @@ TEST_CASE("a file of several documents gives back each") {
   CHECK(text_of((*decoded)[1]) == second);
 }
 
+TEST_CASE("the features of a document hold one copy of its header") {
+  const StoredDocument document =
+      encoded(samples::sequence({samples::feature("a"), samples::feature("b")}));
+  REQUIRE(document.features.size() == 2);
+  CHECK(&document.features[0].header.str() == &document.features[1].header.str());
+}
+
 TEST_CASE("documents that differ in their line ends only are one") {
   const std::string plain = samples::sequence({samples::feature("a"), samples::feature("b")});
   std::string other;
@@ -239,7 +246,7 @@ TEST_CASE("documents that differ in their line ends only are one") {
 
 TEST_CASE("features of several documents are no document") {
   StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
-  document.header += ' ';
+  document.header = document.header.str() + " ";
   CHECK(write_container(document).error().code == ErrorCode::invalid_argument);
 }
 

@@ -57,6 +57,10 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
   auto header = sequence_header(store, collection);
   if (!header) return std::move(header).error();
   started.header_ = *std::move(header);
+  // It was checked when it came in.
+  auto city_header = read_city_json_header(started.header_, Limits{.bytes = ~0ULL, .nesting = 256});
+  if (!city_header) return std::move(city_header).error();
+  started.city_header_ = *std::move(city_header);
   return started;
 }
 
@@ -99,7 +103,7 @@ Status CollectionExport::add_line(const StoredFeature& feature, Bytes& bytes) {
   }
   const auto document = from_stored(feature);
   if (!document) return about(feature, document.error());
-  auto line = write_feature(*document, document->features.front());
+  auto line = write_city_json_feature(*city_header_, document->features.front());
   if (!line) return about(feature, line.error());
   append(bytes, as_bytes(*line + '\n'));
   return Done{};

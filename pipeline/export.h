@@ -11,6 +11,7 @@
 #include <string>
 
 #include "codec/blob.h"
+#include "formats/document.h"
 #include "pipeline/container.h"
 #include "store/solid_store.h"
 
@@ -55,6 +56,7 @@ class CollectionExport {
   std::string collection_;
   std::optional<ContainerWriter> container_;  // none for a sequence
   std::string header_;                        // of a sequence
+  std::optional<CityHeader> city_header_;     // the same, read
   std::string after_;                         // of the next batch
   bool is_first_ = true;
   bool is_last_ = false;

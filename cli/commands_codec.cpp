@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "cli/commands.h"
@@ -118,8 +119,9 @@ std::string numbered(const std::string& output, std::size_t number) {
   return result + output.substr(ending);
 }
 
-/// Writes each document to a file of its own, all or none. `input` is what they were read from: a
-/// conversion that fails is for what stands there.
+/// Writes each document to a file of its own; none if one cannot be converted or written (a rename
+/// that fails in the end leaves those before it). `input` is what they were read from: a conversion
+/// that fails is for what stands there.
 Exit save(std::span<const Document> documents, const std::string& input,
           const std::string& output) {
   std::vector<std::string> names;
@@ -181,15 +183,13 @@ void print_info(const Json& json, const std::string& indent) {
 }
 
 /// Each once, in their order.
-std::string names_of(const std::vector<Format>& formats) {
+std::string names_of(std::span<const Format> formats) {
+  std::set<Format> named;
   std::string names;
-  for (std::size_t i = 0; i < formats.size(); ++i) {
-    if (std::find(formats.begin(), formats.begin() + static_cast<std::ptrdiff_t>(i), formats[i]) !=
-        formats.begin() + static_cast<std::ptrdiff_t>(i)) {
-      continue;
-    }
+  for (const Format format : formats) {
+    if (!named.insert(format).second) continue;
     if (!names.empty()) names += ", ";
-    names += to_string(formats[i]);
+    names += to_string(format);
   }
   return names;
 }

@@ -252,12 +252,16 @@ TEST_CASE_METHOD(Fixture, "encode and decode return the document") {
   CHECK(read("y.wt") == read("x.wt"));
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "decode writes a file for each document, and other commands refuse several") {
-  std::string other = kValid;
-  other.replace(other.find("100.0"), 5, "900.0");
+/// Another document than kValid: in another place.
+std::string moved() {
+  std::string text = kValid;
+  return text.replace(text.find("100.0"), 5, "900.0");
+}
+
+/// A Watertight file of kValid and moved().
+std::string two_documents() {
   ContainerWriter writer;
-  for (const std::string& text : {kValid, other}) {
+  for (const std::string& text : {kValid, moved()}) {
     auto document = read_document(as_bytes(text), Format::city_json_seq);
     REQUIRE(document);
     const auto encoded = encode_document(*std::move(document), nullptr, {});
@@ -266,10 +270,15 @@ TEST_CASE_METHOD(Fixture,
   }
   const auto file = std::move(writer).finish();
   REQUIRE(file);
-  write("two.wt", std::string(as_text(*file)));
+  return std::string(as_text(*file));
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "decode writes a file for each document, and other commands refuse several") {
+  write("two.wt", two_documents());
   REQUIRE(run("decode two.wt -o ./out.city.jsonl").status == 0);
   CHECK(read("out.city.jsonl") == kValid);
-  CHECK(read("out-2.city.jsonl") == other);
+  CHECK(read("out-2.city.jsonl") == moved());
   CHECK(run("decode two.wt -o -").status == 2);
   const Ran refused = run("validate two.wt");
   CHECK(refused.status == 2);
@@ -378,32 +387,10 @@ TEST_CASE_METHOD(Fixture, "an output does not replace its own input") {
   CHECK(read("packed.obj") == packed);
 }
 
-/// A Watertight file of two documents, the second in another place.
-std::string two_documents() {
-  std::string moved = kValid;
-  moved.replace(moved.find("100.0"), 5, "900.0");
-  ContainerWriter writer;
-  for (const std::string& text : {kValid, moved}) {
-    ReadOptions options;
-    options.keep_text = true;
-    auto document = read_document(as_bytes(text), Format::city_json_seq, options);
-    REQUIRE(document);
-    const auto encoded = encode_document(*std::move(document), nullptr, {});
-    REQUIRE(encoded);
-    for (const StoredFeature& feature : encoded->document.features) REQUIRE(writer.add(feature));
-  }
-  const auto file = std::move(writer).finish();
-  REQUIRE(file);
-  return std::string(as_text(*file));
-}
-
 TEST_CASE_METHOD(Fixture, "decode writes each of several documents, or none") {
   const std::string file = two_documents();
   write("both.wt", file);
   CHECK(run("info both.wt").output.find("documents            2") != std::string::npos);
-  CHECK(run("decode both.wt -o out.city.jsonl").status == 0);
-  CHECK(read("out.city.jsonl") == kValid);
-  CHECK(read("out-2.city.jsonl").find("900.0") != std::string::npos);
   CHECK(run("decode both.wt -o .jsonl").status == 0);
   CHECK(fs::exists(folder / "-2.jsonl"));
   // The second name is the input, a link to it, a folder.

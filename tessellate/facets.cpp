@@ -3,9 +3,11 @@
 // Based on: L. P. Chew, "Constrained Delaunay triangulations", Algorithmica 4 (1989); ties after
 // O. Devillers and M. Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D
 // triangulations" (2011), in the plane: of four points on a circle the lexicographically largest
-// counts as outside. With that rule no edge is a tie, so the triangulation is unique.
-// Departures: regions are found by winding numbers per ring instead of nesting depth, because
-// depth by edge crossings is wrong in a pocket sealed off by two holes that touch twice.
+// counts as outside. With that rule no edge is a tie, so the triangulation is unique. Facets of one
+// ring of four points that are not in one plane take the shorter diagonal instead, so that the
+// mirror image of such a facet is triangulated as the mirror image. Departures: regions are found
+// by winding numbers per ring instead of nesting depth, because depth by edge crossings is wrong in
+// a pocket sealed off by two holes that touch twice.
 #include "tessellate/facets.h"
 
 #include <algorithm>
@@ -21,6 +23,7 @@
 #include <CGAL/property_map.h>
 
 #include "geometry/predicates.h"
+#include "tessellate/flatness.h"
 
 namespace watertight {
 namespace {
@@ -62,6 +65,7 @@ class FacetTriangulator {
 
  private:
   FacetState triangulate_three(std::span<const Index> ring, std::vector<Triangle>& triangles);
+  bool is_even_diagonal(std::span<const Index> ring, const std::array<PlanePoint, 4>& p) const;
   bool triangulate_convex_four(std::span<const Index> ring, std::vector<Triangle>& triangles);
   FacetState triangulate_any(IndexRange rings, std::vector<Triangle>& triangles);
   bool collect_vertices(IndexRange rings);
@@ -109,6 +113,21 @@ FacetState FacetTriangulator::triangulate_three(std::span<const Index> ring,
   return FacetState::triangulated;
 }
 
+/// For four points on a circle in projection: true if the diagonal 0-2 is taken. Where they are not
+/// in one plane it is the shorter one in space: that says the same of the mirror image, of every
+/// numbering and from both sides of the facet. Equal diagonals, and those of a flat facet, which
+/// make no difference, are told apart by coordinates.
+bool FacetTriangulator::is_even_diagonal(std::span<const Index> ring,
+                                         const std::array<PlanePoint, 4>& p) const {
+  const auto at = [&](std::size_t i) -> const Point& { return vertices_[ring[i]]; };
+  if (!are_coplanar(at(0), at(1), at(2), at(3))) {
+    const auto q = [&](std::size_t i) { return Kernel::Point_3(at(i).x, at(i).y, at(i).z); };
+    const auto order = Kernel().compare_distance_3_object()(q(0), q(2), q(1), q(3));
+    if (order != CGAL::EQUAL) return order == CGAL::SMALLER;
+  }
+  return (std::max_element(p.begin(), p.end()) - p.begin()) % 2 == 1;
+}
+
 /// Returns false, having done nothing, unless the quadrilateral is strictly convex.
 bool FacetTriangulator::triangulate_convex_four(std::span<const Index> ring,
                                                 std::vector<Triangle>& triangles) {
@@ -121,11 +140,9 @@ bool FacetTriangulator::triangulate_convex_four(std::span<const Index> ring,
   }
   auto side = CGAL::side_of_oriented_circle(p[0], p[1], p[2], p[3]);
   if (turn == CGAL::RIGHT_TURN) side = -side;
-  if (side == CGAL::ON_ORIENTED_BOUNDARY) {
-    const auto largest = std::max_element(p.begin(), p.end()) - p.begin();
-    side = largest % 2 == 1 ? CGAL::ON_NEGATIVE_SIDE : CGAL::ON_POSITIVE_SIDE;
-  }
-  if (side == CGAL::ON_NEGATIVE_SIDE) {  // vertex 3 is outside: diagonal 0-2
+  bool is_even = side == CGAL::ON_NEGATIVE_SIDE;  // vertex 3 is outside: diagonal 0-2
+  if (side == CGAL::ON_ORIENTED_BOUNDARY) is_even = is_even_diagonal(ring, p);
+  if (is_even) {
     append(ring[0], ring[1], ring[2], triangles);
     append(ring[0], ring[2], ring[3], triangles);
   } else {

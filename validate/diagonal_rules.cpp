@@ -5,12 +5,15 @@
 // the flipped triangles. Flips of several diagonals at once are not looked at.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <tuple>
 
 #include "geometry/predicates.h"
 #include "geometry/triangle_triangle.h"
+#include "tessellate/flatness.h"
 #include "validate/box_tree.h"
+#include "validate/facet_diagonals.h"
 #include "validate/planarity.h"
 #include "validate/rules.h"
 
@@ -19,18 +22,6 @@ namespace {
 
 /// Pairs of triangles classified: half a second of work.
 constexpr std::uint64_t kMostPairs = 3'000'000;
-
-/// A diagonal u-v of a facet between triangles (u, v, right) and (v, u, left) whose quadrilateral
-/// is strictly convex in the facet's projection and not flat.
-struct Diagonal {
-  Index u = 0;
-  Index v = 0;
-  Index right = 0;  // corner of `first`
-  Index left = 0;   // corner of `second`
-  Index first = 0;
-  Index second = 0;
-  std::array<Triangle, 2> flipped() const { return {{{u, left, right}, {left, v, right}}}; }
-};
 
 class DiagonalExaminer {
  public:
@@ -45,12 +36,16 @@ class DiagonalExaminer {
 
  private:
   std::vector<Box> boxes() const;
-  std::vector<Diagonal> diagonals_of(Index facet) const;
+  std::vector<Diagonal> diagonals_of(Index facet) const {
+    return other_diagonals(examined_.solid(), all_, facet);
+  }
   void find_made(Index facet, const std::vector<Diagonal>& diagonals);
   void find_undone(std::span<const TrianglePair> group);
   bool is_undone(std::span<const TrianglePair> group, Index facet, Index other);
   bool must_end() { return pairs_ > kMostPairs || examined_.is_cancelled(); }
   std::optional<ContactClass> contact_of(const Triangle& t, Index facet, Index triangle);
+  bool is_diagonal(Index facet, Index a, Index b);
+  bool is_common_boundary(const Triangle& t, Index facet, const Triangle& u, Index other);
   bool is_reported(Index a, Index b) const;
   void report(const Diagonal& diagonal, Index facet, Index other, const Point& witness,
               const std::string& what);
@@ -59,7 +54,8 @@ class DiagonalExaminer {
   const ShellContacts& contacts_;
   std::span<const Point> vertices_;
   const FacetTriangles& all_;
-  BoxTree tree_;  // of all triangles
+  BoxTree tree_;                                   // of all triangles
+  std::map<Index, std::vector<FacetEdge>> edges_;  // of facets that were asked about
   std::uint64_t pairs_ = 0;
 };
 
@@ -70,46 +66,52 @@ std::vector<Box> DiagonalExaminer::boxes() const {
   return boxes;
 }
 
-std::vector<Diagonal> DiagonalExaminer::diagonals_of(Index facet) const {
-  struct Side {
-    Index low, high, from, apex, triangle;
-  };
-  std::vector<Side> sides;
-  for (Index t = all_.first[facet]; t < all_.first[facet + 1]; ++t) {
-    const Triangle& corners = all_.triangles[t];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Index a = corners[i];
-      const Index b = corners[(i + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), a, corners[(i + 2) % 3], t});
-    }
+/// Whether the segment is a diagonal of the canonical triangulation of a facet.
+bool DiagonalExaminer::is_diagonal(Index facet, Index a, Index b) {
+  auto place = edges_.find(facet);
+  if (place == edges_.end()) place = edges_.emplace(facet, facet_edges(all_, facet)).first;
+  const auto [low, high] = std::minmax(a, b);
+  const auto edge =
+      std::lower_bound(place->second.begin(), place->second.end(), std::pair(low, high),
+                       [](const FacetEdge& e, const std::pair<Index, Index>& key) {
+                         return std::pair(e.low, e.high) < key;
+                       });
+  return edge != place->second.end() && edge->low == low && edge->high == high &&
+         edge->is_diagonal();
+}
+
+/// Whether the common edge of a flipped triangle of `facet` and a triangle of `other` is one that
+/// facets of a shell may share: on the boundary of both.
+bool DiagonalExaminer::is_common_boundary(const Triangle& t, Index facet, const Triangle& u,
+                                          Index other) {
+  std::vector<Index> common;
+  for (const Index vertex : t) {
+    if (std::find(u.begin(), u.end(), vertex) != u.end()) common.push_back(vertex);
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  if (common.size() != 2) return true;
+  const Index a = common[0];
+  const Index b = common[1];
+  if (is_diagonal(facet, a, b) || is_diagonal(other, a, b)) return false;
+  // An edge that the facet's triangles do not have is the diagonal that the flip made.
+  const auto [low, high] = std::minmax(a, b);
+  const std::vector<FacetEdge>& own = edges_.at(facet);
+  return std::any_of(own.begin(), own.end(), [low = low, high = high](const FacetEdge& e) {
+    return e.low == low && e.high == high;
   });
-  const int axis = facet_projection(examined_.solid(), facet).axis;
-  std::vector<Diagonal> result;
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side& a = sides[i - 1];
-    const Side& b = sides[i];
-    if (a.low != b.low || a.high != b.high || a.from == b.from) continue;
-    const Diagonal d{a.from, b.from, a.apex, b.apex, a.triangle, b.triangle};
-    const auto at = [&](Index vertex) -> const Point& { return vertices_[vertex]; };
-    const int turn = orient2d(at(d.left), at(d.right), at(d.u), axis);
-    if (turn == 0 || orient2d(at(d.left), at(d.right), at(d.v), axis) != -turn) continue;
-    if (are_coplanar(at(d.u), at(d.v), at(d.left), at(d.right))) continue;
-    result.push_back(d);
-  }
-  return result;
 }
 
 /// How a flipped triangle of `facet` meets a triangle of another facet, if that is a finding.
 std::optional<ContactClass> DiagonalExaminer::contact_of(const Triangle& t, Index facet,
                                                          Index triangle) {
   ++pairs_;
-  const ContactClass contact = classify_contact(vertices_, t, all_.triangles[triangle]);
-  if (!is_intersection(contact)) return std::nullopt;
+  ContactClass contact = classify_contact(vertices_, t, all_.triangles[triangle]);
   const Index other = all_.facet_of[triangle];
   const bool is_one_shell = examined_.shell_of(facet) == examined_.shell_of(other);
+  if (is_one_shell && contact == ContactClass::shared_edge &&
+      !is_common_boundary(t, facet, all_.triangles[triangle], other)) {
+    contact = ContactClass::edge_overlap;
+  }
+  if (!is_intersection(contact)) return std::nullopt;
   if (!is_one_shell && contact < ContactClass::crossing) return std::nullopt;
   if (is_one_shell && examined_.is_junction_contact(contact, facet, other)) return std::nullopt;
   return contact;
@@ -138,7 +140,7 @@ void DiagonalExaminer::report(const Diagonal& diagonal, Index facet, Index other
   const Vector along = examined_.metres(diagonal.u, diagonal.v);
   const Vector across = examined_.metres(diagonal.left, diagonal.right);
   finding.measured =
-      std::fabs(dot(unit(cross(along, across)), examined_.metres(diagonal.u, diagonal.left)));
+      std::fabs(dot(unit_normal(along, across), examined_.metres(diagonal.u, diagonal.left)));
   finding.limit = 0;
   finding.unit = std::string(1, 'm');
   finding.detail = "with the diagonal between vertices " +

@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "geometry/disjoint_sets.h"
+#include "geometry/fitted_plane.h"
 #include "geometry/predicates.h"
+#include "tessellate/flatness.h"
 #include "tessellate/ring_problems.h"
 #include "validate/box_tree.h"
 #include "validate/planarity.h"
@@ -39,42 +41,11 @@ std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index face
       .subspan(all.first[facet], all.first[facet + 1] - all.first[facet]);
 }
 
-/// Exact.
-bool is_exactly_planar(const ExaminedSolid& examined, const std::vector<Corner>& corners) {
-  const std::span<const Point> vertices = examined.solid().vertices();
-  const auto at = [&](std::size_t i) -> const Point& { return vertices[corners[i].vertex]; };
-  std::size_t b = 1;
-  while (b < corners.size() && at(b) == at(0)) ++b;
-  std::size_t c = b + 1;
-  while (c < corners.size() &&
-         (at(c) == at(0) || at(c) == at(b) || are_collinear(at(0), at(b), at(c)))) {
-    ++c;
-  }
-  for (std::size_t i = c + 1; i < corners.size(); ++i) {
-    if (!are_coplanar(at(0), at(b), at(c), at(i))) return false;
-  }
-  return true;
-}
-
-/// Newell's normal of the exterior ring, in metres squared.
-Vector ring_normal(const std::vector<Corner>& corners, const std::vector<Vector>& points) {
-  Vector normal{};
-  std::size_t count = 0;
-  while (count < corners.size() && corners[count].ring == 0) ++count;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vector part = cross(points[i], points[(i + 1) % count]);
-    for (std::size_t axis = 0; axis < 3; ++axis) normal[axis] += part[axis];
-  }
-  return unit(normal);
-}
-
-/// Products of four lengths below it, as measures need them, are finite.
-constexpr double kMostMetres = 1e70;
-
+/// False if a distance in the facet exceeds the doubles.
 bool is_measurable(const ExaminedSolid& examined, const std::vector<Corner>& corners) {
   return std::all_of(corners.begin(), corners.end(), [&](const Corner& corner) {
     const Vector d = examined.metres(corners.front().vertex, corner.vertex);
-    return std::all_of(d.begin(), d.end(), [](double x) { return std::abs(x) < kMostMetres; });
+    return std::all_of(d.begin(), d.end(), [](double x) { return std::isfinite(x); });
   });
 }
 
@@ -85,19 +56,14 @@ bool check_distance(ExaminedSolid& examined, Index facet, const std::vector<Corn
   for (const Corner& corner : corners) {
     points.push_back(examined.metres(corners.front().vertex, corner.vertex));
   }
-  PlaneDistance measured = distance_to_fitted_plane(points);
-  if (measured.metres <= limit) return true;
-  // Least squares lose digits on long and narrow facets; the plane across the ring's own normal
-  // is as good a witness of planarity. Points that are exactly on one plane never come here.
-  const PlaneDistance other = distance_to_plane(points, ring_normal(corners, points));
-  if (other.metres < measured.metres) measured = other;
-  if (measured.metres <= limit) return true;
+  const PlaneDistance measured = distance_to_fitted_plane(points, limit);
+  if (measured.distance <= limit) return true;
   const Corner& corner = corners[measured.point];
   Finding finding;
   finding.code = kNonPlanarDistance;
   finding.place = examined.at_corner(facet, corner.ring, corner.position);
   finding.witness = examined.world(corner.vertex);
-  finding.measured = measured.metres;
+  finding.measured = measured.distance;
   finding.limit = limit;
   finding.unit = std::string(1, 'm');
   finding.detail = "the point is off the plane fitted through the facet";
@@ -155,7 +121,7 @@ void check_normals(ExaminedSolid& examined, Index facet) {
   std::vector<Vector> normals;
   Vector mean{};
   for (const Triangle& t : triangles) {
-    normals.push_back(unit(cross(examined.metres(t[0], t[1]), examined.metres(t[0], t[2]))));
+    normals.push_back(unit_normal(examined.metres(t[0], t[1]), examined.metres(t[0], t[2])));
     for (std::size_t axis = 0; axis < 3; ++axis) mean[axis] += normals.back()[axis];
   }
   // Two normals within half the limit of a third direction are within the limit of each other.
@@ -268,7 +234,7 @@ bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
   const Solid& solid = examined.solid();
   const std::vector<Corner> corners = corners_of(solid, facet);
   bool is_measured = true;
-  if (!is_exactly_planar(examined, corners)) {
+  if (!is_flat(solid, facet)) {
     if (is_triangulated) examined.mark_not_planar(facet);
     is_measured = is_measurable(examined, corners);
     if (is_measured && check_distance(examined, facet, corners) && is_triangulated) {

@@ -204,9 +204,7 @@ const SolidSurface* GroupExaminer::surface(Index member) {
     if (!moved) return nullptr;
     points.push_back(*moved);
   }
-  FacetTriangles facets = triangulate_facets(solid);
-  surfaces_[member] = std::make_unique<SolidSurface>(std::move(points), std::move(facets.triangles),
-                                                     std::move(facets.facet_of));
+  surfaces_[member] = std::make_unique<SolidSurface>(solid, points, triangulate_facets(solid));
   return surfaces_[member].get();
 }
 
@@ -254,8 +252,8 @@ std::string GroupExaminer::overlap_detail(const Pair& pair, const SolidRelation&
 
 void GroupExaminer::report_overlap(const Pair& pair, const SolidRelation& relation) {
   const bool is_duplicate = relation.are_equal && is_composite();
-  const OverlapExtent extent =
-      measure_overlap(*surfaces_[pair.first], *surfaces_[pair.second], metres_per_step_);
+  const OverlapExtent extent = measure_overlap(
+      surfaces_[pair.first]->boundary(), surfaces_[pair.second]->boundary(), metres_per_step_);
   const bool is_allowed = options_.overlap_metres > 0 && extent.depth <= options_.overlap_metres;
   if (is_allowed && !is_duplicate) return;
   report_.verdict = Verdict::invalid;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Facets that intersect: within a shell (306) and between shells (401). Exact. Facets of one shell
-// may meet in common vertices and edges only; facets of different shells may also touch, in points
-// and along edges, but not cross or share an area.
+// may meet in common vertices and common ring edges only; facets of different shells may also
+// touch, in points and along edges, but not cross or share an area.
 #include <algorithm>
 
 #include "geometry/box_partition.h"
+#include "validate/facet_diagonals.h"
 #include "validate/rules.h"
 
 namespace watertight {
@@ -37,6 +38,7 @@ class IntersectionExaminer {
 
   ShellContacts examine() {
     mark_common_vertices();
+    at_diagonals_ = diagonal_contacts(examined_.solid(), examined_.triangles());
     std::uint64_t limit = kFirstLimit;
     while (!search(limit) && limit < kLastLimit) {
       limit = std::min(100 * limit, kLastLimit);
@@ -62,6 +64,7 @@ class IntersectionExaminer {
   unsigned threads_;
   std::span<const Point> vertices_;
   std::span<const Triangle> triangles_;
+  std::vector<IntersectingPair> at_diagonals_;
   ShellContacts contacts_;
 };
 
@@ -144,12 +147,14 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   options.threads = threads_;
   // Triangles of one facet meet in common vertices and edges only, by construction.
   options.group_of = examined_.triangles().facet_of;
-  const auto found = intersecting_pairs(vertices_, triangles_, options);
+  auto found = intersecting_pairs(vertices_, triangles_, options);
   if (!found) {
     contacts_.incomplete = "the search for intersections was ended: " + to_string(found.error());
     examined_.findings.skip({kShellSelfIntersection, kIntersectionShells}, contacts_.incomplete);
     return true;
   }
+  const bool is_cut_off = found->size() >= limit;
+  found->insert(found->end(), at_diagonals_.begin(), at_diagonals_.end());
   std::vector<FacetPair> pairs;
   for (const IntersectingPair& pair : *found) {
     const auto [first, second] = std::minmax({facet_of(pair.first), facet_of(pair.second)});
@@ -174,7 +179,6 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
                           }),
               pairs.end());
   std::erase_if(pairs, [&](const FacetPair& pair) { return !is_wrong(pair); });
-  const bool is_cut_off = found->size() >= limit;
   if (pairs.empty() && is_cut_off && limit < kLastLimit) return false;
   for (const FacetPair& pair : pairs) report(pair);
   keep_found(pairs, std::move(triangle_pairs));

@@ -58,7 +58,7 @@ std::optional<Point> crossing(const Point& p, const Point& q, const std::array<P
 
 class OverlapMeasurer {
  public:
-  OverlapMeasurer(const SolidSurface& first, const SolidSurface& second,
+  OverlapMeasurer(const RegionSurface& first, const RegionSurface& second,
                   const std::array<double, 3>& metres_per_step)
       : surfaces_{&first, &second}, metres_per_step_(metres_per_step), parts_(0) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -110,7 +110,7 @@ class OverlapMeasurer {
     return *std::min_element(size.begin(), size.end());
   }
 
-  std::array<const SolidSurface*, 2> surfaces_;
+  std::array<const RegionSurface*, 2> surfaces_;
   std::array<double, 3> metres_per_step_;
   Box common_;
   std::array<std::vector<Index>, 2> triangles_;
@@ -119,8 +119,8 @@ class OverlapMeasurer {
 };
 
 void OverlapMeasurer::add_vertices(std::size_t side) {
-  const SolidSurface& own = *surfaces_[side];
-  const SolidSurface& other = *surfaces_[1 - side];
+  const RegionSurface& own = *surfaces_[side];
+  const RegionSurface& other = *surfaces_[1 - side];
   std::map<Index, std::pair<bool, Index>> seen;  // vertex -> not outside, first triangle
   for (std::size_t i = 0; i < triangles_[side].size() && corners_.size() < kMostCorners; ++i) {
     for (const Index vertex : own.triangles()[triangles_[side][i]]) {
@@ -139,8 +139,8 @@ void OverlapMeasurer::add_vertices(std::size_t side) {
 
 /// Edges of one side with triangles of the other.
 void OverlapMeasurer::add_crossings(std::size_t side) {
-  const SolidSurface& own = *surfaces_[side];
-  const SolidSurface& other = *surfaces_[1 - side];
+  const RegionSurface& own = *surfaces_[side];
+  const RegionSurface& other = *surfaces_[1 - side];
   std::map<Index, std::size_t> position;  // triangle of the other -> in its list
   for (std::size_t j = 0; j < triangles_[1 - side].size(); ++j) {
     position.emplace(triangles_[1 - side][j], j);
@@ -253,7 +253,7 @@ double OverlapMeasurer::largest_depth(OverlapExtent& extent) {
 
 }  // namespace
 
-OverlapExtent measure_overlap(const SolidSurface& first, const SolidSurface& second,
+OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
                               const std::array<double, 3>& metres_per_step) {
   return OverlapMeasurer(first, second, metres_per_step).run();
 }

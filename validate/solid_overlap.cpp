@@ -1,51 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Let X and Y be valid solids, and let the inner side of a triangle be the one that its solid is
-// on.
+// Let A be the region inside the exterior shell of a solid X, A_i the regions of its cavities, and
+// B, B_j those of Y.
 //
-// (1) If a triangle u meets the inside (without edges) of a triangle t of the other solid and has a
-//     vertex strictly on the inner side of t's plane, the interiors meet: from the common point on,
-//     u runs into the interior beside t. So they do if two triangles in one plane, turned alike,
-//     share an area.
-// (2) Otherwise all triangles of one boundary that meet the inside of a triangle t of the other lie
-//     on the closed outer side of t there. The inner half of a small ball around a point inside t
-//     is then free of the other boundary, so it lies in the interior of the other solid or outside
-//     of it, and the same for all points inside t, as they are connected: t is `in` or `out`. It is
-//     out if it shares an area with a triangle turned the other way.
-// (3) Then the interiors meet if and only if a triangle of Y is in, or an arbitrary triangle of X
-//     is: the interior of X is connected, so it holds a point of Y's boundary (and a triangle of Y
-//     there is in) or lies inside Y as a whole (and all triangles of X are in).
-// (4) Of a triangle that is in or out, every point off the other boundary tells which. Triangles
-//     that do not meet the other boundary share their answer with all that have a corner of them.
+// (1) The interiors of X and Y are disjoint if and only if those of A and B are, or B lies in one
+//     A_i, or A lies in one B_j. For the interior of Y is connected and, if it misses X, lies in
+//     the closed regions that X leaves: outside A, A_1, A_2, ... These have points and segments in
+//     common at most, which do not cut an open connected set apart, so it lies in one of them. If
+//     that is an A_i, B is in it too: the outside of A_i is connected, reaches infinity and meets
+//     no point of B's surface. If it is the outside of A, then A misses Y; the same argument for
+//     A, which is connected, leaves the outside of B or one B_j.
+// (2) X and Y are equal if and only if A = B and each cavity of one is a cavity of the other: the
+//     regions that a solid leaves are determined by its points.
 //
-// Nothing here needs the interior of Y to be connected or bounded, so the complement of Y (its
-// triangles turned) can take its place: X and Y are equal when neither meets the other's
-// complement.
+// Every question is about two regions with one shell each (validate/region_relation.h).
 #include "validate/solid_overlap.h"
 
 #include <algorithm>
+#include <map>
 
-#include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
-#include "geometry/point_in_solid.h"
-#include "geometry/predicates.h"
-#include "geometry/triangle_triangle.h"
 
 namespace watertight {
 namespace {
-
-constexpr std::uint64_t kCancelInterval = std::uint64_t{1} << 16U;
-/// Below this many pairs of boxes all are compared; above a tree is built.
-constexpr std::size_t kFewPairs = 1024;
-
-Box common_box(const Box& a, const Box& b) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.min[axis] = std::max(a.min[axis], b.min[axis]);
-    box.max[axis] = std::min(a.max[axis], b.max[axis]);
-  }
-  return box;
-}
 
 bool contains(const Box& outer, const Box& inner) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -56,308 +33,112 @@ bool contains(const Box& outer, const Box& inner) {
 
 bool are_same(const Box& a, const Box& b) { return a.min == b.min && a.max == b.max; }
 
-std::vector<Box> boxes_of(std::span<const Point> vertices, std::span<const Triangle> triangles) {
-  std::vector<Box> boxes;
-  boxes.reserve(triangles.size());
-  for (const Triangle& t : triangles) boxes.push_back(box_of(t, vertices));
-  return boxes;
+/// Equal regions have equal boxes and volumes; both are quickly compared.
+bool may_be_equal(const RegionSurface& a, const RegionSurface& b) {
+  return are_same(a.box(), b.box()) &&
+         six_volume(a.vertices(), a.triangles()) == six_volume(b.vertices(), b.triangles());
 }
 
-/// Signs of a triangle's corners to the plane of another.
-struct Sides {
-  bool has_inner = false;
-  bool has_outer = false;
-  bool are_both() const { return has_inner && has_outer; }
-};
-
-Sides sides_to(const std::array<Point, 3>& plane, const std::array<Point, 3>& corners) {
-  Sides sides;
-  for (const Point& p : corners) {
-    if (p == plane[0] || p == plane[1] || p == plane[2]) continue;
-    const int sign = orient3d(plane[0], plane[1], plane[2], p);
-    sides.has_inner = sides.has_inner || sign < 0;
-    sides.has_outer = sides.has_outer || sign > 0;
-  }
-  return sides;
-}
-
-/// Requires triangles in one plane.
-bool are_turned_alike(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const int turn = orient2d(a[0], a[1], a[2], axis);
-    if (turn != 0) return turn == orient2d(b[0], b[1], b[2], axis);
-  }
-  return false;
-}
-
-/// Where the triangle's points off the surface are. Requires a triangle that is in or out (2) and
-/// shares no area with the surface, which then meets it in segments and points only.
-Location locate_triangle(const std::array<Point, 3>& corners, const SolidSurface& surface) {
-  for (int exponent = 2; exponent <= 52; exponent = exponent == 2 ? 8 : exponent + 8) {
-    for (std::uint64_t i = 1; i <= triangle_points(exponent); ++i) {
-      const TrianglePoint point = triangle_point(corners, exponent, i);
-      Location location = Location::boundary;
-      if (const auto exact = exact_doubles(point)) {
-        location = surface.locate(*exact);
-      } else {
-        location = Location{static_cast<signed char>(
-            locate_exactly(point, surface.vertices(), surface.triangles()))};
-      }
-      if (location != Location::boundary) return location;
-    }
-  }
-  return Location::outside;  // more than 2^25 segments
-}
-
-/// One of the two solids: its triangles that reach into the common box.
-struct Side {
-  const SolidSurface* surface = nullptr;
-  std::vector<Index> triangles;
-  std::vector<char> is_touched = {};   // it meets the other boundary
-  std::vector<char> shares_area = {};  // with a triangle in its plane
-};
-
-class Comparison {
+class SolidComparison {
  public:
-  Comparison(const SolidSurface& first, const SolidSurface& second, const CancelPoll& cancel)
-      : first_(side(first, second)), second_(side(second, first)), cancel_(cancel) {}
+  SolidComparison(const SolidSurface& first, const SolidSurface& second, const CancelPoll& cancel)
+      : first_(first), second_(second), cancel_(cancel) {}
 
-  SolidRelation run();
-
- private:
-  static Side side(const SolidSurface& surface, const SolidSurface& other) {
-    Side side{&surface, surface.triangles_in(common_box(surface.box(), other.box()))};
-    side.is_touched.resize(side.triangles.size());
-    side.shares_area.resize(side.triangles.size());
-    return side;
-  }
-  void find_contacts();
-  void compare(std::size_t i, std::size_t j);
-  void note(ContactClass contact, std::size_t i, std::size_t j);
-  void note_overlap(Index triangle, Index other);
-  bool is_done() const {
-    return relation_.is_cancelled ||
-           (relation_.do_overlap && (!may_be_equal_ || first_leaves_ || second_leaves_));
-  }
-  bool meets(const Side& connected, const Side& other, bool is_complement);
-
-  Side first_;
-  Side second_;
-  const CancelPoll& cancel_;
-  std::vector<Point> points_;  // of the listed triangles, three each, the first solid's first
-  std::vector<Box> boxes_;     // of the second's
-  std::uint64_t comparisons_ = 0;
-  bool may_be_equal_ = false;
-  bool first_leaves_ = false;   // the first meets the complement of the second
-  bool second_leaves_ = false;  // and the other way round
-  SolidRelation relation_;
-};
-
-void Comparison::note_overlap(Index triangle, Index other) {
-  if (relation_.do_overlap) return;
-  relation_.do_overlap = true;
-  relation_.facet = triangle == kNone ? kNone : first_.surface->facet_of(triangle);
-  relation_.other_facet = other == kNone ? kNone : second_.surface->facet_of(other);
-}
-
-/// (1) for the solids and for each with the complement of the other.
-void Comparison::note(ContactClass contact, std::size_t i, std::size_t j) {
-  const Index t = first_.triangles[i];
-  const Index u = second_.triangles[j];
-  const std::array<Point, 3> a = first_.surface->corners(t);
-  const std::array<Point, 3> b = second_.surface->corners(u);
-  if (contact == ContactClass::crossing) {
-    note_overlap(t, u);
-    first_leaves_ = second_leaves_ = true;
-  } else if (contact == ContactClass::coplanar_overlap || contact == ContactClass::duplicate) {
-    first_.shares_area[i] = second_.shares_area[j] = 1;
-    if (are_turned_alike(a, b)) {
-      note_overlap(t, u);
-    } else {
-      relation_.share_area = true;
-      first_leaves_ = second_leaves_ = true;
+  SolidRelation run() {
+    const bool ask = may_be_equal(first_.exterior(), second_.exterior());
+    const RegionRelation outer =
+        relate_regions(first_.exterior(), second_.exterior(), {ask, ask}, cancel_);
+    result_.is_cancelled = outer.is_cancelled;
+    result_.share_area = outer.touch_back_to_back;
+    if (outer.is_cancelled || !outer.do_overlap) return result_;
+    if (is_in_cavity(second_.exterior(), first_) || is_in_cavity(first_.exterior(), second_)) {
+      return result_;
     }
-  } else if (contact == ContactClass::vertex_face || contact == ContactClass::edge_face) {
-    // The one whose inside is met has corners on both sides of the other, which has not.
-    const Sides of_first = sides_to(b, a);
-    const bool is_second_met = !of_first.are_both();
-    const bool is_inner = is_second_met ? of_first.has_inner : sides_to(a, b).has_inner;
-    if (is_inner) note_overlap(t, u);
-    (is_second_met ? first_leaves_ : second_leaves_) |= !is_inner;
-    (is_second_met ? second_leaves_ : first_leaves_) |= is_inner;
-  }
-}
-
-void Comparison::compare(std::size_t i, std::size_t j) {
-  if (is_done()) return;
-  if (++comparisons_ % kCancelInterval == 0 && cancel_ && cancel_()) {
-    relation_.is_cancelled = true;
-    return;
-  }
-  const auto triangle = [](std::size_t at) {
-    const auto begin = static_cast<Index>(3 * at);
-    return Triangle{begin, begin + 1, begin + 2};
-  };
-  const ContactClass contact =
-      classify_contact(points_, triangle(i), triangle(first_.triangles.size() + j));
-  if (contact == ContactClass::disjoint) return;
-  first_.is_touched[i] = second_.is_touched[j] = 1;
-  note(contact, i, j);
-}
-
-void Comparison::find_contacts() {
-  points_.reserve(3 * (first_.triangles.size() + second_.triangles.size()));
-  for (const Side* side : {&first_, &second_}) {
-    for (const Index triangle : side->triangles) {
-      const std::array<Point, 3> corners = side->surface->corners(triangle);
-      points_.insert(points_.end(), corners.begin(), corners.end());
-    }
-  }
-  const std::size_t begin = first_.triangles.size();
-  const auto box = [&](std::size_t at) {
-    return watertight::box_of(std::span<const Point>(points_).subspan(3 * at, 3));
-  };
-  for (std::size_t j = 0; j < second_.triangles.size(); ++j) boxes_.push_back(box(begin + j));
-  std::optional<BoxTree> tree;
-  if (begin * boxes_.size() > kFewPairs) tree.emplace(boxes_);
-  for (std::size_t i = 0; i < begin && !is_done(); ++i) {
-    const Box own = box(i);
-    const auto visit = [&](std::size_t j) {
-      if (boxes_[j].overlaps(own)) compare(i, j);
-    };
-    if (tree) {
-      tree->visit([&](const Box& reach) { return !is_done() && reach.overlaps(own); },
-                  [&](Index j) { visit(j); });
-    } else {
-      for (std::size_t j = 0; j < boxes_.size(); ++j) visit(j);
-    }
-  }
-}
-
-/// Where the listed triangles of a side lie to the other surface, (4). Those that share an area
-/// with it are not asked for.
-class TriangleSides {
- public:
-  TriangleSides(const Side& side, const SolidSurface& other) : side_(side), other_(other) {
-    const auto triangles = side.surface->triangles();
-    for (std::size_t i = 0; i < side.triangles.size(); ++i) {
-      if (side.is_touched[i] != 0) continue;
-      const Triangle& t = triangles[side.triangles[i]];
-      free_.insert(free_.end(), t.begin(), t.end());
-    }
-    std::sort(free_.begin(), free_.end());
-    free_.erase(std::unique(free_.begin(), free_.end()), free_.end());
-    parts_ = DisjointSets(free_.size());
-    known_.resize(free_.size(), Location::boundary);
-    for (std::size_t i = 0; i < side.triangles.size(); ++i) {
-      if (side.is_touched[i] != 0) continue;
-      const Triangle& t = triangles[side.triangles[i]];
-      const Index a = number_of(t[0]);
-      parts_.join(a, number_of(t[1]));
-      parts_.join(a, number_of(t[2]));
-    }
-  }
-
-  /// Inside or outside.
-  Location operator()(std::size_t i) {
-    const Index triangle = side_.triangles[i];
-    for (const Index vertex : side_.surface->triangles()[triangle]) {
-      const Index number = number_of(vertex);
-      if (number == kNone) continue;
-      Location& location = known_[parts_.root(number)];
-      if (location == Location::boundary) {
-        location = other_.locate(side_.surface->vertices()[vertex]);
-      }
-      return location;
-    }
-    return locate_triangle(side_.surface->corners(triangle), other_);
+    result_.do_overlap = true;
+    result_.facet = outer.facet;
+    result_.other_facet = outer.other_facet;
+    if (outer.facet == kNone || outer.other_facet == kNone) name_crossing_facets();
+    result_.are_equal = outer.is_first_inside && outer.is_second_inside && have_equal_cavities();
+    return result_;
   }
 
  private:
-  /// Of a corner of a triangle that does not meet the other surface, else kNone.
-  Index number_of(Index vertex) const {
-    const auto at = std::lower_bound(free_.begin(), free_.end(), vertex);
-    return at == free_.end() || *at != vertex ? kNone : static_cast<Index>(at - free_.begin());
+  RegionRelation ask(const RegionSurface& a, const RegionSurface& b, RegionQuestions questions) {
+    if (result_.is_cancelled || !a.box().overlaps(b.box())) return {};
+    const RegionRelation relation = relate_regions(a, b, questions, cancel_);
+    result_.is_cancelled = relation.is_cancelled;
+    return relation;
   }
 
-  const Side& side_;
-  const SolidSurface& other_;
-  std::vector<Index> free_;  // vertices, ascending
-  DisjointSets parts_{0};
-  std::vector<Location> known_;
-};
-
-/// (3), when (1) does not hold. Notes the first triangle that is in.
-bool Comparison::meets(const Side& connected, const Side& other, bool is_complement) {
-  const auto note_in = [&](Index of_connected, Index of_other) {
-    if (is_complement) return;
-    const bool is_first = &connected == &first_;
-    note_overlap(is_first ? of_connected : of_other, is_first ? of_other : of_connected);
-  };
-  TriangleSides sides(other, *connected.surface);
-  for (std::size_t i = 0; i < other.triangles.size(); ++i) {
-    const Index triangle = other.triangles[i];
-    if (++comparisons_ % kCancelInterval == 0 && cancel_ && cancel_()) {
-      relation_.is_cancelled = true;
-      return false;
+  /// If so, the solids share an area where the region fills the cavity up to its wall.
+  bool is_in_cavity(const RegionSurface& region, const SolidSurface& solid) {
+    for (const RegionSurface& cavity : solid.cavities()) {
+      if (!contains(cavity.box(), region.box())) continue;
+      const RegionRelation relation = ask(region, cavity, {true, false});
+      if (!relation.is_first_inside || relation.is_cancelled) continue;
+      result_.share_area = relation.touch_side_by_side;
+      return true;
     }
-    if (other.shares_area[i] != 0) continue;
-    const Box box = watertight::box_of(other.surface->corners(triangle));
-    if (!contains(connected.surface->box(), box) || sides(i) != Location::inside) continue;
-    note_in(kNone, triangle);
+    return result_.is_cancelled;
+  }
+
+  /// Where one exterior shell is inside the other, walls of cavities may show the overlap better.
+  void name_crossing_facets() {
+    for (const RegionSurface& cavity : first_.cavities()) {
+      const RegionRelation relation = ask(cavity, second_.exterior(), {});
+      if (name_facets(relation.facet, relation.other_facet)) return;
+    }
+    for (const RegionSurface& cavity : second_.cavities()) {
+      const RegionRelation relation = ask(first_.exterior(), cavity, {});
+      if (name_facets(relation.facet, relation.other_facet)) return;
+    }
+  }
+
+  bool name_facets(Index facet, Index other_facet) {
+    if (facet == kNone || other_facet == kNone) return false;
+    result_.facet = facet;
+    result_.other_facet = other_facet;
     return true;
   }
-  // Triangles that are not listed lie outside the other's box.
-  if (connected.triangles.size() < connected.surface->triangles().size()) return is_complement;
-  if (connected.shares_area[0] != 0) return false;
-  TriangleSides own(connected, *other.surface);
-  if ((own(0) == Location::inside) == is_complement) return false;
-  note_in(connected.triangles[0], kNone);
-  return true;
-}
 
-SolidRelation Comparison::run() {
-  const SolidSurface& first = *first_.surface;
-  const SolidSurface& second = *second_.surface;
-  may_be_equal_ =
-      are_same(first.box(), second.box()) && six_volume(first.vertices(), first.triangles()) ==
-                                                 six_volume(second.vertices(), second.triangles());
-  find_contacts();
-  if (relation_.is_cancelled) return relation_;
-  if (!relation_.do_overlap) meets(first_, second_, false);
-  if (relation_.do_overlap && may_be_equal_ && !first_leaves_ && !second_leaves_) {
-    relation_.are_equal = !meets(first_, second_, true) && !meets(second_, first_, true);
+  /// Cavities of a solid are disjoint: no two of them equal the same one.
+  bool have_equal_cavities() {
+    if (first_.cavities().size() != second_.cavities().size()) return false;
+    std::map<std::pair<Point, Point>, std::vector<const RegionSurface*>> by_box;
+    for (const RegionSurface& cavity : second_.cavities()) {
+      by_box[{cavity.box().min, cavity.box().max}].push_back(&cavity);
+    }
+    return std::all_of(first_.cavities().begin(), first_.cavities().end(), [&](const auto& cavity) {
+      const auto& candidates = by_box[{cavity.box().min, cavity.box().max}];
+      return std::any_of(candidates.begin(), candidates.end(), [&](const RegionSurface* other) {
+        if (!may_be_equal(cavity, *other)) return false;
+        const RegionRelation relation = ask(cavity, *other, {true, true});
+        return relation.is_first_inside && relation.is_second_inside;
+      });
+    });
   }
-  return relation_;
-}
+
+  const SolidSurface& first_;
+  const SolidSurface& second_;
+  const CancelPoll& cancel_;
+  SolidRelation result_;
+};
 
 }  // namespace
 
-SolidSurface::SolidSurface(std::vector<Point> vertices, std::vector<Triangle> triangles,
-                           std::vector<Index> facet_of)
-    : vertices_(std::move(vertices)),
-      triangles_(std::move(triangles)),
-      facet_of_(std::move(facet_of)),
-      box_(watertight::box_of(vertices_)),
-      tree_(boxes_of(vertices_, triangles_)),
-      locator_(vertices_, triangles_) {}
-
-std::vector<Index> SolidSurface::triangles_in(const Box& box) const {
-  std::vector<Index> list;
-  tree_.visit([&](const Box& reach) { return reach.overlaps(box); },
-              [&](Index triangle) {
-                if (box_of(triangles_[triangle], vertices_).overlaps(box)) {
-                  list.push_back(triangle);
-                }
-              });
-  std::sort(list.begin(), list.end());
-  return list;
+SolidSurface::SolidSurface(const Solid& solid, std::span<const Point> vertices,
+                           const FacetTriangles& facets)
+    : boundary_(surface_of_shells(solid, vertices, facets, {0, solid.shell_count()}, false)) {
+  if (solid.shell_count() == 1) return;
+  for (Index shell = 0; shell < solid.shell_count(); ++shell) {
+    shells_.push_back(surface_of_shells(solid, vertices, facets, {shell, shell + 1}, shell > 0));
+  }
 }
 
 SolidRelation relate(const SolidSurface& first, const SolidSurface& second,
                      const CancelPoll& cancel) {
-  if (!first.box().overlaps(second.box())) return {};
-  return Comparison(first, second, cancel).run();
+  if (!first.boundary().box().overlaps(second.boundary().box())) return {};
+  return SolidComparison(first, second, cancel).run();
 }
 
 }  // namespace watertight

@@ -1,52 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How two valid solids lie to each other: whether their interiors meet, whether they are the same
-// points, whether they share an area of their boundaries. Exact, by orientation predicates and
-// point location on the triangles of the boundaries. Internal to validate/.
+// How two valid solids, with their cavities, lie to each other: whether their interiors meet,
+// whether they are the same points, whether they share an area of their boundaries, and how far an
+// overlap reaches. Internal to validate/.
 #pragma once
 
-#include <array>
 #include <optional>
-#include <span>
-#include <vector>
 
-#include "delaunay/ladder.h"
-#include "geometry/point.h"
-#include "validate/box_tree.h"
-#include "validate/point_location.h"
+#include "geometry/solid.h"
+#include "tessellate/facets.h"
+#include "validate/region_relation.h"
 
 namespace watertight {
 
-/// The boundary of a valid solid as triangles, turned outward, on a grid that it shares with the
-/// solids it is compared with. Move only: the trees refer to the arrays.
+/// A valid solid as surfaces, on a grid that it shares with the solids it is compared with.
 class SolidSurface {
  public:
-  SolidSurface(std::vector<Point> vertices, std::vector<Triangle> triangles,
-               std::vector<Index> facet_of);
-  SolidSurface(SolidSurface&&) = default;
-  SolidSurface& operator=(SolidSurface&&) = default;
-  SolidSurface(const SolidSurface&) = delete;
-  SolidSurface& operator=(const SolidSurface&) = delete;
+  /// `vertices` are the solid's on that grid, `facets` its canonical triangles.
+  SolidSurface(const Solid& solid, std::span<const Point> vertices, const FacetTriangles& facets);
 
-  std::span<const Point> vertices() const { return vertices_; }
-  std::span<const Triangle> triangles() const { return triangles_; }
-  Index facet_of(Index triangle) const { return facet_of_[triangle]; }
-  const Box& box() const { return box_; }
-  Location locate(const Point& p) const { return locator_.locate(p); }
-  std::array<Point, 3> corners(Index triangle) const {
-    const Triangle& t = triangles_[triangle];
-    return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
+  /// The triangles of all shells.
+  const RegionSurface& boundary() const { return boundary_; }
+  const RegionSurface& exterior() const { return shells_.empty() ? boundary_ : shells_.front(); }
+  /// Each turned outward, as the boundary of the region that the solid leaves out.
+  std::span<const RegionSurface> cavities() const {
+    return std::span<const RegionSurface>(shells_).subspan(shells_.empty() ? 0 : 1);
   }
-  /// Triangles whose boxes meet a closed box, ascending.
-  std::vector<Index> triangles_in(const Box& box) const;
 
  private:
-  std::vector<Point> vertices_;
-  std::vector<Triangle> triangles_;
-  std::vector<Index> facet_of_;
-  Box box_;
-  BoxTree tree_;
-  PointLocator locator_;
+  RegionSurface boundary_;
+  std::vector<RegionSurface> shells_;  // empty for a solid of one shell
 };
 
 struct SolidRelation {
@@ -58,8 +41,8 @@ struct SolidRelation {
   Index other_facet = kNone;  // of the second; kNone when no facet of it is concerned
 };
 
-/// Deterministic. Cost: near linear in the triangles inside the overlap of the boxes; the product
-/// of their numbers when all of them meet.
+/// Deterministic. Cost: as relate_regions() for the exterior shells and, where these overlap, for
+/// each cavity that can hold the other solid or equal a cavity of it.
 SolidRelation relate(const SolidSurface& first, const SolidSurface& second,
                      const CancelPoll& cancel);
 
@@ -71,9 +54,9 @@ struct OverlapExtent {
   std::optional<Point> witness;  // inside both solids, exactly
 };
 
-/// Requires solids that overlap. The depth is the largest over the parts of the least extent along
-/// the axes and the normals of the facets that bound the part: measured in doubles.
-OverlapExtent measure_overlap(const SolidSurface& first, const SolidSurface& second,
+/// Requires boundaries of solids that overlap. The depth is the largest over the parts of the least
+/// extent along the axes and the normals of the facets that bound the part: measured in doubles.
+OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
                               const std::array<double, 3>& metres_per_step);
 
 }  // namespace watertight

@@ -6,7 +6,9 @@
 #include <map>
 
 #include "geometry/measures.h"
+#include "geometry/point_in_solid.h"
 #include "validate/point_location.h"
+#include "validate/region_relation.h"
 #include "validate/rules.h"
 
 namespace watertight {
@@ -15,6 +17,8 @@ namespace {
 /// Points located and boxes compared while shells are located against each other: a few seconds of
 /// work.
 constexpr std::uint64_t kMostLooks = 10'000'000;
+/// Of the points inside a triangle that are located where its corners tell nothing: seven.
+constexpr int kPointExponent = 6;
 
 std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shell) {
   const IndexRange facets = examined.solid().facets_of(shell);
@@ -35,7 +39,11 @@ class SolidExaminer {
  public:
   SolidExaminer(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
                 const std::vector<Index>& duplicate_of, const ShellContacts& contacts)
-      : examined_(examined), shells_(shells), duplicate_of_(duplicate_of), contacts_(contacts) {
+      : examined_(examined),
+        shells_(shells),
+        duplicate_of_(duplicate_of),
+        contacts_(contacts),
+        volume_signs_(shells.size(), 0) {
     for (Index shell = 0; shell < shells.size(); ++shell) {
       Box box;
       for (const Triangle& t : triangles_of(examined, shell)) {
@@ -63,6 +71,10 @@ class SolidExaminer {
   void report(int code, Index shell, Index other, std::string detail);
   void report_no_volume(Index shell);
   Location locate(const Point& p, Index around);
+  Location locate_inside(const TrianglePoint& point, Index around);
+  bool can_be_related(Index a, Index b) const;
+  const RegionSurface& region(Index shell);
+  RegionRelation relate(Index a, Index b);
   void check_inside_exterior(Index shell);
   void check_apart(Index a, Index b);
   bool is_uncertain() const { return examined_.findings.has_errors_up_to_level(3); }
@@ -73,8 +85,10 @@ class SolidExaminer {
   const std::vector<Index>& duplicate_of_;
   const ShellContacts& contacts_;
   std::vector<Box> boxes_;
-  std::vector<bool> is_surface_;  // closed and triangulated
+  std::vector<bool> is_surface_;   // closed and triangulated
+  std::vector<int> volume_signs_;  // of shells that are closed and turned alike, else 0
   std::map<Index, PointLocator> locators_;
+  std::map<Index, RegionSurface> regions_;
   std::uint64_t looks_ = 0;
   std::vector<std::string> reasons_;
 };
@@ -109,6 +123,7 @@ void SolidExaminer::check_orientation() {
     }
     if (examined_.is_cancelled()) return;
     const int sign = volume_sign(examined_.solid().vertices(), triangles_of(examined_, shell));
+    volume_signs_[shell] = sign;
     if (sign == (shell == 0 ? 1 : -1)) continue;
     if (sign == 0) {
       report_no_volume(shell);
@@ -139,32 +154,38 @@ Location SolidExaminer::locate(const Point& p, Index around) {
   return place->second.locate(p);
 }
 
-/// Where `shell` lies to `around`, by its points that are not on `around`: by the first when the
+Location SolidExaminer::locate_inside(const TrianglePoint& point, Index around) {
+  if (const auto exact = exact_doubles(point)) return locate(*exact, around);
+  return Location{static_cast<signed char>(
+      locate_exactly(point, examined_.solid().vertices(), triangles_of(examined_, around)))};
+}
+
+/// For shells that have no point in common, or of which one has defects of its own. Where `shell`
+/// lies to `around`, by its points that are not on `around`: by the first when the
 /// shells have no point in common, else by all. Requires shells whose facets neither cross nor
 /// overlap.
 SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
   const std::span<const Point> vertices = examined_.solid().vertices();
   const bool is_one_enough = !contacts_.is_touching[shell] || !contacts_.is_touching[around];
   Sides sides;
-  const auto look = [&](const Point& p) {
-    ++looks_;
-    const Location location = locate(p, around);
+  const auto note = [&](Location location) {
     sides.has_inside = sides.has_inside || location == Location::inside;
     sides.has_outside = sides.has_outside || location == Location::outside;
     return location != Location::boundary;
+  };
+  const auto look = [&](const Point& p) {
+    ++looks_;
+    return note(locate(p, around));
   };
   for (const Triangle& t : triangles_of(examined_, shell)) {
     if (looks_ > kMostLooks || examined_.is_cancelled()) break;
     bool is_seen = false;
     for (const Index vertex : t) is_seen = look(vertices[vertex]) || is_seen;
-    // All three corners touch: a point inside the triangle. Quarters of lattice integers are exact.
-    for (std::size_t i = 0; i < 3 && !is_seen; ++i) {
-      Point inner;
-      for (int axis = 0; axis < 3; ++axis) {
-        inner[axis] = vertices[t[i]][axis] / 2 + vertices[t[(i + 1) % 3]][axis] / 4 +
-                      vertices[t[(i + 2) % 3]][axis] / 4;
-      }
-      is_seen = look(inner);
+    // All three corners touch: points inside the triangle.
+    for (std::uint64_t i = 1; i <= triangle_points(kPointExponent) && !is_seen; ++i) {
+      ++looks_;
+      const std::array<Point, 3> corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+      is_seen = note(locate_inside(triangle_point(corners, kPointExponent, i), around));
     }
     if (is_seen && is_one_enough) break;
     if (sides.has_inside && sides.has_outside) break;
@@ -183,8 +204,47 @@ void SolidExaminer::report(int code, Index shell, Index other, std::string detai
   examined_.findings.add(std::move(finding));
 }
 
+/// True if the shells touch and both are surfaces without a defect of their own, so that the
+/// regions inside them can be compared; else some of their points are located.
+bool SolidExaminer::can_be_related(Index a, Index b) const {
+  const auto is_region = [&](Index shell) {
+    return contacts_.is_touching[shell] && is_surface_[shell] && shells_[shell].is_sound() &&
+           volume_signs_[shell] != 0;
+  };
+  return !is_uncertain() && is_region(a) && is_region(b);
+}
+
+/// The region inside a shell, made when first asked for.
+const RegionSurface& SolidExaminer::region(Index shell) {
+  auto place = regions_.find(shell);
+  if (place == regions_.end()) {
+    const Solid& solid = examined_.solid();
+    place = regions_
+                .emplace(shell, surface_of_shells(solid, solid.vertices(), examined_.triangles(),
+                                                  {shell, shell + 1}, volume_signs_[shell] < 0))
+                .first;
+  }
+  return place->second;
+}
+
+RegionRelation SolidExaminer::relate(Index a, Index b) {
+  looks_ += region(a).triangles().size() + region(b).triangles().size();
+  return relate_regions(region(a), region(b), {true, true},
+                        [&] { return examined_.ask_cancelled(); });
+}
+
 void SolidExaminer::check_inside_exterior(Index shell) {
   if (duplicate_of_[shell] == 0 || do_intersect(0, shell)) return;
+  if (can_be_related(shell, 0)) {
+    const RegionRelation relation = relate(shell, 0);
+    if (relation.is_cancelled || relation.is_first_inside) return;
+    if (!relation.do_overlap || relation.is_second_inside) {
+      report(kInnerShellOutside, shell, 0, "the inner shell lies outside the exterior shell");
+    } else {
+      report(kIntersectionShells, shell, 0, "the shells cross along vertices or edges");
+    }
+    return;
+  }
   if (!can_be_located_in(0) || triangles_of(examined_, shell).empty()) {
     skip({kInnerShellOutside}, "inner shells cannot be located in a shell that is not closed");
     return;
@@ -205,6 +265,16 @@ void SolidExaminer::check_apart(Index a, Index b) {
   const Index second = std::max(a, b);
   if (duplicate_of_[first] != kNone || duplicate_of_[second] != kNone) return;
   if (do_intersect(first, second)) return;
+  if (can_be_related(first, second)) {
+    const RegionRelation relation = relate(first, second);
+    if (relation.is_cancelled || !relation.do_overlap) return;
+    const bool is_one_inside = relation.is_first_inside || relation.is_second_inside;
+    report(kIntersectionShells, relation.is_second_inside ? second : first,
+           relation.is_second_inside ? first : second,
+           is_one_inside ? "an inner shell lies inside another"
+                         : "the shells cross along vertices or edges");
+    return;
+  }
   for (const auto& [inner, outer] : {std::pair(first, second), std::pair(second, first)}) {
     if (!can_be_located_in(outer) || triangles_of(examined_, inner).empty()) continue;
     const Sides sides = locate_shell(inner, outer);

@@ -318,6 +318,26 @@ TEST_CASE("a facet that is not planar is triangulated in projection") {
   CHECK(state_of({ring}) == FacetState::triangulated);
 }
 
+TEST_CASE("a rectangle with a corner off its plane has the diagonal of its mirror image") {
+  for (std::size_t lifted = 0; lifted < 4; ++lifted) {
+    Ring ring{{0, 0, 5}, {30, 0, 5}, {30, 20, 5}, {0, 20, 5}};
+    ring[lifted].z += 1;
+    for (int mirror = 0; mirror < 8; ++mirror) {
+      Ring image = ring;
+      for (Point& p : image) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if ((mirror >> axis & 1) != 0) p[axis] = 40 - p[axis];
+        }
+      }
+      std::size_t touching = 0;  // triangles with the lifted corner
+      for (const PointTriangle& t : point_triangles(facet_solid({image}))) {
+        touching += std::count(t.begin(), t.end(), image[lifted]) > 0 ? 1 : 0;
+      }
+      CHECK(touching == 1);  // the diagonal between the other two is the shorter one
+    }
+  }
+}
+
 TEST_CASE("triangles are grouped by facet and facets without triangles are kept") {
   SolidArrays arrays;
   arrays.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -156,7 +156,7 @@ std::set<std::set<Corner>> fine_boundary(const Body& body) {
 
 /// An affine map of integers with determinant 1 makes all planes oblique. With `scale` the
 /// coordinates are no integers of few digits, so that rationals decide.
-SolidSurface surface_of(const Body& body, bool is_oblique, double scale) {
+RegionSurface surface_of(const Body& body, bool is_oblique, double scale) {
   std::map<Corner, Index> number;
   std::vector<Point> points;
   std::vector<Triangle> triangles;
@@ -198,16 +198,21 @@ void check_pair(const Body& a, const Body& b, bool is_oblique, double scale, Cou
     const auto boundary = fine_boundary(a);
     for (const auto& face : fine_boundary(b)) share_area = share_area || boundary.contains(face);
   }
-  const SolidSurface first = surface_of(a, is_oblique, scale);
-  const SolidSurface second = surface_of(b, is_oblique, scale);
-  const SolidRelation relation = relate(first, second, {});
+  const RegionSurface first = surface_of(a, is_oblique, scale);
+  const RegionSurface second = surface_of(b, is_oblique, scale);
+  const RegionRelation relation = relate_regions(first, second, {true, true}, {});
   REQUIRE(relation.do_overlap == do_overlap);
-  REQUIRE(relation.are_equal == are_equal);
-  if (!do_overlap) REQUIRE(relation.share_area == share_area);
+  const auto is_within = [](const std::set<Corner>& inner, const std::set<Corner>& outer) {
+    return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
+  };
+  REQUIRE(relation.is_first_inside == is_within(cells_a, cells_b));
+  REQUIRE(relation.is_second_inside == is_within(cells_b, cells_a));
+  if (!do_overlap) REQUIRE(relation.touch_back_to_back == share_area);
   REQUIRE_FALSE(relation.is_cancelled);
-  const SolidRelation turned = relate(second, first, {});
+  const RegionRelation turned = relate_regions(second, first, {true, true}, {});
   REQUIRE(turned.do_overlap == do_overlap);
-  REQUIRE(turned.are_equal == are_equal);
+  REQUIRE(turned.is_first_inside == relation.is_second_inside);
+  REQUIRE(turned.is_second_inside == relation.is_first_inside);
   if (do_overlap && scale == 1) {
     const OverlapExtent extent = measure_overlap(first, second, {1, 1, 1});
     REQUIRE(extent.depth > 0);
@@ -300,10 +305,11 @@ TEST_CASE(
     // A corner cell less may leave the rest in two parts; as the second solid that is allowed for.
     Body less = fine;
     less.cells.erase(less.cells.begin());
-    const SolidRelation relation =
-        relate(surface_of(coarse, false, 1), surface_of(less, false, 1), {});
+    const RegionRelation relation =
+        relate_regions(surface_of(coarse, false, 1), surface_of(less, false, 1), {true, true}, {});
     REQUIRE(relation.do_overlap);
-    REQUIRE_FALSE(relation.are_equal);
+    REQUIRE_FALSE(relation.is_first_inside);
+    REQUIRE(relation.is_second_inside);
   }
   CHECK(counts.equal == 60);
 }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Whether the points of a facet are in one plane, exactly. A facet of which they are is the same
+// set of points under every triangulation; any other is what its canonical triangles make it. For
+// validate and delaunay.
+#pragma once
+
+#include "geometry/point.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// Exact for any finite doubles; much faster than orient3d() where the answer is yes and the
+/// coordinates are integers. Requires four different points.
+bool are_coplanar(const Point& a, const Point& b, const Point& c, const Point& d);
+
+/// True if all ring vertices of a facet are in one plane, exactly. Cost: linear.
+bool is_flat(const Solid& solid, Index facet);
+
+}  // namespace watertight

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The diagonals of the canonical triangulation of facets: where they touch other facets, and which
+// of them have another that fills the facet otherwise. Facets of a shell share an edge only where a
+// segment is an edge of the boundary of both. Where it is a diagonal of one of them, the facets
+// touch, or cross, along it, although their triangles merely have an edge in common. Internal to
+// validate/.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/box_partition.h"
+#include "tessellate/facets.h"
+
+namespace watertight {
+
+/// An edge of triangles of one facet.
+struct FacetEdge {
+  Index low = 0;  // the smaller vertex
+  Index high = 0;
+  Index facet = 0;
+  std::array<Index, 2> triangles{kNone, kNone};  // the second: kNone on the facet's boundary
+  bool is_diagonal() const { return triangles[1] != kNone; }
+};
+
+/// The edges of a facet's triangles, sorted by their vertices. Cost: O(k log k).
+std::vector<FacetEdge> facet_edges(const FacetTriangles& facets, Index facet);
+
+/// Pairs of triangles of different facets of one shell that have an edge in common which is a
+/// diagonal of at least one of the facets, as ContactClass::edge_overlap with first < second. Of
+/// several facets at one segment, each is paired with the first that has it as a diagonal.
+/// Cost: O(n log n) for solids with facets of more than one triangle, else constant.
+std::vector<IntersectingPair> diagonal_contacts(const Solid& solid, const FacetTriangles& facets);
+
+/// A diagonal u-v of a facet between triangles (u, v, right) and (v, u, left) whose quadrilateral
+/// is strictly convex in the facet's projection and not flat.
+struct Diagonal {
+  Index u = 0;
+  Index v = 0;
+  Index right = 0;  // corner of `first`
+  Index left = 0;   // corner of `second`
+  Index first = 0;
+  Index second = 0;
+  std::array<Triangle, 2> flipped() const { return {{{u, left, right}, {left, v, right}}}; }
+};
+
+/// The diagonals of a facet that can be flipped and are folds. Exact. Cost: O(k log k).
+std::vector<Diagonal> other_diagonals(const Solid& solid, const FacetTriangles& facets,
+                                      Index facet);
+
+}  // namespace watertight

@@ -86,7 +86,7 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   sub->add_option("--proof", command.proof, "what proves validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
       ->capture_default_str();
-  sub->add_option("--engine", command.engine, "what makes the tetrahedralizations")
+  sub->add_option("--engine", command.engine, "what makes the tetrahedralizations, if it can")
       ->check(CLI::IsMember({"auto", "cgal", "tetgen"}))
       ->capture_default_str();
   sub->add_flag("--strict", command.is_strict, "only the canonical triangles of facets count");

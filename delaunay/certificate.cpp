@@ -16,9 +16,11 @@
 #include "delaunay/cancellation.h"
 #include "delaunay/complex.h"
 #include "delaunay/facet_surface.h"
+#include "delaunay/sort_by_vertices.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "tessellate/flatness.h"
 
 namespace watertight {
 namespace {
@@ -39,6 +41,16 @@ struct OrientedFace {
   Index facet = kNone;
   Index outer = kNone;  // the tetrahedron to which the declared normal points; kNone: the outside
   Index inner = kNone;
+};
+
+/// An edge of a face. The corners of face f are numbered 3 f, 3 f + 1, 3 f + 2.
+struct FaceEdge {
+  Triangle key{};     // the smaller vertex, the larger, the corner at the smaller
+  Index at_high = 0;  // the corner at the larger
+  Index shell = 0;
+  bool is_same_edge(const FaceEdge& other) const {
+    return key[0] == other.key[0] && key[1] == other.key[1] && shell == other.shell;
+  }
 };
 
 class Examination {
@@ -64,7 +76,8 @@ class Examination {
     for (const Step step :
          {&Examination::check_indices, &Examination::check_points, &Examination::check_complex,
           &Examination::check_facets, &Examination::check_regions, &Examination::check_orientation,
-          &Examination::check_interior, &Examination::check_cavities, &Examination::check_volume}) {
+          &Examination::check_interior, &Examination::check_cavities, &Examination::check_manifold,
+          &Examination::check_volume}) {
       if (Checked refused = (this->*step)()) return refused;
       if (cancellation_.is_wanted()) return cancelled();
     }
@@ -181,23 +194,54 @@ class Examination {
     certificate_.largest_deviation =
         std::max(certificate_.largest_deviation, surface.largest_deviation);
     volume_slack_ += surface.volume_slack;
-    if (!surface.follows_canonical && !is_planar(facet))
+    if (!surface.follows_canonical && !is_flat(solid_, facet)) {
       certificate_.refilled_facets.push_back(facet);
+    }
     return std::nullopt;
   }
 
-  /// Exactly: every ring vertex lies in the plane of the facet's first canonical triangle.
-  bool is_planar(Index facet) const {
-    const Triangle& t = canonical_.triangles[canonical_.first[facet]];
-    const auto& p = data_.points;
-    const IndexRange rings = solid_.rings_of(facet);
-    for (Index ring = rings.begin; ring < rings.end; ++ring) {
-      for (const Index v : solid_.ring(ring)) {
-        if (std::find(t.begin(), t.end(), v) != t.end()) continue;
-        if (orient3d(p[t[0]], p[t[1]], p[t[2]], p[v]) != 0) return false;
-      }
+  /// The faces of each shell are a 2-manifold: every edge has two of them, and the faces around
+  /// each vertex form one fan. The exact tests say the same of the canonical triangles; here it is
+  /// asked of the faces themselves.
+  Checked check_manifold() {
+    std::vector<FaceEdge> edges;
+    edges.reserve(3 * oriented_.size());
+    std::vector<Index> seen_in(data_.points.size(), kNone);  // vertex -> last shell that has it
+    std::size_t vertices = 0;                                // of the shells, summed
+    Index shell = 0;
+    for (Index f = 0; f < oriented_.size(); ++f) {
+      while (oriented_[f].facet >= solid_.facets_of(shell).end) ++shell;
+      const Triangle& t = complex_.faces[oriented_[f].face].vertices;
+      for (const Index v : t) vertices += std::exchange(seen_in[v], shell) == shell ? 0 : 1;
+      edges.push_back({{t[0], t[1], 3 * f}, 3 * f + 1, shell});
+      edges.push_back({{t[0], t[2], 3 * f}, 3 * f + 2, shell});
+      edges.push_back({{t[1], t[2], 3 * f + 1}, 3 * f + 2, shell});
     }
-    return true;
+    sort_by_vertices(edges, data_.points.size(), [](const FaceEdge& edge) { return edge.key; });
+    return check_fans(edges, vertices);
+  }
+
+  /// Requires edges sorted by their ends, then by shell.
+  Checked check_fans(std::span<const FaceEdge> edges, std::size_t vertices) {
+    DisjointSets corners(edges.size());
+    for (std::size_t i = 0; i < edges.size(); i += 2) {
+      const bool is_pair = i + 1 < edges.size() && edges[i + 1].is_same_edge(edges[i]) &&
+                           (i + 2 == edges.size() || !edges[i + 2].is_same_edge(edges[i]));
+      if (!is_pair) {
+        return refuse(CertificateRefusal::not_a_manifold,
+                      "an edge of the boundary has not two faces of its shell",
+                      oriented_[edges[i].at_high / 3].facet);
+      }
+      corners.join(edges[i].key[2], edges[i + 1].key[2]);
+      corners.join(edges[i].at_high, edges[i + 1].at_high);
+    }
+    std::size_t fans = 0;
+    for (Index corner = 0; corner < edges.size(); ++corner) {
+      if (corners.root(corner) == corner) ++fans;
+    }
+    if (fans == vertices) return std::nullopt;
+    return refuse(CertificateRefusal::not_a_manifold,
+                  "the faces of a shell around a vertex are no single fan");
   }
 
   /// The region of a tetrahedron; kNone stands for the outside.
@@ -431,6 +475,8 @@ std::string_view to_string(CertificateRefusal refusal) {
       return "cavity-mismatch";
     case CertificateRefusal::facet_not_conforming:
       return "facet-not-conforming";
+    case CertificateRefusal::not_a_manifold:
+      return "not-a-manifold";
     case CertificateRefusal::foreign_face:
       return "foreign-face";
     case CertificateRefusal::wrong_orientation:
@@ -449,7 +495,9 @@ CertificateResult check_certificate(const Solid& solid, const FacetTriangles& fa
   CertificateResult result;
   result.certificate.rung = rung;
   result.certificate.tetrahedralization = std::move(tetrahedralization);
-  if (const Checked refused = Examination(solid, facets, result.certificate, is_cancelled).run()) {
+  const Checked refused = Examination(solid, facets, result.certificate, is_cancelled).run();
+  result.refilled_facets = result.certificate.refilled_facets;
+  if (refused) {
     result.refusal = refused->refusal;
     result.detail = refused->detail;
     result.facet = refused->facet;

@@ -47,6 +47,7 @@ enum class CertificateRefusal : std::uint8_t {
   interior_disconnected,  // more than one interior region (a property of the solid)
   cavity_mismatch,        // cavities and declared inner shells differ (a property of the solid)
   facet_not_conforming,   // a facet's faces are no disc with its rings as boundary
+  not_a_manifold,         // faces of one shell meet at more edges or vertices than neighbours do
   foreign_face,           // a constrained face that belongs to no facet
   wrong_orientation,      // a declared normal points inward (a property of the solid)
   volume_mismatch,
@@ -58,6 +59,9 @@ struct CertificateResult {
   CertificateRefusal refusal = CertificateRefusal::none;
   std::string detail;
   Index facet = kNone;
+  /// As in the certificate, also with a refusal that comes after the facets were examined: then it
+  /// speaks of another surface than the canonical triangulation, and is no property of the solid.
+  std::vector<Index> refilled_facets;
   Certificate certificate;  // when refusal is none
 };
 

@@ -324,6 +324,7 @@ std::vector<Triangle> follow_facet(const Solid& merged, Index facet,
 
 Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
                                            const CanonicalDelaunay& delaunay,
+                                           const std::vector<bool>& is_kept,
                                            const std::function<bool()>& is_cancelled) {
   WATERTIGHT_ASSERT(canonical.first.size() == std::size_t{merged.facet_count()} + 1);
   FollowingTriangles result;
@@ -338,7 +339,10 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTrian
     if (cancellation.is_due_and_wanted(1 + 16 * own.size())) {
       return Error{ErrorCode::cancelled, "cancelled by the caller"};
     }
-    std::vector<Triangle> triangles = follow_facet(merged, facet, own, faces, local_of);
+    std::vector<Triangle> triangles(own.begin(), own.end());
+    if (is_kept.empty() || !is_kept[facet]) {
+      triangles = follow_facet(merged, facet, own, faces, local_of);
+    }
     for (Triangle& t : triangles)
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     std::sort(triangles.begin(), triangles.end());
@@ -358,7 +362,7 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTrian
 
 FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
                                    const CanonicalDelaunay& delaunay) {
-  Result<FollowingTriangles> result = follow_delaunay(merged, canonical, delaunay, {});
+  Result<FollowingTriangles> result = follow_delaunay(merged, canonical, delaunay, {}, {});
   WATERTIGHT_ASSERT(result.has_value());  // nobody cancels
   return *std::move(result);
 }

@@ -45,9 +45,11 @@ struct FollowingTriangles {
 FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
                                    const CanonicalDelaunay& delaunay);
 
-/// The same, asking every few thousand triangles whether to go on. Errors: cancelled.
+/// The same, asking every few thousand triangles whether to go on, and taking the triangles of
+/// facets that `is_kept` names (by facet; empty: none) as they are. Errors: cancelled.
 Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
                                            const CanonicalDelaunay& delaunay,
+                                           const std::vector<bool>& is_kept,
                                            const std::function<bool()>& is_cancelled);
 
 }  // namespace watertight

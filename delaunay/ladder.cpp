@@ -21,7 +21,7 @@
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
 #include "delaunay/follow_delaunay.h"
-#include "delaunay/shell_contacts.h"
+#include "tessellate/flatness.h"
 
 namespace watertight {
 namespace {
@@ -82,10 +82,9 @@ std::vector<Index> sorted_vertices(std::span<const Point> vertices) {
   return order;
 }
 
-/// Facets that hold vertices or edges of other shells are given triangle by triangle: engines do
-/// not expect constraints inside a patch.
+/// Some facets are given triangle by triangle, not as patches.
 EngineInput engine_input(const Solid& solid, const FacetTriangles& canonical,
-                         const std::vector<bool>& is_touched) {
+                         const std::vector<bool>& is_taken_apart) {
   EngineInput input;
   input.vertex_at = sorted_vertices(solid.vertices());
   std::vector<Index> rank(input.vertex_at.size());
@@ -107,7 +106,7 @@ EngineInput engine_input(const Solid& solid, const FacetTriangles& canonical,
   }
   std::sort(facets.begin(), facets.end());
   for (const auto& [triangles, facet] : facets) {
-    const bool is_apart = !is_touched.empty() && is_touched[facet];
+    const bool is_apart = !is_taken_apart.empty() && is_taken_apart[facet];
     for (const Triangle& triangle : triangles) {
       if (is_apart || &triangle == &triangles.front()) input.facet_at.push_back(facet);
       input.complex.triangles.push_back(triangle);
@@ -164,6 +163,15 @@ Tetrahedralization restore(Tetrahedralization answer, const EngineInput& input,
   return answer;
 }
 
+/// The rungs of the engine that is asked for come first. No engine decides: where it has no answer,
+/// the others are asked, so that a verdict does not depend on the choice.
+std::array<Rung, 5> order_of_rungs(Engine engine) {
+  using enum Rung;
+  if (engine == Engine::cgal) return {patch, patch_scaled, triangles_scaled, delaunay, tetgen};
+  if (engine == Engine::tetgen) return {tetgen, delaunay, patch, patch_scaled, triangles_scaled};
+  return {delaunay, patch, patch_scaled, triangles_scaled, tetgen};
+}
+
 class Climb {
  public:
   Climb(const Solid& solid, const FacetTriangles& canonical, EngineWorkers* workers,
@@ -171,17 +179,20 @@ class Climb {
       : solid_(solid), canonical_(canonical), workers_(workers), options_(options) {}
 
   LadderResult run() {
-    Result<ContactTriangles> contacts = divide_at_contacts(solid_, canonical_, options_.cancel);
-    if (!contacts) {
-      result_.obstacle = "contacts of shells: " + to_string(contacts.error());
-      return std::move(result_);
+    if (options_.contacts != nullptr) {
+      contacts_ = *options_.contacts;
+    } else {
+      Result<ContactTriangles> contacts = divide_at_contacts(solid_, canonical_, options_.cancel);
+      if (!contacts) {
+        result_.obstacle = "contacts of shells: " + to_string(contacts.error());
+        return std::move(result_);
+      }
+      contacts_ = *std::move(contacts);
     }
-    contacts_ = *std::move(contacts);
     result_.obstacle = contacts_.obstacle;
-    for (const Rung rung :
-         {Rung::delaunay, Rung::patch, Rung::patch_scaled, Rung::triangles_scaled, Rung::tetgen}) {
-      if (rung > options_.last_rung) break;
-      if (rung < options_.first_rung || !applies(rung)) continue;
+    if (solid_.shell_count() > 1 || options_.strict) keep_canonical();
+    for (const Rung rung : order_of_rungs(options_.engine)) {
+      if (rung < options_.first_rung || rung > options_.last_rung || !applies(rung)) continue;
       if (options_.cancel && options_.cancel()) break;
       attempt_ = RungAttempt{};
       attempt_.rung = rung;
@@ -203,18 +214,41 @@ class Climb {
     return contacts_.has_contacts() ? contacts_.triangles : canonical_;
   }
 
+  /// From here on facets that are not flat follow their canonical triangles. Of a solid of one
+  /// shell the exact tests prove one interior (Jordan-Brouwer), so that another filling of such
+  /// facets, which is easier to have, decides nothing as long as it is accepted.
+  void keep_canonical() {
+    is_kept_.resize(solid_.facet_count());
+    for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
+      const bool is_one_triangle = canonical_.first[facet + 1] - canonical_.first[facet] == 1;
+      is_kept_[facet] = !is_one_triangle && !is_flat(solid_, facet);
+    }
+    input_ = EngineInput{};
+  }
+
+  /// Facets that engines get triangle by triangle: those that hold vertices or edges of other
+  /// shells, as engines do not expect constraints inside a patch, and those that must follow their
+  /// canonical triangles.
+  std::vector<bool> taken_apart() const {
+    if (is_kept_.empty()) return contacts_.is_touched;
+    std::vector<bool> result = is_kept_;
+    for (std::size_t i = 0; i < contacts_.is_touched.size(); ++i) {
+      result[i] = result[i] || contacts_.is_touched[i];
+    }
+    return result;
+  }
+
   bool applies(Rung rung) {
     switch (rung) {
-      case Rung::delaunay:
-        return options_.engine == Engine::automatic;
       case Rung::patch:
-        return options_.engine != Engine::tetgen && !options_.strict && !is_anisotropic();
+        return !options_.strict && !is_anisotropic();
       case Rung::patch_scaled:
-        return options_.engine != Engine::tetgen && !options_.strict && is_new(rung);
+        return !options_.strict && is_new(rung);
       case Rung::triangles_scaled:
-        return options_.engine != Engine::tetgen && is_new(rung);
+        return is_new(rung);
+      case Rung::delaunay:
       case Rung::tetgen:
-        return options_.engine != Engine::cgal;
+        return true;
       case Rung::none:
         break;
     }
@@ -279,7 +313,7 @@ class Climb {
         solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), options_.cancel);
     if (!delaunay) return conclude(delaunay.error());
     Result<FollowingTriangles> followed =
-        follow_delaunay(solid_, triangles(), *delaunay, options_.cancel);
+        follow_delaunay(solid_, triangles(), *delaunay, is_kept_, options_.cancel);
     if (!followed) return conclude(followed.error());
     const FollowingTriangles& following = *followed;
     if (following.missing_total > 0) {
@@ -310,9 +344,7 @@ class Climb {
     if (!(limits.cpu_seconds > 0)) {
       return conclude(RungOutcome::not_started, "not-started: the rungs before took all the time");
     }
-    if (input_.facet_at.empty()) {
-      input_ = engine_input(solid_, triangles(), contacts_.is_touched);
-    }
+    if (input_.facet_at.empty()) input_ = engine_input(solid_, triangles(), taken_apart());
     const std::array<double, 3> scale = scale_of(rung);
     CdtJob job;
     job.constraints = constraints_of(rung);
@@ -363,8 +395,20 @@ class Climb {
     if (checked.refusal == CertificateRefusal::cancelled) {
       return conclude(RungOutcome::cancelled, "cancelled: cancelled by the caller");
     }
+    const bool is_canonical = checked.refilled_facets.empty();
+    if (checked.refusal == CertificateRefusal::none && !is_canonical && !is_kept_.empty()) {
+      attempt_.refusal = CertificateRefusal::facet_not_conforming;
+      return conclude(RungOutcome::refused_by_certificate,
+                      "refused: a facet that is not planar is filled otherwise than its canonical "
+                      "triangles");
+    }
     if (checked.refusal != CertificateRefusal::none) {
-      if (is_property_of_solid(checked.refusal)) {
+      if (!is_canonical) {
+        keep_canonical();
+        if (is_property_of_solid(checked.refusal)) {
+          attempt_.refusal = CertificateRefusal::facet_not_conforming;
+        }
+      } else if (is_property_of_solid(checked.refusal)) {
         result_.property = checked.refusal;
         result_.detail = checked.detail;
         result_.facet = checked.facet;
@@ -372,12 +416,6 @@ class Climb {
       return conclude(
           RungOutcome::refused_by_certificate,
           "refused: " + std::string(to_string(checked.refusal)) + ": " + checked.detail);
-    }
-    if (options_.strict && !checked.certificate.refilled_facets.empty()) {
-      attempt_.refusal = CertificateRefusal::facet_not_conforming;
-      return conclude(RungOutcome::refused_by_certificate,
-                      "refused: a facet that is not planar is filled otherwise than its canonical "
-                      "triangles");
     }
     result_.certificate = std::move(checked.certificate);
     conclude(RungOutcome::accepted, "accepted");
@@ -388,6 +426,7 @@ class Climb {
   EngineWorkers* workers_;
   const LadderOptions& options_;
   ContactTriangles contacts_;
+  std::vector<bool> is_kept_;  // facet -> follows its canonical triangles; empty: none must
   EngineInput input_;
   RungAttempt attempt_;
   double engines_seconds_ = 0;  // CPU time of workers so far

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "delaunay/certificate.h"
+#include "delaunay/shell_contacts.h"
 #include "workers/worker_pool.h"
 
 namespace watertight {
 
+/// The engine that is asked first; automatic: none before the canonical DT.
 enum class Engine : std::uint8_t { automatic, cgal, tetgen };
 
 /// The processes a ladder may use. One object per process of ours; thread-safe.
@@ -43,6 +45,8 @@ struct LadderOptions {
   /// default_ladder_seconds()). A rung gets what those before it left.
   double seconds_in_all = 0;
   CancelPoll cancel = {};
+  /// divide_at_contacts() of the solid, where the caller has it; null: the ladder divides.
+  const ContactTriangles* contacts = nullptr;
 };
 
 /// CPU seconds of engines that a solid with this many boundary triangles may cost by default:

@@ -26,9 +26,11 @@ class Certifier {
     apply_exact_rules();
     measure_solid();
     if (examined_.findings.has_errors()) {
-      examined_.findings.skip({kSolidInteriorDisconnected},
-                              "the tetrahedralization is built only for solids that pass the "
-                              "exact tests");
+      if (!examined_.findings.has(kSolidInteriorDisconnected)) {
+        examined_.findings.skip({kSolidInteriorDisconnected},
+                                "the tetrahedralization is built only for solids that pass the "
+                                "exact tests");
+      }
       verdict_ = Verdict::invalid;
     } else if (!incomplete_.empty()) {
       inspection_.report.undecided_reason = incomplete_;
@@ -53,6 +55,7 @@ class Certifier {
   void measure_solid();
   void prove(EngineWorkers* workers);
   bool is_sound() const;
+  void examine_interior(const ShellContacts& contacts);
   void climb(EngineWorkers* workers);
   void report_property(const LadderResult& result);
   void accept(std::optional<Certificate> certificate);
@@ -61,7 +64,9 @@ class Certifier {
   const CertifyOptions& options_;
   ExaminedSolid examined_;
   std::vector<ShellTopology> shells_;
-  std::string incomplete_;  // why the exact tests did not finish
+  std::string incomplete_;                   // why the exact tests did not finish
+  std::optional<ContactTriangles> divided_;  // the triangles where shells touch, for several shells
+  bool is_interior_known_ = false;           // the exact tests say whether it is in parts
   TolerantVerdict exact_;
   Verdict verdict_ = Verdict::undecided;
   Inspection inspection_;
@@ -79,6 +84,7 @@ void Certifier::apply_exact_rules() {
   incomplete_ = contacts.incomplete.empty() ? unmeasured : contacts.incomplete;
   check_diagonals(examined_, contacts);
   check_solid(examined_, shells_, duplicate_of, contacts);
+  examine_interior(contacts);
   check_vertices(examined_, options_.unused);
   check_rounded(examined_, options_.rounded);
   if (examined_.was_cancelled() && incomplete_.empty())
@@ -91,6 +97,21 @@ void Certifier::apply_exact_rules() {
   exact_.verdict = has_errors            ? Verdict::invalid
                    : incomplete_.empty() ? Verdict::valid
                                          : Verdict::undecided;
+}
+
+/// Requires that every other rule of shells and solids was applied.
+void Certifier::examine_interior(const ShellContacts& contacts) {
+  if (examined_.findings.has_errors() || !incomplete_.empty() || !is_sound()) return;
+  is_interior_known_ = true;
+  if (examined_.solid().shell_count() == 1) return;
+  divided_.emplace();
+  const auto& touching = contacts.is_touching;
+  if (std::find(touching.begin(), touching.end(), true) == touching.end()) return;
+  auto divided = divide_at_contacts(examined_.solid(), examined_.triangles(),
+                                    [this] { return examined_.ask_cancelled(); });
+  if (divided) *divided_ = *std::move(divided);
+  is_interior_known_ = divided.has_value() && check_interior(examined_, *divided_);
+  if (!divided.has_value()) divided_.reset();
 }
 
 /// What the absence of findings means, asked of the facts themselves.
@@ -119,24 +140,29 @@ void Certifier::measure_solid() {
 void Certifier::prove(EngineWorkers* workers) {
   if (options_.proof == Proof::tetrahedralization) {
     climb(workers);
-  } else if (examined_.solid().shell_count() == 1) {
-    examined_.findings.skip({kSolidInteriorDisconnected},
-                            "one closed 2-manifold shell that does not meet itself bounds one "
-                            "interior (Jordan-Brouwer); proof by boundary was asked for");
+  } else if (is_interior_known_) {
+    if (examined_.solid().shell_count() == 1) {
+      examined_.findings.skip({kSolidInteriorDisconnected},
+                              "one closed 2-manifold shell that does not meet itself bounds one "
+                              "interior (Jordan-Brouwer); proof by boundary was asked for");
+    }
     accept(std::nullopt);
   } else {
     inspection_.report.undecided_reason =
-        "several shells need a tetrahedralization; proof by boundary is for one shell only";
+        "the shells touch where edges cross in a point that is no vertex: only a "
+        "tetrahedralization can tell whether the interior is in parts";
   }
 }
 
 void Certifier::climb(EngineWorkers* workers) {
-  LadderResult result =
-      climb_ladder(examined_.solid(), examined_.triangles(), workers, options_.ladder);
+  LadderOptions options = options_.ladder;
+  if (divided_) options.contacts = &*divided_;
+  LadderResult result = climb_ladder(examined_.solid(), examined_.triangles(), workers, options);
   Report& report = inspection_.report;
   report.attempts = std::move(result.attempts);
   if (result.certificate) {
     report.rung = result.certificate->rung;
+    report.refilled_facets = result.certificate->refilled_facets;
     accept(std::move(result.certificate));
   } else if (result.property != CertificateRefusal::none) {
     report_property(result);
@@ -149,12 +175,10 @@ void Certifier::climb(EngineWorkers* workers) {
   }
 }
 
-/// The exact tests of a single closed, orientable shell prove one interior and its orientation: a
-/// certificate that says otherwise shows a defect of this program, not of the solid.
+/// The certificate speaks of the canonical triangles here, as the exact tests do. Where these know
+/// the interior, one that says otherwise shows a defect of this program, not of the solid.
 void Certifier::report_property(const LadderResult& result) {
-  const bool is_proven = examined_.solid().shell_count() == 1 ||
-                         result.property == CertificateRefusal::wrong_orientation;
-  if (is_proven) {
+  if (is_interior_known_) {
     inspection_.report.undecided_reason = "the exact tests and the tetrahedralization disagree (";
     inspection_.report.undecided_reason += to_string(result.property);
     inspection_.report.undecided_reason += "); please report this solid as a defect";
@@ -168,10 +192,9 @@ void Certifier::report_property(const LadderResult& result) {
     case CertificateRefusal::cavity_mismatch:
       finding.code = kInnerShellOutside;
       break;
-    default:
-      inspection_.report.undecided_reason =
-          "the tetrahedralization was refused: " + std::string(to_string(result.property));
-      return;
+    default:  // every shell is turned right by itself, so two of them cross
+      finding.code = kIntersectionShells;
+      break;
   }
   if (result.facet != kNone && result.facet < examined_.solid().facet_count()) {
     finding.place = examined_.at_facet(result.facet);

@@ -67,6 +67,9 @@ struct Report {
   std::vector<std::string> notes;     // e.g. unit assumptions
   std::vector<RungAttempt> attempts;  // of the CDT ladder
   Rung rung = Rung::none;
+  /// Facets that are not exactly planar and that the accepted tetrahedralization fills otherwise
+  /// than their canonical triangles, which the exact tests judged; of solids of one shell only.
+  std::vector<Index> refilled_facets;
   std::optional<Measures> measures;  // when the boundary is closed and triangulated
   double seconds = 0;                // wall; not part of the deterministic content
 };

@@ -222,6 +222,7 @@ std::string report_json(const Report& report, const Solid& submitted,
   }
   json["notes"] = report.notes;
   json["rung"] = to_string(report.rung);
+  if (!report.refilled_facets.empty()) json["refilled_facets"] = report.refilled_facets;
   json["attempts"] = Json::array();
   for (const RungAttempt& attempt : report.attempts) {
     Json entry{{"rung", to_string(attempt.rung)}, {"outcome", attempt.outcome}};

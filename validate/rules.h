@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "delaunay/shell_contacts.h"
 #include "validate/examined_solid.h"
 
 namespace watertight {
@@ -65,6 +66,10 @@ void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts);
 /// 401 (shells that cross in vertices and edges, nested cavities), 403, 405; warning 806.
 void check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
                  const std::vector<Index>& duplicate_of, const ShellContacts& contacts);
+/// 404, and warning 804 where another diagonal makes or undoes it. Requires sound shells that
+/// passed every other rule. False if it could not be decided: edges of shells cross where no vertex
+/// is.
+bool check_interior(ExaminedSolid& examined, const ContactTriangles& contacts);
 /// Warnings: 801, 802 (with those that the reader left out), 803.
 void check_vertices(ExaminedSolid& examined, const UnusedVertices& left_out);
 /// Warning 805: vertices that the reader rounded.

@@ -26,10 +26,12 @@ LadderResult climb(const Shape& shape, const LadderOptions& options = {}) {
   return climb_ladder(solid, triangulate_facets(solid), &engines(), options);
 }
 
-LadderOptions only(Engine engine, Rung last = Rung::tetgen) {
+LadderOptions only(Engine engine) {
   LadderOptions options;
   options.engine = engine;
-  options.last_rung = last;
+  if (engine == Engine::cgal) options.first_rung = Rung::patch;
+  if (engine == Engine::cgal) options.last_rung = Rung::triangles_scaled;
+  if (engine == Engine::tetgen) options.first_rung = Rung::tetgen;
   return options;
 }
 

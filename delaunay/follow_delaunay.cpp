@@ -339,10 +339,10 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTrian
     if (cancellation.is_due_and_wanted(1 + 16 * own.size())) {
       return Error{ErrorCode::cancelled, "cancelled by the caller"};
     }
-    std::vector<Triangle> triangles(own.begin(), own.end());
-    if (is_kept.empty() || !is_kept[facet]) {
-      triangles = follow_facet(merged, facet, own, faces, local_of);
-    }
+    const bool is_own = !is_kept.empty() && is_kept[facet];
+    std::vector<Triangle> triangles = is_own
+                                          ? std::vector<Triangle>(own.begin(), own.end())
+                                          : follow_facet(merged, facet, own, faces, local_of);
     for (Triangle& t : triangles)
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     std::sort(triangles.begin(), triangles.end());

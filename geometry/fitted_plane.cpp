@@ -24,7 +24,7 @@ constexpr unsigned kBits = 512;
 /// 512 bits.
 constexpr int kMostSweeps = 40;
 /// Doubles are enough where the bound of their rounding is below this share of the distance from
-/// the limit, and of the result.
+/// the limit, and of a result beyond the limit.
 constexpr double kSafeShare = 1e-3;
 constexpr double kDigitsShare = 1e-6;
 
@@ -178,10 +178,13 @@ PlaneDistance distance_to_fitted_plane(std::span<const Triple> points, double li
   }
   if (!(largest > 0) || !std::isfinite(largest)) return {};
   const int exponent = std::ilogb(largest) + 1;
+  // Two factors, since one may exceed the doubles. Both are powers of two: nothing is rounded.
+  const double factor = std::ldexp(1.0, -exponent / 2);
+  const double rest = std::ldexp(1.0, -exponent - -exponent / 2);
   std::vector<Triple> scaled(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
-      scaled[k][i] = std::ldexp(points[k][i] - points[0][i], -exponent);
+      scaled[k][i] = (points[k][i] - points[0][i]) * factor * rest;
     }
   }
   const FittedPlane<double> plane = fit<double>(scaled);
@@ -189,7 +192,7 @@ PlaneDistance distance_to_fitted_plane(std::span<const Triple> points, double li
   const double error = rounding(plane, points.size());
   const double scaled_limit = std::ldexp(limit, -exponent);
   const bool is_known = error <= kSafeShare * std::fabs(result.distance - scaled_limit) &&
-                        error <= kDigitsShare * result.distance;
+                        (result.distance <= scaled_limit || error <= kDigitsShare * result.distance);
   if (!is_known) result = largest_distance(scaled, fit<mpf_class>(scaled));
   result.distance = std::ldexp(result.distance, exponent);
   return result;

@@ -43,9 +43,11 @@ class DiagonalExaminer {
   void find_undone(std::span<const TrianglePair> group);
   bool is_undone(std::span<const TrianglePair> group, Index facet, Index other);
   bool must_end() { return pairs_ > kMostPairs || examined_.is_cancelled(); }
-  std::optional<ContactClass> contact_of(const Triangle& t, Index facet, Index triangle);
+  std::optional<ContactClass> contact_of(const Diagonal& flip, const Triangle& t, Index facet,
+                                         Index triangle);
   bool is_diagonal(Index facet, Index a, Index b);
-  bool is_common_boundary(const Triangle& t, Index facet, const Triangle& u, Index other);
+  bool is_common_boundary(const Diagonal& flip, const Triangle& t, Index facet, const Triangle& u,
+                          Index other);
   bool is_reported(Index a, Index b) const;
   void report(const Diagonal& diagonal, Index facet, Index other, const Point& witness,
               const std::string& what);
@@ -80,35 +82,33 @@ bool DiagonalExaminer::is_diagonal(Index facet, Index a, Index b) {
          edge->is_diagonal();
 }
 
-/// Whether the common edge of a flipped triangle of `facet` and a triangle of `other` is one that
-/// facets of a shell may share: on the boundary of both.
-bool DiagonalExaminer::is_common_boundary(const Triangle& t, Index facet, const Triangle& u,
-                                          Index other) {
+/// Whether a triangle has an edge in common with a flipped one that facets of a shell may share: on
+/// the boundary of both. Diagonals other than the flipped one that meet another facet's edge were
+/// found before.
+bool DiagonalExaminer::is_common_boundary(const Diagonal& flip, const Triangle& t, Index facet,
+                                          const Triangle& u, Index other) {
   std::vector<Index> common;
   for (const Index vertex : t) {
     if (std::find(u.begin(), u.end(), vertex) != u.end()) common.push_back(vertex);
   }
   if (common.size() != 2) return true;
-  const Index a = common[0];
-  const Index b = common[1];
-  if (is_diagonal(facet, a, b) || is_diagonal(other, a, b)) return false;
-  // An edge that the facet's triangles do not have is the diagonal that the flip made.
-  const auto [low, high] = std::minmax(a, b);
-  const std::vector<FacetEdge>& own = edges_.at(facet);
-  return std::any_of(own.begin(), own.end(), [low = low, high = high](const FacetEdge& e) {
-    return e.low == low && e.high == high;
-  });
+  const auto is_end = [&](Index vertex) {
+    return std::find(common.begin(), common.end(), vertex) != common.end();
+  };
+  if (is_end(flip.left) && is_end(flip.right)) return false;
+  return !is_reported(facet, other) || (!is_diagonal(facet, common[0], common[1]) &&
+                                        !is_diagonal(other, common[0], common[1]));
 }
 
 /// How a flipped triangle of `facet` meets a triangle of another facet, if that is a finding.
-std::optional<ContactClass> DiagonalExaminer::contact_of(const Triangle& t, Index facet,
-                                                         Index triangle) {
+std::optional<ContactClass> DiagonalExaminer::contact_of(const Diagonal& flip, const Triangle& t,
+                                                         Index facet, Index triangle) {
   ++pairs_;
   ContactClass contact = classify_contact(vertices_, t, all_.triangles[triangle]);
   const Index other = all_.facet_of[triangle];
   const bool is_one_shell = examined_.shell_of(facet) == examined_.shell_of(other);
   if (is_one_shell && contact == ContactClass::shared_edge &&
-      !is_common_boundary(t, facet, all_.triangles[triangle], other)) {
+      !is_common_boundary(flip, t, facet, all_.triangles[triangle], other)) {
     contact = ContactClass::edge_overlap;
   }
   if (!is_intersection(contact)) return std::nullopt;
@@ -170,7 +170,7 @@ void DiagonalExaminer::find_made(Index facet, const std::vector<Diagonal>& diago
       for (const Index triangle : near) {
         const Index other = all_.facet_of[triangle];
         if (pairs_ > kMostPairs) return;
-        if (!contact_of(t, facet, triangle) || is_reported(facet, other)) continue;
+        if (!contact_of(diagonal, t, facet, triangle) || is_reported(facet, other)) continue;
         if (std::find(reported.begin(), reported.end(), other) != reported.end()) continue;
         reported.push_back(other);
         report(diagonal, facet, other, contact_witness(vertices_, t, all_.triangles[triangle]),
@@ -193,7 +193,7 @@ bool DiagonalExaminer::is_undone(std::span<const TrianglePair> group, Index face
     bool is_met = false;
     for (const Triangle& t : diagonal.flipped()) {
       for (Index triangle = all_.first[other]; triangle < all_.first[other + 1]; ++triangle) {
-        is_met = is_met || contact_of(t, facet, triangle);
+        is_met = is_met || contact_of(diagonal, t, facet, triangle);
       }
     }
     if (is_met) continue;

@@ -2,7 +2,9 @@
 #include "validate/facet_diagonals.h"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
+#include <utility>
 
 #include "delaunay/sort_by_vertices.h"
 #include "geometry/predicates.h"
@@ -11,46 +13,32 @@
 namespace watertight {
 namespace {
 
+/// An edge of one triangle.
+struct Side {
+  Triangle key{};  // the smaller vertex, the larger, the facet
+  Index triangle = 0;
+  bool is_same_segment(const Side& other) const {
+    return key[0] == other.key[0] && key[1] == other.key[1];
+  }
+};
+
+/// Requires the sides of one shell at one segment, by facet. A diagonal is a side of two triangles
+/// of its facet. Pairs the triangles of every other facet with those of the first that has one.
+void append_pairs(std::span<const Side> sides, std::vector<IntersectingPair>& pairs) {
+  const auto diagonal = std::adjacent_find(
+      sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key == b.key; });
+  if (diagonal == sides.end()) return;
+  for (const Side& other : sides) {
+    if (other.key == diagonal->key) continue;
+    for (const Index own : {diagonal->triangle, std::next(diagonal)->triangle}) {
+      pairs.push_back({std::min(own, other.triangle), std::max(own, other.triangle),
+                       ContactClass::edge_overlap});
+    }
+  }
+}
+
 bool have_same_ends(const FacetEdge& a, const FacetEdge& b) {
   return a.low == b.low && a.high == b.high;
-}
-
-/// The edges of all facets' triangles whose ends are ends of diagonals, grouped by segment and, as
-/// facets are numbered shell by shell, by shell.
-std::vector<FacetEdge> edges_at_diagonals(const Solid& solid, const FacetTriangles& facets) {
-  std::vector<bool> is_end(solid.vertex_count(), false);
-  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
-    if (facets.first[facet + 1] - facets.first[facet] < 2) continue;
-    for (const FacetEdge& edge : facet_edges(facets, facet)) {
-      if (edge.is_diagonal()) is_end[edge.low] = is_end[edge.high] = true;
-    }
-  }
-  std::vector<FacetEdge> edges;
-  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
-    for (const FacetEdge& edge : facet_edges(facets, facet)) {
-      if (is_end[edge.low] && is_end[edge.high]) edges.push_back(edge);
-    }
-  }
-  sort_by_vertices(edges, solid.vertex_count(), [](const FacetEdge& edge) {
-    return Triangle{edge.low, edge.high, edge.facet};
-  });
-  return edges;
-}
-
-/// Pairs every other facet at the segment with the first that has it as a diagonal.
-void append_pairs(std::span<const FacetEdge> at_segment, std::vector<IntersectingPair>& pairs) {
-  const auto diagonal = std::find_if(at_segment.begin(), at_segment.end(),
-                                     [](const FacetEdge& edge) { return edge.is_diagonal(); });
-  if (diagonal == at_segment.end()) return;
-  for (const FacetEdge& other : at_segment) {
-    if (other.facet == diagonal->facet) continue;
-    for (const Index a : diagonal->triangles) {
-      for (const Index b : other.triangles) {
-        if (b == kNone) continue;
-        pairs.push_back({std::min(a, b), std::max(a, b), ContactClass::edge_overlap});
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -82,15 +70,26 @@ std::vector<IntersectingPair> diagonal_contacts(const Solid& solid, const FacetT
   std::vector<IntersectingPair> pairs;
   const auto& facet_of = facets.facet_of;
   if (std::adjacent_find(facet_of.begin(), facet_of.end()) == facet_of.end()) return pairs;
-  const std::vector<FacetEdge> edges = edges_at_diagonals(solid, facets);
-  for (std::size_t begin = 0; begin < edges.size();) {
-    const Index shell_end = solid.facets_of(solid.shell_of(edges[begin].facet)).end;
-    std::size_t end = begin + 1;
-    while (end < edges.size() && have_same_ends(edges[begin], edges[end]) &&
-           edges[end].facet < shell_end) {
-      ++end;
+  std::vector<Side> sides;
+  sides.reserve(3 * facets.triangles.size());
+  for (Index t = 0; t < facets.triangles.size(); ++t) {
+    const auto& [a, b, c] = facets.triangles[t];
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      sides.push_back({{std::min(from, to), std::max(from, to), facet_of[t]}, t});
     }
-    append_pairs(std::span(edges).subspan(begin, end - begin), pairs);
+  }
+  sort_by_vertices(sides, solid.vertex_count(), [](const Side& side) { return side.key; });
+  for (std::size_t begin = 0; begin < sides.size();) {
+    std::size_t end = begin + 1;
+    while (end < sides.size() && sides[end].is_same_segment(sides[begin])) ++end;
+    // Facets are numbered shell by shell.
+    while (end - begin > 2) {
+      const Index last = solid.facets_of(solid.shell_of(sides[begin].key[2])).end;
+      std::size_t next = begin;
+      while (next < end && sides[next].key[2] < last) ++next;
+      append_pairs(std::span(sides).subspan(begin, next - begin), pairs);
+      begin = next;
+    }
     begin = end;
   }
   return pairs;

@@ -82,22 +82,19 @@ bool DiagonalExaminer::is_diagonal(Index facet, Index a, Index b) {
          edge->is_diagonal();
 }
 
-/// Whether a triangle has an edge in common with a flipped one that facets of a shell may share: on
+/// Whether the common edge of a flipped triangle t and a triangle u is one that facets of a shell may share: on
 /// the boundary of both. Diagonals other than the flipped one that meet another facet's edge were
 /// found before.
 bool DiagonalExaminer::is_common_boundary(const Diagonal& flip, const Triangle& t, Index facet,
                                           const Triangle& u, Index other) {
-  std::vector<Index> common;
-  for (const Index vertex : t) {
-    if (std::find(u.begin(), u.end(), vertex) != u.end()) common.push_back(vertex);
-  }
-  if (common.size() != 2) return true;
-  const auto is_end = [&](Index vertex) {
-    return std::find(common.begin(), common.end(), vertex) != common.end();
+  const auto has = [](const Triangle& triangle, Index vertex) {
+    return std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
   };
-  if (is_end(flip.left) && is_end(flip.right)) return false;
-  return !is_reported(facet, other) || (!is_diagonal(facet, common[0], common[1]) &&
-                                        !is_diagonal(other, common[0], common[1]));
+  if (has(u, flip.left) && has(u, flip.right)) return false;
+  if (!is_reported(facet, other)) return true;
+  const Index a = has(u, t[0]) ? t[0] : t[1];
+  const Index b = has(u, t[2]) ? t[2] : t[1];
+  return !is_diagonal(facet, a, b) && !is_diagonal(other, a, b);
 }
 
 /// How a flipped triangle of `facet` meets a triangle of another facet, if that is a finding.

@@ -67,6 +67,7 @@ struct SubmittedSolid {
   std::vector<std::string> facet_ids = {};
   /// Of a file whose vertices are for this solid alone.
   UnusedVertices unused = {};
+  bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
 };
 
 /// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one

@@ -177,6 +177,7 @@ InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyO
   for (const SubmittedSolid& submitted : feature.solids) {
     CertifyOptions own = options;
     own.rounded = submitted.rounded;
+    own.is_origin_rounded = submitted.is_origin_rounded;
     own.unclosed_rings = submitted.unclosed_rings;
     own.unused = submitted.unused;
     inspected.solids.push_back({submitted.source, certify(submitted.solid, workers, own)});

@@ -81,6 +81,7 @@ void Certifier::apply_exact_rules() {
   check_solid(examined_, shells_, duplicate_of, contacts);
   check_vertices(examined_, options_.unused);
   check_rounded(examined_, options_.rounded);
+  if (options_.is_origin_rounded) report_rounded_origin(examined_);
   if (examined_.was_cancelled() && incomplete_.empty())
     incomplete_ = "the validation was cancelled";
   const bool has_errors = examined_.findings.has_errors();

@@ -20,6 +20,8 @@ struct CertifyOptions {
   LadderOptions ladder;
   /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
   std::span<const Index> rounded = {};
+  /// The place of the whole was rounded, not its shape (SubmittedSolid::is_origin_rounded): 805.
+  bool is_origin_rounded = false;
   /// Vertices that the reader left out (SubmittedSolid::unused): warning 802.
   UnusedVertices unused = {};
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.

@@ -134,4 +134,12 @@ void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded) {
   examined.findings.add(std::move(finding));
 }
 
+void report_rounded_origin(ExaminedSolid& examined) {
+  Finding finding;
+  finding.code = kCoordinatesRounded;
+  finding.detail =
+      "the place of the whole needs more than 18 digits and was rounded to 18; the shape is exact";
+  examined.findings.add(std::move(finding));
+}
+
 }  // namespace watertight

@@ -29,7 +29,9 @@ void check_near(ExaminedSolid& examined) {
   };
   const bool is_integral =
       std::all_of(solid.vertices().begin(), solid.vertices().end(), is_integer);
-  if (is_integral && *std::min_element(step.begin(), step.end()) >= kNearMetres) return;
+  if (is_integral && examined.metric_map().keeps_axes() &&
+      *std::min_element(step.begin(), step.end()) >= kNearMetres)
+    return;
   std::vector<Point> places;
   places.reserve(solid.vertex_count());
   for (Index v = 0; v < solid.vertex_count(); ++v) {

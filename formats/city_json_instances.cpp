@@ -10,9 +10,6 @@
 namespace watertight {
 namespace {
 
-constexpr std::size_t kMatrixSize = 16;
-constexpr std::size_t kRowSize = 4;
-
 Error wrong(std::string message, std::string pointer) {
   return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
 }
@@ -29,14 +26,8 @@ Result<std::array<GridNumber, kMatrixSize>> read_matrix(const Json& geometry,
     if (!exact) return wrong(exact.error().message, pointer + pointer_token(i));
     matrix[i] = exact->value;
   }
-  constexpr std::size_t kLastRow = kMatrixSize - kRowSize;
-  for (std::size_t i = kLastRow; i < kMatrixSize; ++i) {
-    const GridNumber expected{i + 1 == kMatrixSize ? 1 : 0, 0};
-    if (matrix[i] != expected) {
-      return wrong("the last row of a transformationMatrix is 0 0 0 1, rows one after the other",
-                   pointer + pointer_token(i));
-    }
-  }
+  const auto placement = placement_of_matrix(matrix, {});
+  if (!placement) return wrong(placement.error().message, pointer);
   return matrix;
 }
 
@@ -100,13 +91,9 @@ Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
                            pointer_token(ref.geometry)};
     auto anchor = anchor_of(model, ref, header, instance.source.pointer + "/boundaries");
     if (!anchor) return std::move(anchor).error();
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t column = 0; column < 3; ++column) {
-        instance.placement.linear[row][column] = ref.matrix[row * kRowSize + column];
-      }
-      const GridNumber& moved = ref.matrix[row * kRowSize + 3];
-      instance.placement.shift[row] = (*anchor)[row] + rounded(moved);
-    }
+    auto placement = placement_of_matrix(ref.matrix, *anchor);
+    if (!placement) return std::move(placement).error();
+    instance.placement = *placement;
     instance.placement.srid = header.srid;
     instances.push_back(std::move(instance));
   }

@@ -106,6 +106,8 @@ struct Document {
   /// Coordinates are the templates' own, on no reference system; `source.pointer` is, for example,
   /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's position.
   std::vector<SubmittedSolid> templates = {};
+  /// Instances that no feature has: of GML, whose objects without solids are no features.
+  std::vector<TemplateInstance> instances = {};
   /// What stands between the lines of a CityJSONSeq read with ReadOptions::keep_text; empty: line
   /// feeds. Opaque.
   Bytes framing = {};

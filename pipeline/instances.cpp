@@ -11,6 +11,11 @@ namespace {
 /// Effects remembered for each template: bounds the memory of a document with many instances.
 constexpr std::size_t kMostEffects = 4096;
 
+std::string name_of(const TemplateInstance& instance) {
+  return instance.source.pointer.empty() ? "'" + instance.source.object_id + "'"
+                                         : instance.source.pointer;
+}
+
 }  // namespace
 
 TemplateInspector::TemplateInspector(std::span<const SubmittedSolid> templates,
@@ -78,10 +83,10 @@ void TemplateInspector::note_valid(std::size_t solid, const TemplateInstance& in
   if (uses.valid.size() < kMostEffects) uses.valid.insert(effect);
   if (!effect) {
     uses.has_congruent = true;
-  } else if (!uses.least || std::tie(instance.placement, instance.source.pointer) <
-                                std::tie(*uses.least, uses.least_pointer)) {
+  } else if (!uses.least || std::pair(instance.placement, name_of(instance)) <
+                                std::pair(*uses.least, uses.least_name)) {
     uses.least = instance.placement;
-    uses.least_pointer = instance.source.pointer;
+    uses.least_name = name_of(instance);
   }
 }
 
@@ -94,19 +99,24 @@ void TemplateInspector::append(std::size_t solid, const TemplateInstance& instan
   submitted.source.lod = source.source.lod;
   submitted.source.ordinal = source.source.ordinal;
   const int sign = determinant_sign(instance.placement);
-  submitted.source.pointer =
-      sign == 0 ? instance.source.pointer + "/transformationMatrix" : source.source.pointer;
+  const bool has_pointer = !instance.source.pointer.empty();
+  submitted.source.pointer = sign == 0 && has_pointer
+                                 ? instance.source.pointer + "/transformationMatrix"
+                                 : source.source.pointer;
   const std::string name = " (template " + std::to_string(instance.template_number) +
                            (sign < 0 ? ", mirrored and placed by " : " as placed by ") +
-                           instance.source.pointer + ")";
+                           name_of(instance) + ")";
   for (Finding& finding : inspection.report.findings) finding.detail += name;
   if (!inspection.report.undecided_reason.empty()) inspection.report.undecided_reason += name;
   feature.solids.push_back({submitted.source, std::move(inspection)});
   feature.feature.solids.push_back(std::move(submitted));
 }
 
-std::optional<InspectedFeature> TemplateInspector::inspect_templates() {
+std::optional<InspectedFeature> TemplateInspector::inspect_templates(
+    const std::vector<TemplateInstance>& others) {
   InspectedFeature inspected;
+  inspected.feature.instances = others;
+  inspect_instances(inspected);
   inspected.feature.id = "geometry-templates";
   inspected.feature.type = "GeometryTemplates";
   for (std::size_t i = 0; i < templates_.size(); ++i) {
@@ -116,7 +126,7 @@ std::optional<InspectedFeature> TemplateInspector::inspect_templates() {
     const bool is_placed = uses.has_instances && !uses.has_congruent;
     if (is_placed) own.placement = &*uses.least;
     Inspection inspection = certify(templates_[i].solid, workers_, own);
-    if (is_placed) inspection.report.notes.push_back("as placed by " + uses.least_pointer);
+    if (is_placed) inspection.report.notes.push_back("as placed by " + uses.least_name);
     inspected.solids.push_back({templates_[i].source, std::move(inspection)});
     inspected.feature.solids.push_back(templates_[i]);
   }

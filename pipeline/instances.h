@@ -32,8 +32,10 @@ class TemplateInspector {
   /// The templates as a feature of their own, of type "GeometryTemplates", after all features:
   /// those without instances as they are, the others as one of their valid instances has them (one
   /// that is shifted or turned only, else the least placement, whatever the order of features).
-  /// Nothing when none is left.
-  std::optional<InspectedFeature> inspect_templates();
+  /// With those of `others`, instances that no feature has, that are not valid. Nothing when none
+  /// is left.
+  std::optional<InspectedFeature> inspect_templates(
+      const std::vector<TemplateInstance>& others = {});
 
  private:
   /// What an instance does to the size and shape of its template. Nothing when it is turned and
@@ -44,7 +46,7 @@ class TemplateInspector {
     bool has_instances = false;
     bool has_congruent = false;      // a valid one without effect
     std::optional<Placement> least;  // of the other valid ones
-    std::string least_pointer;       // to that instance
+    std::string least_name;          // of that instance
     bool is_proven = false;          // by an instance that is not mirrored
     std::set<Effect> valid;          // some of the effects of valid instances
   };

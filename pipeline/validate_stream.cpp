@@ -191,7 +191,7 @@ Status Stream::hand_on(Passage passage) {
 
 /// The geometry templates come last: what they count as depends on their instances.
 void Stream::add_templates() {
-  auto inspected = templates_.inspect_templates();
+  auto inspected = templates_.inspect_templates(reader_.document().instances);
   if (!inspected) return;
   Passage passage;
   passage.feature = ValidatedFeature{taken_, *std::move(inspected)};

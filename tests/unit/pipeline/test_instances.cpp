@@ -156,6 +156,29 @@ TEST_CASE("findings of an instance name it and its template, and lie in the worl
   CHECK(features[0].feature.solids[0].solid.world(0) == std::array<double, 3>{108, 208, 9});
 }
 
+TEST_CASE("instances that no feature has are judged with the templates") {
+  Document document = read(city({{0, kSame}}), true);
+  TemplateInstance mirrored = document.features.at(0).instances.at(0);
+  mirrored.placement.linear[0][0] = GridNumber{-1, 0};
+  mirrored.source = {"tree", "ImplicitGeometry", {}, 0, 0, {}};
+  document.instances.push_back(mirrored);
+  document.features.clear();
+  FeatureReader reader = FeatureReader::of(std::move(document));
+  std::vector<std::string> solids;
+  std::string detail;
+  const auto outcome = validate_stream(
+      reader, nullptr, {},
+      [&](ValidatedFeature&& feature) -> Status {
+        for (const auto& solid : feature.inspected.solids) solids.push_back(line_of(solid));
+        detail = feature.inspected.solids.at(0).inspection.report.findings.at(0).detail;
+        return Done{};
+      },
+      [](const Error&) -> Status { return Done{}; });
+  REQUIRE(outcome);
+  CHECK(solids == Lines{"ImplicitGeometry invalid 405", "Solid invalid 203"});
+  CHECK(detail.find("(template 0, mirrored and placed by 'tree')") != std::string::npos);
+}
+
 TEST_CASE("a document with an invalid instance is not encoded, others come back byte for byte") {
   const std::string good = city({{0, kSame}, {0, kTenfold}, {1, kTenth}});
   const auto encoded = encode_document(read(good, false), nullptr, {});

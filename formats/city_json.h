@@ -12,6 +12,7 @@
 //     uses, in their order.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -38,6 +39,15 @@ struct GeometryRef {
   }
 };
 
+/// A geometry of a city object that is an instance of a geometry template.
+struct InstanceRef {
+  std::uint32_t object = 0;    // position of the city object in the document
+  std::uint32_t geometry = 0;  // position in the object's geometry array
+  std::size_t boundary = 0;    // into CityModel: the vertex it stands on
+  std::uint64_t template_number = 0;
+  std::array<GridNumber, 16> matrix{};  // row by row
+};
+
 /// What refers to what in a city model.
 struct ModelIndex {
   std::vector<std::string> ids;        // of the city objects, in document order
@@ -45,6 +55,7 @@ struct ModelIndex {
   /// Object -> the Building that it is or is a part of, by number; kNone for others and templates.
   std::vector<std::uint32_t> building_of;
   std::vector<GeometryRef> geometries;  // by object, then geometry
+  std::vector<InstanceRef> instances;   // likewise; they are among the geometries too
   std::vector<std::string> notes;
   bool are_templates = false;  // the "objects" are geometry templates without ids, one each
 };
@@ -60,6 +71,17 @@ struct CitySolid {
 /// Checks the shape of the document and finds geometries and top-level objects. Geometry instances
 /// may refer to `template_count` templates. Errors: malformed with JSON Pointer.
 Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count);
+
+/// Reads a GeometryInstance, all but its object and geometry. Errors: malformed with JSON Pointer
+/// (a template that is not there, no vertex, a matrix that is none).
+Result<InstanceRef> read_instance(const Json& geometry, const std::string& pointer,
+                                  std::uint64_t template_count);
+
+/// The model's instances with their places, in document order. Vertex indices must be in range.
+/// Errors: malformed with JSON Pointer.
+Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
+                                                     const ModelIndex& index,
+                                                     const CityHeader& header);
 
 /// One lattice for all solids whose objects have the same top-level object, or, for a
 /// CityJSONFeature, one for all. Solids come in document order.

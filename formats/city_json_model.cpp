@@ -56,32 +56,8 @@ bool is_known_version(std::string_view version) {
   return false;
 }
 
-// A geometry that is a template moved to a vertex of the document.
-Status check_instance(const Json& geometry, const std::string& pointer,
-                      std::uint64_t template_count) {
-  const Json* number = find_member(geometry, "template");
-  if (number == nullptr || !number->is_number_unsigned()) {
-    return wrong("a geometry instance needs the index of its template", pointer + "/template");
-  }
-  if (number->get<std::uint64_t>() >= template_count) {
-    return wrong("template " + std::to_string(number->get<std::uint64_t>()) + " is out of range (" +
-                     std::to_string(template_count) + " templates)",
-                 pointer + "/template");
-  }
-  if (find_member(geometry, "boundaries") == nullptr) {
-    return wrong("a geometry instance needs the vertex it stands on", pointer + "/boundaries");
-  }
-  const Json* matrix = find_member(geometry, "transformationMatrix");
-  const bool is_matrix = matrix != nullptr && matrix->is_array() && matrix->size() == 16 &&
-                         std::all_of(matrix->begin(), matrix->end(), is_number_value);
-  if (!is_matrix) {
-    return wrong("a transformationMatrix needs 16 numbers", pointer + "/transformationMatrix");
-  }
-  return Done{};
-}
-
 Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref,
-                      std::uint64_t template_count, std::vector<GeometryRef>& out) {
+                      std::uint64_t template_count, ModelIndex& index) {
   const std::string pointer = geometry_pointer(id, ref.geometry);
   if (!geometry.is_object()) return wrong("a geometry must be an object", pointer);
   const Json* type = find_member(geometry, "type");
@@ -91,7 +67,11 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
     ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
   }
   if (ref.type == "GeometryInstance") {
-    if (auto status = check_instance(geometry, pointer, template_count); !status) return status;
+    auto instance = read_instance(geometry, pointer, template_count);
+    if (!instance) return std::move(instance).error();
+    instance->object = ref.object;
+    instance->geometry = ref.geometry;
+    index.instances.push_back(*std::move(instance));
   }
   const Json* boundaries = find_member(geometry, "boundaries");
   if (boundaries == nullptr) {
@@ -99,7 +79,7 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
     return Done{};
   }
   ref.boundary = boundaries->get<std::size_t>();
-  out.push_back(std::move(ref));
+  index.geometries.push_back(std::move(ref));
   return Done{};
 }
 
@@ -116,7 +96,7 @@ Status index_object(const Json& object, std::uint32_t number, std::uint64_t temp
   std::uint32_t position = 0;
   for (const Json& geometry : geometries->get_ref<const Json::array_t&>()) {
     auto status = index_geometry(geometry, id, GeometryRef{number, position++, 0, {}, {}},
-                                 template_count, index.geometries);
+                                 template_count, index);
     if (!status) return status;
   }
   return Done{};

@@ -13,6 +13,7 @@ struct ReadModel {
   CityModel model;
   ModelIndex index;
   std::vector<CitySolid> solids;
+  std::vector<TemplateInstance> instances;
 };
 
 Result<ReadModel> read_model(CityModel model, const CityHeader& header, const Limits& limits) {
@@ -23,7 +24,9 @@ Result<ReadModel> read_model(CityModel model, const CityHeader& header, const Li
   }
   auto solids = city_solids(model, *index, header, limits);
   if (!solids) return std::move(solids).error();
-  return ReadModel{std::move(model), std::move(*index), std::move(*solids)};
+  auto instances = city_instances(model, *index, header);
+  if (!instances) return std::move(instances).error();
+  return ReadModel{std::move(model), std::move(*index), std::move(*solids), std::move(*instances)};
 }
 
 // boundary -> the part of the skeleton that stands for it; "" for boundaries without solids.
@@ -86,6 +89,20 @@ std::string whole_skeleton(const ReadModel& read) {
 void take_solids(std::vector<CitySolid>& solids, Feature& feature) {
   feature.solids.reserve(solids.size());
   for (CitySolid& solid : solids) feature.solids.push_back(std::move(solid.submitted));
+}
+
+// Gives each feature the instances of its objects. `features` are those of split_city_model().
+void share_out(std::vector<TemplateInstance> instances, const ModelIndex& index,
+               std::vector<Feature>& features) {
+  std::vector<std::size_t> feature_of(index.ids.size(), 0);
+  std::size_t count = 0;
+  for (std::size_t object = 0; object < index.ids.size(); ++object) {
+    if (index.root_of[object] == object) feature_of[object] = count++;
+  }
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const std::uint32_t root = index.root_of[index.instances[i].object];
+    features[feature_of[root]].instances.push_back(std::move(instances[i]));
+  }
 }
 
 // The first line of a CityJSONSeq that shares what `root` says; appearance moves to the features,
@@ -164,6 +181,7 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   feature.srid = header.srid;
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
+  feature.instances = std::move(read->instances);
   return feature;
 }
 
@@ -229,6 +247,7 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
         split_city_model(std::move(read->model), read->index, std::move(read->solids), *header);
     if (!features) return std::move(features).error();
     document.features = std::move(*features);
+    share_out(std::move(read->instances), read->index, document.features);
     return document;
   }
   Feature feature;
@@ -236,6 +255,7 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   feature.srid = header->srid;
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
+  feature.instances = std::move(read->instances);
   if (options.keep_text) keep_text(*header, text, feature);
   document.features.push_back(std::move(feature));
   return document;

@@ -226,8 +226,10 @@ class FeatureLattice {
     }
     auto solid = Solid::make(std::move(cut.arrays), lattice.lattice, header_.srid, limits_);
     if (!solid) return solid.error();
-    return CitySolid{SubmittedSolid{std::move(*solid), std::move(cut.source), std::move(rounded)},
-                     std::move(cut.vertex_of), cut.object, cut.boundary};
+    CitySolid made{SubmittedSolid{std::move(*solid), std::move(cut.source), std::move(rounded)},
+                   std::move(cut.vertex_of), cut.object, cut.boundary};
+    made.submitted.is_origin_rounded = lattice.is_origin_rounded;
+    return made;
   }
 
   const CityModel& model_;

@@ -16,6 +16,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "base/shared_text.h"
+#include "geometry/placement.h"
 #include "geometry/solid.h"
 
 namespace watertight {
@@ -67,6 +68,15 @@ struct SubmittedSolid {
   std::vector<std::string> facet_ids = {};
   /// Of a file whose vertices are for this solid alone.
   UnusedVertices unused = {};
+  bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
+};
+
+/// A geometry template in a place of a document. Judged like a solid there, but not one of the
+/// feature: writing takes it from the skeleton.
+struct TemplateInstance {
+  SolidSource source;  // `pointer` leads to the geometry that is the instance; no LoD of its own
+  std::uint64_t template_number = 0;  // SolidSource::geometry of its solids in Document::templates
+  Placement placement;
 };
 
 /// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one
@@ -81,6 +91,8 @@ struct Feature {
   /// How the text of the document was written (ReadOptions::keep_text), so that the same bytes come
   /// back; empty: compact JSON is written. Opaque (formats/text_layout.h).
   Bytes layout = {};
+  /// Instances of geometry templates, also of those that are no solids; in document order.
+  std::vector<TemplateInstance> instances = {};
 };
 
 struct Document {
@@ -94,6 +106,8 @@ struct Document {
   /// Coordinates are the templates' own, on no reference system; `source.pointer` is, for example,
   /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's position.
   std::vector<SubmittedSolid> templates = {};
+  /// Instances that no feature has: of GML, whose objects without solids are no features.
+  std::vector<TemplateInstance> instances = {};
   /// What stands between the lines of a CityJSONSeq read with ReadOptions::keep_text; empty: line
   /// feeds. Opaque.
   Bytes framing = {};

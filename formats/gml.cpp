@@ -12,6 +12,7 @@
 
 #include "formats/gml_model.h"
 #include "formats/gml_shapes.h"
+#include "formats/numbers.h"
 #include "formats/surface.h"
 
 namespace watertight {
@@ -21,6 +22,20 @@ struct Draft {
   GmlSolid solid;
   SolidSource source;
 };
+
+// "1 0 0 0 ...", row by row; the shift is that of the matrix alone.
+Result<Placement> read_placement(std::string_view text) {
+  std::vector<GridNumber> numbers;
+  for (std::size_t at = 0; at < text.size() && numbers.size() <= kMatrixSize;) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n", at);
+    if (begin == std::string_view::npos) break;
+    at = std::min(text.find_first_of(" \t\r\n", begin), text.size());
+    auto exact = exact_number(text.substr(begin, at - begin));
+    if (!exact) return std::move(exact).error();
+    numbers.push_back(exact->value);
+  }
+  return placement_of_matrix(numbers, {});
+}
 
 class GmlReader {
  public:
@@ -51,6 +66,7 @@ class GmlReader {
       auto status = feature_of(of_object[feature], geometry);
       if (!status) return std::move(status).error();
     }
+    if (auto status = add_instances(); !status) return std::move(status).error();
     add_notes();
     return std::move(document_);
   }
@@ -105,8 +121,37 @@ class GmlReader {
     if (geometry.lod != '\0') source.lod = geometry.lod;
     source.geometry = next_geometry(geometry.is_template, source.object_id);
     auto status = add_solids(*target, geometry.is_template, source);
+    if (geometry.is_template) templates_of_[*target] = {source.geometry, templates_};
     if (!status) return in_object(std::move(status).error(), source.object_id);
     return status;
+  }
+
+  // Implicit geometries may refer to templates that come later. Those that refer to no template of
+  // solids, or to nothing in the document, are left out.
+  Status add_instances() {
+    for (const GmlGeometry& geometry : model_.geometries) {
+      if (geometry.implicit == kNone) continue;
+      const GmlImplicit& implicit = model_.implicits[geometry.implicit];
+      if (implicit.matrix.size == 0) continue;
+      const auto target = shapes_.resolve(model_.links[geometry.link]);
+      const auto numbers = target ? templates_of_.find(*target) : templates_of_.end();
+      if (numbers == templates_of_.end()) continue;
+      auto placement = read_placement(model_.name(implicit.matrix));
+      if (!placement) {
+        return in_object(
+            error_at(implicit.place, placement.error().code, placement.error().message),
+            id_of(geometry, *target));
+      }
+      TemplateInstance instance;
+      instance.source.object_id = id_of(geometry, *target);
+      instance.source.geometry_type = "ImplicitGeometry";
+      instance.placement = *placement;
+      for (Index number = numbers->second.begin; number < numbers->second.end; ++number) {
+        instance.template_number = number;
+        document_.instances.push_back(instance);
+      }
+    }
+    return Done{};
   }
 
   std::string id_of(const GmlGeometry& geometry, Index node) const {
@@ -300,6 +345,7 @@ class GmlReader {
   const Limits& limits_;
   GmlShapes shapes_;
   std::map<std::string, std::uint32_t> geometries_of_;  // object id -> geometries of this feature
+  std::map<Index, IndexRange> templates_of_;            // node -> numbers of its templates
   std::uint32_t templates_ = 0;
   std::uint64_t passed_over_ = 0;
   std::set<std::string> unknown_systems_;

@@ -62,6 +62,8 @@ class GmlBuilder : public XmlHandler {
         return start_in_ring(element, parent);
       case FrameKind::property:
         return start_in_property(element, parent);
+      case FrameKind::matrix:
+        return skip();
       case FrameKind::numbers:
         break;
     }
@@ -71,6 +73,10 @@ class GmlBuilder : public XmlHandler {
   Status text(std::string_view text) override {
     if (skipped_ == 0 && !frames_.empty() && frames_.back().kind == FrameKind::numbers) {
       model_.positions.append(text);
+    }
+    if (skipped_ == 0 && !frames_.empty() && frames_.back().kind == FrameKind::matrix) {
+      model_.implicits[frames_.back().implicit].matrix.size += text.size();
+      model_.names.append(text);
     }
     return Done{};
   }
@@ -101,6 +107,7 @@ class GmlBuilder : public XmlHandler {
     geometry,    // a GmlNode
     ring_point,  // between a ring and its positions: pointProperty, Point
     property,    // of a GmlNode
+    matrix,      // transformationMatrix of an implicit geometry
     numbers      // pos, posList, coordinates
   };
 
@@ -112,8 +119,9 @@ class GmlBuilder : public XmlHandler {
     bool is_template = false;
     bool is_flat_envelope = false;  // the Envelope that holds here says srsDimension 2
     char lod = '\0';
-    int dimension = 0;   // srsDimension, 0 when not stated; -1 when it is no number
-    Index node = kNone;  // geometry: itself; property, numbers, ring_point: the geometry's
+    int dimension = 0;       // srsDimension, 0 when not stated; -1 when it is no number
+    Index node = kNone;      // geometry: itself; property, numbers, ring_point: the geometry's
+    Index implicit = kNone;  // GmlModel::implicits, in an implicit geometry
     Index system = kNone;
     Index object_frame = kNone;  // in frames_, of the object that this belongs to
   };
@@ -211,7 +219,18 @@ class GmlBuilder : public XmlHandler {
     }
     read_context(element, frame);
     if (frame.lod == '\0' || lod_of(element.name) != '\0') frame.lod = lod_of(element.name);
-    if (element.name == "ImplicitGeometry") frame.is_template = true;
+    if (element.name == "transformationMatrix" && frame.implicit != kNone) {
+      frame.kind = FrameKind::matrix;
+      model_.implicits[frame.implicit] = {{model_.names.size(), 0}, element.place};
+      frames_.push_back(frame);
+      return Done{};
+    }
+    if (element.name == "ImplicitGeometry") {
+      if (model_.implicits.size() >= kNone - 2) return room_for_more(element);
+      frame.is_template = true;
+      frame.implicit = static_cast<Index>(model_.implicits.size());
+      model_.implicits.push_back({{}, element.place});
+    }
     const bool opens_object = is_object(element.name) && (!is_gml || is_container(element.name));
     if (opens_object) open_object(element, frame);
     const std::string_view href = reference(element);
@@ -273,7 +292,7 @@ class GmlBuilder : public XmlHandler {
   }
 
   void add_geometry(Index link, const Frame& frame) {
-    model_.geometries.push_back({link, owner(), frame.lod, frame.is_template});
+    model_.geometries.push_back({link, owner(), frame.lod, frame.is_template, frame.implicit});
   }
 
   // --- Geometry ---

@@ -76,12 +76,20 @@ struct GmlGeometry {
   Index object = kNone;  // kNone: a geometry outside of any object
   char lod = '\0';
   bool is_template = false;  // of an implicit geometry: coordinates of its own
+  Index implicit = kNone;    // GmlModel::implicits, of a template
+};
+
+/// An implicit geometry: a template in a place.
+struct GmlImplicit {
+  TextSpan matrix;  // of GmlModel::names: the text of its transformationMatrix, empty without one
+  XmlPlace place;
 };
 
 struct GmlModel {
   std::vector<GmlNode> nodes;
   std::vector<GmlLink> links;
   std::vector<GmlGeometry> geometries;  // document order
+  std::vector<GmlImplicit> implicits;
   std::vector<GmlObject> objects;
   std::vector<Index> features;       // the top-level objects
   std::vector<std::string> systems;  // values of srsName

@@ -13,16 +13,21 @@ namespace watertight {
 namespace {
 
 // Appends the shells of a solid to the arrays, and the exact coordinates of its vertices.
+// Lists vertices whose digits are rounded.
 Status append_solid(const Solid& solid, SolidArrays& arrays,
-                    std::vector<std::array<GridNumber, 3>>& positions) {
+                    std::vector<std::array<GridNumber, 3>>& positions,
+                    std::vector<Index>& rounded) {
   const auto first_vertex = static_cast<Index>(positions.size());
   for (const Point& p : solid.vertices()) {
     std::array<GridNumber, 3> position;
+    bool is_rounded = false;
     for (int axis = 0; axis < 3; ++axis) {
       auto exact = exact_number(solid.lattice().world_text(p[axis], axis));
       if (!exact) return std::move(exact).error();
       position[static_cast<std::size_t>(axis)] = exact->value;
+      is_rounded = is_rounded || exact->is_rounded;
     }
+    if (is_rounded) rounded.push_back(static_cast<Index>(positions.size()));
     positions.push_back(position);
   }
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
@@ -59,7 +64,7 @@ Result<SubmittedSolid> with_interior_shells(const SubmittedSolid& exterior,
   positions.reserve(vertex_count);
   std::vector<Index> rounded = exterior.rounded;
   std::vector<Index> unclosed = exterior.unclosed_rings;
-  if (auto status = append_solid(exterior.solid, arrays, positions); !status) {
+  if (auto status = append_solid(exterior.solid, arrays, positions, rounded); !status) {
     return status.error();
   }
   for (const SubmittedSolid& solid : interior) {
@@ -67,7 +72,7 @@ Result<SubmittedSolid> with_interior_shells(const SubmittedSolid& exterior,
     const auto first_ring = static_cast<Index>(arrays.ring_offsets.size() - 1);
     for (const Index vertex : solid.rounded) rounded.push_back(first_vertex + vertex);
     for (const Index ring : solid.unclosed_rings) unclosed.push_back(first_ring + ring);
-    if (auto status = append_solid(solid.solid, arrays, positions); !status) {
+    if (auto status = append_solid(solid.solid, arrays, positions, rounded); !status) {
       return status.error();
     }
   }

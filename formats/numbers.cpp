@@ -20,6 +20,27 @@ Result<ExactNumber> exact_number(std::string_view text) {
   return ExactNumber{shortest_decimal(value), true};
 }
 
+Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
+                                      const std::array<double, 3>& anchor) {
+  constexpr std::size_t kRowSize = 4;
+  if (matrix.size() != kMatrixSize) {
+    return Error{ErrorCode::malformed, "a transformationMatrix needs 16 numbers"};
+  }
+  for (std::size_t i = kMatrixSize - kRowSize; i < kMatrixSize; ++i) {
+    if (matrix[i] == GridNumber{i + 1 == kMatrixSize ? 1 : 0, 0}) continue;
+    return Error{ErrorCode::malformed,
+                 "the last row of a transformationMatrix is 0 0 0 1, rows one after the other"};
+  }
+  Placement placement;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      placement.linear[row][column] = matrix[row * kRowSize + column];
+    }
+    placement.shift[row] = anchor[row] + rounded(matrix[row * kRowSize + 3]);
+  }
+  return placement;
+}
+
 std::string plain_text(const GridNumber& number) {
   std::string digits = std::to_string(number.mantissa);
   if (number.exponent > 0 && number.exponent <= 18) {

@@ -3,12 +3,14 @@
 // Numbers of text formats as exact decimals. Internal to formats/.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "base/result.h"
-#include "geometry/lattice.h"
+#include "geometry/placement.h"
 
 namespace watertight {
 
@@ -19,6 +21,14 @@ struct ExactNumber {
 
 /// Errors: malformed (not a number), limit_exceeded (beyond the range of doubles).
 Result<ExactNumber> exact_number(std::string_view text);
+
+/// Numbers of a transformationMatrix.
+inline constexpr std::size_t kMatrixSize = 16;
+
+/// The placement of a 4 x 4 matrix, rows one after the other, at `anchor` (world). Errors:
+/// malformed (not 16 numbers, a last row other than 0 0 0 1).
+Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
+                                      const std::array<double, 3>& anchor);
 
 /// A number with its digits, without exponent where that is short: "-0.125".
 std::string plain_text(const GridNumber& number);

@@ -37,6 +37,18 @@ std::optional<WideNumber> wide_sum(WideNumber a, WideNumber b, std::int32_t radi
 /// The normalized grid number, or nothing if its mantissa does not fit 64 bits.
 std::optional<GridNumber> normalized(WideNumber number, std::int32_t radix);
 
+/// Where a grid starts in the world.
+struct GridOrigin {
+  GridNumber number;
+  bool is_rounded = false;  // to 18 digits, because the exact number has more
+};
+
+/// scale * integer + translate, of decimals; with more digits than a grid number has, the nearest
+/// decimal of 18 digits. Nothing where that lies half a scale away or more, so that it could be
+/// taken for another integer. Requires a positive scale and exponents within kLargestExponent.
+std::optional<GridOrigin> grid_origin(const GridNumber& scale, std::int64_t integer,
+                                      const GridNumber& translate);
+
 /// mantissa * 10^exponent as the nearest double (ties to even), +-infinity beyond the range.
 double nearest_double(const WideNumber& decimal);
 

@@ -27,6 +27,8 @@ struct AxisValues {
   std::int32_t exponent = 0;
   GridNumber origin;
   UnsignedWide largest = 0;
+  UnsignedWide unit = 1;  // divides all offsets; a grid number holds it
+  bool is_origin_rounded = false;
 };
 
 /// A step for each axis: offsets are multiples of divisor, or must be multiplied by factor.
@@ -130,18 +132,18 @@ Grids own_power_grid(const Axes& axes, std::int32_t radix) {
   return grids;
 }
 
-/// A step for each axis: the greatest common divisor of its offsets, where a grid number holds it.
+/// A step for each axis: the greatest common divisor of its offsets, or their unit where a grid
+/// number does not hold that divisor.
 Grids own_divisor_grid(const Axes& axes) {
   Grids grids;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axes[axis].largest == 0) continue;
-    const UnsignedWide divisor = common_divisor(axes[axis]);
-    const auto step = normalized({static_cast<Wide>(divisor), axes[axis].exponent}, kDecimal);
-    if (step) {
-      grids[axis].step = *step;
-      grids[axis].divisor = divisor;
-    } else {
-      grids[axis] = kNoGrid;
+    grids[axis] = kNoGrid;
+    for (const UnsignedWide divisor : {common_divisor(axes[axis]), axes[axis].unit}) {
+      const auto step = normalized({static_cast<Wide>(divisor), axes[axis].exponent}, kDecimal);
+      if (!step) continue;
+      grids[axis] = {*step, divisor, 1};
+      break;
     }
   }
   return grids;
@@ -174,6 +176,7 @@ LatticePoints points_on(const Axes& axes, const Grids& grids, LatticeKind kind) 
   for (std::size_t axis = 0; axis < 3; ++axis) {
     result.lattice.step[axis] = grids[axis].step;
     result.lattice.origin[axis] = axes[axis].origin;
+    result.is_origin_rounded = result.is_origin_rounded || axes[axis].is_origin_rounded;
     for (std::size_t i = 0; i < result.points.size(); ++i) {
       const UnsignedWide reduced = axes[axis].offsets[i] / grids[axis].divisor;
       result.points[i][static_cast<int>(axis)] =
@@ -268,7 +271,7 @@ GridNumber renormalized(const GridNumber& number) {
 }
 
 /// One axis of integers under a transform. |scale * (integer - smallest)| < 10^19 * 2^64 < 2^128.
-/// Nothing if the origin needs more digits than a grid number has.
+/// Nothing if there is no grid_origin().
 std::optional<AxisValues> transformed_values(std::span<const std::array<std::int64_t, 3>> vertices,
                                              std::size_t axis, const GridNumber& scale,
                                              const GridNumber& translate) {
@@ -277,13 +280,12 @@ std::optional<AxisValues> transformed_values(std::span<const std::array<std::int
   if (vertices.empty()) return values;
   std::int64_t smallest = vertices[0][axis];
   for (const auto& vertex : vertices) smallest = std::min(smallest, vertex[axis]);
-  const auto origin = wide_sum({Wide{scale.mantissa} * smallest, scale.exponent},
-                               {translate.mantissa, translate.exponent}, kDecimal);
+  const auto origin = grid_origin(scale, smallest, translate);
   if (!origin) return std::nullopt;
-  const auto grid_origin = normalized(*origin, kDecimal);
-  if (!grid_origin) return std::nullopt;
-  values.origin = *grid_origin;
+  values.origin = origin->number;
+  values.is_origin_rounded = origin->is_rounded;
   const auto factor = static_cast<UnsignedWide>(scale.mantissa);
+  values.unit = factor;
   values.offsets.reserve(vertices.size());
   for (const auto& vertex : vertices) {
     values.offsets.push_back(factor * static_cast<UnsignedWide>(Wide{vertex[axis]} - smallest));
@@ -321,8 +323,8 @@ Status check_world(const LatticePoints& points) {
   return Done{};
 }
 
-/// The transformed integers as nearest doubles: for transforms whose exact products need more
-/// digits than a lattice holds.
+/// The transformed integers as nearest doubles: for origins that no decimal of 18 digits tells from
+/// their neighbours.
 Result<LatticePoints> rounded_transform(std::span<const std::array<std::int64_t, 3>> vertices,
                                         const Transform& transform) {
   std::vector<std::array<double, 3>> doubles(vertices.size());

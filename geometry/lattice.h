@@ -14,7 +14,9 @@
 // axis (degrees beside metres); the greatest common divisor of all distances (a CityJSON scale of
 // 0.0003048). Else the first that stays below 2^53 of: common power of ten, a power of ten for each
 // axis, common divisor, a divisor for each axis (scales of 17 digits). The form depends on the
-// values alone.
+// values alone. An origin with more than 18 digits, as the integers of a file under a scale of 17
+// digits have it, is rounded to 18: the whole is moved by less than anybody measures, its shape is
+// exact.
 #pragma once
 
 #include <array>
@@ -84,6 +86,9 @@ struct LatticePoints {
   /// Indices of points whose source digits did not fit and were rounded (finding 'coordinates
   /// rounded'); empty for nearly every source.
   std::vector<Index> rounded;
+  /// The digits of the whole's place did not fit: it lies up to half a unit of the 18th digit of
+  /// the lattice's origin beside its place, and its shape is exact.
+  bool is_origin_rounded = false;
 };
 
 /// A CityJSON `transform`: exact decimals as written in the document.
@@ -93,8 +98,10 @@ struct Transform {
   friend auto operator<=>(const Transform&, const Transform&) = default;
 };
 
-/// Normal form of integer vertices under a transform. A transform with so many digits that the
-/// exact origin needs more than 18 gives the nearest doubles, and all points are in `rounded`.
+/// Normal form of integer vertices under a transform. Where the exact origin needs more digits than
+/// a grid number has (scales of 17 digits), the origin is rounded to 18 and the coordinates are
+/// exact; only where that is half a scale away or more (integers beyond 10^17), the points are the
+/// nearest doubles and all are in `rounded`.
 /// Errors: malformed if a scale is not positive; limit_exceeded if the vertices spread over more
 /// than 2^53 steps or exceed the doubles. Cost: linear.
 Result<LatticePoints> lattice_of_integers(std::span<const std::array<std::int64_t, 3>> vertices,
@@ -111,7 +118,8 @@ Result<LatticePoints> lattice_of_decimals(std::span<const std::array<GridNumber,
 /// Errors: malformed if a value is not finite.
 Result<LatticePoints> lattice_of_doubles(std::span<const std::array<double, 3>> vertices);
 
-/// The integers that `points` are under `transform`: the inverse of lattice_of_integers. On binary
+/// The integers that `points` are under `transform`: the inverse of lattice_of_integers. An origin
+/// that lattice_of_integers would have rounded so stands for the integer it was made of. On binary
 /// and float64 lattices a coordinate stands for its shortest decimal.
 /// Errors: malformed if a point is not on the transform's grid.
 Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& lattice,

@@ -107,6 +107,41 @@ bool is_sane(const GridNumber& number) {
          number.mantissa != std::numeric_limits<std::int64_t>::min();
 }
 
+/// scale * integer + translate.
+BigDecimal place_of(const GridNumber& scale, std::int64_t integer, const GridNumber& translate) {
+  return big_sum(big_product(from_grid(scale, LatticeKind::decimal), {big(integer), 0}),
+                 from_grid(translate, LatticeKind::decimal));
+}
+
+/// The nearest decimal of 18 digits, halves away from zero.
+GridNumber rounded_to_digits(const BigDecimal& exact) {
+  constexpr std::size_t kDigits = 18;
+  const BigInteger magnitude = abs(exact.mantissa);
+  const std::size_t digits = magnitude.get_str().size();
+  const auto dropped = static_cast<std::int64_t>(digits > kDigits ? digits - kDigits : 0);
+  const BigInteger unit = big_power(10, dropped);
+  const BigInteger kept = (2 * magnitude + unit) / (2 * unit);
+  const WideNumber number{exact.mantissa < 0 ? -Wide{kept.get_si()} : Wide{kept.get_si()},
+                          static_cast<std::int32_t>(exact.exponent + dropped)};
+  return normalized(number, 10).value_or(GridNumber{});
+}
+
+/// (world - translate) / scale, rounded to an integer, if that fits 64 bits.
+std::optional<std::int64_t> nearest_integer_under(const GridNumber& world, const GridNumber& scale,
+                                                  const GridNumber& translate) {
+  const BigDecimal moved = big_sum(from_grid(world, LatticeKind::decimal),
+                                   {big(-translate.mantissa), translate.exponent});
+  const std::int64_t raise = moved.exponent - scale.exponent;
+  const BigInteger numerator = moved.mantissa * big_power(10, std::max<std::int64_t>(raise, 0));
+  const BigInteger denominator =
+      big(scale.mantissa) * big_power(10, std::max<std::int64_t>(-raise, 0));
+  BigInteger quotient;
+  mpz_fdiv_q(quotient.get_mpz_t(), BigInteger(2 * numerator + denominator).get_mpz_t(),
+             BigInteger(2 * denominator).get_mpz_t());
+  if (!quotient.fits_slong_p()) return std::nullopt;
+  return quotient.get_si();
+}
+
 /// (world - translate) / scale if that is an integer of 64 bits.
 std::optional<std::int64_t> integer_under(const BigDecimal& world, const GridNumber& scale,
                                           const GridNumber& translate) {
@@ -142,7 +177,75 @@ std::optional<std::int64_t> quick_integer_under(const WideNumber& world, const G
   return static_cast<std::int64_t>(quotient);
 }
 
+/// One axis of integers_under().
+class AxisIntegers {
+ public:
+  AxisIntegers(const Lattice& lattice, std::size_t axis, const Transform& transform)
+      : lattice_(lattice),
+        axis_(axis),
+        scale_(transform.scale[axis]),
+        translate_(transform.translate[axis]) {
+    if (lattice.kind != LatticeKind::decimal) return;
+    const auto integer = nearest_integer_under(lattice.origin[axis], scale_, translate_);
+    const auto origin = integer ? grid_origin(scale_, *integer, translate_) : std::nullopt;
+    if (origin && origin->is_rounded && origin->number == lattice.origin[axis]) first_ = integer;
+  }
+
+  /// Nothing if the point is not on the transform's grid.
+  std::optional<std::int64_t> of(double coordinate) const {
+    if (!std::isfinite(coordinate)) return std::nullopt;
+    if (lattice_.kind != LatticeKind::decimal) return of_shortest(coordinate);
+    if (first_) return from_first(coordinate);
+    if (const auto wide = wide_world(lattice_, coordinate, axis_)) {
+      if (const auto quick = quick_integer_under(*wide, scale_, translate_)) return quick;
+    }
+    return integer_under(exact_world(lattice_, coordinate, axis_), scale_, translate_);
+  }
+
+ private:
+  /// The decimal that such a coordinate stands for is its shortest one.
+  std::optional<std::int64_t> of_shortest(double coordinate) const {
+    const double world = lattice_.world(coordinate, static_cast<int>(axis_));
+    if (!std::isfinite(world)) return std::nullopt;
+    return integer_under(from_grid(shortest_decimal(world), LatticeKind::decimal), scale_,
+                         translate_);
+  }
+
+  /// Distances from a rounded origin are exact.
+  std::optional<std::int64_t> from_first(double coordinate) const {
+    const BigDecimal distance =
+        big_product(from_grid(lattice_.step[axis_], LatticeKind::decimal), from_double(coordinate));
+    auto steps = integer_under(distance, scale_, GridNumber{});
+    if (!steps || __builtin_add_overflow(*steps, *first_, &*steps)) return std::nullopt;
+    return steps;
+  }
+
+  const Lattice& lattice_;
+  std::size_t axis_;
+  GridNumber scale_;
+  GridNumber translate_;
+  std::optional<std::int64_t> first_;  // the integer that a rounded origin stands for
+};
+
 }  // namespace
+
+std::optional<GridOrigin> grid_origin(const GridNumber& scale, std::int64_t integer,
+                                      const GridNumber& translate) {
+  const auto wide = wide_sum({Wide{scale.mantissa} * integer, scale.exponent},
+                             {translate.mantissa, translate.exponent}, 10);
+  if (wide) {
+    if (const auto exact = normalized(*wide, 10)) return GridOrigin{*exact, false};
+  }
+  const BigDecimal exact = place_of(scale, integer, translate);
+  const GridNumber rounded = rounded_to_digits(exact);
+  BigDecimal error = big_sum(exact, {big(-rounded.mantissa), rounded.exponent});
+  if (error.mantissa == 0) return GridOrigin{rounded, false};
+  error.mantissa = abs(error.mantissa) * 2;
+  const BigDecimal room =
+      big_sum(from_grid(scale, LatticeKind::decimal), {-error.mantissa, error.exponent});
+  if (room.mantissa <= 0) return std::nullopt;
+  return GridOrigin{rounded, true};
+}
 
 bool Lattice::is_sane() const {
   if (kind != LatticeKind::decimal && kind != LatticeKind::binary && kind != LatticeKind::float64) {
@@ -202,25 +305,12 @@ Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& l
     }
   }
   if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice is not one"};
+  const std::array axes{AxisIntegers(lattice, 0, transform), AxisIntegers(lattice, 1, transform),
+                        AxisIntegers(lattice, 2, transform)};
   std::vector<std::array<std::int64_t, 3>> integers(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double coordinate = points[i][static_cast<int>(axis)];
-      std::optional<std::int64_t> integer;
-      if (lattice.kind == LatticeKind::decimal) {
-        if (const auto wide = wide_world(lattice, coordinate, axis)) {
-          integer = quick_integer_under(*wide, transform.scale[axis], transform.translate[axis]);
-        }
-        if (!integer && std::isfinite(coordinate)) {
-          integer = integer_under(exact_world(lattice, coordinate, axis), transform.scale[axis],
-                                  transform.translate[axis]);
-        }
-      } else if (const double world = lattice.world(coordinate, static_cast<int>(axis));
-                 std::isfinite(world)) {
-        // The decimal that such a coordinate stands for is its shortest one.
-        integer = integer_under(from_grid(shortest_decimal(world), LatticeKind::decimal),
-                                transform.scale[axis], transform.translate[axis]);
-      }
+      const auto integer = axes[axis].of(points[i][static_cast<int>(axis)]);
       if (!integer) {
         return Error{ErrorCode::malformed,
                      "point " + std::to_string(i) + " is not on the transform's grid"};

@@ -7,6 +7,7 @@
 #include "formats/packed_text.h"
 #include "geometry/parallel.h"
 #include "pipeline/groups.h"
+#include "pipeline/instances.h"
 #include "pipeline/pipeline.h"
 #include "validate/report_json.h"
 
@@ -36,10 +37,10 @@ struct Processed {
 };
 
 Processed process(Feature feature, const Document& document, EngineWorkers* workers,
-                  const IngestOptions& options) {
+                  const IngestOptions& options, TemplateInspector& templates) {
   Processed processed;
   InspectedFeature inspected =
-      inspect(std::move(feature), workers, options.certify, options.groups);
+      inspect(std::move(feature), workers, options.certify, options.groups, &templates);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   if (processed.outcome.verdict == Verdict::valid) {
@@ -71,11 +72,12 @@ Result<std::vector<Processed>> process_all(Document& document, EngineWorkers* wo
                                            const IngestOptions& options) {
   std::vector<Feature> features = std::move(document.features);
   std::vector<Processed> processed(features.size());
+  TemplateInspector templates(document.templates, workers, options.certify);
   std::size_t done = 0;
   std::mutex mutex;
   for_each_piece(features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
     if (is_cancelled(options)) return;
-    processed[i] = process(std::move(features[i]), document, workers, options);
+    processed[i] = process(std::move(features[i]), document, workers, options, templates);
     const std::lock_guard lock(mutex);
     ++done;
     if (options.progress) options.progress(done, features.size());
@@ -171,22 +173,29 @@ Verdict InspectedFeature::verdict() const {
 }
 
 InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,
-                         const GroupOptions& groups) {
+                         const GroupOptions& groups, TemplateInspector* templates) {
   InspectedFeature inspected;
   inspected.solids.reserve(feature.solids.size());
   for (const SubmittedSolid& submitted : feature.solids) {
-    CertifyOptions own = options;
-    own.rounded = submitted.rounded;
-    own.unclosed_rings = submitted.unclosed_rings;
-    own.unused = submitted.unused;
-    inspected.solids.push_back({submitted.source, certify(submitted.solid, workers, own)});
+    inspected.solids.push_back(
+        {submitted.source, certify(submitted.solid, workers, options_for(submitted, options))});
   }
   inspected.feature = std::move(feature);
   GroupOptions own = groups;
   own.limits.findings = std::min(own.limits.findings, options.limits.findings);
   if (!own.cancel) own.cancel = options.ladder.cancel;
   inspected.groups = inspect_groups(inspected, own);
+  if (templates != nullptr) templates->inspect_instances(inspected);
   return inspected;
+}
+
+CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions& options) {
+  CertifyOptions own = options;
+  own.rounded = submitted.rounded;
+  own.is_origin_rounded = submitted.is_origin_rounded;
+  own.unclosed_rings = submitted.unclosed_rings;
+  own.unused = submitted.unused;
+  return own;
 }
 
 Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,

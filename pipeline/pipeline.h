@@ -36,24 +36,28 @@ struct InspectedGroup {
 };
 
 struct InspectedFeature {
+  /// Its own solids, then a solid for each instance of a geometry template that is not valid, with
+  /// rounded vertices in its place. So a feature that is valid has no other solids than its own.
   Feature feature;
   std::vector<InspectedSolid> solids;  // one per feature.solids, same order
   std::vector<InspectedGroup> groups;  // in order of their first members
   Verdict verdict() const;             // the worst of solids and groups; valid when it has none
 };
 
+/// The options with what the reader knows of one solid. Keeps references to it.
+CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions& options);
+
 /// The worse of two verdicts: invalid, then undecided, then valid.
 Verdict worse(Verdict a, Verdict b);
 
-/// Validates every solid of a feature, then its groups. Guarantees one InspectedSolid per solid. A
+class TemplateInspector;
+
+/// Validates every solid of a feature, then its groups, then its instances of the geometry
+/// templates that `templates` knows (null: of none). Guarantees one InspectedSolid per solid. A
 /// solid with vertices that the reader rounded, or rings that the source left open, gets the
 /// findings for them. Groups keep no more findings than solids, and are cancelled like them.
 InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,
-                         const GroupOptions& groups = {});
-
-/// The solids of a document's geometry templates as a feature of their own, of type
-/// "GeometryTemplates", for validation; nothing for a document without any.
-std::optional<Feature> template_feature(const Document& document);
+                         const GroupOptions& groups = {}, TemplateInspector* templates = nullptr);
 
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geometry/parallel.h"
+#include "pipeline/instances.h"
 
 namespace watertight {
 namespace {
@@ -45,12 +46,13 @@ class Stream {
         certify_(certify_options(reader, options)),
         on_feature_(on_feature),
         on_error_(on_error),
-        templates_(template_feature(reader.document())) {}
+        templates_(reader.document().templates, workers, certify_) {}
 
   Result<StreamOutcome> run() {
     const std::size_t threads = std::max<std::size_t>(options_.threads, 1);
     most_in_flight_ = kFeaturesInFlight * threads;
     for_each_piece(threads, static_cast<unsigned>(threads), [this](std::size_t, bool) { work(); });
+    if (!failure_) add_templates();
     if (failure_) return *std::move(failure_);
     return outcome_;
   }
@@ -74,11 +76,11 @@ class Stream {
   }
 
   std::optional<Found> take_next();
-  Result<std::optional<FeatureText>> next_text();
-  Passage validate(Found found) const;
+  Passage validate(Found found);
   void put_back(std::uint64_t number, Passage passage);
   void hand_on_in_order(std::unique_lock<std::mutex>& lock);
   Status hand_on(Passage passage);
+  void add_templates();
   void stop(Error error);
   bool has_room() const {
     return passages_.empty() || (taken_ - handed_on_ < most_in_flight_ && bytes_ < kBytesInFlight);
@@ -91,7 +93,7 @@ class Stream {
   const FeatureSink& on_feature_;
   const ErrorSink& on_error_;
   std::uint64_t most_in_flight_ = 0;
-  std::optional<Feature> templates_;  // until they are taken
+  TemplateInspector templates_;
 
   std::mutex mutex_;  // guards all below, and reader_.next()
   std::condition_variable room_;
@@ -114,7 +116,7 @@ std::optional<Stream::Found> Stream::take_next() {
     stop(Error{ErrorCode::cancelled, "stopped before all features were validated"});
     return std::nullopt;
   }
-  auto text = next_text();
+  auto text = reader_.next();
   if (text && *text) {
     Found found{taken_++, **std::move(text)};
     Passage& passage = passages_[found.number];
@@ -131,21 +133,14 @@ std::optional<Stream::Found> Stream::take_next() {
   return std::nullopt;
 }
 
-/// The geometry templates come first.
-Result<std::optional<FeatureText>> Stream::next_text() {
-  if (!templates_) return reader_.next();
-  FeatureText text;
-  text.ready = std::exchange(templates_, std::nullopt);
-  return std::optional(std::move(text));
-}
-
-Passage Stream::validate(Found found) const {
+Passage Stream::validate(Found found) {
   Passage passage;
   passage.bytes = found.text.line.size();
   auto feature = reader_.read(std::move(found.text));
   if (feature) {
     passage.feature = ValidatedFeature{
-        found.number, inspect(*std::move(feature), workers_, certify_, options_.groups)};
+        found.number,
+        inspect(*std::move(feature), workers_, certify_, options_.groups, &templates_)};
   } else {
     passage.error = std::move(feature).error();
   }
@@ -194,6 +189,15 @@ Status Stream::hand_on(Passage passage) {
   return on_feature_(*std::move(passage.feature));
 }
 
+/// The geometry templates come last: what they count as depends on their instances.
+void Stream::add_templates() {
+  auto inspected = templates_.inspect_templates(reader_.document().instances);
+  if (!inspected) return;
+  Passage passage;
+  passage.feature = ValidatedFeature{taken_, *std::move(inspected)};
+  if (Status status = hand_on(std::move(passage)); !status) failure_ = std::move(status).error();
+}
+
 void Stream::stop(Error error) {
   const std::lock_guard lock(mutex_);
   if (!failure_) failure_ = std::move(error);
@@ -202,15 +206,6 @@ void Stream::stop(Error error) {
 }
 
 }  // namespace
-
-std::optional<Feature> template_feature(const Document& document) {
-  if (document.templates.empty()) return std::nullopt;
-  Feature feature;
-  feature.id = "geometry-templates";
-  feature.type = "GeometryTemplates";
-  feature.solids = document.templates;
-  return feature;
-}
 
 Result<StreamOutcome> validate_stream(FeatureReader& reader, EngineWorkers* workers,
                                       const StreamOptions& options, const FeatureSink& on_feature,

@@ -135,6 +135,9 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
   Document document;
   document.format = Format::city_json_seq;
   document.header = header;
+  auto templates = read_geometry_templates(*city_header, options.limits);
+  if (!templates) return std::move(templates).error();
+  document.templates = *std::move(templates);
   document.features.push_back(*std::move(feature));
   return document;
 }

@@ -20,7 +20,8 @@ class Certifier {
  public:
   Certifier(const Solid& solid, const CertifyOptions& options)
       : options_(options),
-        examined_(solid, options.tolerances, options.limits, options.ladder.cancel) {}
+        examined_(solid, options.tolerances, options.limits, options.ladder.cancel,
+                  options.placement) {}
 
   Inspection run(EngineWorkers* workers) {
     apply_exact_rules();
@@ -34,6 +35,8 @@ class Certifier {
       verdict_ = Verdict::invalid;
     } else if (!incomplete_.empty()) {
       inspection_.report.undecided_reason = incomplete_;
+    } else if (options_.is_proven) {
+      verdict_ = Verdict::valid;
     } else {
       prove(workers);
     }
@@ -87,6 +90,7 @@ void Certifier::apply_exact_rules() {
   examine_interior(contacts);
   check_vertices(examined_, options_.unused);
   check_rounded(examined_, options_.rounded);
+  if (options_.is_origin_rounded) report_rounded_origin(examined_);
   if (examined_.was_cancelled() && incomplete_.empty())
     incomplete_ = "the validation was cancelled";
   const bool has_errors = examined_.findings.has_errors();
@@ -134,7 +138,12 @@ void Certifier::measure_solid() {
       std::all_of(states.begin(), states.end(),
                   [](FacetState state) { return state == FacetState::triangulated; });
   if (!has_measures) return;
-  inspection_.report.measures = measure(examined_.solid(), examined_.triangles().triangles);
+  const auto& triangles = examined_.triangles().triangles;
+  if (options_.placement == nullptr) {
+    inspection_.report.measures = measure(examined_.solid(), triangles);
+  } else if (const auto solid = placed(examined_.solid(), *options_.placement); solid) {
+    inspection_.report.measures = measure(*solid, triangles);
+  }
 }
 
 void Certifier::prove(EngineWorkers* workers) {
@@ -241,7 +250,8 @@ TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& optio
   CertifyOptions tolerant = options;
   tolerant.tolerances = kTolerant;
   if (options.tolerances == kTolerant) return exact;
-  const auto snapped = snap_vertices(solid, kTolerant.snap_metres, options.ladder.cancel);
+  const auto snapped =
+      snap_vertices(solid, kTolerant.snap_metres, options.ladder.cancel, options.placement);
   if (!snapped) return {};
   Tolerances unsnapped = kTolerant;
   unsnapped.snap_metres = 0;
@@ -249,9 +259,7 @@ TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& optio
   return Certifier(snapped->solid, tolerant).run_exact_rules();
 }
 
-}  // namespace
-
-Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options) {
+Inspection examine(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Inspection inspection;
   TolerantVerdict exact;
@@ -260,7 +268,8 @@ Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOpti
     Certifier certifier(solid, options);
     inspection = certifier.run(workers);
     exact = certifier.exact_verdict();
-  } else if (auto snapped = snap_vertices(solid, snap, options.ladder.cancel); snapped) {
+  } else if (auto snapped = snap_vertices(solid, snap, options.ladder.cancel, options.placement);
+             snapped) {
     Certifier certifier(snapped->solid, options);
     certifier.add_note("the snap tolerance moved " + std::to_string(snapped->moved) +
                        " vertices; the verdict is about the snapped solid");
@@ -276,6 +285,45 @@ Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOpti
   inspection.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return inspection;
+}
+
+/// A closed surface pressed into a plane meets itself and encloses nothing.
+Inspection flattened(const CertifyOptions& options) {
+  FindingCollector findings(options.limits.findings);
+  for (const int code : {kShellSelfIntersection, kZeroVolume}) {
+    Finding finding;
+    finding.code = code;
+    finding.detail = "the determinant of the transformation is zero: it flattens the solid";
+    findings.add(std::move(finding));
+  }
+  findings.skip({kSolidInteriorDisconnected}, "the solid is flat in its place");
+  Inspection inspection;
+  Report& report = inspection.report;
+  report.verdict = Verdict::invalid;
+  report.acceptance = {options.tolerances, options.proof, kRuleSet};
+  report.first_level = first_level_codes(findings.all());
+  std::move(findings).move_to(report);
+  return inspection;
+}
+
+Inspection examine_placed(const Solid& solid, EngineWorkers* workers,
+                          const CertifyOptions& options) {
+  const int sign = determinant_sign(*options.placement);
+  if (sign == 0 && solid.facet_count() > 0) return flattened(options);
+  Inspection inspection =
+      sign < 0 ? examine(turned_over(solid), workers, options) : examine(solid, workers, options);
+  inspection.certified.reset();
+  for (Finding& finding : inspection.report.findings) {
+    if (finding.witness) finding.witness = place(*options.placement, *finding.witness);
+  }
+  return inspection;
+}
+
+}  // namespace
+
+Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options) {
+  return options.placement == nullptr ? examine(solid, workers, options)
+                                      : examine_placed(solid, workers, options);
 }
 
 }  // namespace watertight

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "delaunay/ladder.h"
+#include "geometry/placement.h"
 #include "geometry/valid_solid.h"
 #include "validate/report.h"
 
@@ -20,10 +21,20 @@ struct CertifyOptions {
   LadderOptions ladder;
   /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
   std::span<const Index> rounded = {};
+  /// The place of the whole was rounded, not its shape (SubmittedSolid::is_origin_rounded): 805.
+  bool is_origin_rounded = false;
   /// Vertices that the reader left out (SubmittedSolid::unused): warning 802.
   UnusedVertices unused = {};
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
   std::span<const Index> unclosed_rings = {};
+  /// Of a geometry template: where an instance puts it. The solid is judged as placed: orientation
+  /// by the determinant's exact sign, everything measured in metres there; a determinant of zero is
+  /// 306 and 806. Null for other solids. Kept by the caller.
+  const Placement* placement = nullptr;
+  /// True if the same template has passed with proof under another placement with a determinant of
+  /// the same sign: no proof depends on a measurement, so the exact tests suffice. `certified` is
+  /// then absent.
+  bool is_proven = false;
   bool also_tolerant = false;  // fill Report::tolerant
   /// Of the search for intersections within one solid; the report does not depend on it.
   unsigned threads = 1;
@@ -37,7 +48,9 @@ struct Certified {
 
 struct Inspection {
   Report report;
-  std::optional<Certified> certified;  // present exactly when the verdict is valid
+  /// Present exactly when the verdict is valid and the solid stands where it is: with a placement
+  /// there is a verdict only.
+  std::optional<Certified> certified;
 };
 
 /// Never fails: what cannot be evaluated is said in the report. Deterministic but for `seconds`

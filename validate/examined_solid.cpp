@@ -47,7 +47,7 @@ void FindingCollector::move_to(Report& report) && {
 }
 
 ExaminedSolid::ExaminedSolid(const Solid& submitted, const Tolerances& tolerances,
-                             const Limits& limits, CancelPoll cancel)
+                             const Limits& limits, CancelPoll cancel, const Placement* placement)
     : findings(limits.findings),
       submitted_(submitted),
       cancel_(std::move(cancel)),
@@ -55,6 +55,7 @@ ExaminedSolid::ExaminedSolid(const Solid& submitted, const Tolerances& tolerance
       triangles_(triangulate_facets(merged_.solid)),
       tolerances_(tolerances),
       limits_(limits),
+      metric_map_(merged_.solid, placement),
       shell_of_(submitted.facet_count(), 0),
       first_submitted_(merged_.solid.vertex_count(), kNone),
       is_faulty_(submitted.facet_count(), false),
@@ -67,29 +68,6 @@ ExaminedSolid::ExaminedSolid(const Solid& submitted, const Tolerances& tolerance
     const Index merged = merged_.vertex_of[vertex];
     if (merged != kNone && first_submitted_[merged] == kNone) first_submitted_[merged] = vertex;
   }
-  const Lattice& lattice = solid().lattice();
-  std::array<double, 3> centre{};
-  if (solid().vertex_count() > 0) {
-    const Box box = solid().box();
-    const std::array<double, 3> low = lattice.world(box.min);
-    const std::array<double, 3> high = lattice.world(box.max);
-    for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = low[axis] / 2 + high[axis] / 2;
-  }
-  const AxisUnits units = axis_units(submitted.srid(), centre);
-  unit_note_ = units.note;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    metres_per_step_[a] = lattice.scale(axis) * units.metres_per_unit[a];
-  }
-}
-
-std::array<double, 3> ExaminedSolid::metres(const Point& from, const Point& to) const {
-  std::array<double, 3> result{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    result[a] = (to[axis] - from[axis]) * metres_per_step_[a];
-  }
-  return result;
 }
 
 std::array<double, 3> ExaminedSolid::metres(Index from, Index to) const {

@@ -12,6 +12,7 @@
 #include "geometry/triangle_triangle.h"
 #include "tessellate/facets.h"
 #include "validate/finding_kinds.h"
+#include "validate/metric_map.h"
 #include "validate/report.h"
 
 namespace watertight {
@@ -47,9 +48,9 @@ class FindingCollector {
 
 class ExaminedSolid {
  public:
-  /// Keeps a reference to `submitted`.
+  /// Keeps a reference to `submitted`. With a placement, metres are those of the placed solid.
   ExaminedSolid(const Solid& submitted, const Tolerances& tolerances, const Limits& limits,
-                CancelPoll cancel = {});
+                CancelPoll cancel = {}, const Placement* placement = nullptr);
 
   /// For long loops: true once the caller wants an end. Asks now and then, and remembers.
   bool is_cancelled();
@@ -63,12 +64,15 @@ class ExaminedSolid {
   const FacetTriangles& triangles() const { return triangles_; }
   const Tolerances& tolerances() const { return tolerances_; }
   const Limits& limits() const { return limits_; }
-  const std::string& unit_note() const { return unit_note_; }
+  const std::string& unit_note() const { return metric_map_.note(); }
   Index shell_of(Index facet) const { return shell_of_[facet]; }
 
   /// Vector in metres from one merged vertex to another.
   std::array<double, 3> metres(Index from, Index to) const;
-  std::array<double, 3> metres(const Point& from, const Point& to) const;
+  std::array<double, 3> metres(const Point& from, const Point& to) const {
+    return metric_map_.metres(from, to);
+  }
+  const MetricMap& metric_map() const { return metric_map_; }
 
   // Places, in the numbering of the submitted solid.
   Place at_shell(Index shell) const;
@@ -110,8 +114,7 @@ class ExaminedSolid {
   FacetTriangles triangles_;
   Tolerances tolerances_;
   Limits limits_;
-  std::array<double, 3> metres_per_step_{1, 1, 1};
-  std::string unit_note_;
+  MetricMap metric_map_;
   std::vector<Index> shell_of_;
   std::vector<Index> first_submitted_;
   std::vector<bool> is_faulty_;

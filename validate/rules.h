@@ -74,6 +74,8 @@ bool check_interior(ExaminedSolid& examined, const ContactTriangles& contacts);
 void check_vertices(ExaminedSolid& examined, const UnusedVertices& left_out);
 /// Warning 805: vertices that the reader rounded.
 void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded);
+/// Warning 805 of a solid that was moved as a whole.
+void report_rounded_origin(ExaminedSolid& examined);
 
 /// The codes that val3dity, which stops at the first level that fails, would give.
 std::vector<int> first_level_codes(const std::vector<Finding>& findings);

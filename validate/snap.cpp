@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "geometry/crs.h"
+#include "validate/metric_map.h"
 #include "validate/near_vertices.h"
 
 namespace watertight {
@@ -16,37 +16,30 @@ constexpr double kMostCells = 1e15;
 
 class Snapper {
  public:
-  Snapper(const Solid& solid, double metres) : vertices_(solid.vertices()), metres_(metres) {
+  Snapper(const Solid& solid, double metres, const Placement* placement)
+      : vertices_(solid.vertices()), metres_(metres), map_(solid, placement) {
     const Box box = solid.box();
-    const Lattice& lattice = solid.lattice();
-    std::array<double, 3> centre{};
+    origin_ = box.min;
+    // Any two points of the box are less than this apart in each direction.
+    std::array<double, 3> extent{};
     for (int axis = 0; axis < 3; ++axis) {
-      centre[static_cast<std::size_t>(axis)] =
-          lattice.world(box.min[axis], axis) / 2 + lattice.world(box.max[axis], axis) / 2;
+      Point corner = box.min;
+      corner[axis] = box.max[axis];
+      const std::array<double, 3> along = map_.metres(box.min, corner);
+      for (std::size_t a = 0; a < 3; ++a) extent[a] += std::fabs(along[a]);
     }
-    const AxisUnits units = axis_units(solid.srid(), centre);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      scale_[a] = lattice.scale(axis) * units.metres_per_unit[a];
-      origin_[a] = box.min[axis];
-      is_possible_ =
-          is_possible_ && (box.max[axis] - box.min[axis]) * scale_[a] / metres < kMostCells;
-    }
+    for (const double size : extent) is_possible_ = is_possible_ && size / metres < kMostCells;
   }
 
   bool is_possible() const { return is_possible_; }
 
-  /// In metres from the corner of the box.
+  /// In metres from the corner of the box that is least on the lattice.
   std::vector<Point> places() const {
     std::vector<Point> result;
     result.reserve(vertices_.size());
     for (const Point& p : vertices_) {
-      Point place;
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        place[axis] = (p[axis] - origin_[a]) * scale_[a];
-      }
-      result.push_back(place);
+      const std::array<double, 3> place = map_.metres(origin_, p);
+      result.push_back({place[0], place[1], place[2]});
     }
     return result;
   }
@@ -74,28 +67,23 @@ class Snapper {
  private:
   Cell cell_of(Index vertex) const {
     Cell cell{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const double place = (vertices_[vertex][axis] - origin_[a]) * scale_[a] / metres_;
-      cell[a] = static_cast<std::int64_t>(std::floor(place));
+    const std::array<double, 3> place = map_.metres(origin_, vertices_[vertex]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      cell[a] = static_cast<std::int64_t>(std::floor(place[a] / metres_));
     }
     return cell;
   }
 
   bool is_near(Index a, Index b) const {
     double sum = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double d =
-          (vertices_[a][axis] - vertices_[b][axis]) * scale_[static_cast<std::size_t>(axis)];
-      sum += d * d;
-    }
+    for (const double d : map_.metres(vertices_[a], vertices_[b])) sum += d * d;
     return sum <= metres_ * metres_;
   }
 
   std::span<const Point> vertices_;
   double metres_;
-  std::array<double, 3> scale_{};
-  std::array<double, 3> origin_{};
+  MetricMap map_;
+  Point origin_;
   bool is_possible_ = true;
   std::map<Cell, std::vector<Index>> kept_;
 };
@@ -103,9 +91,10 @@ class Snapper {
 }  // namespace
 
 Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
-                                   const std::function<bool()>& cancel) {
+                                   const std::function<bool()>& cancel,
+                                   const Placement* placement) {
   if (solid.vertex_count() == 0) return SnappedSolid{solid, 0};
-  Snapper snapper(solid, metres);
+  Snapper snapper(solid, metres, placement);
   if (!snapper.is_possible()) {
     return Error{ErrorCode::limit_exceeded,
                  "the snap tolerance is too small for the size of the solid"};

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "base/result.h"
+#include "geometry/placement.h"
 #include "geometry/solid.h"
 
 namespace watertight {
@@ -17,10 +18,12 @@ struct SnappedSolid {
 };
 
 /// Each vertex moves to the first earlier vertex, in the order of the solid, that did not move
-/// itself and is at most `metres` away (val3dity's rule). Requires metres > 0.
+/// itself and is at most `metres` away (val3dity's rule), as placed where a placement is given.
+/// Requires metres > 0.
 /// Errors: limit_exceeded if the tolerance is too small for the size of the solid; cancelled.
 /// Cost: O(n log n).
 Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
-                                   const std::function<bool()>& cancel = {});
+                                   const std::function<bool()>& cancel = {},
+                                   const Placement* placement = nullptr);
 
 }  // namespace watertight

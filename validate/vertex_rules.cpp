@@ -29,7 +29,9 @@ void check_near(ExaminedSolid& examined) {
   };
   const bool is_integral =
       std::all_of(solid.vertices().begin(), solid.vertices().end(), is_integer);
-  if (is_integral && *std::min_element(step.begin(), step.end()) >= kNearMetres) return;
+  if (is_integral && examined.metric_map().keeps_axes() &&
+      *std::min_element(step.begin(), step.end()) >= kNearMetres)
+    return;
   std::vector<Point> places;
   places.reserve(solid.vertex_count());
   for (Index v = 0; v < solid.vertex_count(); ++v) {
@@ -131,6 +133,14 @@ void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded) {
   finding.detail = "the digits of " + std::to_string(rounded.size()) +
                    (rounded.size() == 1 ? " vertex" : " vertices") +
                    " fit no grid and were rounded; this is the first";
+  examined.findings.add(std::move(finding));
+}
+
+void report_rounded_origin(ExaminedSolid& examined) {
+  Finding finding;
+  finding.code = kCoordinatesRounded;
+  finding.detail =
+      "the place of the whole needs more than 18 digits and was rounded to 18; the shape is exact";
   examined.findings.add(std::move(finding));
 }
 

@@ -128,6 +128,32 @@ TEST_CASE("errors in geometry instances name the place") {
         base + "/transformationMatrix");
   CHECK(error_of(model(templates, R"({"type":"GeometryInstance","template":0})")).pointer ==
         base + "/boundaries");
+  CHECK(error_of(model(templates, instance("0", "[]"))).pointer == base + "/boundaries");
+  CHECK(error_of(model(templates, instance("0", "[0]", "[1,0,0,0,0,1,0,0,0,0,1,0,5,6,7,1]")))
+            .pointer == base + "/transformationMatrix");
+  CHECK(error_of(model(templates, instance("0", "[0]", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]")))
+            .pointer == base + "/transformationMatrix");
+  CHECK_FALSE(read(model(templates, instance("0", "[0]", "[1e400,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]")),
+                   Format::city_json));
+}
+
+TEST_CASE("instances have their template, exact matrix and place, in whole and split documents") {
+  const std::string text =
+      model(section(geometry("Solid", kTetrahedron)),
+            instance("0", "[0]", "[0.10,0,0,1.5,0,2e0,0,-2,0,0,3,0.25,0,0,0.0,1.0]"));
+  for (const bool is_split : {true, false}) {
+    const auto document = read(text, Format::city_json, is_split);
+    REQUIRE(document);
+    REQUIRE(document->features.size() == 1);
+    REQUIRE(document->features[0].instances.size() == 1);
+    const TemplateInstance& found = document->features[0].instances[0];
+    CHECK(found.source.object_id == "tree");
+    CHECK(found.source.pointer == "/CityObjects/tree/geometry/0");
+    CHECK(found.template_number == 0);
+    CHECK(found.placement.linear[0][0] == GridNumber{1, -1});
+    CHECK(found.placement.linear[1][1] == GridNumber{2, 0});
+    CHECK(found.placement.shift == std::array<double, 3>{8.5, 6, 9.25});
+  }
 }
 
 TEST_CASE("a child that the document does not hold is an error") {

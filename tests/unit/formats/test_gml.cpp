@@ -321,6 +321,37 @@ TEST_CASE("GML: first positions beyond the poles are no latitudes; templates are
   CHECK(trees.notes.empty());
 }
 
+TEST_CASE("GML: implicit geometries are instances of the templates that they hold or refer to") {
+  const auto tree = [](const std::string& id, const std::string& matrix, const std::string& rest) {
+    return "<cityObjectMember><Tree g:id=\"" + id +
+           "\"><lod1ImplicitRepresentation><ImplicitGeometry><transformationMatrix>" + matrix +
+           "</transformationMatrix><relativeGMLGeometry" + rest +
+           "</ImplicitGeometry></lod1ImplicitRepresentation></Tree></cityObjectMember>";
+  };
+  std::string solid = kTetrahedron;
+  solid.insert(solid.find("Solid") + 5, " g:id=\"shape\"");
+  const std::string inside = ">" + solid + "</relativeGMLGeometry>";
+  const std::string outside = " x:href=\"#shape\"/>";
+  const Document document =
+      gml_of(model(tree("a", "-1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1", outside) +
+                   tree("b", "\n0.5 0 0 0  0 1 0 0\t0 0 1 0 0 0 0 1.0 ", inside) +
+                   tree("c", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", " x:href=\"#none\"/>")));
+  CHECK(document.features.empty());
+  CHECK(document.templates.size() == 1);
+  REQUIRE(document.instances.size() == 2);
+  CHECK(document.instances[0].source.object_id == "a");
+  CHECK(document.instances[0].template_number == 0);
+  CHECK(determinant_sign(document.instances[0].placement) == -1);
+  CHECK(document.instances[0].placement.shift == std::array<double, 3>{5, 6, 7});
+  CHECK(document.instances[1].placement.linear[0][0] == GridNumber{5, -1});
+  for (const std::string wrong :
+       {"1 0 0", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2", "a b c", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0"}) {
+    const Error error = gml_error(model(tree("a", wrong, inside)));
+    CHECK(error.code == ErrorCode::malformed);
+    CHECK(error.message.find("'a'") != std::string::npos);
+  }
+}
+
 TEST_CASE("GML: one solid cannot have latitude first and second") {
   const Error error = gml_error(
       model(building(solid_of(member(polygon("0 0 0 0 1 0 1 0 0 0 0 0", " srsName=\"EPSG:4326\"")),

@@ -215,7 +215,7 @@ TEST_CASE("integers whose transform leaves the doubles are refused") {
   CHECK(beyond.error().code == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("seventeen-digit scales stay exact or are rounded with every point listed") {
+TEST_CASE("seventeen-digit scales keep the integers, and an origin that is too long is rounded") {
   const Transform transform =
       transform_of("0.00012345678901234567", {"84616.468", "447422.999", "-0.293"});
   const Integers from_zero{{0, 0, 0}, {1'000'003, 999'999, 31'234}, {7, 9, 11}};
@@ -230,9 +230,57 @@ TEST_CASE("seventeen-digit scales stay exact or are rounded with every point lis
   CHECK(*back == from_zero);
 
   const Integers shifted{{-1'234'567, 0, 0}, {1'000'003, 999'999, 31'234}};
-  const auto rounded = lattice_of_integers(shifted, transform);
-  REQUIRE(rounded.has_value());
-  CHECK(rounded->rounded == std::vector<Index>{0, 1});
+  const auto moved = lattice_of_integers(shifted, transform);
+  REQUIRE(moved.has_value());
+  CHECK_FALSE(exact->is_origin_rounded);
+  CHECK(moved->is_origin_rounded);
+  CHECK(moved->rounded.empty());
+  CHECK(moved->lattice.step[0] == transform.scale[0]);
+  CHECK(moved->points[1] == Point{2'234'570, 999'999, 31'234});
+  // 84616.468 - 1234567 * 0.00012345678901234567 = 84464.05232235939544322511
+  CHECK(moved->lattice.origin[0] == GridNumber{844640523223593954, -13});
+  CHECK(moved->lattice.origin[1] == GridNumber{447422999, -3});
+  const auto integers = integers_under(moved->lattice, moved->points, transform);
+  REQUIRE(integers.has_value());
+  CHECK(*integers == shifted);
+  // A point between those of the grid has no integers.
+  const std::vector<Point> between{{0.5, 0, 0}};
+  CHECK_FALSE(integers_under(moved->lattice, between, transform));
+  Lattice beside = moved->lattice;
+  beside.origin[0].mantissa += 1;
+  CHECK_FALSE(integers_under(beside, moved->points, transform));
+}
+
+TEST_CASE("a rounded origin gives the integers back wherever it lies, or the points are rounded") {
+  Random random(20);
+  int moved = 0;
+  int rounded = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Transform transform;
+    Integers integers(4);
+    const std::int64_t reach = std::int64_t{1} << random.between(8, 62);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      transform.scale[axis] = {random.between(1, 999'999'999'999'999'999),
+                               static_cast<std::int32_t>(random.between(-22, -10))};
+      transform.translate[axis] = {random.between(-999'999'999'999, 999'999'999'999),
+                                   static_cast<std::int32_t>(random.between(-9, -3))};
+      const std::int64_t first = random.between(-reach, reach);
+      for (auto& vertex : integers) vertex[axis] = first + random.between(0, 100'000);
+    }
+    const auto points = lattice_of_integers(integers, transform);
+    REQUIRE(points);
+    if (!points->rounded.empty()) {
+      CHECK_FALSE(points->is_origin_rounded);
+      ++rounded;
+      continue;
+    }
+    moved += points->is_origin_rounded ? 1 : 0;
+    const auto back = integers_under(points->lattice, points->points, transform);
+    REQUIRE(back);
+    CHECK(*back == integers);
+  }
+  CHECK(moved > 500);
+  CHECK(rounded > 100);
 }
 
 TEST_CASE("transforms that make no sense are refused") {

@@ -35,6 +35,18 @@ const std::string kBox =
     [1000,1000,2500],[0,1000,2500],[5,5,5],[6,6,6]]}
 )";
 
+/// A cavity that touches a facet of its shell from within, on a grid of US survey feet as metres:
+/// the exact place of its least corner has more than 18 digits.
+const std::string kSurveyFeet =
+    R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.00030480060960121926,)"
+    R"(0.00030480060960121926,0.00030480060960121926],"translate":[84616.468,447422.3,0]},)"
+    R"("CityObjects":{"b":{"type":"Building","geometry":[{"type":"Solid","lod":"2",)"
+    R"("boundaries":[[[[0,2,1]],[[0,1,3]],[[1,2,3]],[[2,0,3]]],)"
+    R"([[[5,6,7]],[[5,4,6]],[[6,4,7]],[[7,4,5]]]]}]}},)"
+    R"("vertices":[[-618218,293707,877197],[-609218,293707,877197],[-618218,302707,877197],)"
+    R"([-618218,293707,886197],[-615218,296707,880197],[-617218,294707,878197],)"
+    R"([-616218,294707,878197],[-617218,295707,878197]]})";
+
 Document read_kept(const std::string& text, Format format) {
   ReadOptions options;
   options.split_features = false;
@@ -95,6 +107,27 @@ std::vector<std::string> textured_corners(const Json& model, const Json& geometr
 
 TEST_CASE("contract exact gives the very bytes of a document back") {
   CHECK(through_container(kBox, Format::city_json, Contract::exact) == kBox);
+}
+
+TEST_CASE("integers under a long scale are valid and come back under every contract") {
+  CHECK(through_container(kSurveyFeet, Format::city_json, Contract::exact) == kSurveyFeet);
+  const auto sorted_vertices = [](const std::string& text) {
+    auto vertices = Json::parse(text)["vertices"].get<std::vector<Json>>();
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  };
+  for (const Contract contract : {Contract::lattice, Contract::boundary}) {
+    CHECK(sorted_vertices(through_container(kSurveyFeet, Format::city_json, contract)) ==
+          sorted_vertices(kSurveyFeet));
+  }
+  const Document document = read_kept(kSurveyFeet, Format::city_json);
+  const InspectedFeature inspected = inspect(document.features.at(0), nullptr, {});
+  REQUIRE(inspected.solids.size() == 1);
+  const Report& report = inspected.solids[0].inspection.report;
+  CHECK(report.verdict == Verdict::valid);
+  REQUIRE(report.findings.size() == 1);
+  CHECK(report.findings[0].code == 805);
+  CHECK(report.findings[0].detail.find("the shape is exact") != std::string::npos);
 }
 
 TEST_CASE("contract exact gives the very bytes of a sequence back") {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where an instance of a geometry template stands: an affine map, and what it does to the solid.
+// The sign of the determinant is exact; places in the world are rounded.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "geometry/lattice.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// world = linear * template + shift. The linear part is the exact decimals of the document, row by
+/// row; the shift decides nothing.
+struct Placement {
+  std::array<std::array<GridNumber, 3>, 3> linear{
+      {{{{1, 0}, {0, 0}, {0, 0}}}, {{{0, 0}, {1, 0}, {0, 0}}}, {{{0, 0}, {0, 0}, {1, 0}}}}};
+  std::array<double, 3> shift{};  // world units
+  std::uint32_t srid = 0;         // of the world
+  friend auto operator<=>(const Placement&, const Placement&) = default;
+};
+
+/// Exact sign (-1, 0, +1) of the linear part's determinant.
+int determinant_sign(const Placement& placement);
+
+/// True if the linear part is a rotation, exactly: its inverse is its transpose, its determinant 1.
+bool is_rotation(const Placement& placement);
+
+/// The nearest double of a decimal.
+double rounded(const GridNumber& decimal);
+
+/// The linear part as nearest doubles, row by row.
+std::array<std::array<double, 3>, 3> linear_part(const Placement& placement);
+
+/// Where a point of the template lies in the world, rounded; not finite beyond the doubles.
+std::array<double, 3> place(const Placement& placement, const std::array<double, 3>& point);
+
+/// The solid with rounded vertices in the world, for measures and pictures; nothing is decided on
+/// it. Errors: malformed if a coordinate leaves the doubles.
+Result<Solid> placed(const Solid& solid, const Placement& placement);
+
+/// The solid with all rings reversed. A map with negative determinant makes of a solid what one
+/// with positive determinant makes of it turned over.
+Solid turned_over(const Solid& solid);
+
+}  // namespace watertight

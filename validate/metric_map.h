@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From lattice coordinates of a solid to metres in the world, for everything that is measured:
+// through the units of its reference system, or, for a geometry template, through the placement of
+// an instance. Internal to validate/.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "geometry/placement.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+class MetricMap {
+ public:
+  /// `placement` may be null: the solid stands where it is.
+  MetricMap(const Solid& solid, const Placement* placement);
+
+  /// The vector in metres between two points of the lattice. Rounded.
+  std::array<double, 3> metres(const Point& from, const Point& to) const;
+
+  /// True if each lattice axis keeps its direction, so that two different points of the grid are at
+  /// least the shortest step apart.
+  bool keeps_axes() const { return !matrix_; }
+  /// What was assumed of the units, "" when nothing.
+  const std::string& note() const { return note_; }
+
+ private:
+  std::array<double, 3> per_step_{1, 1, 1};
+  std::optional<std::array<std::array<double, 3>, 3>> matrix_;  // rows: axes of the world
+  std::string note_;
+};
+
+}  // namespace watertight

@@ -64,7 +64,8 @@ void TouchFinder::sort_vertices(IndexRange rings) {
     auto& list = by_axis_[static_cast<std::size_t>(axis)];
     list.clear();
     for (Index r = rings.begin; r < rings.end; ++r) {
-      for (const Index vertex : solid_.ring(r)) list.push_back({vertices_[vertex][axis], vertex, r});
+      for (const Index vertex : solid_.ring(r))
+        list.push_back({vertices_[vertex][axis], vertex, r});
     }
     std::sort(list.begin(), list.end(), [](const RingVertex& a, const RingVertex& b) {
       return std::tie(a.coordinate, a.vertex, a.ring) < std::tie(b.coordinate, b.vertex, b.ring);

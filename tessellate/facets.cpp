@@ -326,9 +326,7 @@ void keep_triangulated(const Solid& solid, const FacetTriangles& facets,
                        std::vector<RingTouch>& touches) {
   Index facet = 0;
   std::erase_if(touches, [&](const RingTouch& touch) {
-    const auto end_of = [&](Index f) {
-      return solid.arrays().ring_offsets[solid.rings_of(f).end];
-    };
+    const auto end_of = [&](Index f) { return solid.arrays().ring_offsets[solid.rings_of(f).end]; };
     while (touch.corner >= end_of(facet)) ++facet;
     return facets.state[facet] != FacetState::triangulated;
   });

@@ -76,7 +76,8 @@ Result<BoundaryComplex> follow(const CanonicalSolid& canonical) {
   auto delaunay = create_delaunay(complex);
   if (!delaunay) return delaunay.error();
   const FacetTriangles facets = triangulate_facets(solid);
-  const FollowingTriangles following = follow_delaunay(solid, facets, *delaunay);
+  const FollowingTriangles following =
+      follow_delaunay(facets.divided_solid(solid), facets, *delaunay);
   for (Index facet = 0; facet < solid.facet_count(); ++facet) {
     if (following.first[facet] == following.first[facet + 1]) {
       return not_encodable("facet " + std::to_string(canonical.order.facet[facet]) +

@@ -139,7 +139,8 @@ Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& mem
     return Error{ErrorCode::not_encodable, "a shell has no facets"};
   }
   if (!pair_twins(surface, solid.ring_vertices)) {
-    return Error{ErrorCode::not_encodable, "a shell is not closed by itself"};
+    return Error{ErrorCode::not_encodable,
+                 "the ring edges of a shell are not matched by those of the same shell"};
   }
   number_fans(truth, solid.ring_vertices);
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {

@@ -48,7 +48,8 @@ struct SurfaceTruth {
   std::vector<Index> first_half;  // shell -> the half-edge at which the walk begins
 };
 
-/// Errors: not_encodable if a shell is not closed by itself. Cost: O(n log n).
+/// Errors: not_encodable if ring edges of a shell are not matched by edges of the same shell. Cost:
+/// O(n log n).
 Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& memory);
 
 /// The surface in the order of the walk, and where its vertices are in the truth when there is one.

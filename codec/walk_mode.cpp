@@ -61,6 +61,11 @@ Result<BoundaryMesh> triangulate(const std::vector<Point>& points, const Integer
   const auto solid = solid_on(points, integer);
   if (!solid) return refused;
   const FacetTriangles facets = triangulate_facets(*solid);
+  if (facets.divided) {
+    return Error{ErrorCode::not_encodable,
+                 "mode walk finds rings by the edges of triangles; a vertex of a ring lies inside "
+                 "an edge of another ring of its facet"};
+  }
   FollowingTriangles following = follow_delaunay(*solid, facets, delaunay);
   BoundaryMesh mesh;
   for (Index facet = 0; facet < solid->facet_count(); ++facet) {

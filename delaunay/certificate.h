@@ -65,8 +65,9 @@ struct CertificateResult {
   Certificate certificate;  // when refusal is none
 };
 
-/// Requires merged vertices, `facets` = triangulate_facets(solid), and a solid that passed the
-/// exact tests. `is_cancelled` is asked every few thousand steps. Cost: O(n log n) in tetrahedra.
+/// Requires merged vertices, rings that are divided as the triangles are (divided_solid), `facets`
+/// = triangulate_facets(solid), and a solid that passed the exact tests. `is_cancelled` is asked
+/// every few thousand steps. Cost: O(n log n) in tetrahedra.
 CertificateResult check_certificate(const Solid& solid, const FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,
                                     const std::function<bool()>& is_cancelled = {});

@@ -32,16 +32,16 @@ struct FollowingTriangles {
 };
 
 /// Requires merged vertices, `canonical` = triangulate_facets(merged), or those divided at contacts
-/// (divide_at_contacts), and `delaunay` = canonical_delaunay(merged.vertices()). A facet without
-/// canonical triangles gets none here.
-/// Guarantees: the triangles of a facet use exactly the vertices of `canonical` and cover, in the
-/// projection facet_projection(), the region between its rings exactly once. A facet that lies
-/// exactly in a plane and is a union of Delaunay faces is found with missing = 0, as is every other
-/// such facet of one ring with at most 60 vertices, where `missing` is the least possible. The same
-/// set for every numbering of vertices, facets and rings. Cost: O(n log n) for facets that are
-/// unions, O(k^3) for one ring of k <= 60 vertices, else the canonical triangles improved by at
-/// most 3 k edge flips. Source: research of this project; Verbree & Si 2008, section 5, leave the
-/// choice of the facets' triangulation open.
+/// (divide_at_contacts), rings that are divided as the triangles are (divided_solid), and
+/// `delaunay` = canonical_delaunay(merged.vertices()). A facet without canonical triangles gets
+/// none here. Guarantees: the triangles of a facet use exactly the vertices of `canonical` and
+/// cover, in the projection facet_projection(), the region between its rings exactly once. A facet
+/// that lies exactly in a plane and is a union of Delaunay faces is found with missing = 0, as is
+/// every other such facet of one ring with at most 60 vertices, where `missing` is the least
+/// possible. The same set for every numbering of vertices, facets and rings. Cost: O(n log n) for
+/// facets that are unions, O(k^3) for one ring of k <= 60 vertices, else the canonical triangles
+/// improved by at most 3 k edge flips. Source: research of this project; Verbree & Si 2008, section
+/// 5, leave the choice of the facets' triangulation open.
 FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
                                    const CanonicalDelaunay& delaunay);
 

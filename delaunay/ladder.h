@@ -98,7 +98,8 @@ struct LadderResult {
   std::vector<RungAttempt> attempts;
 };
 
-/// Requires a solid that passed the exact tests. Neither result set = undecided.
+/// Requires a solid that passed the exact tests, with rings that are divided as the triangles are
+/// (FacetTriangles::divided_solid). Neither result set = undecided.
 /// `workers` may be null: rung 0 only.
 LadderResult climb_ladder(const Solid& solid, const FacetTriangles& facets, EngineWorkers* workers,
                           const LadderOptions& options);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/divided_rings.h"
+
 namespace watertight {
 namespace {
 
@@ -114,7 +116,13 @@ Result<OrientedBoundary> OrientedBoundary::make(Solid solid) {
   if (auto status = check_structure(solid); !status) return status.error();
   if (auto status = check_rings(solid); !status) return status.error();
   if (auto status = check_distinct(solid.vertices()); !status) return status.error();
-  if (auto status = check_closed(solid); !status) return status.error();
+  if (auto status = check_closed(solid); !status) {
+    const std::vector<RingTouch> touches = ring_touches(solid);
+    if (touches.empty()) return status.error();
+    if (auto again = check_closed(divide_rings(solid, touches).solid); !again) {
+      return again.error();
+    }
+  }
   return OrientedBoundary(std::move(solid));
 }
 

@@ -37,8 +37,10 @@ struct Acceptance {
   friend bool operator==(const Acceptance&, const Acceptance&) = default;
 };
 
-/// Closed and oriented by edges: every directed ring edge is met by its reverse exactly as often.
-/// Geometry is not promised. What the codec works on, and what benches on dirty meshes use.
+/// Closed and oriented by edges: every directed ring edge is met by its reverse exactly as often,
+/// at least where a vertex of a ring that lies inside an edge of another ring of its facet splits
+/// that edge (geometry/divided_rings.h). Geometry is not promised. What the codec works on, and
+/// what benches on dirty meshes use.
 class OrientedBoundary {
  public:
   /// Errors: not_encodable naming the first unmatched edge, a ring below 3 vertices, a facet

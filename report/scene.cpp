@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "geometry/crs.h"
+#include "geometry/divided_rings.h"
 #include "validate/finding_kinds.h"
 
 namespace watertight {
@@ -148,13 +149,15 @@ SceneFacet facet_of(const Candidate& candidate, const Frame& frame, std::size_t 
   return facet;
 }
 
-/// Edges that are not used exactly twice, for the findings that speak of them.
+/// Edges that are not used exactly twice, for the findings that speak of them. An edge that a
+/// vertex of another ring of its facet splits counts as its parts.
 void add_bad_edges(const Solid& solid, const Frame& frame, std::size_t most, Scene& scene) {
   if (solid.arrays().ring_vertices.size() > kMostCornersForEdges) return;
-  const MergedSolid merged = merge_equal_vertices(solid);
+  const Solid merged = merge_equal_vertices(solid).solid;
+  const Solid divided = divide_rings(merged, ring_touches(merged)).solid;
   std::vector<std::array<Index, 2>> edges;
-  for (Index ring = 0; ring < merged.solid.ring_count(); ++ring) {
-    const std::span<const Index> vertices = merged.solid.ring(ring);
+  for (Index ring = 0; ring < divided.ring_count(); ++ring) {
+    const std::span<const Index> vertices = divided.ring(ring);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const Index a = vertices[i];
       const Index b = vertices[(i + 1) % vertices.size()];
@@ -167,7 +170,7 @@ void add_bad_edges(const Solid& solid, const Frame& frame, std::size_t most, Sce
         std::upper_bound(edges.begin() + static_cast<std::ptrdiff_t>(i), edges.end(), edges[i]);
     const auto next = static_cast<std::size_t>(end - edges.begin());
     if (next - i != 2) {
-      scene.lines.push_back({frame(merged.solid, edges[i][0]), frame(merged.solid, edges[i][1])});
+      scene.lines.push_back({frame(divided, edges[i][0]), frame(divided, edges[i][1])});
     }
     i = next;
   }

@@ -308,9 +308,7 @@ FacetState FacetTriangulator::triangulate(Index facet, std::vector<Triangle>& tr
   return triangulate_any(rings, triangles);
 }
 
-}  // namespace
-
-FacetTriangles triangulate_facets(const Solid& solid) {
+FacetTriangles triangulate_each(const Solid& solid) {
   FacetTriangles result;
   result.state.reserve(solid.facet_count());
   result.first.reserve(std::size_t{solid.facet_count()} + 1);
@@ -328,6 +326,41 @@ FacetTriangles triangulate_facets(const Solid& solid) {
     result.first.push_back(static_cast<Index>(result.triangles.size()));
   }
   return result;
+}
+
+/// Facets with several rings that bound no region, as long as no vertex splits an edge.
+std::vector<Index> facets_to_divide(const Solid& solid, const FacetTriangles& facets) {
+  std::vector<Index> list;
+  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
+    const bool is_simple = facets.state[facet] != FacetState::not_simple;
+    if (!is_simple && solid.rings_of(facet).size() > 1) list.push_back(facet);
+  }
+  return list;
+}
+
+/// Removes the touches in facets that bound no region in spite of them.
+void keep_triangulated(const Solid& solid, const FacetTriangles& facets,
+                       std::vector<RingTouch>& touches) {
+  Index facet = 0;
+  std::erase_if(touches, [&](const RingTouch& touch) {
+    const auto end_of = [&](Index f) { return solid.arrays().ring_offsets[solid.rings_of(f).end]; };
+    while (touch.corner >= end_of(facet)) ++facet;
+    return facets.state[facet] != FacetState::triangulated;
+  });
+}
+
+}  // namespace
+
+FacetTriangles triangulate_facets(const Solid& solid) {
+  FacetTriangles whole = triangulate_each(solid);
+  const std::vector<Index> facets = facets_to_divide(solid, whole);
+  if (facets.empty()) return whole;
+  std::vector<RingTouch> touches = ring_touches(solid, facets);
+  if (touches.empty()) return whole;
+  FacetTriangles divided = triangulate_each(divide_rings(solid, touches).solid);
+  keep_triangulated(solid, divided, touches);
+  if (!touches.empty()) divided.divided = divide_rings(solid, touches);
+  return divided;
 }
 
 }  // namespace watertight

@@ -6,8 +6,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "geometry/divided_rings.h"
 #include "geometry/solid.h"
 
 namespace watertight {
@@ -36,12 +38,19 @@ struct FacetTriangles {
   std::vector<Index> facet_of;    // triangle -> facet
   std::vector<Index> first{0};    // facet -> first triangle; facet_count + 1 entries
   std::vector<FacetState> state;  // per facet
+  /// The solid with the rings that the triangles have, where vertices of rings split edges of other
+  /// rings (in triangulated facets only); absent where the rings are those of the solid itself.
+  std::optional<DividedRings> divided;
+
+  /// The solid whose ring edges are edges of the triangles.
+  const Solid& divided_solid(const Solid& solid) const { return divided ? divided->solid : solid; }
 };
 
 /// Requires merged vertices. Facets whose rings are not simple in projection get no triangles.
-/// Guarantees: the triangles of a triangulated facet use exactly its ring vertices, cover the
-/// region between its rings, and are the same set for every numbering of the input.
-/// Cost: O(n log n) per facet.
+/// Rings may share vertices, and a vertex of a ring may lie inside an edge of another
+/// (geometry/divided_rings.h). Guarantees: the triangles of a triangulated facet use exactly its
+/// ring vertices, cover the region between its rings, and are the same set for every numbering of
+/// the input. Cost: O(n log n) per facet; twice that for a solid with split edges.
 FacetTriangles triangulate_facets(const Solid& solid);
 
 }  // namespace watertight

@@ -8,6 +8,7 @@
 
 #include <CGAL/Exact_rational.h>
 
+#include "geometry/divided_rings.h"
 #include "geometry/predicates.h"
 
 namespace watertight {
@@ -39,12 +40,15 @@ class RingExaminer {
         vertices_(solid.vertices()),
         rings_(solid.rings_of(facet)),
         most_(most),
-        cancel_(cancel) {}
+        cancel_(cancel) {
+    divide(facet);
+  }
 
   RingProblems examine(Index facet);
 
  private:
-  std::span<const Index> ring(Index number) const { return solid_.ring(rings_.begin + number); }
+  void divide(Index facet);
+  std::span<const Index> ring(Index number) const { return divided_[number].vertices; }
   bool choose_axis(Index facet);
   void measure_boxes();
   bool are_apart(Index a, Index b) const;
@@ -87,11 +91,35 @@ class RingExaminer {
     std::array<double, 2> min{};
     std::array<double, 2> max{};
   };
+  /// A ring with the vertices that split its edges.
+  struct DividedRing {
+    std::vector<Index> vertices;
+    std::vector<Index> position_of;  // in the ring as submitted, where the edge starts
+  };
+  std::vector<DividedRing> divided_;
   std::vector<Edge> edges_;
   std::vector<Box> boxes_;         // of each ring, in the plane of projection
   std::vector<bool> is_left_out_;  // rings that are short, collapsed or a duplicate
   RingProblems result_;
 };
+
+void RingExaminer::divide(Index facet) {
+  const std::vector<RingTouch> touches = ring_touches(solid_, std::span(&facet, 1));
+  auto touch = touches.begin();
+  divided_.resize(rings_.size());
+  for (Index r = 0; r < rings_.size(); ++r) {
+    DividedRing& divided = divided_[r];
+    const std::span<const Index> corners = solid_.ring(rings_.begin + r);
+    const Index first = solid_.arrays().ring_offsets[rings_.begin + r];
+    for (Index i = 0; i < corners.size(); ++i) {
+      divided.vertices.push_back(corners[i]);
+      for (; touch != touches.end() && touch->corner == first + i; ++touch) {
+        divided.vertices.push_back(touch->vertex);
+      }
+      divided.position_of.resize(divided.vertices.size(), i);
+    }
+  }
+}
 
 /// The axis of the facet's projection or, without an area, one along which a ring has a turn.
 bool RingExaminer::choose_axis(Index facet) {
@@ -419,6 +447,10 @@ RingProblems RingExaminer::examine(Index facet) {
     if (result_.is_complete && result_.problems.empty() && !is_left_out_[0]) find_nesting();
   }
   auto& problems = result_.problems;
+  for (RingProblem& p : problems) {
+    if (p.edge != kNone) p.edge = divided_[p.ring].position_of[p.edge];
+    if (p.other_edge != kNone) p.other_edge = divided_[p.other_ring].position_of[p.other_edge];
+  }
   const auto key = [](const RingProblem& p) {
     return std::tie(p.ring, p.kind, p.edge, p.other_ring, p.other_edge);
   };

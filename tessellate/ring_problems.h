@@ -16,7 +16,7 @@ namespace watertight {
 enum class RingProblemKind : std::uint8_t {
   collapsed,         // all points of the ring lie on one line
   self_contact,      // a ring meets itself other than where neighbouring edges join
-  rings_meet,        // two rings share more than vertices, or cross in one
+  rings_meet,        // two rings share more than single points, or cross in one
   same_ring,         // two rings have the same vertices
   outside_exterior,  // an interior ring lies outside the exterior ring
   nested             // an interior ring lies inside another interior ring
@@ -36,7 +36,9 @@ struct RingProblems {
   bool is_complete = true;  // false: more than `most`, too many pairs to look at, or cancelled
 };
 
-/// Requires merged vertices. Rings below 3 vertices are left out and edges of no length ignored.
+/// Requires merged vertices. Rings below 3 vertices are left out and edges of no length ignored. A
+/// vertex inside an edge of another ring splits that edge (geometry/divided_rings.h) and is no
+/// problem by itself; edges are given as positions in the rings of `solid`.
 /// `cancel` is asked about every 2^16 steps; true ends the search with what was found.
 /// Cost: O(n log n + pairs of edges that overlap in one axis), bounded; nesting O(rings x n).
 RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most,

@@ -216,7 +216,7 @@ void Certifier::report_property(const LadderResult& result) {
 }
 
 void Certifier::accept(std::optional<Certificate> certificate) {
-  auto boundary = OrientedBoundary::make(examined_.solid());
+  auto boundary = OrientedBoundary::make(examined_.merged());
   if (!boundary) {
     inspection_.report.undecided_reason = to_string(boundary.error());
     return;

@@ -95,9 +95,18 @@ Place ExaminedSolid::at_ring(Index facet, Index ring_in_facet) const {
 
 Place ExaminedSolid::at_corner(Index facet, Index ring_in_facet, std::size_t position) const {
   Place place = at_ring(facet, ring_in_facet);
-  const auto ring = submitted_.ring(submitted_.rings_of(facet).begin + ring_in_facet);
-  place.vertex = ring[position % ring.size()];
+  const Index ring = solid().rings_of(facet).begin + ring_in_facet;
+  Index corner = solid().arrays().ring_offsets[ring];
+  corner += static_cast<Index>(position % solid().ring(ring).size());
+  if (triangles_.divided) corner = triangles_.divided->corner_of[corner];
+  place.vertex = submitted_.arrays().ring_vertices[corner];
   return place;
+}
+
+bool ExaminedSolid::is_inserted(Index corner) const {
+  if (!triangles_.divided || corner == 0) return false;
+  const std::vector<Index>& corner_of = triangles_.divided->corner_of;
+  return corner_of[corner] == corner_of[corner - 1];
 }
 
 bool ExaminedSolid::is_shell_faulty(Index shell) const {

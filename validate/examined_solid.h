@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the rules look at: the submitted solid with equal vertices merged, its canonical
-// triangulation, its units, and the findings so far. Internal to validate/.
+// What the rules look at: the submitted solid with equal vertices merged and edges split where
+// rings touch, its canonical triangulation, its units, and the findings so far. Internal to
+// validate/.
 #pragma once
 
 #include <map>
@@ -59,7 +60,13 @@ class ExaminedSolid {
   bool was_cancelled() const { return was_cancelled_; }
 
   const Solid& submitted() const { return submitted_; }
-  const Solid& solid() const { return merged_.solid; }
+  /// The submitted solid with equal vertices merged.
+  const Solid& merged() const { return merged_.solid; }
+  /// The merged solid with the vertices of rings that split edges of other rings of their facet in
+  /// those rings too: all rules look at it. Places are told in the submitted solid.
+  const Solid& solid() const { return triangles_.divided_solid(merged_.solid); }
+  /// True if a corner of solid() splits an edge and is no corner of the submitted ring.
+  bool is_inserted(Index corner) const;
   const std::vector<Index>& merged_of() const { return merged_.vertex_of; }
   const FacetTriangles& triangles() const { return triangles_; }
   const Tolerances& tolerances() const { return tolerances_; }
@@ -78,7 +85,8 @@ class ExaminedSolid {
   Place at_shell(Index shell) const;
   Place at_facet(Index facet) const;
   Place at_ring(Index facet, Index ring_in_facet) const;
-  /// The vertex at a position of a ring.
+  /// The vertex at a position of a ring of solid(); the start of the submitted edge for a vertex
+  /// that splits it.
   Place at_corner(Index facet, Index ring_in_facet, std::size_t position) const;
   /// The first submitted vertex that became this merged one.
   Index submitted_vertex(Index merged) const { return first_submitted_[merged]; }

@@ -25,12 +25,17 @@ struct Corner {
   Index vertex = 0;
 };
 
-std::vector<Corner> corners_of(const Solid& solid, Index facet) {
+/// Of the rings as submitted: a vertex that splits an edge of another ring is no corner of it.
+std::vector<Corner> corners_of(const ExaminedSolid& examined, Index facet) {
   std::vector<Corner> corners;
+  const Solid& solid = examined.solid();
   const IndexRange rings = solid.rings_of(facet);
   for (Index r = rings.begin; r < rings.end; ++r) {
     const std::span<const Index> ring = solid.ring(r);
-    for (std::size_t i = 0; i < ring.size(); ++i) corners.push_back({r - rings.begin, i, ring[i]});
+    const Index first = solid.arrays().ring_offsets[r];
+    for (Index i = 0; i < ring.size(); ++i) {
+      if (!examined.is_inserted(first + i)) corners.push_back({r - rings.begin, i, ring[i]});
+    }
   }
   return corners;
 }
@@ -181,10 +186,13 @@ std::size_t count_parts(std::span<const Triangle> triangles) {
   return parts;
 }
 
-void check_connected(ExaminedSolid& examined, Index facet, const std::vector<Corner>& corners) {
+void check_connected(ExaminedSolid& examined, Index facet) {
   // Rings that share no vertex cannot cut the interior apart.
+  const Solid& solid = examined.solid();
   std::vector<Index> vertices;
-  for (const Corner& corner : corners) vertices.push_back(corner.vertex);
+  for (Index r = solid.rings_of(facet).begin; r < solid.rings_of(facet).end; ++r) {
+    vertices.insert(vertices.end(), solid.ring(r).begin(), solid.ring(r).end());
+  }
   std::sort(vertices.begin(), vertices.end());
   const auto shared = std::adjacent_find(vertices.begin(), vertices.end());
   if (shared == vertices.end()) return;
@@ -232,7 +240,7 @@ bool has_good_points(const Solid& solid, IndexRange rings) {
 /// False if the facet is too large to be measured.
 bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
   const Solid& solid = examined.solid();
-  const std::vector<Corner> corners = corners_of(solid, facet);
+  const std::vector<Corner> corners = corners_of(examined, facet);
   bool is_measured = true;
   if (!is_flat(solid, facet)) {
     if (is_triangulated) examined.mark_not_planar(facet);
@@ -242,7 +250,7 @@ bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
     }
   }
   if (!is_triangulated || solid.rings_of(facet).size() < 2) return is_measured;
-  check_connected(examined, facet, corners);
+  check_connected(examined, facet);
   check_turns(examined, facet);
   return is_measured;
 }

@@ -1,8 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The canonical solid and its checksum, from docs/format.md."""
 import struct
+from fractions import Fraction
 
 from entropy import Malformed, crc32c
+
+
+def is_matched(rings):
+    """True if each directed edge is met by its reverse exactly as often."""
+    balance = {}
+    for ring in rings:
+        for a, b in zip(ring, ring[1:] + ring[:1]):
+            edge, sign = ((a, b), 1) if a < b else ((b, a), -1)
+            balance[edge] = balance.get(edge, 0) + sign
+    return not any(balance.values())
 
 
 class Solid:
@@ -38,18 +49,33 @@ class Solid:
         return sorted(facets)
 
     def check_closed(self):
-        """Requires that each directed edge is met by its reverse exactly as often."""
+        """Requires that each directed edge is met by its reverse exactly as often, as the rings are
+        or with split edges."""
         if not self.shells or not all(self.shells) or not all(self.facets):
             raise Malformed("a shell or facet of nothing")
-        balance = {}
-        for ring in self.rings:
-            if len(ring) < 3 or len(set(ring)) < len(ring):
-                raise Malformed("a ring that is none")
-            for a, b in zip(ring, ring[1:] + ring[:1]):
-                edge, sign = ((a, b), 1) if a < b else ((b, a), -1)
-                balance[edge] = balance.get(edge, 0) + sign
-        if any(balance.values()):
+        if any(len(ring) < 3 or len(set(ring)) < len(ring) for ring in self.rings):
+            raise Malformed("a ring that is none")
+        if not is_matched(self.rings) and not is_matched(self.divided_rings()):
             raise Malformed("a boundary that is not closed")
+
+    def divided_rings(self):
+        """The rings with the vertices of other rings of their facet that split their edges."""
+        for facet in self.facets:
+            for ring in facet:
+                others = {v for other in facet for v in other} - set(ring)
+                divided = []
+                for a, b in zip(ring, ring[1:] + ring[:1]):
+                    inside = [v for v in others if self.is_between(a, b, v)]
+                    divided += [a] + sorted(inside, reverse=a > b)
+                yield divided
+
+    def is_between(self, a, b, v):
+        """True if vertex v lies exactly inside the edge from a to b."""
+        a, b, v = ([Fraction(c) for c in self.vertices[i]] for i in (a, b, v))
+        along, offset = ([q - p for p, q in zip(a, end)] for end in (b, v))
+        return (all(min(p, q) <= c <= max(p, q) for p, q, c in zip(a, b, v))
+                and all(along[i] * offset[j] == along[j] * offset[i]
+                        for i, j in ((0, 1), (1, 2), (2, 0))))
 
     def checksum(self, frame, origin, arrangement=None):
         """The CRC-32C of the canonical serialization."""

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "tests/solids/builders.h"
+#include "tests/solids/touching_rings.h"
 
 namespace watertight::solids {
 namespace {
@@ -126,7 +127,7 @@ std::vector<SuiteCase> ring_cases() {
       {"free", {{6, 6, 20}, {14, 6, 20}, {10, 14, 20}}, {}},
       {"vertex-at-vertex", {{0, 0, 20}, {14, 6, 20}, {6, 14, 20}}, {}},
       {"vertices-at-two-vertices", {{0, 0, 20}, {14, 6, 20}, {20, 20, 20}, {6, 14, 20}}, {205}},
-      {"vertex-in-edge", {{10, 0, 20}, {14, 8, 20}, {6, 8, 20}}, {201, 306}},
+      {"vertex-in-edge", {{10, 0, 20}, {14, 8, 20}, {6, 8, 20}}, {302}},
       {"edge-along-edge", {{6, 0, 20}, {14, 0, 20}, {10, 8, 20}}, {201, 306}},
   };
   std::vector<SuiteCase> cases;
@@ -149,6 +150,10 @@ std::vector<SuiteCase> ring_cases() {
                        {},
                        ask});
     }
+  }
+  for (const TouchingRings& touching : touching_rings()) {
+    const Ask ask = touching.errors.empty() ? Ask::engines : Ask::rung_zero;
+    cases.push_back(of(touching.name, touching.shape, touching.errors, {}, ask));
   }
   return cases;
 }

@@ -93,6 +93,30 @@ Shape touching_pits() {
   return shape;
 }
 
+Shape pits_inside_edges() {
+  Shape shape = box({0, 0, 0}, {90, 60, 40});
+  shape.vertices.insert(shape.vertices.end(), {{45, 0, 40},
+                                               {57, 20, 40},
+                                               {33, 20, 40},
+                                               {44, 12, 21},
+                                               {45, 20, 40},
+                                               {57, 41, 40},
+                                               {33, 41, 40},
+                                               {46, 33, 17}});
+  std::vector<Facet>& facets = shape.shells[0];
+  facets[1].push_back({10, 9, 8});
+  facets[1].push_back({14, 13, 12});
+  facets.insert(facets.end(), {{{8, 9, 11}},
+                               {{9, 12, 10, 11}},
+                               {{10, 8, 11}},
+                               {{12, 13, 15}},
+                               {{13, 14, 15}},
+                               {{14, 12, 15}}});
+  Ring& front = facets[2][0];
+  front.insert(std::find(front.begin(), front.end(), Index{5}) + 1, 8);
+  return shape;
+}
+
 Shape warped_box(double lift) {
   Shape shape = box({0, 0, 0}, {100, 80, 50});
   shape.vertices[7].z += lift;

@@ -34,6 +34,10 @@ Shape tunnelled_box();
 /// A box with three pits in its top, facet 1: the rim of the first has the box's corner 4, the
 /// second's a vertex of the first's, the third's the box's corner 7.
 Shape touching_pits();
+/// A box with two pits in its top, facet 1: the rim of the first has a vertex inside the edge to
+/// the front wall, facet 2, which has that vertex too; the second's has one inside an edge of the
+/// first's, and so has the wall of the pit there.
+Shape pits_inside_edges();
 /// A box whose roof is a quadrilateral that is not planar (one corner `lift` units higher).
 Shape warped_box(double lift);
 /// A prism over a polygon in the plane z = 0, counter-clockwise.

@@ -82,6 +82,21 @@ Shape degrees_house() {
   return shape;
 }
 
+TEST_CASE("solids whose rings touch inside edges are proved with divided rings, by every engine") {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    const Solid solid = samples::make_solid(samples::shuffled(samples::pits_inside_edges(), seed));
+    const FacetTriangles facets = triangulate_facets(solid);
+    REQUIRE(facets.divided);
+    CHECK(climb_ladder(facets.divided_solid(solid), facets, nullptr, {}).certificate);
+    for (const Engine engine : {Engine::cgal, Engine::tetgen}) {
+      const LadderResult result =
+          climb_ladder(facets.divided_solid(solid), facets, &engines(), only(engine));
+      INFO(attempts(result));
+      CHECK(result.certificate);
+    }
+  }
+}
+
 TEST_CASE("rung 0 accepts boxes, cavities, tunnels and facets with holes without an engine") {
   Shape cavity = samples::box({0, 0, 0}, {90, 90, 90});
   samples::add_box(cavity, {30, 30, 30}, {60, 60, 60}, true);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 
@@ -50,6 +51,37 @@ TEST_CASE("an edge used twice in each direction is matched") {
   const Solid solid = merge_equal_vertices(solid_of(vertices, {shell})).solid;
   REQUIRE(solid.vertex_count() == 14);
   CHECK(OrientedBoundary::make(solid).has_value());
+}
+
+TEST_CASE("an edge is matched by its parts where a ring of its facet touches it") {
+  // The upper facet has a triangular pit whose vertex 8 lies inside its edge from 5 to 4.
+  std::vector<Point> vertices;
+  Shell shell = box_shell(vertices, {0, 0, 0}, {8, 8, 8}, true);
+  vertices.insert(vertices.end(), {{4, 0, 8}, {6, 4, 8}, {2, 4, 8}, {4, 3, 6}});
+  const auto has_edge = [](const Ring& ring, Index from, Index to) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      if (ring[i] == from && ring[(i + 1) % ring.size()] == to) return true;
+    }
+    return false;
+  };
+  for (Facet& facet : shell) {
+    if (has_edge(facet[0], 4, 5)) facet.push_back({8, 10, 9});
+  }
+  shell.insert(shell.end(), {{{8, 9, 11}}, {{9, 10, 11}}, {{10, 8, 11}}});
+  // Across lies the plain edge: closed by edges, as it stands.
+  CHECK(OrientedBoundary::make(solid_of(vertices, {shell})).has_value());
+  for (Facet& facet : shell) {
+    if (!has_edge(facet[0], 5, 4)) continue;
+    facet[0].insert(std::find(facet[0].begin(), facet[0].end(), Index{5}) + 1, 8);
+  }
+  const Solid solid = solid_of(vertices, {shell});
+  const auto boundary = OrientedBoundary::make(solid);
+  REQUIRE(boundary.has_value());
+  CHECK(boundary->solid() == solid);
+  // Beside the edge by one step, the vertex splits nothing.
+  vertices[8].y = 1;
+  CHECK(reason(OrientedBoundary::make(solid_of(vertices, {shell})))
+            .find("not matched by its reverse") != std::string::npos);
 }
 
 TEST_CASE("rings that are short or visit a vertex twice are refused") {

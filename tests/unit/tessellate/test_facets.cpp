@@ -282,6 +282,52 @@ TEST_CASE("holes may touch the exterior ring and each other in vertices") {
   CHECK(area == 200 - std::abs(doubled_area(left)) - std::abs(doubled_area(right)));
 }
 
+TEST_CASE("a vertex of a ring inside an edge of another ring splits that edge") {
+  const Ring outer = rectangle(0, 0, 10, 10);
+  const Ring at_edge{{0, 5, 0}, {3, 4, 0}, {3, 6, 0}};
+  const Ring at_hole{{3, 5, 0}, {6, 4, 0}, {6, 6, 0}};
+  const Ring at_notch{{4, 2, 0}, {6, 2, 0}, {5, 4, 0}};
+  const Ring notched{{0, 0, 0},  {4, 0, 0},   {5, 2, 0}, {6, 0, 0},
+                     {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
+  for (const std::vector<Ring>& rings : {std::vector<Ring>{outer, at_edge},
+                                         {outer, at_edge, at_hole},
+                                         {notched, at_notch},
+                                         {notched, at_edge, at_notch}}) {
+    const Solid solid = facet_solid(rings);
+    const FacetTriangles facets = triangulate_facets(solid);
+    CHECK(facets.state[0] == FacetState::triangulated);
+    CHECK(facets.divided);
+    // The same triangles as those of the rings that list the vertex.
+    const FacetTriangles listed = triangulate_facets(facets.divided_solid(solid));
+    CHECK_FALSE(listed.divided);
+    CHECK(listed.triangles == facets.triangles);
+    std::int64_t area = 0;
+    for (const PointTriangle& t : point_triangles(solid)) area += doubled_area({t[0], t[1], t[2]});
+    std::int64_t expected = doubled_area(rings[0]);
+    for (std::size_t i = 1; i < rings.size(); ++i) expected -= std::abs(doubled_area(rings[i]));
+    CHECK(area == expected);
+  }
+  CHECK_FALSE(triangulate_facets(facet_solid({outer, rectangle(2, 2, 4, 4)})).divided);
+}
+
+TEST_CASE("only facets that bound a region once their edges are split are divided") {
+  const Ring outer = rectangle(0, 0, 10, 10);
+  const Ring at_edge{{0, 5, 0}, {3, 4, 0}, {3, 6, 0}};
+  const Ring along_edge{{0, 4, 0}, {3, 5, 0}, {0, 6, 0}};
+  for (const std::vector<Ring>& rings :
+       {std::vector<Ring>{outer, along_edge}, {outer, at_edge, rectangle(1, 1, 5, 5)}}) {
+    const FacetTriangles facets = triangulate_facets(facet_solid(rings));
+    CHECK(facets.state[0] == FacetState::not_simple);
+    CHECK_FALSE(facets.divided);
+  }
+  // In the plane of projection the vertex is on the edge, in space it is beside it.
+  const Ring beside{{0, 5, 1}, {3, 4, 0}, {3, 6, 0}};
+  CHECK(state_of({outer, beside}) == FacetState::not_simple);
+  // A vertex of the same ring splits nothing.
+  CHECK(state_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {4, 0, 0}, {0, 8, 0}},
+                  rectangle(6, 1, 7, 2)}) == FacetState::not_simple);
+}
+
 TEST_CASE("rings that are not simple or nest wrongly give no triangles") {
   const Ring outer = rectangle(0, 0, 10, 10);
   CHECK(state_of({{{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 6, 0}}}) == FacetState::not_simple);
@@ -290,8 +336,6 @@ TEST_CASE("rings that are not simple or nest wrongly give no triangles") {
   CHECK(state_of({outer, rectangle(1, 1, 9, 9), rectangle(2, 2, 3, 3)}) ==
         FacetState::not_simple);                              // nested
   CHECK(state_of({outer, outer}) == FacetState::not_simple);  // the same
-  CHECK(state_of({outer, {{0, 5, 0}, {3, 4, 0}, {3, 6, 0}}}) ==
-        FacetState::not_simple);  // a vertex inside an edge
   CHECK(state_of({outer, {{0, 0, 0}, {0, 10, 0}, {3, 6, 0}}}) ==
         FacetState::not_simple);                                              // an edge shared
   CHECK(state_of({rectangle(2, 2, 3, 3), outer}) == FacetState::not_simple);  // inside out

@@ -42,6 +42,53 @@ TEST_CASE("simple rings that share at most vertices have no problems") {
   CHECK(kinds_of({square(0, 9), square(1, 3), square(3, 5)}).empty());
 }
 
+TEST_CASE("rings that touch inside edges have no problem; other contacts keep their edges") {
+  const Ring at_edge{{0, 5, 0}, {3, 4, 0}, {3, 6, 0}};
+  CHECK(kinds_of({square(0, 9), at_edge}).empty());
+  CHECK(kinds_of({square(0, 9), at_edge, {{3, 5, 0}, {6, 4, 0}, {6, 6, 0}}}).empty());
+  // A third ring crosses the first hole; edges are counted in the rings as submitted.
+  const auto crossed = problems_of({square(0, 9), at_edge, {{2, 1, 0}, {8, 1, 0}, {2, 8, 0}}});
+  REQUIRE_FALSE(crossed.empty());
+  for (const RingProblem& problem : crossed) {
+    CHECK(problem.kind == RingProblemKind::rings_meet);
+    CHECK(problem.ring == 1);
+    CHECK(problem.edge < 3);
+    CHECK(problem.other_edge < 3);
+  }
+  // Overlap along an edge, on the fourth edge of the exterior ring.
+  const auto along = problems_of({square(0, 9), {{0, 4, 0}, {3, 5, 0}, {0, 6, 0}}});
+  REQUIRE(along.size() == 1);
+  CHECK(along[0].edge == 3);
+  CHECK(along[0].other_edge == 2);
+  // A hole that touches the exterior ring from outside.
+  CHECK(kinds_of({square(0, 9), {{9, 5, 0}, {12, 4, 0}, {12, 6, 0}}}) ==
+        Kinds{RingProblemKind::outside_exterior});
+  // Two tips of the exterior ring inside one edge of a hole; between them inside, then outside.
+  CHECK(kinds_of({{{0, 0, 0},
+                   {4, 0, 0},
+                   {5, 2, 0},
+                   {6, 0, 0},
+                   {7, 0, 0},
+                   {8, 2, 0},
+                   {9, 0, 0},
+                   {12, 0, 0},
+                   {12, 9, 0},
+                   {0, 9, 0}},
+                  {{4, 2, 0}, {10, 2, 0}, {5, 5, 0}}})
+            .empty());
+  CHECK(kinds_of({{{0, 0, 0},
+                   {5, 0, 0},
+                   {5, 2, 0},
+                   {4, 4, 0},
+                   {9, 4, 0},
+                   {8, 2, 0},
+                   {8, 0, 0},
+                   {12, 0, 0},
+                   {12, 9, 0},
+                   {0, 9, 0}},
+                  {{1, 2, 0}, {10, 2, 0}, {6, 7, 0}}}) != Kinds{});
+}
+
 TEST_CASE("a bow tie meets itself in the exact crossing point") {
   const auto problems = problems_of({{{0, 0, 0}, {3, 3, 3}, {3, 0, 3}, {0, 3, 0}}});
   REQUIRE(problems.size() == 1);

@@ -138,6 +138,36 @@ TEST_CASE("a missing facet is one border, two missing facets apart are two") {
   CHECK(error_codes(report) == Codes{302});
 }
 
+TEST_CASE("a hole may touch an edge of its facet where the facet across has the vertex") {
+  const Point v{4, 0, 8};
+  const Ring rim{v, {6, 4, 8}, {2, 4, 8}};
+  const Point bottom{4, 3, 6};
+  Shell shell = cube(8);
+  shell[1].push_back({rim[2], rim[1], rim[0]});
+  for (std::size_t i = 0; i < 3; ++i) shell.push_back({{rim[i], rim[(i + 1) % 3], bottom}});
+  const Report open = report_of({shell});
+  CHECK(error_codes(open) == Codes{302});
+  REQUIRE(open.findings.size() == 1);
+  CHECK(open.findings[0].place.facet == 2);
+  CHECK(open.findings[0].other->facet == 1);
+  CHECK(open.findings[0].other->ring == 0);
+  CHECK(open.findings[0].detail.find("T-junction") != std::string::npos);
+  CHECK_FALSE(open.measures);
+
+  Ring& front = shell[2][0];
+  front.insert(std::find(front.begin(), front.end(), Point{8, 0, 8}) + 1, v);
+  const Inspection inspection = certify(solid_of({shell}), nullptr, {});
+  CHECK(inspection.report.findings.empty());
+  REQUIRE(inspection.certified);
+  // What is certified are the rings as submitted.
+  CHECK(inspection.certified->solid.solid().ring(1).size() == 4);
+
+  // The ring's own vertex inside its edge is another matter.
+  Shell own = cube(8);
+  own[1][0] = {{0, 0, 8}, {8, 0, 8}, {8, 8, 8}, {4, 0, 8}, {0, 8, 8}};
+  CHECK(error_codes(report_of({own})).contains(104));
+}
+
 TEST_CASE("solids that touch in a vertex or an edge are not 2-manifold") {
   const Report vertex = report_of({join(cube(2), box({2, 2, 2}, {4, 4, 4}))});
   CHECK(error_codes(vertex) == Codes{303});

@@ -76,6 +76,25 @@ Shell u_shape() {
   return prism({{0, 0}, {6, 0}, {6, 6}, {4, 6}, {4, 2}, {2, 2}, {2, 6}, {0, 6}}, 0, 4);
 }
 
+TEST_CASE("a member in whose facet rings touch inside an edge is compared like others") {
+  const Point v{4, 0, 8};
+  const Ring rim{v, {6, 4, 8}, {2, 4, 8}};
+  const Point bottom{4, 3, 6};
+  Shell pitted = cube(8);
+  pitted[1].push_back({rim[2], rim[1], rim[0]});
+  Shell plug{{rim}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    pitted.push_back({{rim[i], rim[(i + 1) % 3], bottom}});
+    plug.push_back({{rim[(i + 1) % 3], rim[i], bottom}});
+  }
+  Ring& front = pitted[2][0];
+  front.insert(std::find(front.begin(), front.end(), Point{8, 0, 8}) + 1, v);
+  CHECK(composite_codes(pitted, plug).empty());
+  CHECK(composite_codes(pitted, cube(8)) == Codes{501});
+  CHECK(composite_codes(pitted, box({0, 0, 8}, {8, 8, 9})).empty());
+  CHECK(composite_codes(pitted, pitted) == Codes{502});
+}
+
 TEST_CASE("members that share a facet make a composite solid") {
   const GroupReport report = Group()
                                  .add(box({0, 0, 0}, {4, 4, 4}))

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compares the program's verdicts on labelled cases with their truths.
 
-    bench/verdict/check_cases.py [--program build/release/bin/watertight] [--keep DIR] [DIR]
+    bench/verdict/check_cases.py [--program build/release/bin/watertight] [--keep DIR] DIR
 
-DIR holds cases.tsv (columns: file, truth, anything) and its files; /work/shared/data/verdict when
-none is named. A truth is `valid`, `invalid` (any code) or `invalid CODE`. Each document is
+DIR holds cases.tsv (columns: file, truth, anything) and its files. A truth is `valid`, `invalid`
+(any code) or `invalid CODE`. Each document is
 validated as it is, mirrored in each axis (every ring turned, so that it stays the same kind of
 solid) and renumbered (vertices, facets and ring starts in another order), each with the options of
 OPTIONS below. One line is printed for each wrong verdict and a count at the end; the exit status
@@ -207,7 +207,7 @@ def check(program, written):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", nargs="?", default="/work/shared/data/verdict")
+    parser.add_argument("folder")
     parser.add_argument("--program", default="build/release/bin/watertight")
     parser.add_argument("--keep", help="folder for the documents that are validated")
     arguments = parser.parse_args()

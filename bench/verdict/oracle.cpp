@@ -67,6 +67,8 @@ class SolidOracle {
 
   Truth decide() {
     truth_.is_known = model_.is_known;
+    truth_.is_planar = std::all_of(model_.facets.begin(), model_.facets.end(),
+                                   [](const FacetModel& facet) { return facet.is_planar; });
     if (!model_.is_known) return truth_;
     if (!model_.ring_codes.empty()) return refuse(model_.ring_codes, "rings");
     complex_ = arrange(pieces_of(model_));
@@ -82,6 +84,7 @@ class SolidOracle {
     if (truth_.codes.empty()) check_nesting();
     if (truth_.codes.empty()) check_orientation();
     if (truth_.codes.empty()) check_interior();
+    note_crossing_edges();
     return truth_;
   }
 
@@ -342,6 +345,19 @@ class SolidOracle {
   void check_interior() {
     if (complement_components(complex_) != model_.shell_count + 1) {
       refuse({404}, "the interior falls into parts");
+    }
+  }
+
+  /// A point of the complex that lies on ring edges of two shells and is no vertex.
+  void note_crossing_edges() {
+    for (std::size_t point = 0; point < complex_.points.size(); ++point) {
+      Numbers shells;
+      bool is_vertex = false;
+      for (const std::size_t facet : incidence_.facets_at_point[point]) {
+        is_vertex = is_vertex || ring_vertices_[facet].count(point) != 0;
+        if (!ring_edges_with(facet, {point}).empty()) shells.insert(shell_of(facet));
+      }
+      truth_.has_crossing_edges = truth_.has_crossing_edges || (!is_vertex && shells.size() > 1);
     }
   }
 

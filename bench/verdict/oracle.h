@@ -13,11 +13,17 @@
 
 namespace watertight::verdict {
 
+/// Stands in Truth::codes for all codes.
+inline constexpr int kAnyCode = 0;
+
 struct Truth {
   bool is_known = true;  // false: a facet that is not planar has no canonical triangles
   /// Empty: valid. Else a report is right when it has one of these codes.
   std::set<int> codes;
   std::string reason;  // for people
+  /// Ring edges of two shells cross in a point that is no vertex: engines may have no answer.
+  bool has_crossing_edges = false;
+  bool is_planar = true;  // all facets are
   bool is_valid() const { return is_known && codes.empty(); }
 };
 

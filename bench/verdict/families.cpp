@@ -32,6 +32,15 @@ Number volume(const Shell& shell) {
 
 std::span<const Family> families() { return kFamilies; }
 
+Sample sample_of_seed(const Family& family, std::uint64_t seed) {
+  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a of the name
+  for (const char* c = family.name; *c != 0; ++c) {
+    hash = (hash ^ static_cast<unsigned char>(*c)) * 1099511628211ULL;
+  }
+  Random random(hash + seed * 0x9e3779b97f4a7c15ULL);
+  return family.make(random);
+}
+
 Shell outward(Shell shell) {
   return sgn(volume(shell)) < 0 ? solids::inside_out(std::move(shell)) : shell;
 }

@@ -36,6 +36,8 @@ struct Family {
   Sample (*make)(Random& random);
 };
 std::span<const Family> families();
+/// The sample of a seed, the same on every machine.
+Sample sample_of_seed(const Family& family, std::uint64_t seed);
 
 Sample make_diagonals(Random& random);
 Sample make_hinge(Random& random);

@@ -29,22 +29,29 @@ std::array<double, 2> fourth_corner(Random& random, double a, double b) {
 /// A corner of three quads, and a cavity with edges along their diagonals: where these are
 /// diagonals of the surface too, the cavity seals the corner off.
 Shape corner_and_cavity(Random& random) {
-  const double a = random.within(60, 200) * 100;
-  const double b = one_in(random, 2) ? a : random.within(60, 200) * 100;
-  const double d = one_in(random, 2) ? a : random.within(60, 200) * 100;
+  const bool is_regular = one_in(random, 2);  // else each corner has offsets of its own
+  const auto length = [&] { return random.within(60, 200) * 100; };
+  const double a = length();
+  const double b = is_regular || one_in(random, 2) ? a : length();
+  const double d = is_regular || one_in(random, 2) ? a : length();
   const double inset = off_plane(random);
-  const auto off = [&] { return one_in(random, 2) ? inset : off_plane(random); };
+  const auto off = [&] { return is_regular || one_in(random, 2) ? inset : off_plane(random); };
   const Point o{0, 0, 0};
   const Point pa{a, off(), off()};
   const Point pb{off(), b, off()};
   const Point pd{off(), off(), d};
-  const auto xy = fourth_corner(random, a, b);
-  const auto xz = fourth_corner(random, a, d);
-  const auto yz = fourth_corner(random, b, d);
-  const Point ab{xy[0], xy[1], one_in(random, 2) ? 0 : off()};
-  const Point ad{xz[0], one_in(random, 2) ? 0 : off(), xz[1]};
-  const Point bd{one_in(random, 2) ? 0 : off(), yz[0], yz[1]};
-  const double far = 2.5 * std::max({a, b, d});
+  const double factor = random.within(90, 130) / 100;
+  const auto fourth = [&](double u, double v) {
+    return is_regular ? std::array{u * factor, v * factor} : fourth_corner(random, u, v);
+  };
+  const auto xy = fourth(a, b);
+  const auto xz = fourth(a, d);
+  const auto yz = fourth(b, d);
+  const auto lift = [&] { return is_regular || one_in(random, 2) ? 0 : off(); };
+  const Point ab{xy[0], xy[1], lift()};
+  const Point ad{xz[0], lift(), xz[1]};
+  const Point bd{lift(), yz[0], yz[1]};
+  const double far = random.within(20, 30) / 10 * std::max({a, b, d});
   const Point e{far, far, far};
   const Shell outer{{{o, pb, ab, pa}}, {{o, pd, bd, pb}}, {{o, pa, ad, pd}},
                     {{e, ab, pb}},     {{e, pa, ab}},     {{e, bd, pd}},

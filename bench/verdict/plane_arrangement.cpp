@@ -260,8 +260,16 @@ Vector PlaneArrangement::sample(std::size_t region) const {
       note(along(verdict::between(a, b, side_a / (side_a - side_b))));
     }
   }
-  // A region is bounded, so the ray meets its boundary.
-  Vector result = verdict::between(middle, ahead, *nearest / 2);
+  // A region is bounded, so the ray meets its boundary. Points without an edge are not in the
+  // region.
+  Vector result;
+  bool is_lone = true;
+  for (long part = 2; is_lone; ++part) {
+    result = verdict::between(middle, ahead, *nearest / part);
+    is_lone = std::any_of(lone_points_.begin(), lone_points_.end(), [&](const auto& lone) {
+      return table_[lone[0]][u] == result[u] && table_[lone[0]][v] == result[v];
+    });
+  }
   result[3 - u - v] = 0;
   return result;
 }

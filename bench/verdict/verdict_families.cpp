@@ -108,14 +108,6 @@ void add(const Arguments& arguments, const Family& family, std::uint64_t seed,
   }
 }
 
-std::uint64_t random_seed(const Family& family, std::uint64_t seed) {
-  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a of the name
-  for (const char* c = family.name; *c != 0; ++c) {
-    hash = (hash ^ static_cast<unsigned char>(*c)) * 1099511628211ULL;
-  }
-  return hash + seed * 0x9e3779b97f4a7c15ULL;
-}
-
 Totals run(const Arguments& arguments, const Family& family, EngineWorkers& workers) {
   Totals totals;
   std::mutex mutex;
@@ -126,8 +118,7 @@ Totals run(const Arguments& arguments, const Family& family, EngineWorkers& work
   };
   const auto work = [&] {
     for (std::uint64_t seed = next++; seed < end; seed = next++) {
-      Random random(random_seed(family, seed));
-      const Sample sample = family.make(random);
+      const Sample sample = sample_of_seed(family, seed);
       const JudgeOptions options{&workers, is_due(seed, arguments.variants),
                                  is_due(seed, arguments.engines)};
       const std::vector<Judgement> judgements = judge(sample, seed, options);

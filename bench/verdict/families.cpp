@@ -14,7 +14,8 @@ constexpr std::array kFamilies{Family{"diagonals", make_diagonals},
                                Family{"pits", make_pits},
                                Family{"touching_rings", make_touching_rings},
                                Family{"instances", make_instance},
-                               Family{"extremes", make_extremes}};
+                               Family{"extremes", make_extremes},
+                               Family{"general", make_general}};
 
 Number volume(const Shell& shell) {
   Number sum = 0;
@@ -93,6 +94,19 @@ Sample sample_of(Solid solid) {
   Sample sample;
   sample.members.push_back(std::move(solid));
   return sample;
+}
+
+Sample make_general(Random& random) {
+  constexpr std::size_t kLargest = 40;
+  while (true) {
+    const std::uint64_t kind = random.below(3);
+    const solids::Made made = kind == 0   ? solids::random_valid(random)
+                              : kind == 1 ? solids::random_open(random)
+                                          : solids::random_cavities(random);
+    if (solids::facet_count(made.shape) > kLargest) continue;
+    return sample_of(
+        solids::rewritten(solids::solid_of(made.shape, solids::millimetres()), random).solid);
+  }
 }
 
 }  // namespace watertight::verdict

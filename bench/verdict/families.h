@@ -48,6 +48,8 @@ Sample make_pits(Random& random);
 Sample make_group(Random& random);
 Sample make_extremes(Random& random);
 Sample make_instance(Random& random);
+/// Solids of tests/solids, with random vertices moved and boxes joined: no special case in mind.
+Sample make_general(Random& random);
 
 // Helpers that the families share.
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the rules look at: the submitted solid with equal vertices merged and edges split where
-// rings touch, its canonical triangulation, its units, and the findings so far. Internal to
-// validate/.
+// The submitted solid as the rules see it, with equal vertices merged and edges split where rings
+// touch; its canonical triangulation, its units, and the findings so far. Internal to validate/.
 #pragma once
 
 #include <map>

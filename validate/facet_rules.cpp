@@ -25,7 +25,7 @@ struct Corner {
   Index vertex = 0;
 };
 
-/// Of the rings as submitted: a vertex that splits an edge of another ring is no corner of it.
+/// The corners of the rings as submitted: a vertex that splits an edge is no corner of that ring.
 std::vector<Corner> corners_of(const ExaminedSolid& examined, Index facet) {
   std::vector<Corner> corners;
   const Solid& solid = examined.solid();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/place.h"
+#include "report/scene.h"
 #include "tests/unit/report/samples.h"
 
 using namespace watertight;
@@ -116,4 +118,37 @@ TEST_CASE("a page without findings says that all is valid") {
 TEST_CASE("equal input gives an equal page") {
   const std::vector<ValidatedFeature> features{feature_of("b", {finding_of(306, 1, 4)})};
   CHECK(page_of(features) == page_of(features));
+}
+
+TEST_CASE("the picture of an open shell shows an edge that a vertex splits by its parts") {
+  // A pit in the top, facet 1, has its vertex 8 inside the edge from 4 to 5; the front lacks it.
+  const Solid box = box_at(0);
+  SolidArrays arrays;
+  arrays.vertices.assign(box.vertices().begin(), box.vertices().end());
+  arrays.vertices.insert(
+      arrays.vertices.end(),
+      {{2000, 0, 2000}, {3000, 1500, 2000}, {1000, 1500, 2000}, {2000, 1000, 1000}});
+  const auto add_ring = [&](std::span<const Index> ring) {
+    arrays.ring_vertices.insert(arrays.ring_vertices.end(), ring.begin(), ring.end());
+    arrays.end_ring();
+  };
+  for (Index facet = 0; facet < box.facet_count(); ++facet) {
+    add_ring(box.ring(facet));
+    if (facet == 1) add_ring(std::array<Index, 3>{10, 9, 8});
+    arrays.end_facet();
+  }
+  for (const auto& wall : {std::array<Index, 3>{8, 9, 11}, {9, 10, 11}, {10, 8, 11}}) {
+    add_ring(wall);
+    arrays.end_facet();
+  }
+  arrays.end_shell();
+  ValidatedFeature feature = feature_of("a", {finding_of(302, 2, 1)});
+  auto solid = Solid::make(std::move(arrays), box.lattice(), box.srid());
+  REQUIRE(solid);
+  feature.inspected.feature.solids[0].solid = *solid;
+  const std::vector<PlacedFinding> findings = findings_of(feature.inspected);
+  REQUIRE(findings.size() == 1);
+  const auto scene = scene_of(feature.inspected, findings[0], {});
+  REQUIRE(scene);
+  CHECK(scene->lines.size() == 3);  // 4-8, 8-5 and 4-5
 }

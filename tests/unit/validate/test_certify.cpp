@@ -159,7 +159,7 @@ TEST_CASE("a hole may touch an edge of its facet where the facet across has the 
   const Inspection inspection = certify(solid_of({shell}), nullptr, {});
   CHECK(inspection.report.findings.empty());
   REQUIRE(inspection.certified);
-  // What is certified are the rings as submitted.
+  // The certified solid has the rings as submitted.
   CHECK(inspection.certified->solid.solid().ring(1).size() == 4);
 
   // The ring's own vertex inside its edge is another matter.

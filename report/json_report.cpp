@@ -46,6 +46,11 @@ void write_overview(JsonText& json, std::string_view name,
 
 void write_ladder(JsonText& json, const Report& report, bool has_times) {
   json.key("rung").value(to_string(report.rung));
+  if (!report.refilled_facets.empty()) {
+    json.key("refilled_facets").open('[');
+    for (const Index facet : report.refilled_facets) json.value(facet);
+    json.close(']');
+  }
   json.key("attempts").open('[');
   for (const RungAttempt& attempt : report.attempts) {
     json.open('{').key("rung").value(to_string(attempt.rung));

@@ -160,6 +160,7 @@ void validate_into(const wt_job& job, wt_reply* reply) {
   Report report = examined->inspection.report;
   report.attempts.clear();
   report.rung = Rung::none;
+  report.refilled_facets.clear();
   ReportJsonOptions options;
   options.include_times = false;
   answer(reply, as_bytes(report_json(report, examined->submitted.solid, options)));

@@ -14,7 +14,8 @@ constexpr std::array kFamilies{Family{"diagonals", make_diagonals},
                                Family{"pits", make_pits},
                                Family{"touching_rings", make_touching_rings},
                                Family{"instances", make_instance},
-                               Family{"extremes", make_extremes},
+                               Family{"large_integers", make_large_integers},
+                               Family{"scales", make_scales},
                                Family{"general", make_general}};
 
 Number volume(const Shell& shell) {

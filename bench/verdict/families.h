@@ -46,7 +46,8 @@ Sample make_prisms(Random& random);
 Sample make_touching_rings(Random& random);
 Sample make_pits(Random& random);
 Sample make_group(Random& random);
-Sample make_extremes(Random& random);
+Sample make_large_integers(Random& random);
+Sample make_scales(Random& random);
 Sample make_instance(Random& random);
 /// Solids of tests/solids, with random vertices moved and boxes joined: no special case in mind.
 Sample make_general(Random& random);

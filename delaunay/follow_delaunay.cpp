@@ -340,9 +340,8 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTrian
       return Error{ErrorCode::cancelled, "cancelled by the caller"};
     }
     const bool is_own = !is_kept.empty() && is_kept[facet];
-    std::vector<Triangle> triangles = is_own
-                                          ? std::vector<Triangle>(own.begin(), own.end())
-                                          : follow_facet(merged, facet, own, faces, local_of);
+    std::vector<Triangle> triangles = is_own ? std::vector<Triangle>(own.begin(), own.end())
+                                             : follow_facet(merged, facet, own, faces, local_of);
     for (Triangle& t : triangles)
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     std::sort(triangles.begin(), triangles.end());

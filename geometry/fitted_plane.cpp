@@ -191,8 +191,9 @@ PlaneDistance distance_to_fitted_plane(std::span<const Triple> points, double li
   PlaneDistance result = largest_distance(scaled, plane);
   const double error = rounding(plane, points.size());
   const double scaled_limit = std::ldexp(limit, -exponent);
-  const bool is_known = error <= kSafeShare * std::fabs(result.distance - scaled_limit) &&
-                        (result.distance <= scaled_limit || error <= kDigitsShare * result.distance);
+  const bool is_known =
+      error <= kSafeShare * std::fabs(result.distance - scaled_limit) &&
+      (result.distance <= scaled_limit || error <= kDigitsShare * result.distance);
   if (!is_known) result = largest_distance(scaled, fit<mpf_class>(scaled));
   result.distance = std::ldexp(result.distance, exponent);
   return result;

@@ -20,8 +20,8 @@ struct PlaneDistance {
 /// twice count twice.
 ///
 /// Computed in doubles where a bound of their rounding is far below the distance of the result
-/// from `limit`, and far below a result beyond it; else in 512-bit arithmetic. No size of coordinates
-/// underflows or overflows before the result does. The same doubles on every machine.
+/// from `limit`, and far below a result beyond it; else in 512-bit arithmetic. No size of
+/// coordinates underflows or overflows before the result does. The same doubles on every machine.
 /// Fewer than 4 points are on their plane. Requires finite points. Cost: linear; some 0.2 ms where
 /// doubles do not suffice.
 PlaneDistance distance_to_fitted_plane(std::span<const std::array<double, 3>> points, double limit);

@@ -82,9 +82,9 @@ bool DiagonalExaminer::is_diagonal(Index facet, Index a, Index b) {
          edge->is_diagonal();
 }
 
-/// Whether the common edge of a flipped triangle t and a triangle u is one that facets of a shell may share: on
-/// the boundary of both. Diagonals other than the flipped one that meet another facet's edge were
-/// found before.
+/// Whether the common edge of a flipped triangle t and a triangle u is one that facets of a shell
+/// may share: on the boundary of both. Diagonals other than the flipped one that meet another
+/// facet's edge were found before.
 bool DiagonalExaminer::is_common_boundary(const Diagonal& flip, const Triangle& t, Index facet,
                                           const Triangle& u, Index other) {
   const auto has = [](const Triangle& triangle, Index vertex) {

@@ -3,6 +3,7 @@
 // Families in which rings of one facet touch, or the edge of a hole lies in the middle of a facet.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "bench/verdict/families.h"
 
@@ -93,6 +94,22 @@ Ring front(double size, double height, const std::vector<Point>& upper,
   return ring;
 }
 
+/// Points that stand in the ring of the front: most of those in the rings above and below it, and
+/// some of the hole's upper outline.
+std::vector<Point> points_in_front(Random& random, const Ring& upper,
+                                   std::initializer_list<const Ring*> neighbours) {
+  std::set<Point> found;
+  for (const Ring* ring : neighbours) {
+    for (const Point& p : *ring) {
+      if (p.y == 0 && !one_in(random, 10)) found.insert(p);
+    }
+  }
+  for (const Point& p : upper) {
+    if (one_in(random, 2)) found.insert(p);
+  }
+  return {found.begin(), found.end()};
+}
+
 /// A block with a hole from its top: through it, to some depth, or narrowing so that it leaves the
 /// front at once. The points where the hole meets the front stand in the front's ring or not.
 Shell pierced_block(Random& random) {
@@ -114,17 +131,7 @@ Shell pierced_block(Random& random) {
   Facet top{with_points(top_outer, upper, some), solids::reversed(upper)};
   Facet bottom{is_through ? with_points(bottom_outer, lower, some) : bottom_outer};
   if (is_through) bottom.push_back(lower);
-  std::vector<Point> in_front;
-  for (const Ring* ring : {&top[0], &bottom[0]}) {
-    for (const Point& p : *ring) {
-      if (p.y == 0 && !one_in(random, 10)) in_front.push_back(p);
-    }
-  }
-  for (const Point& p : upper) {
-    if (one_in(random, 2)) in_front.push_back(p);
-  }
-  std::sort(in_front.begin(), in_front.end());
-  in_front.erase(std::unique(in_front.begin(), in_front.end()), in_front.end());
+  const std::vector<Point> in_front = points_in_front(random, upper, {&top[0], &bottom[0]});
   std::vector<Point> above;
   std::vector<Point> below;
   for (const Point& p : in_front) (p.z == 0 ? below : above).push_back(p);
@@ -162,6 +169,19 @@ Ring random_hole(Random& random, double size, const std::vector<Ring>& others) {
   return counter_clockwise(std::move(ring));
 }
 
+std::vector<Point> all_points(const std::vector<Ring>& rings) {
+  std::set<Point> points;
+  for (const Ring& ring : rings) points.insert(ring.begin(), ring.end());
+  return {points.begin(), points.end()};
+}
+
+/// The mean of a ring's points, at another height.
+Point tip_of(const Ring& ring, double z) {
+  Point tip{0, 0, 0};
+  for (const Point& p : ring) tip = plus(tip, p);
+  return at(times(tip, 1.0 / static_cast<double>(ring.size())), z);
+}
+
 /// A box whose top facet has pits with a tip each; rings of the pits touch each other and the
 /// outline, and the facets across have the points of touch or not.
 Shell box_with_pits(Random& random) {
@@ -171,23 +191,16 @@ Shell box_with_pits(Random& random) {
   for (std::uint64_t k = 1 + random.below(3); k > 0; --k) {
     rings.push_back(random_hole(random, size, rings));
   }
-  std::vector<Point> points;
-  for (const Ring& ring : rings) points.insert(points.end(), ring.begin(), ring.end());
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  const std::vector<Point> points = all_points(rings);
   const std::uint64_t rare = one_in(random, 4) ? 3 : 40;
   const auto across = [&](const Point&) { return !one_in(random, rare); };
   const auto here = [&](const Point&) { return one_in(random, 3); };
   Shell shell;
   Facet facet;
-  Ring bottom;
   for (std::size_t i = 0; i < rings.size(); ++i) {
     const Ring own = lifted(with_points(rings[i], points, here), top);
     facet.push_back(i == 0 ? own : solids::reversed(own));
-    Point tip{0, 0, 0};
-    for (const Point& p : rings[i]) tip = plus(tip, p);
-    tip = times(tip, 1.0 / static_cast<double>(rings[i].size()));
-    tip.z = top - 3;
+    const Point tip = tip_of(rings[i], top - 3);
     for (std::size_t k = 0; k < rings[i].size(); ++k) {
       const Point& a = rings[i][k];
       const Point& b = rings[i][(k + 1) % rings[i].size()];
@@ -198,7 +211,6 @@ Shell box_with_pits(Random& random) {
         side = solids::reversed(std::move(side));
         side.push_back(at(a, 0));
         side.push_back(at(b, 0));
-        bottom.insert(bottom.begin(), at(a, 0));
       } else {
         side.push_back(tip);
       }
@@ -206,7 +218,7 @@ Shell box_with_pits(Random& random) {
     }
   }
   shell.push_back(std::move(facet));
-  shell.push_back({std::move(bottom)});
+  shell.push_back({solids::reversed(rings[0])});
   return shell;
 }
 

@@ -65,13 +65,14 @@ void shear(DecimalMatrix& matrix, Random& random) {
   matrix.map = product(matrix.map, map);
 }
 
-/// Makes the matrix singular: a row or a column is nothing, or a row is a multiple of another.
+/// Makes the matrix singular: a column is nothing, or a row is a multiple of another.
 void flatten(DecimalMatrix& matrix, Random& random) {
   auto& m = matrix.map.matrix;
   const std::size_t i = random.below(3);
-  const std::int64_t factor = one_in(random, 2) ? 0 : random.between(-2, 2);
+  const bool is_column = one_in(random, 2);
+  const std::int64_t factor = random.between(-2, 2);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (factor == 0 && one_in(random, 2)) {
+    if (is_column) {
       m[k][i] = 0;
     } else {
       m[i][k] = factor * m[(i + 1) % 3][k];

@@ -17,7 +17,7 @@ namespace watertight::verdict {
 
 enum class Outcome : std::uint8_t {
   right,
-  allowed,  // undecided where that is allowed
+  allowed,  // undecided at extreme sizes, or where edges of shells cross in no vertex
   false_valid,
   false_invalid,
   wrong_code,

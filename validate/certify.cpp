@@ -113,9 +113,13 @@ void Certifier::examine_interior(const ShellContacts& contacts) {
   if (std::find(touching.begin(), touching.end(), true) == touching.end()) return;
   auto divided = divide_at_contacts(examined_.solid(), examined_.triangles(),
                                     [this] { return examined_.ask_cancelled(); });
-  if (divided) *divided_ = *std::move(divided);
-  is_interior_known_ = divided.has_value() && check_interior(examined_, *divided_);
-  if (!divided.has_value()) divided_.reset();
+  if (!divided) {
+    divided_.reset();
+    is_interior_known_ = false;
+    return;
+  }
+  *divided_ = *std::move(divided);
+  is_interior_known_ = check_interior(examined_, *divided_);
 }
 
 /// What the absence of findings means, asked of the facts themselves.

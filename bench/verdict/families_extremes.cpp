@@ -131,7 +131,7 @@ Sample folded_cube(Random& random) {
   if (exponent >= 0) truth.codes = {203};
   truth.reason = exponent >= 0 ? "a corner is far from the plane" : "";
   sample.truth = truth;
-  sample.may_be_undecided = exponent < -143 || exponent > 66;  // 203 is measured up to 1e70 m
+  sample.may_be_undecided = exponent < -143 || exponent > 147;  // 1e-140 and 1e150 m
   return sample;
 }
 
@@ -142,7 +142,9 @@ Sample make_large_integers(Random& random) {
   if (one_in(random, 2)) {
     Shape shape = tall_box(random);
     while (is_flat(shape[1])) shape = tall_box(random);
-    return sample_of(placed(shape, map, 0, random));
+    Sample sample = sample_of(placed(shape, map, 0, random));
+    sample.may_be_undecided = true;  // extents more than 2^40 times apart
+    return sample;
   }
   for (std::int64_t& shift : map.shift) {  // small, but far from the origin of the lattice
     const std::int64_t power = std::int64_t{1} << (50 + random.below(3));

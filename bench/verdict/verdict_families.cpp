@@ -65,9 +65,12 @@ struct Totals {
   std::uint64_t unknown = 0;
   std::uint64_t questions = 0;
   std::array<std::uint64_t, kOutcomes> outcomes{};
+  /// Quads whose diagonals are equal in plan and in space have no canonical diagonal that a mirror
+  /// image keeps (docs/robustness.md): such surfaces that vary are counted, and are no disagreement.
   std::uint64_t disagreements() const {
     return questions - outcomes[static_cast<std::size_t>(Outcome::right)] -
-           outcomes[static_cast<std::size_t>(Outcome::allowed)];
+           outcomes[static_cast<std::size_t>(Outcome::allowed)] -
+           outcomes[static_cast<std::size_t>(Outcome::varies)];
   }
 };
 
@@ -103,7 +106,10 @@ void add(const Arguments& arguments, const Family& family, std::uint64_t seed,
   for (const Judgement& judgement : judgements) {
     ++totals.questions;
     ++totals.outcomes[static_cast<std::size_t>(judgement.outcome)];
-    if (judgement.outcome == Outcome::right || judgement.outcome == Outcome::allowed) continue;
+    if (judgement.outcome == Outcome::right || judgement.outcome == Outcome::allowed ||
+        judgement.outcome == Outcome::varies) {
+      continue;
+    }
     if (totals.disagreements() <= arguments.show) note(arguments, family, seed, judgement);
   }
 }

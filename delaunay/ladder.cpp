@@ -191,6 +191,7 @@ class Climb {
     }
     result_.obstacle = contacts_.obstacle;
     if (solid_.shell_count() > 1 || options_.strict) keep_canonical();
+    first_of_constraints_ = 0;
     for (const Rung rung : order_of_rungs(options_.engine)) {
       if (rung < options_.first_rung || rung > options_.last_rung || !applies(rung)) continue;
       if (options_.cancel && options_.cancel()) break;
@@ -202,7 +203,9 @@ class Climb {
       attempt_.seconds = seconds_since(start);
       attempt_.cpu_seconds = thread_seconds() - cpu_start;
       result_.attempts.push_back(std::move(attempt_));
-      if (result_.certificate || result_.property != CertificateRefusal::none) break;
+      if (result_.certificate) result_.property = CertificateRefusal::none;
+      if (result_.certificate) break;
+      if (result_.property != CertificateRefusal::none && !options_.is_interior_known) break;
       if (result_.attempts.back().result == RungOutcome::cancelled) break;
     }
     return std::move(result_);
@@ -214,8 +217,8 @@ class Climb {
     return contacts_.has_contacts() ? contacts_.triangles : canonical_;
   }
 
-  /// From here on facets that are not flat follow their canonical triangles. Of a solid of one
-  /// shell the exact tests prove one interior (Jordan-Brouwer), so that another filling of such
+  /// From here on facets that are not flat follow their canonical triangles. The exact tests prove
+  /// that a solid of one shell has one interior (Jordan-Brouwer), so that another filling of such
   /// facets, which is easier to have, decides nothing as long as it is accepted.
   void keep_canonical() {
     is_kept_.resize(solid_.facet_count());
@@ -224,6 +227,8 @@ class Climb {
       is_kept_[facet] = !is_one_triangle && !is_flat(solid_, facet);
     }
     input_ = EngineInput{};
+    // The attempt under way had the constraints before.
+    first_of_constraints_ = static_cast<std::ptrdiff_t>(result_.attempts.size()) + 1;
   }
 
   /// Facets that engines get triangle by triangle: those that hold vertices or edges of other
@@ -272,14 +277,17 @@ class Climb {
   /// one triangle, on the same points but for one power of two for all axes.
   bool is_new(Rung rung) const {
     const auto same = [&](const RungAttempt& attempt) {
-      if (attempt.rung == Rung::delaunay) return false;
+      const bool is_of_cgal = attempt.rung != Rung::delaunay && attempt.rung != Rung::tetgen;
+      if (!is_of_cgal) return false;
       const bool has_same_constraints = constraints_of(attempt.rung) == constraints_of(rung) ||
                                         canonical_.triangles.size() == solid_.facet_count();
       const std::array<double, 3> a = scale_of(attempt.rung);
       const std::array<double, 3> b = scale_of(rung);
       return has_same_constraints && a[1] / a[0] == b[1] / b[0] && a[2] / a[0] == b[2] / b[0];
     };
-    return std::none_of(result_.attempts.begin(), result_.attempts.end(), same);
+    // Before keep_canonical() the constraints were others.
+    return std::none_of(result_.attempts.begin() + first_of_constraints_, result_.attempts.end(),
+                        same);
   }
 
   bool is_anisotropic() const {
@@ -427,6 +435,7 @@ class Climb {
   const LadderOptions& options_;
   ContactTriangles contacts_;
   std::vector<bool> is_kept_;  // facet -> follows its canonical triangles; empty: none must
+  std::ptrdiff_t first_of_constraints_ = 0;  // the first attempt with the constraints of today
   EngineInput input_;
   RungAttempt attempt_;
   double engines_seconds_ = 0;  // CPU time of workers so far

@@ -47,6 +47,9 @@ struct LadderOptions {
   CancelPoll cancel = {};
   /// divide_at_contacts() of the solid, where the caller has it; null: the ladder divides.
   const ContactTriangles* contacts = nullptr;
+  /// The exact tests have shown one interior: a refusal that calls the solid wrong is no end, and
+  /// remains a property only if no rung is accepted.
+  bool is_interior_known = false;
 };
 
 /// CPU seconds of engines that a solid with this many boundary triangles may cost by default:

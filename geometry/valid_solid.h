@@ -23,7 +23,7 @@ struct Tolerances {
 /// What proves that the boundary encloses one connected interior.
 enum class Proof : std::uint8_t {
   tetrahedralization = 0,  // a certified constrained Delaunay tetrahedralization
-  boundary = 1             // exact tests only: one closed, orientable 2-manifold shell
+  boundary = 1             // exact tests only
 };
 
 /// The number of the rule set that this program applies. Raised when a rule changes.

@@ -64,11 +64,17 @@ Inspection TemplateInspector::judge(std::size_t solid, const TemplateInstance& i
   CertifyOptions own = options_for(templates_[solid], options_);
   own.placement = &instance.placement;
   const bool is_mirrored = determinant_sign(instance.placement) < 0;
+  EngineWorkers* workers = workers_;
   {
     const std::lock_guard lock(mutex_);
     own.is_proven = !is_mirrored && uses_[solid].is_proven;
+    if (uses_[solid].is_unproven) workers = nullptr;
   }
-  Inspection inspection = certify(templates_[solid].solid, workers_, own);
+  Inspection inspection = certify(templates_[solid].solid, workers, own);
+  if (inspection.report.verdict == Verdict::undecided) {
+    const std::lock_guard lock(mutex_);
+    uses_[solid].is_unproven = true;
+  }
   if (!is_mirrored && inspection.report.verdict == Verdict::valid) {
     const std::lock_guard lock(mutex_);
     uses_[solid].is_proven = true;

@@ -38,7 +38,7 @@ class TemplateInspector {
       const std::vector<TemplateInstance>& others = {});
 
  private:
-  /// What an instance does to the size and shape of its template. Nothing when it is turned and
+  /// How an instance changes the size and shape of its template. Nothing when it is turned and
   /// shifted only, exactly, in metres.
   using Effect = std::optional<std::pair<decltype(Placement::linear), std::array<double, 3>>>;
 
@@ -48,6 +48,7 @@ class TemplateInspector {
     std::optional<Placement> least;  // of the other valid ones
     std::string least_name;          // of that instance
     bool is_proven = false;          // by an instance that is not mirrored
+    bool is_unproven = false;        // no engine found a proof: none is asked again
     std::set<Effect> valid;          // some of the effects of valid instances
   };
 

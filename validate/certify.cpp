@@ -86,7 +86,8 @@ void Certifier::apply_exact_rules() {
       check_intersections(examined_, duplicate_of, options_.ladder.cancel, options_.threads);
   incomplete_ = contacts.incomplete.empty() ? unmeasured : contacts.incomplete;
   check_diagonals(examined_, contacts);
-  check_solid(examined_, shells_, duplicate_of, contacts);
+  const std::string unlocated = check_solid(examined_, shells_, duplicate_of, contacts);
+  if (incomplete_.empty()) incomplete_ = unlocated;
   examine_interior(contacts);
   check_vertices(examined_, options_.unused);
   check_rounded(examined_, options_.rounded);
@@ -146,7 +147,11 @@ void Certifier::measure_solid() {
   if (options_.placement == nullptr) {
     inspection_.report.measures = measure(examined_.solid(), triangles);
   } else if (const auto solid = placed(examined_.solid(), *options_.placement); solid) {
-    inspection_.report.measures = measure(*solid, triangles);
+    std::vector<Triangle> in_place = triangles;
+    if (determinant_sign(*options_.placement) < 0) {  // the examined solid was turned over
+      for (Triangle& t : in_place) std::swap(t[1], t[2]);
+    }
+    inspection_.report.measures = measure(*solid, in_place);
   }
 }
 
@@ -162,14 +167,17 @@ void Certifier::prove(EngineWorkers* workers) {
     accept(std::nullopt);
   } else {
     inspection_.report.undecided_reason =
-        "the shells touch where edges cross in a point that is no vertex: only a "
-        "tetrahedralization can tell whether the interior is in parts";
+        "only a tetrahedralization can tell whether the interior is in parts";
+    if (divided_ && !divided_->obstacle.empty()) {
+      inspection_.report.undecided_reason += " (" + divided_->obstacle + ")";
+    }
   }
 }
 
 void Certifier::climb(EngineWorkers* workers) {
   LadderOptions options = options_.ladder;
   if (divided_) options.contacts = &*divided_;
+  options.is_interior_known = is_interior_known_;
   LadderResult result = climb_ladder(examined_.solid(), examined_.triangles(), workers, options);
   Report& report = inspection_.report;
   report.attempts = std::move(result.attempts);
@@ -306,6 +314,9 @@ Inspection flattened(const CertifyOptions& options) {
   report.verdict = Verdict::invalid;
   report.acceptance = {options.tolerances, options.proof, kRuleSet};
   report.first_level = first_level_codes(findings.all());
+  if (options.also_tolerant) {
+    report.tolerant = TolerantVerdict{Verdict::invalid, report.first_level};
+  }
   std::move(findings).move_to(report);
   return inspection;
 }

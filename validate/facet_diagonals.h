@@ -30,7 +30,7 @@ std::vector<FacetEdge> facet_edges(const FacetTriangles& facets, Index facet);
 /// Pairs of triangles of different facets of one shell that have an edge in common which is a
 /// diagonal of at least one of the facets, as ContactClass::edge_overlap with first < second. Of
 /// several facets at one segment, each is paired with the first that has it as a diagonal.
-/// Cost: O(n log n) for solids with facets of more than one triangle, else constant.
+/// Cost: O(n log n) for solids with facets of more than one triangle, else linear.
 std::vector<IntersectingPair> diagonal_contacts(const Solid& solid, const FacetTriangles& facets);
 
 /// A diagonal u-v of a facet between triangles (u, v, right) and (v, u, left) whose quadrilateral

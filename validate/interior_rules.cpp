@@ -11,7 +11,8 @@
 // so is a component of the boundary of one part, moved inward by next to nothing, and a closed
 // surface. A connected bounded region has exactly one outer boundary component, whose volume is
 // positive, turned outward, and the volumes of the others are negative: as many parts as classes of
-// positive volume.
+// positive volume. Vertices that shells share link nothing: around one, the space that is not
+// interior is made of discs on a small sphere, and cutting their tips off joins and parts nothing.
 //
 // Shells that do not touch cut nothing: the complement of n disjoint closed connected surfaces has
 // n + 1 components (Alexander duality), n - 1 cavities, the outside and one more.
@@ -39,8 +40,8 @@ constexpr std::size_t kMostFlips = 32;
 struct Sheet {
   Triangle key{};  // the edge's smaller vertex, its larger one, the triangle
   Index apex = 0;
-  /// The triangle passes the edge from its smaller vertex to its larger one: seen along the edge,
-  /// the interior is clockwise of the triangle.
+  /// The triangle passes the edge from its smaller vertex to its larger one: seen against that
+  /// direction, the interior is clockwise of the triangle.
   bool is_forward = false;
 };
 
@@ -202,12 +203,15 @@ class InteriorExaminer {
 
   /// Warning 804 where one other diagonal of a facet that is not flat makes or undoes 404.
   void try_other_diagonals(std::size_t count) {
-    if (examined_.triangles().triangles.size() > kMostTriangles) return;
     std::size_t flips = 0;
-    for (Index facet = 0; facet < solid_.facet_count() && flips < kMostFlips; ++facet) {
+    for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
       if (!examined_.is_not_planar(facet)) continue;
       for (const Diagonal& diagonal : other_diagonals(solid_, examined_.triangles(), facet)) {
-        if (++flips > kMostFlips || cancel_()) break;
+        if (examined_.triangles().triangles.size() > kMostTriangles || ++flips > kMostFlips) {
+          return examined_.findings.skip({kTriangulationDependent},
+                                         "there are too many diagonals to try each");
+        }
+        if (cancel_()) return;
         const FacetTriangles flipped = with_flip(examined_.triangles(), diagonal);
         const auto contacts = divide_at_contacts(solid_, flipped, cancel_);
         if (!contacts) return;

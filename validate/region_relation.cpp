@@ -17,7 +17,8 @@
 // (3) Then the insides meet if and only if a triangle of Y is in, or an arbitrary triangle of X is:
 //     the inside of X is connected, so it holds a point of Y's boundary (and a triangle of Y there
 //     is in) or lies inside Y as a whole (and all triangles of X are in).
-// (4) Of a triangle that is in or out, every point off the other boundary tells which. Triangles
+// (4) Every point of a triangle that is in or out, off the other boundary, tells which it is.
+// Triangles
 //     that do not meet the other boundary share their answer with all that have a corner of them.
 //
 // Nothing here needs the inside of Y to be connected or bounded, so the complement of Y (its
@@ -28,6 +29,8 @@
 #include "validate/region_relation.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/point_in_solid.h"
@@ -277,11 +280,17 @@ class TriangleSides {
       }
       return location;
     }
+    // Every point off the other boundary tells; corners are cheaper than points inside.
+    for (const Index vertex : side_.surface->triangles()[triangle]) {
+      const auto [place, is_new] = touched_.try_emplace(vertex, Location::boundary);
+      if (is_new) place->second = other_.locate(side_.surface->vertices()[vertex]);
+      if (place->second != Location::boundary) return place->second;
+    }
     return locate_triangle(side_.surface->corners(triangle), other_);
   }
 
  private:
-  /// Of a corner of a triangle that does not meet the other surface, else kNone.
+  /// The number of a corner of a triangle that does not meet the other surface, else kNone.
   Index number_of(Index vertex) const {
     const auto at = std::lower_bound(free_.begin(), free_.end(), vertex);
     return at == free_.end() || *at != vertex ? kNone : static_cast<Index>(at - free_.begin());
@@ -292,6 +301,7 @@ class TriangleSides {
   std::vector<Index> free_;  // vertices, ascending
   DisjointSets parts_{0};
   std::vector<Location> known_;
+  std::map<Index, Location> touched_;  // corners of triangles that meet the other surface
 };
 
 /// (3), when (1) does not hold. Notes the first triangle that is in.
@@ -332,6 +342,7 @@ RegionRelation Comparison::run() {
   if (questions_.is_second_inside && !second_leaves_ && !relation_.is_cancelled) {
     second_leaves_ = meets(second_, first_, true);
   }
+  relation_.looks = comparisons_ + first_.triangles.size() + second_.triangles.size();
   relation_.is_first_inside = questions_.is_first_inside && !first_leaves_;
   relation_.is_second_inside = questions_.is_second_inside && !second_leaves_;
   return relation_;

@@ -56,7 +56,7 @@ RegionSurface surface_of_shells(const Solid& solid, std::span<const Point> verti
                                 const FacetTriangles& facets, IndexRange shells,
                                 bool is_turned_over);
 
-/// What is asked beside whether the insides meet. Each answer costs time.
+/// Questions beside whether the insides meet. Each answer costs time.
 struct RegionQuestions {
   bool is_first_inside = false;
   bool is_second_inside = false;
@@ -69,6 +69,7 @@ struct RegionRelation {
   bool is_second_inside = false;    // when asked: no point of the second is outside the first
   bool touch_back_to_back = false;  // triangles share an area, turned against each other
   bool touch_side_by_side = false;  // triangles share an area, turned alike
+  std::uint64_t looks = 0;          // triangles in the common box and comparisons: the work done
   Index facet = kNone;              // of the first, that shows the overlap
   Index other_facet = kNone;        // of the second; kNone when no facet of it is concerned
 };

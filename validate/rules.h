@@ -20,8 +20,7 @@ void check_not_empty(ExaminedSolid& examined);
 void check_rings(ExaminedSolid& examined);
 /// 103: rings that the reader found open.
 void check_closed_rings(ExaminedSolid& examined, std::span<const Index> unclosed);
-/// 203, 204, 205, 208.
-/// Why a facet could not be measured, "" if all were.
+/// 203, 204, 205, 208. Returns why a facet could not be measured, "" if all were.
 std::string check_facets(ExaminedSolid& examined);
 
 /// What is known of a shell's topology after check_shells.
@@ -63,12 +62,13 @@ ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Ind
 /// Warning 804: facets that are not exactly planar, where another diagonal would make or undo a
 /// finding 306 or 401.
 void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts);
-/// 401 (shells that cross in vertices and edges, nested cavities), 403, 405; warning 806.
-void check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
-                 const std::vector<Index>& duplicate_of, const ShellContacts& contacts);
+/// 401 (shells that cross in vertices and edges, nested cavities), 403, 405; warning 806. Returns
+/// why not all shells could be located, "" if they were.
+std::string check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
+                        const std::vector<Index>& duplicate_of, const ShellContacts& contacts);
 /// 404, and warning 804 where another diagonal makes or undoes it. Requires sound shells that
-/// passed every other rule. False if it could not be decided: edges of shells cross where no vertex
-/// is.
+/// passed every other rule. False if it could not be decided: where the divided triangles form no
+/// complex, as when edges of shells cross in a point that is no vertex.
 bool check_interior(ExaminedSolid& examined, const ContactTriangles& contacts);
 /// Warnings: 801, 802 (with those that the reader left out), 803.
 void check_vertices(ExaminedSolid& examined, const UnusedVertices& left_out);

@@ -17,7 +17,7 @@ namespace {
 /// Points located and boxes compared while shells are located against each other: a few seconds of
 /// work.
 constexpr std::uint64_t kMostLooks = 10'000'000;
-/// Of the points inside a triangle that are located where its corners tell nothing: seven.
+/// Seven points inside a triangle are located where its corners tell nothing.
 constexpr int kPointExponent = 6;
 
 std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shell) {
@@ -56,6 +56,8 @@ class SolidExaminer {
 
   void check_orientation();
   void check_nesting();
+  /// Why a shell could not be located, "" if all were.
+  const std::string& unlocated() const { return unlocated_; }
 
  private:
   bool can_be_located_in(Index shell) const { return is_surface_[shell]; }
@@ -89,6 +91,7 @@ class SolidExaminer {
   std::vector<int> volume_signs_;  // of shells that are closed and turned alike, else 0
   std::map<Index, PointLocator> locators_;
   std::map<Index, RegionSurface> regions_;
+  std::string unlocated_;
   std::uint64_t looks_ = 0;
   std::vector<std::string> reasons_;
 };
@@ -228,9 +231,10 @@ const RegionSurface& SolidExaminer::region(Index shell) {
 }
 
 RegionRelation SolidExaminer::relate(Index a, Index b) {
-  looks_ += region(a).triangles().size() + region(b).triangles().size();
-  return relate_regions(region(a), region(b), {true, true},
-                        [&] { return examined_.ask_cancelled(); });
+  const RegionRelation relation =
+      relate_regions(region(a), region(b), {true, true}, [&] { return examined_.ask_cancelled(); });
+  looks_ += relation.looks;
+  return relation;
 }
 
 void SolidExaminer::check_inside_exterior(Index shell) {
@@ -255,7 +259,8 @@ void SolidExaminer::check_inside_exterior(Index shell) {
   } else if (sides.has_outside) {
     report(kInnerShellOutside, shell, 0, "the inner shell lies outside the exterior shell");
   } else if (!sides.has_inside) {
-    skip({kInnerShellOutside}, "an inner shell could not be located in the exterior shell");
+    unlocated_ = "an inner shell could not be located in the exterior shell";
+    skip({kInnerShellOutside}, unlocated_);
   }
 }
 
@@ -318,8 +323,8 @@ void SolidExaminer::check_nesting() {
     }
   }
   if (looks_ > kMostLooks) {
-    skip({kIntersectionShells, kInnerShellOutside},
-         "there are too many shells to locate each against the others");
+    unlocated_ = "there are too many shells to locate each against the others";
+    skip({kIntersectionShells, kInnerShellOutside}, unlocated_);
   }
   if (examined_.was_cancelled()) {
     skip({kIntersectionShells, kInnerShellOutside, kWrongOrientationShell},
@@ -364,11 +369,12 @@ std::vector<Index> check_duplicate_shells(ExaminedSolid& examined) {
   return result;
 }
 
-void check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
-                 const std::vector<Index>& duplicate_of, const ShellContacts& contacts) {
+std::string check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
+                        const std::vector<Index>& duplicate_of, const ShellContacts& contacts) {
   SolidExaminer examiner(examined, shells, duplicate_of, contacts);
   examiner.check_orientation();
   examiner.check_nesting();
+  return examiner.unlocated();
 }
 
 }  // namespace watertight

@@ -66,7 +66,8 @@ struct Totals {
   std::uint64_t questions = 0;
   std::array<std::uint64_t, kOutcomes> outcomes{};
   /// Quads whose diagonals are equal in plan and in space have no canonical diagonal that a mirror
-  /// image keeps (docs/robustness.md): such surfaces that vary are counted, and are no disagreement.
+  /// image keeps (docs/robustness.md): such surfaces that vary are counted, and are no
+  /// disagreement.
   std::uint64_t disagreements() const {
     return questions - outcomes[static_cast<std::size_t>(Outcome::right)] -
            outcomes[static_cast<std::size_t>(Outcome::allowed)] -

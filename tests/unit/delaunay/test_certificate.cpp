@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
+#include <map>
 
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/certificate.h"
@@ -377,6 +378,49 @@ TEST_CASE("certificate finds shells that are declared wrongly") {
   joined.shells[0].insert(joined.shells[0].end(), joined.shells[1].begin(), joined.shells[1].end());
   joined.shells.pop_back();
   CHECK(delaunay_case(joined).judge() == CertificateRefusal::cavity_mismatch);
+}
+
+/// The facets of unit cubes that no other of the cubes has, as one shell.
+Shape cubes(const std::vector<std::array<int, 3>>& cells) {
+  Shape shape;
+  shape.shells.emplace_back();
+  std::map<std::array<int, 3>, Index> number;
+  const auto index_of = [&](const std::array<int, 3>& at) {
+    const auto [place, is_new] = number.try_emplace(at, Index(shape.vertices.size()));
+    if (is_new) shape.vertices.push_back({at[0] * 8.0, at[1] * 8.0, at[2] * 8.0});
+    return place->second;
+  };
+  for (const std::array<int, 3>& cell : cells) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const int side : {0, 1}) {
+        std::array<int, 3> next = cell;
+        next[axis] += side == 1 ? 1 : -1;
+        if (std::find(cells.begin(), cells.end(), next) != cells.end()) continue;
+        std::vector<Index> ring;
+        for (const auto& [u, v] :
+             {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+          std::array<int, 3> corner = cell;
+          corner[axis] += side;
+          corner[(axis + 1) % 3] += u;
+          corner[(axis + 2) % 3] += v;
+          ring.push_back(index_of(corner));
+        }
+        if (side == 0) std::reverse(ring.begin(), ring.end());
+        shape.shells[0].push_back({ring});
+      }
+    }
+  }
+  return shape;
+}
+
+TEST_CASE("certificate refuses a shell that touches itself in an edge or a vertex") {
+  // An arch whose feet touch; its interior hangs together over the top.
+  const std::vector<std::array<int, 3>> in_an_edge{
+      {0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}};
+  CHECK(delaunay_case(cubes(in_an_edge)).judge() == CertificateRefusal::not_a_manifold);
+  const std::vector<std::array<int, 3>> in_a_vertex{{0, 0, 0}, {1, 1, 1}, {0, 0, 1},
+                                                    {0, 0, 2}, {1, 0, 2}, {1, 1, 2}};
+  CHECK(delaunay_case(cubes(in_a_vertex)).judge() == CertificateRefusal::not_a_manifold);
 }
 
 TEST_CASE("certificate finds an open boundary") {

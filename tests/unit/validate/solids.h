@@ -38,6 +38,12 @@ inline Solid solid_of(const std::vector<Shell>& shells, const Lattice& lattice =
   return *solid;
 }
 
+inline Lattice lattice_of(double step) {
+  Lattice lattice;
+  lattice.step.fill(shortest_decimal(step));
+  return lattice;
+}
+
 /// Axis-parallel box, normals outward.
 inline Shell box(const Point& low, const Point& high) {
   const std::vector<Point> p{{low.x, low.y, low.z},    {high.x, low.y, low.z},

@@ -67,33 +67,49 @@ TEST_CASE(
   CHECK(finding->place.shell > 0);
 }
 
-/// The number of tetrahedra of a room that a tetrahedral cavity cuts off at a corner, where the
-/// diagonals of three quads are its edges.
+/// A solid of which a tetrahedral cavity seals the corner at the origin off: three of its edges are
+/// the shorter diagonals of the three quads there, which are `bulge` off their planes.
 std::vector<Shell> sealed_corner(double bulge) {
-  const double far = 11 + bulge;
   const Point o{0, 0, 0};
-  const Point x{10, 0, 0};
-  const Point y{0, 10, 0};
-  const Point z{0, 0, 10};
-  const Point xy{far, far, 0};
-  const Point yz{0, far, far};
-  const Point zx{far, 0, far};
-  const Point tip{20, 20, 20};
-  const Point inner{9, 9, 9};
+  const Point x{10000, bulge, bulge};
+  const Point y{bulge, 10000, bulge};
+  const Point z{bulge, bulge, 10000};
+  const Point xy{11000, 11000, 0};
+  const Point yz{0, 11000, 11000};
+  const Point zx{11000, 0, 11000};
+  const Point tip{20000, 20000, 20000};
+  const Point inner{9000, 9000, 9000};
   const Shell outer{{{o, y, xy, x}}, {{o, z, yz, y}}, {{o, x, zx, z}},
                     {{tip, x, xy}},  {{tip, xy, y}},  {{tip, y, yz}},
                     {{tip, yz, z}},  {{tip, z, zx}},  {{tip, zx, x}}};
   const Shell cavity{{{x, y, z}}, {{y, x, inner}}, {{z, y, inner}}, {{x, z, inner}}};
-  return {outer, inside_out(inside_out(cavity))};
+  return {outer, cavity};
 }
 
 TEST_CASE("a cavity whose edges are diagonals of flat facets cuts a corner off") {
   for (const Proof proof : {Proof::boundary, Proof::tetrahedralization}) {
     CertifyOptions options;
     options.proof = proof;
-    const Report report = certify(solid_of(sealed_corner(0)), nullptr, options).report;
+    const Report report =
+        certify(solid_of(sealed_corner(0), lattice_of(0.001)), nullptr, options).report;
     CHECK(error_codes(report) == Codes{404});
+    CHECK_FALSE(first_finding(report, 804));
   }
+}
+
+TEST_CASE("804 tells where another diagonal would open a corner that a cavity seals off") {
+  CertifyOptions options;
+  options.proof = Proof::boundary;
+  const Report report =
+      certify(solid_of(sealed_corner(4), lattice_of(0.001)), nullptr, options).report;
+  CHECK(error_codes(report) == Codes{404});
+  std::set<Index> facets;
+  for (const Finding& finding : report.findings) {
+    if (finding.code != 804) continue;
+    CHECK(finding.detail.find("hang together") != std::string::npos);
+    facets.insert(finding.place.facet);
+  }
+  CHECK(facets == std::set<Index>{0, 1, 2});
 }
 
 TEST_CASE("an invalid solid is never certified") {

@@ -15,12 +15,6 @@ using Codes = std::set<int>;
 
 namespace {
 
-Lattice lattice_of(double step) {
-  Lattice lattice;
-  lattice.step.fill(shortest_decimal(step));
-  return lattice;
-}
-
 /// A slab whose top is a quadrilateral between heights `low` and `high`, over a bottom that rises
 /// to `middle`. Its canonical diagonal runs between the corners of height `high`.
 Shell slab(double low, double high, double middle) {

@@ -53,13 +53,6 @@ Box common_box(const Box& a, const Box& b) {
   return box;
 }
 
-bool contains(const Box& outer, const Box& inner) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (inner.min[axis] < outer.min[axis] || inner.max[axis] > outer.max[axis]) return false;
-  }
-  return true;
-}
-
 std::vector<Box> boxes_of(std::span<const Point> vertices, std::span<const Triangle> triangles) {
   std::vector<Box> boxes;
   boxes.reserve(triangles.size());
@@ -398,6 +391,13 @@ RegionSurface surface_of_shells(const Solid& solid, std::span<const Point> verti
     }
   }
   return {std::move(own), std::move(triangles), std::move(facet_of)};
+}
+
+bool contains(const Box& outer, const Box& inner) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (inner.min[axis] < outer.min[axis] || inner.max[axis] > outer.max[axis]) return false;
+  }
+  return true;
 }
 
 RegionRelation relate_regions(const RegionSurface& first, const RegionSurface& second,

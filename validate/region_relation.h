@@ -56,6 +56,9 @@ RegionSurface surface_of_shells(const Solid& solid, std::span<const Point> verti
                                 const FacetTriangles& facets, IndexRange shells,
                                 bool is_turned_over);
 
+/// True if no point of the inner closed box is outside the outer one.
+bool contains(const Box& outer, const Box& inner);
+
 /// Questions beside whether the insides meet. Each answer costs time.
 struct RegionQuestions {
   bool is_first_inside = false;

@@ -24,13 +24,6 @@
 namespace watertight {
 namespace {
 
-bool contains(const Box& outer, const Box& inner) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (inner.min[axis] < outer.min[axis] || inner.max[axis] > outer.max[axis]) return false;
-  }
-  return true;
-}
-
 bool are_same(const Box& a, const Box& b) { return a.min == b.min && a.max == b.max; }
 
 /// Equal regions have equal boxes and volumes; both are quickly compared.

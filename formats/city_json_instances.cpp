@@ -32,8 +32,8 @@ Result<std::array<GridNumber, kMatrixSize>> read_matrix(const Json& geometry,
 }
 
 // The vertex that the instance stands on, in the world.
-Result<std::array<double, 3>> anchor_of(const CityModel& model, const InstanceRef& ref,
-                                        const CityHeader& header, const std::string& pointer) {
+Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const InstanceRef& ref,
+                                            const CityHeader& header, const std::string& pointer) {
   const auto tokens = model.boundary(ref.boundary);
   const auto vertex =
       std::find_if(tokens.begin(), tokens.end(), [](BoundaryToken t) { return t < kClose; });
@@ -45,7 +45,14 @@ Result<std::array<double, 3>> anchor_of(const CityModel& model, const InstanceRe
                                                         header.transform.value_or(Transform{}))
                                   : lattice_of_decimals({&list.decimals[*vertex], 1});
   if (!points) return wrong(points.error().message, pointer);
-  return points->lattice.world(points->points.front());
+  // The one point is the origin of its lattice, unless it is beyond all decimal grids.
+  if (points->lattice.kind == LatticeKind::decimal) return points->lattice.origin;
+  std::array<GridNumber, 3> anchor;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place = points->lattice.world(points->points.front()[axis], axis);
+    anchor[static_cast<std::size_t>(axis)] = shortest_decimal(place);
+  }
+  return anchor;
 }
 
 }  // namespace
@@ -95,6 +102,8 @@ Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
     if (!placement) return std::move(placement).error();
     instance.placement = *placement;
     instance.placement.srid = header.srid;
+    const Index building = index.building_of[ref.object];
+    if (building != kNone) instance.source.building_id = index.ids[building];
     instances.push_back(std::move(instance));
   }
   return instances;

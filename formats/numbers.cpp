@@ -21,7 +21,7 @@ Result<ExactNumber> exact_number(std::string_view text) {
 }
 
 Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
-                                      const std::array<double, 3>& anchor) {
+                                      const std::array<GridNumber, 3>& anchor) {
   constexpr std::size_t kRowSize = 4;
   if (matrix.size() != kMatrixSize) {
     return Error{ErrorCode::malformed, "a transformationMatrix needs 16 numbers"};
@@ -32,11 +32,12 @@ Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
                  "the last row of a transformationMatrix is 0 0 0 1, rows one after the other"};
   }
   Placement placement;
+  placement.anchor = anchor;
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 3; ++column) {
       placement.linear[row][column] = matrix[row * kRowSize + column];
     }
-    placement.shift[row] = anchor[row] + rounded(matrix[row * kRowSize + 3]);
+    placement.offset[row] = matrix[row * kRowSize + 3];
   }
   return placement;
 }

@@ -28,7 +28,7 @@ inline constexpr std::size_t kMatrixSize = 16;
 /// The placement of a 4 x 4 matrix, rows one after the other, at `anchor` (world). Errors:
 /// malformed (not 16 numbers, a last row other than 0 0 0 1).
 Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
-                                      const std::array<double, 3>& anchor);
+                                      const std::array<GridNumber, 3>& anchor);
 
 /// A number with its digits, without exponent where that is short: "-0.125".
 std::string plain_text(const GridNumber& number);

@@ -2,65 +2,19 @@
 //
 // From lattice coordinates to world coordinates, to the source's digits and to a transform's
 // integers. 128-bit integers decide nearly always; integers of any length do where they overflow.
-#include <gmpxx.h>
-
 #include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "base/assert.h"
+#include "geometry/big_decimal.h"
 #include "geometry/grid_number.h"
 #include "geometry/lattice.h"
 
 namespace watertight {
 namespace {
 
-using BigInteger = mpz_class;
-
 constexpr double kExactEnd = 9007199254740992.0;  // 2^53
-
-/// mantissa * 10^exponent with an integer of any length.
-struct BigDecimal {
-  BigInteger mantissa = 0;
-  std::int64_t exponent = 0;
-};
-
-BigInteger big_power(unsigned base, std::int64_t exponent) {
-  BigInteger power;
-  mpz_ui_pow_ui(power.get_mpz_t(), base, static_cast<unsigned long>(exponent));
-  return power;
-}
-
-/// Requires 64-bit long, as on every platform of this program.
-BigInteger big(std::int64_t value) { return BigInteger(static_cast<long>(value)); }
-
-/// mantissa * 2^exponent: 2^-k = 5^k / 10^k.
-BigDecimal from_binary(std::int64_t mantissa, std::int64_t exponent) {
-  if (exponent >= 0) return {big(mantissa) << static_cast<unsigned long>(exponent), 0};
-  return {big(mantissa) * big_power(5, -exponent), exponent};
-}
-
-BigDecimal from_grid(const GridNumber& number, LatticeKind kind) {
-  if (kind == LatticeKind::binary) return from_binary(number.mantissa, number.exponent);
-  return {big(number.mantissa), number.exponent};
-}
-
-BigDecimal from_double(double value) {
-  int exponent = 0;
-  const double fraction = std::frexp(value, &exponent);
-  return from_binary(static_cast<std::int64_t>(std::ldexp(fraction, 53)), exponent - 53);
-}
-
-BigDecimal big_product(const BigDecimal& a, const BigDecimal& b) {
-  return {a.mantissa * b.mantissa, a.exponent + b.exponent};
-}
-
-BigDecimal big_sum(const BigDecimal& a, const BigDecimal& b) {
-  const std::int64_t exponent = std::min(a.exponent, b.exponent);
-  return {a.mantissa * big_power(10, a.exponent - exponent) +
-              b.mantissa * big_power(10, b.exponent - exponent),
-          exponent};
-}
 
 double big_nearest_double(const BigDecimal& decimal) {
   if (decimal.mantissa == 0) return 0.0;

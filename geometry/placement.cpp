@@ -1,30 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/placement.h"
 
-#include <gmpxx.h>
-
 #include <algorithm>
 #include <limits>
 
 #include "base/assert.h"
+#include "geometry/big_decimal.h"
 #include "geometry/grid_number.h"
 
 namespace watertight {
 namespace {
 
-using Matrix = std::array<std::array<mpz_class, 3>, 3>;
+using Matrix = std::array<std::array<BigInteger, 3>, 3>;
 
 /// The linear part times 10^scale, in integers.
 struct ScaledMatrix {
   Matrix rows;
-  unsigned long scale = 0;
+  std::int64_t scale = 0;
 };
-
-mpz_class power_of_ten(std::int64_t exponent) {
-  mpz_class power;
-  mpz_ui_pow_ui(power.get_mpz_t(), 10, static_cast<unsigned long>(exponent));
-  return power;
-}
 
 ScaledMatrix scaled(const Placement& placement) {
   std::int32_t least = 0;
@@ -32,18 +25,17 @@ ScaledMatrix scaled(const Placement& placement) {
     for (const GridNumber& number : row) least = std::min(least, number.exponent);
   }
   ScaledMatrix matrix;
-  matrix.scale = static_cast<unsigned long>(-std::int64_t{least});
+  matrix.scale = -std::int64_t{least};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      const GridNumber& number = placement.linear[i][j];
-      matrix.rows[i][j] = mpz_class(static_cast<long>(number.mantissa)) *
-                          power_of_ten(std::int64_t{number.exponent} - least);
+      const BigDecimal number = from_grid(placement.linear[i][j], LatticeKind::decimal);
+      matrix.rows[i][j] = big_mantissa_at(number, least);
     }
   }
   return matrix;
 }
 
-mpz_class determinant(const Matrix& m) {
+BigInteger determinant(const Matrix& m) {
   return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
          m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
@@ -64,12 +56,12 @@ int determinant_sign(const Placement& placement) {
 
 bool is_rotation(const Placement& placement) {
   const ScaledMatrix matrix = scaled(placement);
-  const mpz_class one = power_of_ten(2 * static_cast<std::int64_t>(matrix.scale));
+  const BigInteger one = big_power(10, 2 * matrix.scale);
   const Matrix& m = matrix.rows;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = i; j < 3; ++j) {
-      const mpz_class product = m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
-      if (product != (i == j ? one : mpz_class(0))) return false;
+      const BigInteger product = m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
+      if (product != (i == j ? one : BigInteger(0))) return false;
     }
   }
   return determinant(m) > 0;
@@ -89,9 +81,17 @@ std::array<std::array<double, 3>, 3> linear_part(const Placement& placement) {
   return linear;
 }
 
+std::array<double, 3> shift_of(const Placement& placement) {
+  std::array<double, 3> shift{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    shift[i] = rounded(placement.anchor[i]) + rounded(placement.offset[i]);
+  }
+  return shift;
+}
+
 std::array<double, 3> place(const Placement& placement, const std::array<double, 3>& point) {
   const auto linear = linear_part(placement);
-  std::array<double, 3> result = placement.shift;
+  std::array<double, 3> result = shift_of(placement);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) result[i] += linear[i][j] * point[j];
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Where an instance of a geometry template stands: an affine map, and what it does to the solid.
-// The sign of the determinant is exact; places in the world are rounded.
+// The map is exact; single points and solids in the world are rounded.
 #pragma once
 
 #include <array>
@@ -12,13 +12,14 @@
 
 namespace watertight {
 
-/// world = linear * template + shift. The linear part is the exact decimals of the document, row by
-/// row; the shift decides nothing.
+/// world = linear * template + offset + anchor, in the exact decimals of the document.
 struct Placement {
   std::array<std::array<GridNumber, 3>, 3> linear{
+      // row by row
       {{{{1, 0}, {0, 0}, {0, 0}}}, {{{0, 0}, {1, 0}, {0, 0}}}, {{{0, 0}, {0, 0}, {1, 0}}}}};
-  std::array<double, 3> shift{};  // world units
-  std::uint32_t srid = 0;         // of the world
+  std::array<GridNumber, 3> offset{};  // the matrix's own shift
+  std::array<GridNumber, 3> anchor{};  // the point that the instance stands on
+  std::uint32_t srid = 0;              // of the world
   friend auto operator<=>(const Placement&, const Placement&) = default;
 };
 
@@ -33,6 +34,9 @@ double rounded(const GridNumber& decimal);
 
 /// The linear part as nearest doubles, row by row.
 std::array<std::array<double, 3>, 3> linear_part(const Placement& placement);
+
+/// Where the template's origin lies in the world, rounded.
+std::array<double, 3> shift_of(const Placement& placement);
 
 /// Where a point of the template lies in the world, rounded; not finite beyond the doubles.
 std::array<double, 3> place(const Placement& placement, const std::array<double, 3>& point);

@@ -10,9 +10,7 @@
 namespace watertight {
 namespace {
 
-const SolidSource& source_of(const InspectedFeature& feature, std::size_t solid) {
-  return feature.solids[solid].source;
-}
+using Candidates = std::span<const GroupCandidate>;
 
 bool are_of_one_geometry(const SolidSource& a, const SolidSource& b) {
   return a.object_id == b.object_id && a.geometry == b.geometry &&
@@ -20,15 +18,15 @@ bool are_of_one_geometry(const SolidSource& a, const SolidSource& b) {
 }
 
 /// Geometries are runs of solids whose ordinals ascend: first solid of each, and the end.
-std::vector<std::size_t> geometry_starts(const InspectedFeature& feature) {
+std::vector<std::size_t> geometry_starts(Candidates candidates) {
   std::vector<std::size_t> starts;
-  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
     const bool continues = i > 0 &&
-                           are_of_one_geometry(source_of(feature, i - 1), source_of(feature, i)) &&
-                           source_of(feature, i - 1).ordinal < source_of(feature, i).ordinal;
+                           are_of_one_geometry(*candidates[i - 1].source, *candidates[i].source) &&
+                           candidates[i - 1].source->ordinal < candidates[i].source->ordinal;
     if (!continues) starts.push_back(i);
   }
-  starts.push_back(feature.solids.size());
+  starts.push_back(candidates.size());
   return starts;
 }
 
@@ -44,14 +42,14 @@ void add(DraftGroup& draft, std::size_t begin, std::size_t end, std::size_t geom
   }
 }
 
-std::vector<DraftGroup> draft_groups(const InspectedFeature& feature) {
+std::vector<DraftGroup> draft_groups(Candidates candidates) {
   std::vector<DraftGroup> drafts;
   std::map<std::pair<std::string, std::string>, DraftGroup> buildings;  // building, lod
-  const std::vector<std::size_t> starts = geometry_starts(feature);
+  const std::vector<std::size_t> starts = geometry_starts(candidates);
   for (std::size_t geometry = 0; geometry + 1 < starts.size(); ++geometry) {
     const std::size_t begin = starts[geometry];
     const std::size_t end = starts[geometry + 1];
-    const SolidSource& source = source_of(feature, begin);
+    const SolidSource& source = *candidates[begin].source;
     if (source.geometry_type == "CompositeSolid") {
       DraftGroup& draft = drafts.emplace_back();
       draft.group = {GroupKind::composite_solid, source.object_id, source.lod, {}, {}};
@@ -76,17 +74,26 @@ std::vector<DraftGroup> draft_groups(const InspectedFeature& feature) {
 
 }  // namespace
 
-std::vector<InspectedGroup> inspect_groups(const InspectedFeature& feature,
+std::vector<GroupCandidate> group_candidates(const InspectedFeature& feature) {
+  std::vector<GroupCandidate> candidates;
+  candidates.reserve(feature.solids.size());
+  for (const InspectedSolid& solid : feature.solids) {
+    const auto& certified = solid.inspection.certified;
+    candidates.push_back({&solid.source, {certified ? &certified->solid : nullptr}});
+  }
+  return candidates;
+}
+
+std::vector<InspectedGroup> inspect_groups(std::span<const GroupCandidate> candidates,
                                            const GroupOptions& options) {
   std::vector<InspectedGroup> groups;
-  if (feature.solids.size() < 2) return groups;
-  for (DraftGroup& draft : draft_groups(feature)) {
-    std::vector<const ValidSolid*> solids;
+  if (candidates.size() < 2) return groups;
+  for (DraftGroup& draft : draft_groups(candidates)) {
+    std::vector<GroupMember> members;
     for (const std::size_t member : draft.group.members) {
-      const auto& certified = feature.solids[member].inspection.certified;
-      solids.push_back(certified ? &certified->solid : nullptr);
+      members.push_back(candidates[member].member);
     }
-    draft.group.report = check_group(solids, draft.group.kind, options, draft.unit_of);
+    draft.group.report = check_group(members, draft.group.kind, options, draft.unit_of);
     groups.push_back(std::move(draft.group));
   }
   return groups;

@@ -3,17 +3,28 @@
 // Which solids of a feature are compared with each other, and what the comparison says.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pipeline/pipeline.h"
 
 namespace watertight {
 
+/// A solid that groups are made of. Kept by the caller.
+struct GroupCandidate {
+  const SolidSource* source = nullptr;
+  GroupMember member;
+};
+
+/// The solids of a feature, in order.
+std::vector<GroupCandidate> group_candidates(const InspectedFeature& feature);
+
 /// One group for each CompositeSolid geometry (rules 501 to 503), and one for the solids of a
 /// building with its parts in each level of detail (601) that come from two geometries or more;
-/// solids of one MultiSolid or CompositeSolid are not compared for 601. In order of first members.
-/// Solids that are not valid are members that are not compared. Never fails. Cost: check_group().
-std::vector<InspectedGroup> inspect_groups(const InspectedFeature& feature,
+/// solids of one MultiSolid or CompositeSolid are not compared for 601. In order of first members,
+/// which are indices into `candidates`. Solids that are not valid are members that are not
+/// compared. Never fails. Cost: check_group().
+std::vector<InspectedGroup> inspect_groups(std::span<const GroupCandidate> candidates,
                                            const GroupOptions& options);
 
 }  // namespace watertight

@@ -72,7 +72,8 @@ Result<std::vector<Processed>> process_all(Document& document, EngineWorkers* wo
                                            const IngestOptions& options) {
   std::vector<Feature> features = std::move(document.features);
   std::vector<Processed> processed(features.size());
-  TemplateInspector templates(document.templates, workers, options.certify);
+  TemplateInspector templates(document.templates, workers, options.certify,
+                              group_options(options.groups, options.certify));
   std::size_t done = 0;
   std::mutex mutex;
   for_each_piece(features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
@@ -181,12 +182,20 @@ InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyO
         {submitted.source, certify(submitted.solid, workers, options_for(submitted, options))});
   }
   inspected.feature = std::move(feature);
+  if (templates != nullptr) {
+    add_groups(templates->inspect(inspected.feature.instances), *templates,
+               group_options(groups, options), inspected);
+  } else {
+    inspected.groups = inspect_groups(group_candidates(inspected), group_options(groups, options));
+  }
+  return inspected;
+}
+
+GroupOptions group_options(const GroupOptions& groups, const CertifyOptions& options) {
   GroupOptions own = groups;
   own.limits.findings = std::min(own.limits.findings, options.limits.findings);
   if (!own.cancel) own.cancel = options.ladder.cancel;
-  inspected.groups = inspect_groups(inspected, own);
-  if (templates != nullptr) templates->inspect_instances(inspected);
-  return inspected;
+  return own;
 }
 
 CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions& options) {

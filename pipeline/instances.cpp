@@ -4,12 +4,33 @@
 #include <algorithm>
 
 #include "geometry/crs.h"
+#include "pipeline/groups.h"
 
 namespace watertight {
 namespace {
 
 /// Effects remembered for each template: bounds the memory of a document with many instances.
 constexpr std::size_t kMostEffects = 4096;
+
+/// Nothing of its report refers to a member.
+bool is_silent(const InspectedGroup& group) {
+  return group.report.verdict == Verdict::valid && group.report.findings.empty() &&
+         group.report.not_run.empty();
+}
+
+bool by_first_member(const InspectedGroup& a, const InspectedGroup& b) {
+  return std::pair(a.members.front(), a.kind) < std::pair(b.members.front(), b.kind);
+}
+
+/// Orders solids of templates by the number of their template.
+struct ByTemplate {
+  bool operator()(const SubmittedSolid& solid, std::uint64_t number) const {
+    return solid.source.geometry < number;
+  }
+  bool operator()(std::uint64_t number, const SubmittedSolid& solid) const {
+    return number < solid.source.geometry;
+  }
+};
 
 std::string name_of(const TemplateInstance& instance) {
   return instance.source.pointer.empty() ? "'" + instance.source.object_id + "'"
@@ -19,43 +40,93 @@ std::string name_of(const TemplateInstance& instance) {
 }  // namespace
 
 TemplateInspector::TemplateInspector(std::span<const SubmittedSolid> templates,
-                                     EngineWorkers* workers, const CertifyOptions& options)
-    : templates_(templates), workers_(workers), options_(options), uses_(templates.size()) {}
+                                     EngineWorkers* workers, const CertifyOptions& options,
+                                     const GroupOptions& groups)
+    : templates_(templates),
+      workers_(workers),
+      options_(options),
+      group_options_(groups),
+      uses_(templates.size()) {}
 
-void TemplateInspector::inspect_instances(InspectedFeature& feature) {
-  // Solids are appended to feature.feature, whose instances stay as they are.
-  const std::vector<TemplateInstance> instances = feature.feature.instances;
+InspectedInstances TemplateInspector::inspect(std::span<const TemplateInstance> instances) {
+  InspectedInstances inspected;
   for (const TemplateInstance& instance : instances) {
-    const auto begin = std::partition_point(
-        templates_.begin(), templates_.end(), [&](const SubmittedSolid& solid) {
-          return solid.source.geometry < instance.template_number;
-        });
-    for (auto solid = static_cast<std::size_t>(begin - templates_.begin());
-         solid < templates_.size() && templates_[solid].source.geometry == instance.template_number;
-         ++solid) {
-      const Effect effect = effect_of(instance.placement);
-      {
-        const std::lock_guard lock(mutex_);
-        uses_[solid].has_instances = true;
-        if (uses_[solid].valid.count(effect) != 0) {
-          note_valid(solid, instance, effect);
-          continue;
-        }
-      }
-      Inspection inspection = judge(solid, instance);
-      if (inspection.report.verdict == Verdict::valid) {
-        const std::lock_guard lock(mutex_);
-        note_valid(solid, instance, effect);
-      } else {
-        append(solid, instance, std::move(inspection), feature);
-      }
+    const auto [begin, end] = std::equal_range(templates_.begin(), templates_.end(),
+                                               instance.template_number, ByTemplate{});
+    const Effect effect = effect_of(instance.placement);
+    const std::size_t first = inspected.solids.size();
+    for (auto solid = begin; solid != end; ++solid) {
+      const auto number = static_cast<std::size_t>(solid - templates_.begin());
+      inspected.solids.push_back(inspect_solid(number, instance, effect));
     }
+    if (end - begin > 1 && begin->source.geometry_type == "CompositeSolid") {
+      compare_members(first, effect, inspected);
+    }
+  }
+  return inspected;
+}
+
+InstanceSolid TemplateInspector::inspect_solid(std::size_t solid, const TemplateInstance& instance,
+                                               const Effect& effect) {
+  InstanceSolid result{instance.source, &instance, solid, nullptr, std::nullopt};
+  result.source.lod = templates_[solid].source.lod;
+  result.source.ordinal = templates_[solid].source.ordinal;
+  Uses& uses = uses_[solid];
+  {
+    const std::lock_guard lock(mutex_);
+    uses.has_instances = true;
+    if (uses.valid.count(effect) != 0) {
+      note_valid(solid, instance, effect);
+      result.valid = &*uses.solid;
+      return result;
+    }
+  }
+  Inspection inspection = judge(solid, instance);
+  if (inspection.report.verdict != Verdict::valid) {
+    result.inspection = std::move(inspection);
+    return result;
+  }
+  const std::lock_guard lock(mutex_);
+  if (!uses.solid) uses.solid = std::move(inspection.unplaced);
+  note_valid(solid, instance, effect);
+  result.valid = &*uses.solid;
+  return result;
+}
+
+/// Compares the solids from `first` on, those of one instance of a composite solid.
+void TemplateInspector::compare_members(std::size_t first, const Effect& effect,
+                                        InspectedInstances& instances) {
+  const std::span<const InstanceSolid> solids = std::span(instances.solids).subspan(first);
+  Uses& uses = uses_[solids.front().template_solid];
+  {
+    const std::lock_guard lock(mutex_);
+    if (uses.fitting.count(effect) != 0) return;
+  }
+  std::vector<SolidSource> sources;
+  for (const InstanceSolid& solid : solids) {
+    sources.push_back(solid.source);
+    sources.back().geometry_type = templates_[solid.template_solid].source.geometry_type;
+    sources.back().building_id.clear();
+  }
+  std::vector<GroupCandidate> candidates;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    candidates.push_back({&sources[i], {solids[i].valid, &solids[i].instance->placement}});
+  }
+  for (InspectedGroup& group : inspect_groups(candidates, group_options_)) {
+    if (group.report.verdict == Verdict::valid && group.report.not_run.empty()) {
+      const std::lock_guard lock(mutex_);
+      if (uses.fitting.size() < kMostEffects) uses.fitting.insert(effect);
+      continue;
+    }
+    for (std::size_t& member : group.members) member += first;
+    instances.groups.push_back(std::move(group));
   }
 }
 
 /// Nothing of a placement that is congruent in metres: then the template stands for the instance.
 TemplateInspector::Effect TemplateInspector::effect_of(const Placement& placement) {
-  const std::array<double, 3> units = axis_units(placement.srid, placement.shift).metres_per_unit;
+  const std::array<double, 3> units =
+      axis_units(placement.srid, shift_of(placement)).metres_per_unit;
   if (units == std::array<double, 3>{1, 1, 1} && is_rotation(placement)) return std::nullopt;
   return std::pair(placement.linear, units);
 }
@@ -96,35 +167,41 @@ void TemplateInspector::note_valid(std::size_t solid, const TemplateInstance& in
   }
 }
 
-void TemplateInspector::append(std::size_t solid, const TemplateInstance& instance,
-                               Inspection inspection, InspectedFeature& feature) const {
-  const SubmittedSolid& source = templates_[solid];
+std::size_t TemplateInspector::show(InstanceSolid solid, InspectedFeature& feature) const {
+  const SubmittedSolid& source = templates_[solid.template_solid];
+  const Placement& placement = solid.instance->placement;
+  if (!solid.inspection) {  // valid: only its report is missing
+    CertifyOptions own = options_for(source, options_);
+    own.placement = &placement;
+    own.is_proven = true;
+    solid.inspection = certify(source.solid, nullptr, own);
+  }
   // A place beyond the doubles cannot be shown: the template is.
-  auto in_place = placed(source.solid, instance.placement);
-  SubmittedSolid submitted{in_place ? *std::move(in_place) : source.solid, instance.source};
-  submitted.source.lod = source.source.lod;
-  submitted.source.ordinal = source.source.ordinal;
-  const int sign = determinant_sign(instance.placement);
-  const bool has_pointer = !instance.source.pointer.empty();
-  submitted.source.pointer = sign == 0 && has_pointer
-                                 ? instance.source.pointer + "/transformationMatrix"
-                                 : source.source.pointer;
-  const std::string name = " (template " + std::to_string(instance.template_number) +
+  auto in_place = placed(source.solid, placement);
+  SubmittedSolid submitted{in_place ? *std::move(in_place) : source.solid, std::move(solid.source)};
+  const int sign = determinant_sign(placement);
+  const std::string& pointer = solid.instance->source.pointer;
+  submitted.source.pointer =
+      sign == 0 && !pointer.empty() ? pointer + "/transformationMatrix" : source.source.pointer;
+  const std::string name = " (template " + std::to_string(solid.instance->template_number) +
                            (sign < 0 ? ", mirrored and placed by " : " as placed by ") +
-                           name_of(instance) + ")";
-  for (Finding& finding : inspection.report.findings) finding.detail += name;
-  if (!inspection.report.undecided_reason.empty()) inspection.report.undecided_reason += name;
-  feature.solids.push_back({submitted.source, std::move(inspection)});
+                           name_of(*solid.instance) + ")";
+  Report& report = solid.inspection->report;
+  for (Finding& finding : report.findings) finding.detail += name;
+  if (!report.undecided_reason.empty()) report.undecided_reason += name;
+  feature.solids.push_back({submitted.source, *std::move(solid.inspection)});
   feature.feature.solids.push_back(std::move(submitted));
+  return feature.solids.size() - 1;
 }
 
 std::optional<InspectedFeature> TemplateInspector::inspect_templates(
-    const std::vector<TemplateInstance>& others) {
+    std::vector<TemplateInstance> others) {
   InspectedFeature inspected;
-  inspected.feature.instances = others;
-  inspect_instances(inspected);
   inspected.feature.id = "geometry-templates";
   inspected.feature.type = "GeometryTemplates";
+  inspected.feature.instances = std::move(others);
+  add_groups(inspect(inspected.feature.instances), *this, group_options_, inspected);
+  std::vector<std::size_t> unplaced;  // solids of templates without instances
   for (std::size_t i = 0; i < templates_.size(); ++i) {
     const Uses& uses = uses_[i];
     if (uses.has_instances && !uses.has_congruent && !uses.least) continue;
@@ -133,11 +210,57 @@ std::optional<InspectedFeature> TemplateInspector::inspect_templates(
     if (is_placed) own.placement = &*uses.least;
     Inspection inspection = certify(templates_[i].solid, workers_, own);
     if (is_placed) inspection.report.notes.push_back("as placed by " + uses.least_name);
+    if (!uses.has_instances) unplaced.push_back(inspected.solids.size());
     inspected.solids.push_back({templates_[i].source, std::move(inspection)});
     inspected.feature.solids.push_back(templates_[i]);
   }
   if (inspected.solids.empty()) return std::nullopt;
+  const std::vector<GroupCandidate> all = group_candidates(inspected);
+  std::vector<GroupCandidate> candidates;
+  for (const std::size_t solid : unplaced) candidates.push_back(all[solid]);
+  for (InspectedGroup& group : inspect_groups(candidates, group_options_)) {
+    for (std::size_t& member : group.members) member = unplaced[member];
+    inspected.groups.push_back(std::move(group));
+  }
   return inspected;
+}
+
+void add_groups(InspectedInstances instances, const TemplateInspector& templates,
+                const GroupOptions& options, InspectedFeature& feature) {
+  std::vector<GroupCandidate> candidates = group_candidates(feature);
+  const std::size_t own = candidates.size();
+  for (const InstanceSolid& solid : instances.solids) {
+    candidates.push_back({&solid.source, {solid.valid, &solid.instance->placement}});
+  }
+  std::vector<InspectedGroup> groups = inspect_groups(candidates, options);
+  for (InspectedGroup& group : instances.groups) {
+    for (std::size_t& member : group.members) member += own;
+    groups.push_back(std::move(group));
+  }
+  std::vector<bool> is_shown(candidates.size());
+  for (std::size_t i = own; i < candidates.size(); ++i) {
+    is_shown[i] = candidates[i].member.solid == nullptr;
+  }
+  for (const InspectedGroup& group : groups) {
+    if (is_silent(group)) continue;
+    for (const std::size_t member : group.members) is_shown[member] = true;
+  }
+  std::vector<std::size_t> place(
+      candidates.size());  // of each candidate among the feature's solids
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (i < own) {
+      is_shown[i] = true;
+      place[i] = i;
+    } else if (is_shown[i]) {
+      place[i] = templates.show(std::move(instances.solids[i - own]), feature);
+    }
+  }
+  for (InspectedGroup& group : groups) {
+    std::erase_if(group.members, [&](std::size_t member) { return !is_shown[member]; });
+    for (std::size_t& member : group.members) member = place[member];
+    if (group.members.size() > 1) feature.groups.push_back(std::move(group));
+  }
+  std::stable_sort(feature.groups.begin(), feature.groups.end(), by_first_member);
 }
 
 }  // namespace watertight

@@ -36,8 +36,9 @@ struct InspectedGroup {
 };
 
 struct InspectedFeature {
-  /// Its own solids, then a solid for each instance of a geometry template that is not valid, with
-  /// rounded vertices in its place. So a feature that is valid has no other solids than its own.
+  /// Its own solids, then those of each instance of a geometry template that is not valid or in
+  /// whose group something was found, with rounded vertices in their place. So a feature that is
+  /// valid has no other solids than its own.
   Feature feature;
   std::vector<InspectedSolid> solids;  // one per feature.solids, same order
   std::vector<InspectedGroup> groups;  // in order of their first members
@@ -52,8 +53,11 @@ Verdict worse(Verdict a, Verdict b);
 
 class TemplateInspector;
 
-/// Validates every solid of a feature, then its groups, then its instances of the geometry
-/// templates that `templates` knows (null: of none). Guarantees one InspectedSolid per solid. A
+/// The options with the certification's limit of findings, and its poll if they have none.
+GroupOptions group_options(const GroupOptions& groups, const CertifyOptions& options);
+
+/// Validates every solid of a feature, its instances of the geometry templates that `templates`
+/// knows (null: of none), and the groups of both. Guarantees one InspectedSolid per solid. A
 /// solid with vertices that the reader rounded, or rings that the source left open, gets the
 /// findings for them. Groups keep no more findings than solids, and are cancelled like them.
 InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,

@@ -46,7 +46,8 @@ class Stream {
         certify_(certify_options(reader, options)),
         on_feature_(on_feature),
         on_error_(on_error),
-        templates_(reader.document().templates, workers, certify_) {}
+        templates_(reader.document().templates, workers, certify_,
+                   group_options(options.groups, certify_)) {}
 
   Result<StreamOutcome> run() {
     const std::size_t threads = std::max<std::size_t>(options_.threads, 1);

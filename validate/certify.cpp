@@ -327,6 +327,7 @@ Inspection examine_placed(const Solid& solid, EngineWorkers* workers,
   if (sign == 0 && solid.facet_count() > 0) return flattened(options);
   Inspection inspection =
       sign < 0 ? examine(turned_over(solid), workers, options) : examine(solid, workers, options);
+  if (inspection.certified) inspection.unplaced = std::move(inspection.certified->solid);
   inspection.certified.reset();
   for (Finding& finding : inspection.report.findings) {
     if (finding.witness) finding.witness = place(*options.placement, *finding.witness);

@@ -48,9 +48,11 @@ struct Certified {
 
 struct Inspection {
   Report report;
-  /// Present exactly when the verdict is valid and the solid stands where it is: with a placement
-  /// there is a verdict only.
+  /// Present exactly when the verdict is valid and the solid stands where it is.
   std::optional<Certified> certified;
+  /// With a placement, present when the verdict is valid but for `is_proven`: the solid as the
+  /// template has it, turned over by a mirroring placement. For comparisons with other solids.
+  std::optional<ValidSolid> unplaced;
 };
 
 /// Never fails: what cannot be evaluated is said in the report. Deterministic but for `seconds`

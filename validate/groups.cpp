@@ -2,13 +2,14 @@
 #include "validate/groups.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "geometry/common_lattice.h"
 #include "geometry/crs.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/shared_grid.h"
 #include "tessellate/facets.h"
 #include "validate/finding_kinds.h"
 #include "validate/solid_overlap.h"
@@ -24,16 +25,18 @@ constexpr std::size_t kMostNamed = 8;
 constexpr std::size_t kMostPairs = 10'000'000;
 constexpr std::uint64_t kMostLooks = 2'000'000'000;
 
+/// Overlaps of rounded members up to this many steps are due to the rounding.
+constexpr double kRoundedSteps = 16;
+
 class GroupExaminer {
  public:
-  GroupExaminer(std::span<const ValidSolid* const> members, GroupKind kind,
-                const GroupOptions& options, std::span<const Index> unit_of)
+  GroupExaminer(std::span<const GroupMember> members, GroupKind kind, const GroupOptions& options,
+                std::span<const Index> unit_of)
       : members_(members),
         unit_of_(unit_of),
         kind_(kind),
         options_(options),
         surfaces_(members.size()),
-        boxes_(members.size()),
         connected_(members.size()) {}
 
   GroupReport run();
@@ -54,6 +57,10 @@ class GroupExaminer {
   }
   void name_invalid_members();
   bool find_grid();
+  void find_metres();
+  Box box(Index member) const { return grid_->box(number_[member]); }
+  std::uint32_t srid(Index member) const;
+  double allowed_depth(const Pair& pair) const;
   std::optional<std::vector<Pair>> pairs() const;
   bool may_meet(Index a, Index b) const;
   const SolidSurface* surface(Index member);
@@ -64,15 +71,15 @@ class GroupExaminer {
   std::string named(Index member) const;
   std::string overlap_detail(const Pair& pair, const SolidRelation& relation) const;
 
-  std::span<const ValidSolid* const> members_;
+  std::span<const GroupMember> members_;
   std::span<const Index> unit_of_;
   GroupKind kind_;
   const GroupOptions& options_;
   std::vector<Index> present_;  // members that are valid, ascending
-  std::optional<CommonLattice> grid_;
-  std::array<double, 3> metres_per_step_{1, 1, 1};
+  std::vector<Index> number_;   // of each member among those, kNone for the others
+  std::optional<SharedGrid> grid_;
+  StepMetres step_metres_{};
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
-  std::vector<Box> boxes_;
   DisjointSets connected_;
   std::vector<Finding> duplicates_;
   GroupReport report_;
@@ -82,7 +89,8 @@ void GroupExaminer::name_invalid_members() {
   std::string list;
   std::size_t count = 0;
   for (Index i = 0; i < members_.size(); ++i) {
-    if (members_[i] != nullptr) {
+    number_.push_back(members_[i].solid != nullptr ? static_cast<Index>(present_.size()) : kNone);
+    if (members_[i].solid != nullptr) {
       present_.push_back(i);
     } else if (++count <= kMostNamed) {
       if (count > 1) list += ", ";
@@ -103,57 +111,58 @@ void GroupExaminer::name_invalid_members() {
   skip(codes(), std::move(reason));
 }
 
-/// One exact grid, and its unit; the members' boxes on it.
+std::uint32_t GroupExaminer::srid(Index member) const {
+  const GroupMember& own = members_[member];
+  return own.placement != nullptr ? own.placement->srid : own.solid->solid().srid();
+}
+
 bool GroupExaminer::find_grid() {
-  std::vector<Lattice> lattices;
+  std::vector<StandingSolid> solids;
   for (const Index i : present_) {
-    const Solid& solid = members_[i]->solid();
-    if (solid.srid() != members_[present_.front()]->solid().srid()) {
+    if (srid(i) != srid(present_.front())) {
       give_up("the solids are in different coordinate reference systems");
       return false;
     }
-    if (lattices.empty() || lattices.back() != solid.lattice()) lattices.push_back(solid.lattice());
+    solids.push_back({&members_[i].solid->solid(), members_[i].placement});
   }
-  grid_ = CommonLattice::of(lattices);
-  Box all;
-  for (std::size_t at = 0; at < present_.size() && grid_; ++at) {
-    const Solid& solid = members_[present_[at]]->solid();
-    const Box own = solid.box();
-    const auto low = grid_->moved(own.min, solid.lattice());
-    const auto high = grid_->moved(own.max, solid.lattice());
-    if (!low || !high) {
-      grid_.reset();
-      break;
-    }
-    boxes_[present_[at]] = Box{*low, *high};
-    all.include(*low);
-    all.include(*high);
-  }
+  grid_ = SharedGrid::of(std::move(solids));
   if (!grid_) {
     give_up("the coordinates of the solids have no exact grid in common");
     return false;
+  }
+  find_metres();
+  return true;
+}
+
+void GroupExaminer::find_metres() {
+  Box all;
+  for (const Index i : present_) {
+    all.include(box(i).min);
+    all.include(box(i).max);
   }
   const Lattice& lattice = grid_->lattice();
   const std::array<double, 3> low = lattice.world(all.min);
   const std::array<double, 3> high = lattice.world(all.max);
   std::array<double, 3> centre{};
   for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = low[axis] / 2 + high[axis] / 2;
-  const AxisUnits units = axis_units(members_[present_.front()]->solid().srid(), centre);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto at = static_cast<std::size_t>(axis);
-    metres_per_step_[at] = lattice.scale(axis) * units.metres_per_unit[at];
+  const Placement* frame = grid_->frame();
+  if (frame != nullptr) centre = shift_of(*frame);
+  const AxisUnits units = axis_units(srid(present_.front()), centre);
+  const auto linear = linear_part(frame != nullptr ? *frame : Placement{});
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double scale = lattice.scale(static_cast<int>(axis));
+      step_metres_[row][axis] = scale * units.metres_per_unit[row] * linear[row][axis];
+    }
   }
-  return true;
 }
 
 /// Boxes that share a point (composites: contact matters) or some inside (building parts).
 bool GroupExaminer::may_meet(Index a, Index b) const {
   if (!unit_of_.empty() && unit_of_[a] == unit_of_[b]) return false;
-  if (is_composite()) return boxes_[a].overlaps(boxes_[b]);
+  if (is_composite()) return box(a).overlaps(box(b));
   for (int axis = 0; axis < 3; ++axis) {
-    if (boxes_[a].min[axis] >= boxes_[b].max[axis] || boxes_[b].min[axis] >= boxes_[a].max[axis]) {
-      return false;
-    }
+    if (box(a).min[axis] >= box(b).max[axis] || box(b).min[axis] >= box(a).max[axis]) return false;
   }
   return true;
 }
@@ -163,25 +172,27 @@ bool GroupExaminer::may_meet(Index a, Index b) const {
 std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
   Box all;
   for (const Index i : present_) {
-    all.include(boxes_[i].min);
-    all.include(boxes_[i].max);
+    all.include(box(i).min);
+    all.include(box(i).max);
   }
   int along = 0;
   const auto length = [&](int axis) {
-    return (all.max[axis] - all.min[axis]) * metres_per_step_[static_cast<std::size_t>(axis)];
+    double metres = 0;
+    for (const auto& row : step_metres_) metres += std::abs(row[static_cast<std::size_t>(axis)]);
+    return (all.max[axis] - all.min[axis]) * metres;
   };
   for (const int axis : {1, 2}) {
     if (length(axis) > length(along)) along = axis;
   }
   std::vector<Index> order = present_;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::pair(boxes_[a].min[along], a) < std::pair(boxes_[b].min[along], b);
+    return std::pair(box(a).min[along], a) < std::pair(box(b).min[along], b);
   });
   std::vector<Pair> pairs;
   std::vector<Index> active;
   std::uint64_t looks = 0;
   for (const Index i : order) {
-    std::erase_if(active, [&](Index a) { return boxes_[a].max[along] < boxes_[i].min[along]; });
+    std::erase_if(active, [&](Index a) { return box(a).max[along] < box(i).min[along]; });
     for (const Index other : active) {
       if (may_meet(i, other)) pairs.emplace_back(std::min(i, other), std::max(i, other));
     }
@@ -196,15 +207,15 @@ std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
 /// Made when first asked for; null if the solid cannot be brought onto the grid.
 const SolidSurface* GroupExaminer::surface(Index member) {
   if (surfaces_[member]) return surfaces_[member].get();
-  const Solid& solid = members_[member]->solid();
-  std::vector<Point> points;
-  points.reserve(solid.vertex_count());
-  for (const Point& p : solid.vertices()) {
-    const auto moved = grid_->moved(p, solid.lattice());
-    if (!moved) return nullptr;
-    points.push_back(*moved);
+  const Solid& solid = members_[member].solid->solid();
+  const auto points = grid_->vertices(number_[member]);
+  if (!points) return nullptr;
+  FacetTriangles facets = triangulate_facets(solid);
+  const Placement* placement = members_[member].placement;
+  if (grid_->frame() == nullptr && placement != nullptr && determinant_sign(*placement) < 0) {
+    for (Triangle& t : facets.triangles) std::swap(t[1], t[2]);
   }
-  surfaces_[member] = std::make_unique<SolidSurface>(solid, points, triangulate_facets(solid));
+  surfaces_[member] = std::make_unique<SolidSurface>(solid, *points, facets);
   return surfaces_[member].get();
 }
 
@@ -213,7 +224,7 @@ Place GroupExaminer::place(Index member, Index facet) const {
   place.solid = member;
   if (facet != kNone) {
     place.facet = facet;
-    place.shell = members_[member]->solid().shell_of(facet);
+    place.shell = members_[member].solid->solid().shell_of(facet);
   }
   return place;
 }
@@ -250,11 +261,24 @@ std::string GroupExaminer::overlap_detail(const Pair& pair, const SolidRelation&
   return detail;
 }
 
+double GroupExaminer::allowed_depth(const Pair& pair) const {
+  double allowed = options_.overlap_metres;
+  for (const Index member : {pair.first, pair.second}) {
+    const std::array<bool, 3>& is_rounded = grid_->rounded_axes(number_[member]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!is_rounded[axis]) continue;
+      allowed = std::max(allowed, kRoundedSteps * step_metres_[axis][axis]);
+    }
+  }
+  return allowed;
+}
+
 void GroupExaminer::report_overlap(const Pair& pair, const SolidRelation& relation) {
   const bool is_duplicate = relation.are_equal && is_composite();
-  const OverlapExtent extent = measure_overlap(
-      surfaces_[pair.first]->boundary(), surfaces_[pair.second]->boundary(), metres_per_step_);
-  const bool is_allowed = options_.overlap_metres > 0 && extent.depth <= options_.overlap_metres;
+  const OverlapExtent extent = measure_overlap(surfaces_[pair.first]->boundary(),
+                                               surfaces_[pair.second]->boundary(), step_metres_);
+  const double allowed = allowed_depth(pair);
+  const bool is_allowed = allowed > 0 && extent.depth <= allowed;
   if (is_allowed && !is_duplicate) return;
   report_.verdict = Verdict::invalid;
   Finding finding;
@@ -263,10 +287,10 @@ void GroupExaminer::report_overlap(const Pair& pair, const SolidRelation& relati
                                   : kBuildingPartsOverlap;
   finding.place = place(pair.first, is_duplicate ? kNone : relation.facet);
   finding.other = place(pair.second, is_duplicate ? kNone : relation.other_facet);
-  if (extent.witness) finding.witness = grid_->lattice().world(*extent.witness);
+  if (extent.witness) finding.witness = grid_->world(*extent.witness);
   if (!is_duplicate) {
     finding.measured = extent.depth;
-    finding.limit = options_.overlap_metres;
+    finding.limit = allowed;
     finding.unit = std::string("m");
   }
   finding.detail = overlap_detail(pair, relation);
@@ -306,7 +330,10 @@ void GroupExaminer::check_connected() {
     finding.code = kDisconnectedSolids;
     finding.place = place(first[part], kNone);
     finding.other = place(first[0], kNone);
-    finding.witness = members_[first[part]]->solid().world(0);
+    const GroupMember& member = members_[first[part]];
+    finding.witness = member.solid->solid().world(0);
+    if (member.placement != nullptr)
+      finding.witness = watertight::place(*member.placement, *finding.witness);
     finding.measured = static_cast<double>(first.size());
     finding.limit = 1;
     finding.unit = "parts";
@@ -359,7 +386,7 @@ GroupReport GroupExaminer::run() {
 
 }  // namespace
 
-GroupReport check_group(std::span<const ValidSolid* const> members, GroupKind kind,
+GroupReport check_group(std::span<const GroupMember> members, GroupKind kind,
                         const GroupOptions& options, std::span<const Index> unit_of) {
   return GroupExaminer(members, kind, options, unit_of).run();
 }

@@ -9,6 +9,7 @@
 
 #include "base/limits.h"
 #include "delaunay/ladder.h"
+#include "geometry/placement.h"
 #include "geometry/valid_solid.h"
 #include "validate/report.h"
 
@@ -17,13 +18,21 @@ namespace watertight {
 enum class GroupKind : std::uint8_t { composite_solid, building_parts };
 
 struct GroupOptions {
-  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact). An overlap reaches
-  /// no deeper if each part of it that hangs together fits between two parallel planes that far
-  /// apart. Looked at are planes across the axes and along the facets that meet the part, so the
-  /// depth is never too small, and of a slab between two facets it is the thickness.
+  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact), but where members
+  /// had to be rounded, those within the rounding (check_group). An overlap reaches no deeper if
+  /// each part of it that hangs together fits between two parallel planes that far apart. Looked at
+  /// are planes across the axes and along the facets that meet the part, so the depth is never too
+  /// small, and of a slab between two facets it is the thickness.
   double overlap_metres = 0;
   Limits limits;
   CancelPoll cancel = {};
+};
+
+/// A member that is compared: a valid solid; with a placement, a geometry template's where an
+/// instance puts it. A member without a solid is not valid.
+struct GroupMember {
+  const ValidSolid* solid = nullptr;
+  const Placement* placement = nullptr;
 };
 
 /// What a comparison of solids found. Places name a member by Place::solid, its index in `members`.
@@ -35,8 +44,8 @@ struct GroupReport {
   std::vector<SkippedRule> not_run;
 };
 
-/// Compares valid solids of one coordinate reference system pair by pair; a null entry is a member
-/// that is not valid: it is not compared, and not_run says so.
+/// Compares valid solids of one coordinate reference system pair by pair; a member that is not
+/// valid is not compared, and not_run says so.
 ///
 /// 501, 601: the interiors of two solids have a point in common; both facets, the depth in metres
 /// (GroupOptions::overlap_metres) and, where one was found, a point inside both. 502: two members
@@ -44,11 +53,16 @@ struct GroupReport {
 /// areas that two have in common; one finding for each part beside that of the first member; not
 /// looked at when members overlap or are the same, as by val3dity.
 ///
+/// Members that share one placement, or have none, are compared exactly on their own coordinates;
+/// others on a SharedGrid of the world. Where that had to round a member, an overlap with it no
+/// deeper than 16 steps of the grid, some 1e-15 of the extent of all members, is the rounding's: it
+/// is allowed, and stands as limit in findings.
+///
 /// Members with the same entry in `unit_of` are not compared with each other; empty: all are.
 /// Never fails. Deterministic, independent of threads. Cost: pairs of overlapping boxes, then near
 /// linear in the triangles inside the overlap of their boxes. It ends soon after Limits::findings
 /// overlaps, and not_run says so.
-GroupReport check_group(std::span<const ValidSolid* const> members, GroupKind kind,
+GroupReport check_group(std::span<const GroupMember> members, GroupKind kind,
                         const GroupOptions& options = {}, std::span<const Index> unit_of = {});
 
 }  // namespace watertight

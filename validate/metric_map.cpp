@@ -20,7 +20,7 @@ std::array<double, 3> centre_of(const Solid& solid) {
 
 MetricMap::MetricMap(const Solid& solid, const Placement* placement) {
   const AxisUnits units = placement == nullptr ? axis_units(solid.srid(), centre_of(solid))
-                                               : axis_units(placement->srid, placement->shift);
+                                               : axis_units(placement->srid, shift_of(*placement));
   note_ = units.note;
   const Lattice& lattice = solid.lattice();
   if (placement == nullptr) {

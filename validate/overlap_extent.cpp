@@ -59,8 +59,8 @@ std::optional<Point> crossing(const Point& p, const Point& q, const std::array<P
 class OverlapMeasurer {
  public:
   OverlapMeasurer(const RegionSurface& first, const RegionSurface& second,
-                  const std::array<double, 3>& metres_per_step)
-      : surfaces_{&first, &second}, metres_per_step_(metres_per_step), parts_(0) {
+                  const StepMetres& step_metres)
+      : surfaces_{&first, &second}, step_metres_(step_metres), parts_(0) {
     for (int axis = 0; axis < 3; ++axis) {
       common_.min[axis] = std::max(first.box().min[axis], second.box().min[axis]);
       common_.max[axis] = std::min(first.box().max[axis], second.box().max[axis]);
@@ -96,27 +96,41 @@ class OverlapMeasurer {
                           : surfaces_[1]->corners(triangles_[1][number - count]);
   }
   Metres metres(const Point& p) const {
-    return {(p.x - common_.min.x) * metres_per_step_[0],
-            (p.y - common_.min.y) * metres_per_step_[1],
-            (p.z - common_.min.z) * metres_per_step_[2]};
+    Metres result{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double steps = p[axis] - common_.min[axis];
+      for (std::size_t row = 0; row < 3; ++row) {
+        result[row] += step_metres_[row][static_cast<std::size_t>(axis)] * steps;
+      }
+    }
+    return result;
   }
   void add_vertices(std::size_t side);
   void add_crossings(std::size_t side);
   double largest_depth(OverlapExtent& extent);
   double depth_of(std::span<const Corner> corners, std::span<const Index> members) const;
   std::optional<Point> witness(std::span<const Corner> corners) const;
-  double depth_of_box() const {
-    const Metres size = metres(common_.max);
-    return *std::min_element(size.begin(), size.end());
-  }
+  double depth_of_box() const;
 
   std::array<const RegionSurface*, 2> surfaces_;
-  std::array<double, 3> metres_per_step_;
+  StepMetres step_metres_;
   Box common_;
   std::array<std::vector<Index>, 2> triangles_;
   DisjointSets parts_;  // of triangles, by number
   std::vector<Corner> corners_;
 };
+
+/// The least extent of the common box along the axes of the world.
+double OverlapMeasurer::depth_of_box() const {
+  Metres size{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double steps = common_.max[axis] - common_.min[axis];
+    for (std::size_t row = 0; row < 3; ++row) {
+      size[row] += std::abs(step_metres_[row][static_cast<std::size_t>(axis)]) * steps;
+    }
+  }
+  return *std::min_element(size.begin(), size.end());
+}
 
 void OverlapMeasurer::add_vertices(std::size_t side) {
   const RegionSurface& own = *surfaces_[side];
@@ -254,8 +268,8 @@ double OverlapMeasurer::largest_depth(OverlapExtent& extent) {
 }  // namespace
 
 OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
-                              const std::array<double, 3>& metres_per_step) {
-  return OverlapMeasurer(first, second, metres_per_step).run();
+                              const StepMetres& step_metres) {
+  return OverlapMeasurer(first, second, step_metres).run();
 }
 
 }  // namespace watertight

@@ -16,7 +16,8 @@ namespace watertight {
 /// A valid solid as surfaces, on a grid that it shares with the solids it is compared with.
 class SolidSurface {
  public:
-  /// `vertices` are the solid's on that grid, `facets` its canonical triangles.
+  /// `vertices` are the solid's on that grid, `facets` its canonical triangles, which turn
+  /// outward there.
   SolidSurface(const Solid& solid, std::span<const Point> vertices, const FacetTriangles& facets);
 
   /// The triangles of all shells.
@@ -46,7 +47,10 @@ struct SolidRelation {
 SolidRelation relate(const SolidSurface& first, const SolidSurface& second,
                      const CancelPoll& cancel);
 
-/// How far an overlap reaches, in the unit of `metres_per_step`, and a point of it.
+/// Metres along the axes of the world (rows) of one step along each axis of a grid.
+using StepMetres = std::array<std::array<double, 3>, 3>;
+
+/// How far an overlap reaches, in metres, and a point of it.
 struct OverlapExtent {
   /// Each part of the overlap that hangs together lies between two parallel planes no further
   /// apart than this.
@@ -57,6 +61,6 @@ struct OverlapExtent {
 /// Requires boundaries of solids that overlap. The depth is the largest over the parts of the least
 /// extent along the axes and the normals of the facets that bound the part: measured in doubles.
 OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
-                              const std::array<double, 3>& metres_per_step);
+                              const StepMetres& step_metres);
 
 }  // namespace watertight

@@ -69,7 +69,7 @@ void count(const std::filesystem::path& path, bool has_list) {
     }
     solids += inspected.solids.size();
     const Clock::time_point begin = Clock::now();
-    inspected.groups = inspect_groups(inspected, {});
+    inspected.groups = inspect_groups(group_candidates(inspected), {});
     seconds_of_groups += seconds_since(begin);
     groups += inspected.groups.size();
     std::size_t here = 0;

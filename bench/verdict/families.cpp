@@ -14,6 +14,7 @@ constexpr std::array kFamilies{Family{"diagonals", make_diagonals},
                                Family{"pits", make_pits},
                                Family{"touching_rings", make_touching_rings},
                                Family{"instances", make_instance},
+                               Family{"placed_groups", make_placed_group},
                                Family{"large_integers", make_large_integers},
                                Family{"scales", make_scales},
                                Family{"general", make_general}};

@@ -49,6 +49,7 @@ Sample make_group(Random& random);
 Sample make_large_integers(Random& random);
 Sample make_scales(Random& random);
 Sample make_instance(Random& random);
+Sample make_placed_group(Random& random);
 /// Solids of tests/solids, with random vertices moved and boxes joined: no special case in mind.
 Sample make_general(Random& random);
 
@@ -77,8 +78,8 @@ Sample sample_of(Solid solid);
 /// A cavity (outward) in the box from (0,0,0) to (size,size,size): a tetrahedron that touches its
 /// facets in vertices and edges.
 Shell touching_tetrahedron(Random& random, std::int64_t size);
-/// The boundaries of a solid as CityJSON writes them.
-std::string boundaries_text(const Solid& solid);
+/// The boundaries of a solid as CityJSON writes them, its vertices numbered from `first_vertex` on.
+std::string boundaries_text(const Solid& solid, Index first_vertex = 0);
 /// A box with a pit in its top facet and a cavity near it.
 Shape pit_and_cavity(Random& random);
 

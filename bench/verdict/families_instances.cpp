@@ -86,60 +86,108 @@ std::string number(std::int64_t mantissa, int exponent) {
   return text;
 }
 
-std::string text_of(const DecimalMatrix& matrix) {
+std::string text_of(const DecimalMatrix& matrix, const std::array<std::int64_t, 3>& offset) {
   std::string text = "[";
-  for (const auto& row : matrix.map.matrix) {
-    for (const std::int64_t entry : row) text += number(entry, matrix.exponent) + ", ";
-    text += "0, ";
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (const std::int64_t entry : matrix.map.matrix[row]) {
+      text += number(entry, matrix.exponent) + ", ";
+    }
+    text += number(offset[row], matrix.exponent) + ", ";
   }
   return text + "0, 0, 0, 1]";
 }
 
 struct Template {
+  std::string type = "Solid";
   std::string boundaries;
-  std::string vertices;
 };
 
-Template template_of(const Shape& shape, int exponent) {
-  const Solid solid = solids::solid_of(shape);
-  Template result;
-  for (const Point& p : solid.vertices()) {
-    result.vertices += result.vertices.empty() ? "[" : ", [";
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis != 0) result.vertices += ", ";
-      result.vertices += number(static_cast<std::int64_t>(p[axis]), exponent);
+/// Templates, and objects that have instances of them or solids of their own.
+class Document {
+ public:
+  /// The vertices of the shapes are times 10^exponent. Boundaries of several are a composite's.
+  void add_template(const std::vector<Shape>& members, int exponent) {
+    Template form;
+    for (const Shape& member : members) {
+      if (!form.boundaries.empty()) form.boundaries += ", ";
+      form.boundaries += boundaries_on(solids::solid_of(member), template_vertices_, exponent);
     }
-    result.vertices += "]";
+    if (members.size() > 1) {
+      form.type = "CompositeSolid";
+      form.boundaries.insert(0, "[").append("]");
+    }
+    templates_.push_back(std::move(form));
   }
-  result.boundaries = boundaries_text(solid);
-  return result;
-}
 
-struct Instance {
-  DecimalMatrix matrix;
-  std::array<std::int64_t, 3> place{};
+  /// Millimetres.
+  std::string solid(const Shape& shape) {
+    return R"({"type": "Solid", "lod": "2", "boundaries": )" +
+           boundaries_on(solids::solid_of(shape), vertices_, 0) + "}";
+  }
+
+  /// `offset` is times the matrix's power of ten, `place` in millimetres.
+  std::string instance(std::size_t number_of_template, const DecimalMatrix& matrix,
+                       const std::array<std::int64_t, 3>& offset,
+                       const std::array<std::int64_t, 3>& place) {
+    std::string vertex("[");
+    vertex.append(std::to_string(place[0])).append(", ");
+    vertex.append(std::to_string(place[1])).append(", ");
+    vertices_.push_back(vertex.append(std::to_string(place[2])).append("]"));
+    return R"({"type": "GeometryInstance", "template": )" + std::to_string(number_of_template) +
+           R"(, "boundaries": [)" + std::to_string(vertices_.size() - 1) +
+           R"(], "transformationMatrix": )" + text_of(matrix, offset) + "}";
+  }
+
+  /// `family` is its members parents or children.
+  void add_object(const std::string& id, const std::string& type, const std::string& geometry,
+                  const std::string& family = "") {
+    std::string object("\"");
+    object.append(id).append(R"(": {"type": ")").append(type).append("\", ").append(family);
+    objects_.push_back(object.append(R"("geometry": [)").append(geometry).append("]}"));
+  }
+
+  std::string text() const {
+    std::vector<std::string> templates;
+    for (const Template& form : templates_) {
+      templates.push_back(R"({"type": ")" + form.type + R"(", "lod": "2", "boundaries": )" +
+                          form.boundaries + "}");
+    }
+    return R"({"type": "CityJSON", "version": "2.0", "transform": {"scale": [0.001, 0.001, )"
+           R"(0.001], "translate": [0, 0, 0]}, "CityObjects": {)" +
+           joined(objects_) + R"(}, "vertices": [)" + joined(vertices_) +
+           R"(], "geometry-templates": {"templates": [)" + joined(templates) +
+           R"(], "vertices-templates": [)" + joined(template_vertices_) + "]}}";
+  }
+
+ private:
+  static std::string joined(const std::vector<std::string>& parts) {
+    std::string text;
+    for (const std::string& part : parts) {
+      if (!text.empty()) text += ", ";
+      text += part;
+    }
+    return text;
+  }
+
+  static std::string boundaries_on(const Solid& solid, std::vector<std::string>& vertices,
+                                   int exponent) {
+    const std::size_t first = vertices.size();
+    for (const Point& p : solid.vertices()) {
+      std::string text;
+      for (int axis = 0; axis < 3; ++axis) {
+        text += axis == 0 ? "[" : ", ";
+        text += number(static_cast<std::int64_t>(p[axis]), exponent);
+      }
+      vertices.push_back(text + "]");
+    }
+    return boundaries_text(solid, static_cast<Index>(first));
+  }
+
+  std::vector<Template> templates_;
+  std::vector<std::string> template_vertices_;
+  std::vector<std::string> vertices_;
+  std::vector<std::string> objects_;
 };
-
-std::string document_of(const Template& form, const std::vector<Instance>& instances) {
-  std::string objects;
-  std::string vertices;
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    const std::string index = std::to_string(i);
-    objects += (i == 0 ? "\"i" : ", \"i") + index +
-               "\": {\"type\": \"CityFurniture\", \"geometry\": [{\"type\": \"GeometryInstance\", "
-               "\"template\": 0, \"boundaries\": [" +
-               index + "], \"transformationMatrix\": " + text_of(instances[i].matrix) + "}]}";
-    const auto& [x, y, z] = instances[i].place;
-    vertices += (i == 0 ? "[" : ", [") + std::to_string(x) + ", " + std::to_string(y) + ", " +
-                std::to_string(z) + "]";
-  }
-  return "{\"type\": \"CityJSON\", \"version\": \"2.0\", \"transform\": {\"scale\": [0.001, 0.001, "
-         "0.001], \"translate\": [0, 0, 0]}, \"CityObjects\": {" +
-         objects + "}, \"vertices\": [" + vertices +
-         "], \"geometry-templates\": {\"templates\": [{\"type\": \"Solid\", \"lod\": \"2\", "
-         "\"boundaries\": " +
-         form.boundaries + "}], \"vertices-templates\": [" + form.vertices + "]}}";
-}
 
 /// A cube of 10 m in place, with a corner raised by 0.016 m or 0.12 m: a quarter of it is the
 /// distance from the best plane, so it is within 0.01 m or beyond.
@@ -171,9 +219,94 @@ std::int64_t sign_of_determinant(const DecimalMatrix& matrix) {
   return determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
 }
 
+/// A random box on a small grid, so that two often touch, or an L.
+Shape small_form(Random& random, double unit) {
+  const auto at = [&](std::int64_t least) {
+    return static_cast<double>(random.between(least, least + 2)) * unit;
+  };
+  const Point low{at(0), at(0), at(0)};
+  const Point high{at(3), at(3), at(3)};
+  if (one_in(random, 3)) {
+    return {solids::gable_house(high.x, high.y, low.z + unit, low.z + 2 * unit)};
+  }
+  return {solids::box(low, high)};
+}
+
+/// matrix.map times the shape, divided by `divisor`, which leaves no remainder, and shifted.
+Shape mapped(const Shape& shape, const DecimalMatrix& matrix, const Point& shift, double divisor) {
+  Shape result = shape;
+  for (Shell& shell : result) {
+    for (Facet& facet : shell) {
+      for (Ring& ring : facet) {
+        for (Point& p : ring) {
+          const Point from = p;
+          for (std::size_t row = 0; row < 3; ++row) {
+            double sum = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+              sum +=
+                  static_cast<double>(matrix.map.matrix[row][axis]) * from[static_cast<int>(axis)];
+            }
+            p[static_cast<int>(row)] = sum / divisor + shift[static_cast<int>(row)];
+          }
+        }
+      }
+    }
+  }
+  return result;
+}
+
+/// The members of one composite solid.
+void add_composite(const Shape& first, const Shape& second, const DecimalMatrix& matrix,
+                   Random& random, Document& document) {
+  document.add_template({first, second}, -3);
+  for (std::uint64_t k = 0; k <= random.below(2); ++k) {
+    document.add_object(std::to_string(k), "CityFurniture",
+                        document.instance(0, matrix, {}, {random.between(-9, 9), 0, 5}));
+  }
+}
+
+/// A building and its part: a solid in place and an instance, or two instances whose matrices
+/// differ in their shifts.
+void add_building(const Shape& first, const Shape& second, const DecimalMatrix& matrix,
+                  Random& random, Document& document) {
+  const std::array<std::int64_t, 3> place{random.between(-1'000'000, 1'000'000),
+                                          random.between(-1'000'000, 1'000'000),
+                                          random.between(-1'000, 1'000)};
+  const Point shift{static_cast<double>(place[0]), static_cast<double>(place[1]),
+                    static_cast<double>(place[2])};
+  double divisor = 1;
+  for (int k = matrix.exponent; k < 0; ++k) divisor *= 10;
+  document.add_template({second}, -3);
+  std::string own;
+  if (one_in(random, 2)) {
+    own = document.solid(mapped(first, matrix, shift, divisor));
+  } else {  // moved in the template by -t, in the world by the matrix times t
+    const Point t{static_cast<double>(random.between(-5, 5)),
+                  static_cast<double>(random.between(-5, 5)), 3};
+    Shape moved = first;
+    for (Facet& facet : moved[0]) {
+      for (Ring& ring : facet) {
+        for (Point& p : ring) p = plus(p, times(t, -1000));
+      }
+    }
+    std::array<std::int64_t, 3> offset{};
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        offset[row] +=
+            matrix.map.matrix[row][axis] * static_cast<std::int64_t>(t[static_cast<int>(axis)]);
+      }
+    }
+    document.add_template({moved}, -3);
+    own = document.instance(1, matrix, offset, place);
+  }
+  document.add_object("b", "Building", own, R"("children": ["p"], )");
+  document.add_object("p", "BuildingPart", document.instance(0, matrix, {}, place),
+                      R"("parents": ["b"], )");
+}
+
 }  // namespace
 
-std::string boundaries_text(const Solid& solid) {
+std::string boundaries_text(const Solid& solid, Index first_vertex) {
   std::string text = "[";
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
     text += shell == 0 ? "[" : ", [";
@@ -184,7 +317,7 @@ std::string boundaries_text(const Solid& solid) {
         bool is_first = true;
         for (const Index vertex : solid.ring(r)) {
           if (!is_first) text += ", ";
-          text += std::to_string(vertex);
+          text += std::to_string(first_vertex + vertex);
           is_first = false;
         }
         text += "]";
@@ -201,26 +334,65 @@ Sample make_instance(Random& random) {
   const bool is_folded_far = one_in(random, 2);
   const int scale = static_cast<int>(random.between(-3, 3));
   // In place a unit of the form is a millimetre.
-  const Template form =
-      template_of(is_folded ? folded_cube(is_folded_far) : planar_form(random), -3 - scale);
+  Document document;
+  document.add_template({is_folded ? folded_cube(is_folded_far) : planar_form(random)}, -3 - scale);
   Sample sample;
   Truth truth;
-  std::vector<Instance> instances;
   for (std::uint64_t k = 1 + random.below(2); k > 0; --k) {
-    Instance instance;
-    instance.matrix = similarity(random, scale);
-    if (!is_folded && one_in(random, 2)) shear(instance.matrix, random);
-    if (one_in(random, 6)) flatten(instance.matrix, random);
-    for (std::int64_t& coordinate : instance.place) {
-      coordinate = random.between(-1'000'000, 1'000'000);
-    }
-    const std::int64_t sign = sign_of_determinant(instance.matrix);
+    DecimalMatrix matrix = similarity(random, scale);
+    if (!is_folded && one_in(random, 2)) shear(matrix, random);
+    if (one_in(random, 6)) flatten(matrix, random);
+    std::array<std::int64_t, 3> place{};
+    for (std::int64_t& coordinate : place) coordinate = random.between(-1'000'000, 1'000'000);
+    const std::int64_t sign = sign_of_determinant(matrix);
     if (sign == 0) truth.codes.insert(kAnyCode);
     if (sign < 0) truth.codes.insert(405);
     if (sign != 0 && is_folded && is_folded_far) truth.codes.insert(203);
-    instances.push_back(instance);
+    document.add_object(std::to_string(k), "CityFurniture",
+                        document.instance(0, matrix, {}, place));
   }
-  sample.document = document_of(form, instances);
+  sample.document = document.text();
+  sample.truth = truth;
+  return sample;
+}
+
+/// An affine map with an inverse keeps how solids lie to each other.
+Sample make_placed_group(Random& random) {
+  const Shape first = small_form(random, 10'000);
+  Shape second = one_in(random, 8) ? first : small_form(random, 10'000);
+  const Point shift{static_cast<double>(random.between(-3, 3)) * 10'000,
+                    static_cast<double>(random.between(-3, 3)) * 10'000, 0};
+  if (one_in(random, 2)) {
+    for (Facet& facet : second[0]) {
+      for (Ring& ring : facet) {
+        for (Point& p : ring) p = plus(p, shift);
+      }
+    }
+  }
+  const PairTruth pair = pair_truth_of(solids::solid_of(first), solids::solid_of(second));
+  DecimalMatrix matrix = similarity(random, 0);
+  if (one_in(random, 2)) shear(matrix, random);
+  const bool is_mirrored = sign_of_determinant(matrix) < 0;
+  const auto turned = [&](const Shape& shape) {
+    return is_mirrored ? Shape{solids::inside_out(shape[0])} : shape;
+  };
+  Truth truth;
+  Document document;
+  if (one_in(random, 2)) {
+    add_composite(turned(first), turned(second), matrix, random, document);
+    if (pair.are_equal) {
+      truth.codes = {502};
+    } else if (pair.overlap) {
+      truth.codes = {501};
+    } else if (!pair.share_area) {
+      truth.codes = {503};
+    }
+  } else {
+    add_building(turned(first), turned(second), matrix, random, document);
+    if (pair.overlap) truth.codes = {601};
+  }
+  Sample sample;
+  sample.document = document.text();
   sample.truth = truth;
   return sample;
 }

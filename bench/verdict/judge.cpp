@@ -128,6 +128,9 @@ Said ask_document(const Sample& sample, const Variant& variant, EngineWorkers* w
           add_codes(solid.inspection.report.findings, said.codes);
           said.reason += solid.inspection.report.undecided_reason;
         }
+        for (const InspectedGroup& group : feature.inspected.groups) {
+          add_codes(group.report.findings, said.codes);
+        }
         return Done{};
       },
       [&](const Error& error) -> Status {
@@ -151,9 +154,9 @@ Said ask(const Sample& sample, const Variant& variant, EngineWorkers* workers) {
     said.verdict = worse(said.verdict, report.verdict);
   }
   if (!sample.group || said.verdict != Verdict::valid) return said;
-  std::vector<const ValidSolid*> members;
+  std::vector<GroupMember> members;
   for (const Inspection& inspection : inspections) {
-    members.push_back(&inspection.certified->solid);
+    members.push_back({&inspection.certified->solid});
   }
   const GroupReport report = check_group(members, *sample.group);
   said.verdict = report.verdict;

@@ -45,6 +45,9 @@ TEST_CASE("pairs that touch from within get the oracle's verdict") { check_famil
 TEST_CASE("pits, rims and cavities get the oracle's verdict") { check_family("pits"); }
 TEST_CASE("rings that touch get the oracle's verdict") { check_family("touching_rings"); }
 TEST_CASE("instances of templates are judged where they stand") { check_family("instances"); }
+TEST_CASE("instances are compared with members of their template and with their building") {
+  check_family("placed_groups");
+}
 TEST_CASE("large integers get the oracle's verdict") { check_family("large_integers"); }
 TEST_CASE("sizes from 1e-300 to 1e300 get the oracle's verdict") { check_family("scales"); }
 TEST_CASE("solids of no family get the oracle's verdict") { check_family("general"); }

@@ -152,7 +152,7 @@ TEST_CASE("instances have their template, exact matrix and place, in whole and s
     CHECK(found.template_number == 0);
     CHECK(found.placement.linear[0][0] == GridNumber{1, -1});
     CHECK(found.placement.linear[1][1] == GridNumber{2, 0});
-    CHECK(found.placement.shift == std::array<double, 3>{8.5, 6, 9.25});
+    CHECK(shift_of(found.placement) == std::array<double, 3>{8.5, 6, 9.25});
   }
 }
 

@@ -342,7 +342,7 @@ TEST_CASE("GML: implicit geometries are instances of the templates that they hol
   CHECK(document.instances[0].source.object_id == "a");
   CHECK(document.instances[0].template_number == 0);
   CHECK(determinant_sign(document.instances[0].placement) == -1);
-  CHECK(document.instances[0].placement.shift == std::array<double, 3>{5, 6, 7});
+  CHECK(shift_of(document.instances[0].placement) == std::array<double, 3>{5, 6, 7});
   CHECK(document.instances[1].placement.linear[0][0] == GridNumber{5, -1});
   for (const std::string wrong :
        {"1 0 0", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2", "a b c", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0"}) {

@@ -45,7 +45,7 @@ TEST_CASE("a rotation is one exactly or not at all") {
 
 TEST_CASE("a placed solid has its vertices in the world, turned over it has its rings reversed") {
   Placement placement = placement_of({"0", "-2", "0", "2", "0", "0", "0", "0", "0.5"});
-  placement.shift = {100, 200, 300};
+  placement.anchor = {{{1, 2}, {2, 2}, {3, 2}}};
   placement.srid = 7415;
   CHECK(place(placement, {1, 2, 3}) == std::array<double, 3>{96, 202, 301.5});
   SolidArrays arrays;

@@ -121,8 +121,8 @@ TEST_CASE("every finding about several solids has a sample that shows it and an 
       members.push_back(certify(solid.solid, nullptr));
       REQUIRE(members.back().certified);
     }
-    std::vector<const ValidSolid*> solids;
-    for (const Inspection& member : members) solids.push_back(&member.certified->solid);
+    std::vector<GroupMember> solids;
+    for (const Inspection& member : members) solids.push_back({&member.certified->solid});
     const GroupReport report =
         check_group(solids, finding_level(kind.code) == 5 ? GroupKind::composite_solid
                                                           : GroupKind::building_parts);

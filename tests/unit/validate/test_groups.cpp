@@ -30,8 +30,8 @@ class Group {
     return *this;
   }
   GroupReport check(GroupKind kind, const GroupOptions& options = {}) const {
-    std::vector<const ValidSolid*> members;
-    for (const auto& solid : solids_) members.push_back(solid ? &*solid : nullptr);
+    std::vector<GroupMember> members;
+    for (const auto& solid : solids_) members.push_back({solid ? &*solid : nullptr});
     return check_group(members, kind, options);
   }
 

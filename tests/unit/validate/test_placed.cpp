@@ -94,7 +94,7 @@ TEST_CASE("snapping, warnings, measures and witnesses are of the place") {
   CHECK(placed_report({gap}, scaled(1, 1, 1), options).verdict == Verdict::invalid);
 
   Placement tiny = scaled(0.0001, 0.0001, 0.0001);
-  tiny.shift = {50, 60, 70};
+  tiny.anchor = {{{5, 1}, {6, 1}, {7, 1}}};
   const Report near = placed_report({cube(4)}, tiny);
   CHECK(near.verdict == Verdict::valid);
   REQUIRE_FALSE(near.findings.empty());

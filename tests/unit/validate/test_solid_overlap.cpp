@@ -17,6 +17,9 @@
 namespace watertight {
 namespace {
 
+/// A step of the grid is a metre along each axis.
+constexpr StepMetres kMetres{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
 using Cell = std::array<int, 4>;  // corner of a cube, and which of its six tetrahedra
 using Corner = std::array<int, 3>;
 constexpr std::array<std::array<int, 3>, 6> kWays{
@@ -214,7 +217,7 @@ void check_pair(const Body& a, const Body& b, bool is_oblique, double scale, Cou
   REQUIRE(turned.is_first_inside == relation.is_second_inside);
   REQUIRE(turned.is_second_inside == relation.is_first_inside);
   if (do_overlap && scale == 1) {
-    const OverlapExtent extent = measure_overlap(first, second, {1, 1, 1});
+    const OverlapExtent extent = measure_overlap(first, second, kMetres);
     REQUIRE(extent.depth > 0);
     if (extent.witness) {
       REQUIRE(first.locate(*extent.witness) == Location::inside);

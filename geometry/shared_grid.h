@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Solids and instances of geometry templates, where they stand, on one grid. For comparisons of
+// several solids.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/common_lattice.h"
+#include "geometry/placement.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// A solid; or a geometry template's, and where an instance puts it. Kept by the caller.
+struct StandingSolid {
+  const Solid* solid = nullptr;
+  const Placement* placement = nullptr;
+};
+
+/// Solids without placements, and solids that share one placement, are on the grid exactly: that of
+/// their lattices, in the world or in the template. Solids with different placements are put where
+/// they stand by exact decimals, on the coarsest grid of powers of ten that holds them all; where
+/// that has 2^52 steps or more along an axis, vertices are rounded to the finest that has not.
+class SharedGrid {
+ public:
+  /// Nothing when the lattices of solids on one placement have no CommonLattice, or when a place is
+  /// beyond the doubles. Requires solids with vertices. Cost: linear.
+  static std::optional<SharedGrid> of(std::vector<StandingSolid> solids);
+
+  const Lattice& lattice() const { return lattice_; }
+  /// From a template's frame to the world; null if the grid is in the world.
+  const Placement* frame() const { return frame_; }
+  /// A point of the grid in the world, rounded.
+  std::array<double, 3> world(const Point& p) const;
+
+  Box box(std::size_t solid) const { return boxes_[solid]; }
+  /// The vertices of a solid; nothing if one is 2^53 steps away or more. Cost: linear.
+  std::optional<std::vector<Point>> vertices(std::size_t solid) const;
+  /// For each axis, true if vertices of the solid may be rounded along it, by half a step at most.
+  const std::array<bool, 3>& rounded_axes(std::size_t solid) const { return rounded_axes_[solid]; }
+
+ private:
+  bool share_frame();
+  bool put_in_world();
+
+  std::vector<StandingSolid> solids_;
+  Lattice lattice_;
+  std::optional<CommonLattice> common_;  // of a shared frame
+  const Placement* frame_ = nullptr;
+  std::vector<Box> boxes_;
+  std::vector<std::array<bool, 3>> rounded_axes_;
+};
+
+}  // namespace watertight

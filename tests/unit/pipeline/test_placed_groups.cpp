@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Instances of geometry templates in groups: members of composite templates, and instances in a
+// building with its parts.
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/validate_stream.h"
+
+namespace watertight {
+namespace {
+
+const std::string kSame = "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
+const std::string kMirror = "-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
+const std::string kDouble = "2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1";
+const std::string kHalfTurn = "-1,0,0,2,0,-1,0,1,0,0,1,0,0,0,0,1";
+
+/// Cubes of 1 m from x = 0, 0.5, 1 and 3, on vertices 8 k to 8 k + 7.
+constexpr double kStarts[] = {0, 0.5, 1, 3};
+
+std::string listed(const std::vector<std::string>& parts) {
+  std::string text("[");
+  for (const std::string& part : parts) {
+    if (text.size() > 1) text.push_back(',');
+    text.append(part);
+  }
+  text.push_back(']');
+  return text;
+}
+
+std::string cube_vertices() {
+  std::vector<std::string> vertices;
+  for (const double start : kStarts) {
+    for (const auto& [x, y, z] : {std::array{0, 0, 0},
+                                  {1, 0, 0},
+                                  {1, 1, 0},
+                                  {0, 1, 0},
+                                  {0, 0, 1},
+                                  {1, 0, 1},
+                                  {1, 1, 1},
+                                  {0, 1, 1}}) {
+      vertices.push_back(listed({std::to_string(start + x), std::to_string(y), std::to_string(z)}));
+    }
+  }
+  return listed(vertices);
+}
+
+/// The boundaries of cube k, inside out if it will be mirrored.
+std::string cube(int k, bool is_inside_out = false) {
+  std::vector<std::string> facets;
+  for (const auto& ring : {std::array{0, 3, 2, 1},
+                           {4, 5, 6, 7},
+                           {0, 1, 5, 4},
+                           {1, 2, 6, 5},
+                           {2, 3, 7, 6},
+                           {3, 0, 4, 7}}) {
+    std::vector<std::string> corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+      corners.push_back(std::to_string(8 * k + ring[is_inside_out ? 3 - i : i]));
+    }
+    facets.push_back(listed({listed(corners)}));
+  }
+  return listed({listed(facets)});
+}
+
+std::string composite(const std::vector<std::string>& members) {
+  return R"({"type":"CompositeSolid","lod":"2","boundaries":)" + listed(members) + "}";
+}
+
+std::string instance(const std::string& matrix, int vertex = 0) {
+  return R"({"type":"GeometryInstance","template":0,"boundaries":[)" + std::to_string(vertex) +
+         R"(],"transformationMatrix":[)" + matrix + "]}";
+}
+
+std::string object(const std::string& id, const std::string& type, const std::string& geometry,
+                   const std::string& family = "") {
+  return '"' + id + R"(":{"type":")" + type + R"(",)" + family + R"("geometry":[)" + geometry +
+         "]}";
+}
+
+/// Document and templates have the vertices of the cubes.
+std::string city(const std::string& form, const std::string& objects) {
+  return R"({"type":"CityJSON","version":"2.0","CityObjects":{)" + objects + R"(},"vertices":)" +
+         cube_vertices() + R"(,"geometry-templates":{"templates":[)" + form +
+         R"(],"vertices-templates":)" + cube_vertices() + "}}";
+}
+
+Document read(const std::string& text) {
+  auto document = read_document(as_bytes(text), Format::city_json, {});
+  REQUIRE(document);
+  return *std::move(document);
+}
+
+std::vector<InspectedFeature> stream(const std::string& text, const GroupOptions& groups = {}) {
+  FeatureReader reader = FeatureReader::of(read(text));
+  StreamOptions options;
+  options.groups = groups;
+  std::vector<InspectedFeature> features;
+  const auto outcome = validate_stream(
+      reader, nullptr, options,
+      [&](ValidatedFeature&& feature) -> Status {
+        features.push_back(std::move(feature.inspected));
+        return Done{};
+      },
+      [](const Error&) -> Status { return Done{}; });
+  REQUIRE(outcome);
+  return features;
+}
+
+std::vector<int> codes(const InspectedFeature& feature) {
+  std::vector<int> all;
+  for (const InspectedGroup& group : feature.groups) {
+    for (const Finding& finding : group.report.findings) all.push_back(finding.code);
+  }
+  return all;
+}
+
+using Codes = std::vector<int>;
+
+Codes composite_codes(const std::string& form, const std::string& matrix) {
+  return codes(stream(city(form, object("o", "CityFurniture", instance(matrix)))).at(0));
+}
+
+}  // namespace
+
+TEST_CASE("members of a composite template are compared where an instance has them") {
+  for (const std::string& matrix : {kSame, kDouble, kHalfTurn}) {
+    CHECK(composite_codes(composite({cube(0), cube(2)}), matrix).empty());
+    CHECK(composite_codes(composite({cube(0), cube(1)}), matrix) == Codes{501});
+    CHECK(composite_codes(composite({cube(0), cube(0)}), matrix) == Codes{502});
+    CHECK(composite_codes(composite({cube(0), cube(3)}), matrix) == Codes{503});
+  }
+  CHECK(composite_codes(composite({cube(0, true), cube(1, true)}), kMirror) == Codes{501});
+  CHECK(composite_codes(composite({cube(0, true), cube(2, true)}), kMirror).empty());
+}
+
+TEST_CASE("a group of an instance says where it is, and how deep the overlap is in place") {
+  const auto features = stream(
+      city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kDouble, 24))));
+  REQUIRE(features.size() == 2);
+  const InspectedFeature& feature = features[0];
+  CHECK(feature.verdict() == Verdict::invalid);
+  REQUIRE(feature.groups.size() == 1);
+  CHECK(feature.groups[0].members == std::vector<std::size_t>{0, 1});
+  REQUIRE(feature.solids.size() == 2);
+  for (const InspectedSolid& solid : feature.solids) {
+    CHECK(solid.inspection.report.verdict == Verdict::valid);
+    CHECK(solid.source.object_id == "o");
+    CHECK(solid.source.geometry_type == "GeometryInstance");
+  }
+  const Finding& finding = feature.groups[0].report.findings.at(0);
+  CHECK(finding.measured == 1.0);
+  REQUIRE(finding.witness);
+  CHECK(((*finding.witness)[0] > 4 && (*finding.witness)[0] < 5));
+  // The template counts as one that valid instances share; it is not reported again.
+  CHECK(features[1].solids.size() == 2);
+  CHECK(features[1].groups.empty());
+}
+
+TEST_CASE("a tolerance of overlaps holds for instances in metres") {
+  GroupOptions options;
+  options.overlap_metres = 0.75;
+  const std::string form = composite({cube(0), cube(1)});
+  const auto said = [&](const std::string& matrix) {
+    return codes(stream(city(form, object("o", "Bench", instance(matrix))), options).at(0));
+  };
+  CHECK(said(kSame).empty());
+  CHECK(said(kDouble) == Codes{501});
+}
+
+TEST_CASE("a composite template without instances is judged as it is") {
+  const auto features = stream(city(composite({cube(0), cube(1)}), ""));
+  REQUIRE(features.size() == 1);
+  CHECK(features[0].feature.id == "geometry-templates");
+  CHECK(codes(features[0]) == Codes{501});
+}
+
+TEST_CASE("instances are compared with the solids of their building") {
+  const std::string parts = R"("children":["p"],)";
+  const std::string part_of = R"("parents":["b"],)";
+  const auto said = [&](const std::string& own, const std::string& part) {
+    return codes(stream(city(R"({"type":"Solid","lod":"2","boundaries":)" + cube(0) + "}",
+                             object("b", "Building", own, parts) + "," +
+                                 object("p", "BuildingPart", part, part_of)))
+                     .at(0));
+  };
+  const auto solid = [](int k) {
+    return R"({"type":"Solid","lod":"2","boundaries":)" + cube(k) + "}";
+  };
+  CHECK(said(solid(0), instance(kSame)) == Codes{601});
+  CHECK(said(solid(0), instance(kSame, 8)) == Codes{601});  // from x = 0.5
+  CHECK(said(solid(0), instance(kSame, 16)).empty());       // from x = 1: a party wall
+  CHECK(said(instance(kSame), instance(kSame)) == Codes{601});
+  CHECK(said(instance(kSame), instance(kHalfTurn)).empty());  // from x = 2 to 1
+  CHECK(said(instance(kSame), instance(kDouble, 8)) == Codes{601});
+  // Not in one level of detail, not of one building.
+  CHECK(
+      said(R"({"type":"Solid","lod":"1","boundaries":)" + cube(0) + "}", instance(kSame)).empty());
+}
+
+TEST_CASE("a building's instances are its solids where they overlap, and only there") {
+  const std::string form = R"({"type":"Solid","lod":"2","boundaries":)" + cube(0) + "}";
+  const auto building = [&](int vertex) {
+    return stream(city(form, object("b", "Building", form, R"("children":["p"],)") + "," +
+                                 object("p", "BuildingPart", instance(kSame, vertex),
+                                        R"("parents":["b"],)")))
+        .at(0);
+  };
+  const InspectedFeature apart = building(16);
+  CHECK(apart.verdict() == Verdict::valid);
+  CHECK(apart.solids.size() == 1);
+  const InspectedFeature overlapping = building(8);
+  CHECK(overlapping.verdict() == Verdict::invalid);
+  REQUIRE(overlapping.solids.size() == 2);
+  CHECK(overlapping.solids[1].source.object_id == "p");
+  REQUIRE(overlapping.groups.size() == 1);
+  CHECK(overlapping.groups[0].members == std::vector<std::size_t>{0, 1});
+  CHECK(overlapping.groups[0].report.findings.at(0).measured == 0.5);
+}
+
+TEST_CASE("walls that touch but for the digits of a rotation do not overlap") {
+  // An eighth of a turn in 18 digits: the grid of the world is rounded.
+  const std::string sine = "0.707106781186547524";
+  const std::string turn =
+      sine + ",-" + sine + ",0,0," + sine + "," + sine + ",0,0,0,0,1,0,0,0,0,1";
+  const auto shifted = [&](const std::string& x, const std::string& y) {
+    return sine + ",-" + sine + ",0," + x + "," + sine + "," + sine + ",0," + y +
+           ",0,0,1,0,0,0,0,1";
+  };
+  const std::string form = R"({"type":"Solid","lod":"2","boundaries":)" + cube(0) + "}";
+  const auto said = [&](const std::string& matrix) {
+    return codes(
+        stream(city(form, object("b", "Building", instance(turn), R"("children":["p"],)") + "," +
+                              object("p", "BuildingPart", instance(matrix), R"("parents":["b"],)")))
+            .at(0));
+  };
+  CHECK(said(shifted(sine, sine)).empty());
+  CHECK(said(shifted("0.7071067811865475", "0.7071067811865475")).empty());  // 5e-17 too near
+  CHECK(said(shifted("0.7071067", "0.7071067")) == Codes{601});              // 0.1 micrometres
+}
+
+TEST_CASE("features with instances that do not fit are refused") {
+  const auto refused = encode_document(
+      read(city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kSame)))),
+      nullptr, {});
+  REQUIRE(refused);
+  CHECK(refused->outcome.verdict == Verdict::invalid);
+  CHECK(refused->document.features.empty());
+  const auto accepted = encode_document(
+      read(city(composite({cube(0), cube(2)}), object("o", "CityFurniture", instance(kSame)))),
+      nullptr, {});
+  REQUIRE(accepted);
+  CHECK(accepted->outcome.verdict == Verdict::valid);
+  CHECK(accepted->document.features.size() == 1);
+}
+
+}  // namespace watertight

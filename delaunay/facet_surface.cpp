@@ -62,6 +62,9 @@ struct FacetSurfaces::Plane {
 class FacetSurfaces::Mesh {
  public:
   explicit Mesh(std::span<const ConstrainedFace> faces) {
+    faces_.reserve(faces.size());
+    vertices_.reserve(3 * faces.size());
+    edges_.reserve(3 * faces.size());
     for (const ConstrainedFace& face : faces) {
       faces_.push_back(face.vertices);
       vertices_.insert(vertices_.end(), face.vertices.begin(), face.vertices.end());
@@ -147,6 +150,7 @@ class FacetSurfaces::Mesh {
   /// Finds each face's neighbours. False if an edge has three faces.
   bool link() {
     neighbour_.assign(faces_.size(), {kNone, kNone, kNone});
+    by_vertex_.reserve(2 * edges_.size());
     for (std::size_t i = 0; i < edges_.size();) {
       std::size_t end = i + 1;
       while (end < edges_.size() && edges_[end].low == edges_[i].low &&
@@ -225,6 +229,7 @@ class FacetSurfaces::Mesh {
   }
 
   void collect_boundary() {
+    boundary_.reserve(2 * edge_count_ - edges_.size());
     for (Index f = 0; f < faces_.size(); ++f) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (neighbour_[f][k] == kNone) boundary_.emplace_back(faces_[f][k], faces_[f][(k + 1) % 3]);

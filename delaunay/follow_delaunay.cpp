@@ -95,6 +95,7 @@ struct LocalFacet {
 /// The directed edges that have a triangle on one side only, sorted.
 std::vector<Edge> boundary_of(std::span<const Triangle> triangles) {
   std::vector<Edge> edges;
+  edges.reserve(3 * triangles.size());
   for (const Triangle& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
   }
@@ -113,6 +114,7 @@ LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> c
   local.projection = facet_projection(solid, facet);
   local.triangle_count = canonical.size();
   const IndexRange rings = solid.rings_of(facet);
+  local.global.reserve(3 * canonical.size());
   for (const Triangle& t : canonical) {
     local.global.insert(local.global.end(), t.begin(), t.end());
   }
@@ -123,10 +125,12 @@ LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> c
   for (Index i = 0; i < local.global.size(); ++i) local_of[local.global[i]] = i;
   for (Index ring = rings.begin; ring < rings.end; ++ring) {
     std::vector<Index>& vertices = local.rings.emplace_back();
+    vertices.reserve(solid.ring(ring).size());
     for (const Index vertex : solid.ring(ring)) vertices.push_back(local_of[vertex]);
     std::rotate(vertices.begin(), std::min_element(vertices.begin(), vertices.end()),
                 vertices.end());
   }
+  local.canonical.reserve(canonical.size());
   for (const Triangle& t : canonical) {
     local.canonical.push_back({local_of[t[0]], local_of[t[1]], local_of[t[2]]});
   }

@@ -12,15 +12,31 @@ const Json* list_of(const Json* appearance, std::string_view name) {
   return list != nullptr && list->is_array() ? list : nullptr;
 }
 
-Status renumber(Json& index, const Json* list, DistinctValues& values, std::string_view what) {
-  if (index.is_null()) return Done{};
-  if (!index.is_number_unsigned() || list == nullptr ||
-      index.get<std::uint64_t>() >= list->size()) {
-    return Error{ErrorCode::malformed, "the index of a " + std::string(what) + " is out of range"};
+// Makes indices that refer to a list refer to a collection. Looks each value up once.
+class Renumbering {
+ public:
+  Renumbering(const Json* list, DistinctValues& values, std::string_view what)
+      : list_(list), values_(values), what_(what) {}
+
+  Status apply(Json& index) {
+    if (index.is_null()) return Done{};
+    if (!index.is_number_unsigned() || list_ == nullptr ||
+        index.get<std::uint64_t>() >= list_->size()) {
+      return Error{ErrorCode::malformed,
+                   "the index of a " + std::string(what_) + " is out of range"};
+    }
+    const auto [place, is_new] = position_.try_emplace(index.get<std::size_t>());
+    if (is_new) place->second = values_.position_of((*list_)[place->first]);
+    index = place->second;
+    return Done{};
   }
-  index = values.position_of((*list)[index.get<std::size_t>()]);
-  return Done{};
-}
+
+ private:
+  const Json* list_;
+  DistinctValues& values_;
+  std::string_view what_;
+  std::unordered_map<std::size_t, std::size_t> position_;  // index in the list -> in the collection
+};
 
 bool is_flat(const Json& array) {
   for (const Json& element : array) {
@@ -66,21 +82,20 @@ void AppearanceCollector::include(const Json* appearance) {
 }
 
 Status AppearanceCollector::adopt(Json& geometry, const Json* source) {
-  const Json* materials = list_of(source, "materials");
-  const Json* textures = list_of(source, "textures");
-  const Json* texture_vertices = list_of(source, "vertices-texture");
+  Renumbering materials(list_of(source, "materials"), materials_, "material");
+  Renumbering textures(list_of(source, "textures"), textures_, "texture");
+  Renumbering texture_vertices(list_of(source, "vertices-texture"), texture_vertices_,
+                               "texture vertex");
   const auto each_material = [&](Json& array) -> Status {
     for (Json& index : array) {
-      if (auto status = renumber(index, materials, materials_, "material"); !status) return status;
+      if (auto status = materials.apply(index); !status) return status;
     }
     return Done{};
   };
   // A ring of a texture: the texture, then a texture vertex per vertex; [null] for none.
   const auto each_texture_ring = [&](Json& array) -> Status {
     for (std::size_t i = 0; i < array.size(); ++i) {
-      auto status = i == 0
-                        ? renumber(array[i], textures, textures_, "texture")
-                        : renumber(array[i], texture_vertices, texture_vertices_, "texture vertex");
+      auto status = i == 0 ? textures.apply(array[i]) : texture_vertices.apply(array[i]);
       if (!status) return status;
     }
     return Done{};
@@ -88,8 +103,7 @@ Status AppearanceCollector::adopt(Json& geometry, const Json* source) {
   if (Json* themes = find_member(geometry, "material"); themes != nullptr && themes->is_object()) {
     for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) {
       if (Json* value = find_member(theme, "value"); value != nullptr) {
-        auto status = renumber(*value, materials, materials_, "material");
-        if (!status) return status;
+        if (auto status = materials.apply(*value); !status) return status;
       }
       if (Json* values = find_member(theme, "values"); values != nullptr) {
         if (auto status = for_each_flat_array(*values, each_material); !status) return status;

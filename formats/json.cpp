@@ -8,12 +8,11 @@
 namespace watertight {
 namespace {
 
-std::string double_text(double value) {
+void append_double(std::string& out, double value) {
   std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  std::string text(digits.data(), end);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
+  const std::size_t begin = out.size();
+  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  if (out.find_first_of(".e", begin) == std::string::npos) out += ".0";
 }
 
 template <class Integer>
@@ -49,7 +48,9 @@ void append_array(std::string& out, const Json& value) {
 }  // namespace
 
 Json number_value(double value, std::string_view text) {
-  if (double_text(value) == text) return value;
+  std::string own;
+  append_double(own, value);
+  if (own == text) return value;
   return Json::binary(std::vector<std::uint8_t>(text.begin(), text.end()));
 }
 
@@ -58,8 +59,13 @@ bool is_number_value(const Json& value) { return value.is_number() || value.is_b
 void append_json_string(std::string& out, std::string_view text) {
   static constexpr std::string_view kHex = "0123456789abcdef";
   out += '"';
-  for (const char c : text) {
+  std::size_t begin = 0;  // of the characters that are written as they are
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     const auto byte = static_cast<unsigned char>(c);
+    if (c != '"' && c != '\\' && byte >= 0x20) continue;
+    out += text.substr(begin, i - begin);
+    begin = i + 1;
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
@@ -69,14 +75,13 @@ void append_json_string(std::string& out, std::string_view text) {
       out += "\\r";
     } else if (c == '\t') {
       out += "\\t";
-    } else if (byte < 0x20) {
+    } else {
       out += "\\u00";
       out += kHex[byte >> 4];
       out += kHex[byte & 15];
-    } else {
-      out += c;
     }
   }
+  out += text.substr(begin);
   out += '"';
 }
 
@@ -96,8 +101,7 @@ void append_json(std::string& out, const Json& value) {
     case Json::value_t::number_unsigned:
       return append_integer(out, value.get<std::uint64_t>());
     case Json::value_t::number_float:
-      out += double_text(value.get<double>());
-      return;
+      return append_double(out, value.get<double>());
     case Json::value_t::binary:
       out.append(value.get_binary().begin(), value.get_binary().end());
       return;

@@ -246,7 +246,8 @@ std::string Lattice::world_text(double coordinate, int axis) const {
 
 double Lattice::scale(int axis) const {
   const GridNumber& number = step[static_cast<std::size_t>(axis)];
-  return big_nearest_double(from_grid(number, kind));
+  if (kind == LatticeKind::binary) return big_nearest_double(from_grid(number, kind));
+  return nearest_double({number.mantissa, number.exponent});
 }
 
 Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& lattice,

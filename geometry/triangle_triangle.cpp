@@ -10,19 +10,10 @@
 #include "base/assert.h"
 #include "geometry/contact_classifier.h"
 #include "geometry/exact_quotient.h"
-#include "geometry/predicates.h"
+#include "geometry/inline_predicates.h"
 
 namespace watertight {
 namespace {
-
-struct Predicates {
-  static int orient3d(const Point& a, const Point& b, const Point& c, const Point& d) {
-    return watertight::orient3d(a, b, c, d);
-  }
-  static int orient2d(const Point& a, const Point& b, const Point& c, int axis) {
-    return watertight::orient2d(a, b, c, axis);
-  }
-};
 
 using Rational = mpq_class;
 using Vector = std::array<Rational, 3>;
@@ -90,7 +81,7 @@ std::string_view to_string(ContactClass contact) {
 
 ContactClass classify_contact(std::span<const Point> points, const Triangle& first,
                               const Triangle& second) {
-  return ContactClassifier<Predicates>(points).classify(first, second);
+  return ContactClassifier<InlinePredicates>(points).classify(first, second);
 }
 
 Point contact_witness(std::span<const Point> points, const Triangle& first,

@@ -11,19 +11,21 @@ namespace {
 
 __extension__ using Wide = __int128;
 /// Products of three differences below this, six of them summed, stay below 2^127.
-constexpr double kMostDifference = 1099511627776.0;  // 2^40
+constexpr std::int64_t kMostDifference = std::int64_t{1} << 40U;
 
 /// b - a where that is exact and a small integer on all axes.
 std::optional<std::array<std::int64_t, 3>> integer_difference(const Point& a, const Point& b) {
   std::array<std::int64_t, 3> result{};
   for (int axis = 0; axis < 3; ++axis) {
-    // Doubles below 2^53 are exact where they are integers, and so are their differences.
-    constexpr double kExact = 9007199254740992.0;
+    constexpr double kExact = 9007199254740992.0;  // 2^53: neither cast nor difference overflows
     if (!(std::abs(a[axis]) < kExact) || !(std::abs(b[axis]) < kExact)) return std::nullopt;
-    if (a[axis] != std::trunc(a[axis]) || b[axis] != std::trunc(b[axis])) return std::nullopt;
-    const double difference = b[axis] - a[axis];
-    if (!(std::abs(difference) < kMostDifference)) return std::nullopt;
-    result[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(difference);
+    const auto from = static_cast<std::int64_t>(a[axis]);
+    const auto to = static_cast<std::int64_t>(b[axis]);
+    if (static_cast<double>(from) != a[axis] || static_cast<double>(to) != b[axis]) {
+      return std::nullopt;
+    }
+    if (std::abs(to - from) >= kMostDifference) return std::nullopt;
+    result[static_cast<std::size_t>(axis)] = to - from;
   }
   return result;
 }

@@ -28,7 +28,8 @@ constexpr double kDegree = 131072.0;  // 2^17
 
 bool is_wide_enough(const Point& p) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(std::fabs(p[axis]) <= kLargestInteger) || p[axis] != std::trunc(p[axis])) return false;
+    if (!(std::fabs(p[axis]) <= kLargestInteger)) return false;
+    if (static_cast<double>(static_cast<std::int64_t>(p[axis])) != p[axis]) return false;
   }
   return true;
 }

@@ -30,7 +30,8 @@ class DiagonalExaminer {
         contacts_(contacts),
         vertices_(examined.solid().vertices()),
         all_(examined.triangles()),
-        tree_(boxes()) {}
+        boxes_(boxes()),
+        tree_(boxes_) {}
 
   void examine();
 
@@ -39,6 +40,7 @@ class DiagonalExaminer {
   std::vector<Diagonal> diagonals_of(Index facet) const {
     return other_diagonals(examined_.solid(), all_, facet);
   }
+  std::vector<Index> near(const Box& around, Index facet) const;
   void find_made(Index facet, const std::vector<Diagonal>& diagonals);
   void find_undone(std::span<const TrianglePair> group);
   bool is_undone(std::span<const TrianglePair> group, Index facet, Index other);
@@ -56,7 +58,8 @@ class DiagonalExaminer {
   const ShellContacts& contacts_;
   std::span<const Point> vertices_;
   const FacetTriangles& all_;
-  BoxTree tree_;                                   // of all triangles
+  std::vector<Box> boxes_;                         // of all triangles
+  BoxTree tree_;                                   // of boxes_
   std::map<Index, std::vector<FacetEdge>> edges_;  // of facets that were asked about
   std::uint64_t pairs_ = 0;
 };
@@ -148,23 +151,31 @@ void DiagonalExaminer::report(const Diagonal& diagonal, Index facet, Index other
   examined_.findings.add(std::move(finding));
 }
 
+/// The triangles of other facets whose boxes overlap a box, ascending.
+std::vector<Index> DiagonalExaminer::near(const Box& around, Index facet) const {
+  std::vector<Index> triangles;
+  tree_.visit([&](const Box& box) { return box.overlaps(around); },
+              [&](Index triangle) {
+                if (all_.facet_of[triangle] != facet && boxes_[triangle].overlaps(around)) {
+                  triangles.push_back(triangle);
+                }
+              });
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
 /// One finding for each other facet that would be met.
 void DiagonalExaminer::find_made(Index facet, const std::vector<Diagonal>& diagonals) {
   std::vector<Index> reported;
   for (const Diagonal& diagonal : diagonals) {
     if (must_end()) return;
+    Box quadrilateral = boxes_[diagonal.first];
+    quadrilateral.include(vertices_[diagonal.left]);
+    const std::vector<Index> candidates = near(quadrilateral, facet);
     for (const Triangle& t : diagonal.flipped()) {
       const Box around = box_of(t, vertices_);
-      std::vector<Index> near;
-      tree_.visit([&](const Box& box) { return box.overlaps(around); },
-                  [&](Index triangle) {
-                    if (all_.facet_of[triangle] == facet) return;
-                    if (box_of(all_.triangles[triangle], vertices_).overlaps(around)) {
-                      near.push_back(triangle);
-                    }
-                  });
-      std::sort(near.begin(), near.end());
-      for (const Index triangle : near) {
+      for (const Index triangle : candidates) {
+        if (!boxes_[triangle].overlaps(around)) continue;
         const Index other = all_.facet_of[triangle];
         if (pairs_ > kMostPairs) return;
         if (!contact_of(diagonal, t, facet, triangle) || is_reported(facet, other)) continue;

@@ -58,6 +58,7 @@ bool is_measurable(const ExaminedSolid& examined, const std::vector<Corner>& cor
 bool check_distance(ExaminedSolid& examined, Index facet, const std::vector<Corner>& corners) {
   const double limit = examined.tolerances().planarity_metres;
   std::vector<Vector> points;
+  points.reserve(corners.size());
   for (const Corner& corner : corners) {
     points.push_back(examined.metres(corners.front().vertex, corner.vertex));
   }
@@ -240,9 +241,9 @@ bool has_good_points(const Solid& solid, IndexRange rings) {
 /// False if the facet is too large to be measured.
 bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
   const Solid& solid = examined.solid();
-  const std::vector<Corner> corners = corners_of(examined, facet);
   bool is_measured = true;
   if (!is_flat(solid, facet)) {
+    const std::vector<Corner> corners = corners_of(examined, facet);
     if (is_triangulated) examined.mark_not_planar(facet);
     is_measured = is_measurable(examined, corners);
     if (is_measured && check_distance(examined, facet, corners) && is_triangulated) {

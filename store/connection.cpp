@@ -158,11 +158,11 @@ double Rows::float8(int row, int column) const {
   return value.size() == 8 ? std::bit_cast<double>(from_big_endian(value)) : 0;
 }
 
-void Connection::Finish::operator()(pg_conn* connection) const { PQfinish(connection); }
+void DatabaseSession::Finish::operator()(pg_conn* connection) const { PQfinish(connection); }
 
-Connection::~Connection() = default;
+DatabaseSession::~DatabaseSession() = default;
 
-std::variant<std::unique_ptr<Connection>, Connection::OpenFailure> Connection::open(
+std::variant<std::unique_ptr<DatabaseSession>, DatabaseSession::OpenFailure> DatabaseSession::open(
     const std::string& connection) {
   // Keywords before `dbname` are defaults that the connection string may override, those after it
   // are not for the user to choose.
@@ -182,7 +182,8 @@ std::variant<std::unique_ptr<Connection>, Connection::OpenFailure> Connection::o
     return OpenFailure{{ErrorCode::invalid_argument, "the database URL cannot be understood"}};
   }
   PQconninfoFree(parsed);
-  auto opened = std::make_unique<Connection>(PQconnectdbParams(keywords.data(), values.data(), 1));
+  auto opened =
+      std::make_unique<DatabaseSession>(PQconnectdbParams(keywords.data(), values.data(), 1));
   if (!opened->connection_) {
     return OpenFailure{{ErrorCode::limit_exceeded, "no memory for a database connection"}};
   }
@@ -212,7 +213,7 @@ std::variant<std::unique_ptr<Connection>, Connection::OpenFailure> Connection::o
   return opened;
 }
 
-Error Connection::failure(const pg_result* result) {
+Error DatabaseSession::failure(const pg_result* result) {
   const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
   state_ = state == nullptr ? "" : state;
   const char* primary = PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
@@ -222,7 +223,7 @@ Error Connection::failure(const pg_result* result) {
   return {code_of(state_, is_lost()), std::move(message)};
 }
 
-Result<Rows> Connection::run(const std::string& statement, const Parameters& parameters) {
+Result<Rows> DatabaseSession::run(const std::string& statement, const Parameters& parameters) {
   // The protocol counts parameters and values in signed 32-bit bytes and caps a message at 1 GiB.
   constexpr std::size_t kLargestMessage = (1ULL << 30) - (1ULL << 16);
   std::vector<const char*> values;
@@ -247,13 +248,13 @@ Result<Rows> Connection::run(const std::string& statement, const Parameters& par
   return Result<Rows>(std::move(rows));
 }
 
-void Connection::roll_back() {
+void DatabaseSession::roll_back() {
   if (is_lost() || PQtransactionStatus(connection_.get()) == PQTRANS_IDLE) return;
   const Result<Rows> done = run("ROLLBACK");
   static_cast<void>(done);  // a session that cannot roll back is lost, and is asked about that
 }
 
-bool Connection::is_lost() const { return PQstatus(connection_.get()) != CONNECTION_OK; }
+bool DatabaseSession::is_lost() const { return PQstatus(connection_.get()) != CONNECTION_OK; }
 
 ServerState server_state(const std::string& connection) {
   switch (PQping(connection.c_str())) {
@@ -286,7 +287,7 @@ Result<ConnectionPool::Lease> ConnectionPool::lease(double seconds) {
                                     [this] { return free_slots_ > 0; });
   if (!free) return Error{ErrorCode::unavailable, "all database connections are busy"};
   --free_slots_;
-  std::unique_ptr<Connection> session;
+  std::unique_ptr<DatabaseSession> session;
   if (!idle_.empty()) {
     session = std::move(idle_.back());
     idle_.pop_back();
@@ -294,7 +295,7 @@ Result<ConnectionPool::Lease> ConnectionPool::lease(double seconds) {
   return Lease(this, std::move(session));
 }
 
-void ConnectionPool::give_back(std::unique_ptr<Connection> session) {
+void ConnectionPool::give_back(std::unique_ptr<DatabaseSession> session) {
   {
     const std::lock_guard lock(mutex_);
     ++free_slots_;

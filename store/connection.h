@@ -37,7 +37,7 @@ class Parameters {
   Parameters& float8_array(std::span<const std::optional<double>> values);
 
  private:
-  friend class Connection;
+  friend class DatabaseSession;
   void add(std::uint32_t type, std::optional<std::string> value);
   void begin_array(std::uint32_t array_type, std::uint32_t element_type, std::size_t count);
   void element(std::string_view value);
@@ -67,7 +67,7 @@ class Rows {
 };
 
 /// A session with UTF-8 encoding and synchronous commit. Not thread-safe.
-class Connection {
+class DatabaseSession {
  public:
   /// Errors: invalid_argument when the connection string cannot be parsed; unavailable with the
   /// server's words. `may_come_back` in the failure tells whether waiting can help.
@@ -75,11 +75,12 @@ class Connection {
     Error error;
     bool may_come_back = false;
   };
-  explicit Connection(pg_conn* connection) : connection_(connection) {}  // for open()
-  static std::variant<std::unique_ptr<Connection>, OpenFailure> open(const std::string& connection);
-  ~Connection();
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
+  explicit DatabaseSession(pg_conn* connection) : connection_(connection) {}  // for open()
+  static std::variant<std::unique_ptr<DatabaseSession>, OpenFailure> open(
+      const std::string& connection);
+  ~DatabaseSession();
+  DatabaseSession(const DatabaseSession&) = delete;
+  DatabaseSession& operator=(const DatabaseSession&) = delete;
 
   /// Runs one statement. Errors: the server's words under a fitting code; state() and is_lost()
   /// tell more.
@@ -118,13 +119,13 @@ class ConnectionPool {
   /// The right to use one session until destruction. `session` may be empty: open() it.
   class Lease {
    public:
-    Lease(ConnectionPool* pool, std::unique_ptr<Connection> first)
+    Lease(ConnectionPool* pool, std::unique_ptr<DatabaseSession> first)
         : session(std::move(first)), pool_(pool) {}
     Lease(Lease&& other) noexcept
         : session(std::move(other.session)), pool_(std::exchange(other.pool_, nullptr)) {}
     Lease& operator=(Lease&&) = delete;
     ~Lease();
-    std::unique_ptr<Connection> session;
+    std::unique_ptr<DatabaseSession> session;
 
    private:
     ConnectionPool* pool_;
@@ -135,13 +136,13 @@ class ConnectionPool {
   const std::string& connection() const { return connection_; }
 
  private:
-  void give_back(std::unique_ptr<Connection> session);
+  void give_back(std::unique_ptr<DatabaseSession> session);
 
   const std::string connection_;
   std::mutex mutex_;
   std::condition_variable freed_;
   std::size_t free_slots_;
-  std::vector<std::unique_ptr<Connection>> idle_;
+  std::vector<std::unique_ptr<DatabaseSession>> idle_;
 };
 
 }  // namespace watertight

@@ -86,7 +86,7 @@ std::vector<StoredFeature> features_of(const Rows& rows, const std::string& coll
 }
 
 /// Replaces digests by headers: each distinct one travels once.
-Status fill_headers(Connection& connection, std::vector<StoredFeature>& features) {
+Status fill_headers(DatabaseSession& connection, std::vector<StoredFeature>& features) {
   std::map<std::string, SharedText> contents;
   for (const StoredFeature& feature : features) contents.try_emplace(feature.header);
   std::vector<ByteView> digests;
@@ -102,7 +102,7 @@ Status fill_headers(Connection& connection, std::vector<StoredFeature>& features
   return Done{};
 }
 
-Status fill_solids(Connection& connection, const std::string& collection,
+Status fill_solids(DatabaseSession& connection, const std::string& collection,
                    std::vector<StoredFeature>& features) {
   std::map<std::string_view, StoredFeature*> by_id;
   std::vector<std::string_view> ids;
@@ -133,7 +133,7 @@ Status fill_solids(Connection& connection, const std::string& collection,
   return Done{};
 }
 
-Status fill(Connection& connection, const std::string& collection,
+Status fill(DatabaseSession& connection, const std::string& collection,
             std::vector<StoredFeature>& features) {
   if (features.empty()) return Done{};
   if (Status done = fill_headers(connection, features); !done) return done;
@@ -151,7 +151,7 @@ Parameters filter_parameters(const FeatureQuery& query) {
   return parameters;
 }
 
-Result<Rows> page_rows(Connection& connection, const FeatureQuery& query, std::int64_t limit) {
+Result<Rows> page_rows(DatabaseSession& connection, const FeatureQuery& query, std::int64_t limit) {
   Parameters parameters = filter_parameters(query);
   parameters.text(query.after).int8(limit);
   const char* const rest =
@@ -184,7 +184,7 @@ Result<WalkPlace> walk_place(const std::string& text) {
 }
 
 /// `columns` and the place of the features that come next, in order of place and id.
-Result<Rows> walk_rows(Connection& connection, const std::string& columns,
+Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit) {
   return connection.run(columns +
                             ", place FROM watertight.feature WHERE collection = $1"
@@ -198,7 +198,7 @@ struct BatchSize {
   bool is_last = true;
 };
 
-Result<BatchSize> batch_size(Connection& connection, const std::string& collection,
+Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& collection,
                              const WalkPlace& after, std::int64_t limit) {
   const Result<Rows> rows =
       walk_rows(connection, "SELECT (blob_bytes + octet_length(skeleton))::int8", collection, after,
@@ -214,7 +214,7 @@ Result<BatchSize> batch_size(Connection& connection, const std::string& collecti
   return size;
 }
 
-Status check_collection_exists(Connection& connection, const std::string& id) {
+Status check_collection_exists(DatabaseSession& connection, const std::string& id) {
   const Result<Rows> exists =
       connection.run("SELECT id FROM watertight.collection WHERE id = $1", Parameters().text(id));
   if (!exists) return exists.error();
@@ -222,7 +222,7 @@ Status check_collection_exists(Connection& connection, const std::string& id) {
   return Done{};
 }
 
-Result<std::uint64_t> count_matched(Connection& connection, const FeatureQuery& query) {
+Result<std::uint64_t> count_matched(DatabaseSession& connection, const FeatureQuery& query) {
   const Result<Rows> rows =
       connection.run("SELECT count(*)" + matching(query), filter_parameters(query));
   if (!rows) return rows.error();
@@ -231,7 +231,7 @@ Result<std::uint64_t> count_matched(Connection& connection, const FeatureQuery& 
 
 }  // namespace
 
-Result<std::vector<StoredCollection>> read_collections(Connection& connection) {
+Result<std::vector<StoredCollection>> read_collections(DatabaseSession& connection) {
   const Result<Rows> rows = connection.run(collections_where("true"));
   if (!rows) return rows.error();
   std::vector<StoredCollection> found;
@@ -239,14 +239,14 @@ Result<std::vector<StoredCollection>> read_collections(Connection& connection) {
   return found;
 }
 
-Result<StoredCollection> read_collection(Connection& connection, const std::string& id) {
+Result<StoredCollection> read_collection(DatabaseSession& connection, const std::string& id) {
   const Result<Rows> rows = connection.run(collections_where("c.id = $1"), Parameters().text(id));
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_collection(id);
   return collection_of(*rows, 0);
 }
 
-Result<StoredFeature> read_feature(Connection& connection, const std::string& collection,
+Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id) {
   const Result<Rows> rows = connection.run(
       std::string(kFeatureColumns) + " FROM watertight.feature WHERE collection = $1 AND id = $2",
@@ -261,7 +261,7 @@ Result<StoredFeature> read_feature(Connection& connection, const std::string& co
   return std::move(found.front());
 }
 
-Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query) {
+Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query) {
   const std::uint64_t limit = std::min(query.limit, kLargestPage);
   FeaturePage page;
   const Result<std::uint64_t> matched = count_matched(connection, query);
@@ -288,7 +288,7 @@ Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query)
   return page;
 }
 
-Result<FeatureBatch> read_batch(Connection& connection, const std::string& collection,
+Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
                                 std::uint64_t limit, const std::string& after) {
   const Result<WalkPlace> start = walk_place(after);
   if (!start) return start.error();
@@ -315,7 +315,7 @@ Result<FeatureBatch> read_batch(Connection& connection, const std::string& colle
   return batch;
 }
 
-Result<std::vector<StoredHeader>> read_documents(Connection& connection,
+Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit) {
   const Result<Rows> rows = connection.run(

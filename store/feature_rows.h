@@ -25,21 +25,21 @@ bool is_possible_id(const std::string& id);
 
 /// Writes headers, collections, features and solids; returns the versions in order.
 /// Requires check_features(). Errors: conflict when a feature's CRS is not its collection's.
-Result<std::vector<std::uint64_t>> write_features(Connection& connection,
+Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
                                                   std::span<const StoredFeature> features);
 
 /// Errors: not_found.
-Result<Done> delete_feature(Connection& connection, const std::string& collection,
+Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
                             const std::string& id);
 
-Result<std::vector<StoredCollection>> read_collections(Connection& connection);
-Result<StoredCollection> read_collection(Connection& connection, const std::string& id);
-Result<StoredFeature> read_feature(Connection& connection, const std::string& collection,
+Result<std::vector<StoredCollection>> read_collections(DatabaseSession& connection);
+Result<StoredCollection> read_collection(DatabaseSession& connection, const std::string& id);
+Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id);
-Result<FeaturePage> read_page(Connection& connection, const FeatureQuery& query);
-Result<FeatureBatch> read_batch(Connection& connection, const std::string& collection,
+Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query);
+Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
                                 std::uint64_t limit, const std::string& after);
-Result<std::vector<StoredHeader>> read_documents(Connection& connection,
+Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit);
 

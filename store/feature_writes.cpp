@@ -104,7 +104,7 @@ Order sorted_by_key(std::span<const StoredFeature> features) {
 }
 
 /// Puts each distinct header into its table. Returns header -> SHA-256 of it.
-Result<std::map<SharedText, Bytes>> write_headers(Connection& connection,
+Result<std::map<SharedText, Bytes>> write_headers(DatabaseSession& connection,
                                                   std::span<const StoredFeature> features) {
   std::map<SharedText, Bytes> digests;
   for (const StoredFeature& feature : features) digests.try_emplace(feature.header);
@@ -122,7 +122,7 @@ Result<std::map<SharedText, Bytes>> write_headers(Connection& connection,
 
 /// Creates the collections that do not exist; returns the CRS of each.
 Result<std::map<std::string_view, std::uint32_t>> write_collections(
-    Connection& connection, std::span<const StoredFeature> features, const Order& order,
+    DatabaseSession& connection, std::span<const StoredFeature> features, const Order& order,
     const std::map<SharedText, Bytes>& digests) {
   std::map<std::string_view, std::uint32_t> srids;
   for (const std::size_t i : order) {
@@ -217,7 +217,7 @@ constexpr const char* kDropSolids = R"(
   WHERE s.collection = k.collection AND s.feature = k.feature)";
 
 /// Writes features[order[begin, end)]; their versions go to `versions` at the features' places.
-Status write_feature_rows(Connection& connection, std::span<const StoredFeature> features,
+Status write_feature_rows(DatabaseSession& connection, std::span<const StoredFeature> features,
                           std::span<const std::size_t> places,
                           const std::map<SharedText, Bytes>& digests,
                           std::span<std::uint64_t> versions) {
@@ -276,7 +276,7 @@ constexpr const char* kPutSolids = R"(
   FROM unnest($1::text[], $2::text[], $3::text[], $4::int8[], $5::int8[], $6::int8[], $7::text[],
     $8::bytea[], $9::text[], $10::text[]) AS u (c, f, o, g, n, p, l, b, m, r))";
 
-Status flush_solids(Connection& connection, SolidColumns& columns) {
+Status flush_solids(DatabaseSession& connection, SolidColumns& columns) {
   if (columns.blob.empty()) return Done{};
   const Result<Rows> done = connection.run(kPutSolids, columns.parameters());
   columns = {};
@@ -284,7 +284,7 @@ Status flush_solids(Connection& connection, SolidColumns& columns) {
   return Done{};
 }
 
-Status write_solids(Connection& connection, std::span<const StoredFeature> features,
+Status write_solids(DatabaseSession& connection, std::span<const StoredFeature> features,
                     const Order& order) {
   SolidColumns columns;
   for (const std::size_t i : order) {
@@ -333,7 +333,7 @@ Status check_features(std::span<const StoredFeature> features) {
   return Done{};
 }
 
-Result<std::vector<std::uint64_t>> write_features(Connection& connection,
+Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
                                                   std::span<const StoredFeature> features) {
   const Order order = sorted_by_key(features);
   const auto digests = write_headers(connection, features);
@@ -359,7 +359,7 @@ Result<std::vector<std::uint64_t>> write_features(Connection& connection,
   return versions;
 }
 
-Result<Done> delete_feature(Connection& connection, const std::string& collection,
+Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
                             const std::string& id) {
   const Result<Rows> gone = connection.run(
       "DELETE FROM watertight.feature WHERE collection = $1 AND id = $2 RETURNING id",

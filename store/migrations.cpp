@@ -110,7 +110,7 @@ constexpr std::int64_t kNewest = std::size(kMigrations);
 constexpr const char* kLock = "SELECT pg_advisory_xact_lock(x'7761746572746967'::bigint)";
 
 /// The highest migration that was applied; 0 when there is none.
-Result<std::int64_t> applied(Connection& connection) {
+Result<std::int64_t> applied(DatabaseSession& connection) {
   const Result<Rows> known =
       connection.run("SELECT 1::int8 WHERE to_regclass('watertight.migration') IS NOT NULL");
   if (!known) return known.error();
@@ -127,7 +127,7 @@ Error newer(std::int64_t found) {
                                       ": use the program that made it, or a newer one"};
 }
 
-Status run_all(Connection& connection, const Migration& migration) {
+Status run_all(DatabaseSession& connection, const Migration& migration) {
   for (const char* statement : migration.statements) {
     if (statement == nullptr) break;
     if (const Result<Rows> done = connection.run(statement); !done) return done.error();
@@ -135,7 +135,7 @@ Status run_all(Connection& connection, const Migration& migration) {
   return Done{};
 }
 
-Status record(Connection& connection, std::int64_t number, const char* name) {
+Status record(DatabaseSession& connection, std::int64_t number, const char* name) {
   const Result<Rows> done =
       connection.run("INSERT INTO watertight.migration (number, name) VALUES ($1, $2)",
                      Parameters().int8(number).text(name));
@@ -143,7 +143,7 @@ Status record(Connection& connection, std::int64_t number, const char* name) {
   return Done{};
 }
 
-Status migrate_locked(Connection& connection) {
+Status migrate_locked(DatabaseSession& connection) {
   for (const char* statement :
        {"BEGIN", kLock, "CREATE SCHEMA IF NOT EXISTS watertight",
         "CREATE TABLE IF NOT EXISTS watertight.migration (number bigint PRIMARY KEY,"
@@ -164,7 +164,7 @@ Status migrate_locked(Connection& connection) {
 
 }  // namespace
 
-Status migrate(Connection& connection) {
+Status migrate(DatabaseSession& connection) {
   const Result<std::int64_t> found = applied(connection);
   if (!found) return found.error();
   if (*found == kNewest) return Done{};
@@ -174,7 +174,7 @@ Status migrate(Connection& connection) {
   return done;
 }
 
-Status check_schema(Connection& connection) {
+Status check_schema(DatabaseSession& connection) {
   const Result<std::int64_t> found = applied(connection);
   if (!found) return found.error();
   if (*found > kNewest) return newer(*found);

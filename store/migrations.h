@@ -12,9 +12,9 @@ namespace watertight {
 /// Applies the missing migrations in one transaction, under an advisory lock, so that any number of
 /// instances may start at the same time. Needs no right to create anything when none is missing.
 /// Errors: unsupported when the database was migrated by a newer program; unavailable.
-Status migrate(Connection& connection);
+Status migrate(DatabaseSession& connection);
 
 /// Ok when the schema is the one of this program. Errors: unavailable, unsupported.
-Status check_schema(Connection& connection);
+Status check_schema(DatabaseSession& connection);
 
 }  // namespace watertight

@@ -70,7 +70,7 @@ class PostgresStore final : public SolidStore {
       : pool_(connection, connections) {}
 
   Status open() {
-    return with_session<Done>([](Connection& session) { return migrate(session); });
+    return with_session<Done>([](DatabaseSession& session) { return migrate(session); });
   }
 
   Status ping() override {
@@ -79,11 +79,11 @@ class PostgresStore final : public SolidStore {
     // A pooled session can be stale after a restart: one fresh attempt, and no waiting.
     for (int attempt = 0; attempt < 2; ++attempt) {
       if (!lease->session) {
-        auto opened = Connection::open(pool_.connection());
-        if (const auto* failed = std::get_if<Connection::OpenFailure>(&opened)) {
+        auto opened = DatabaseSession::open(pool_.connection());
+        if (const auto* failed = std::get_if<DatabaseSession::OpenFailure>(&opened)) {
           return failed->error;
         }
-        lease->session = std::move(std::get<std::unique_ptr<Connection>>(opened));
+        lease->session = std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
       }
       Status current = check_schema(*lease->session);
       if (current || !lease->session->is_lost()) return current;
@@ -94,26 +94,26 @@ class PostgresStore final : public SolidStore {
 
   Result<std::vector<StoredCollection>> collections() override {
     return read<std::vector<StoredCollection>>(
-        [](Connection& session) { return read_collections(session); });
+        [](DatabaseSession& session) { return read_collections(session); });
   }
 
   Result<StoredCollection> collection(const std::string& id) override {
     if (!check_collection_id(id)) return no_such_collection();
     return read<StoredCollection>(
-        [&](Connection& session) { return read_collection(session, id); });
+        [&](DatabaseSession& session) { return read_collection(session, id); });
   }
 
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
     if (features.empty()) return std::vector<std::uint64_t>{};
     if (Status checked = check_features(features); !checked) return std::move(checked).error();
     return write<std::vector<std::uint64_t>>(
-        [&](Connection& session) { return write_features(session, features); });
+        [&](DatabaseSession& session) { return write_features(session, features); });
   }
 
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
     return read<StoredFeature>(
-        [&](Connection& session) { return read_feature(session, collection, id); });
+        [&](DatabaseSession& session) { return read_feature(session, collection, id); });
   }
 
   Result<FeaturePage> list(const FeatureQuery& query) override {
@@ -124,32 +124,32 @@ class PostgresStore final : public SolidStore {
     if (!query.after.empty() && !is_possible_id(query.after)) {
       return Error{ErrorCode::invalid_argument, "a page cannot start after an impossible id"};
     }
-    return read<FeaturePage>([&](Connection& session) { return read_page(session, query); });
+    return read<FeaturePage>([&](DatabaseSession& session) { return read_page(session, query); });
   }
 
   Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                             const std::string& after) override {
     if (!check_collection_id(collection)) return no_such_collection();
     return read<FeatureBatch>(
-        [&](Connection& session) { return read_batch(session, collection, limit, after); });
+        [&](DatabaseSession& session) { return read_batch(session, collection, limit, after); });
   }
 
   Result<std::vector<StoredHeader>> documents(const std::string& collection,
                                               std::uint64_t limit) override {
     if (!check_collection_id(collection)) return no_such_collection();
     return read<std::vector<StoredHeader>>(
-        [&](Connection& session) { return read_documents(session, collection, limit); });
+        [&](DatabaseSession& session) { return read_documents(session, collection, limit); });
   }
 
   Status remove(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
     return write<Done>(
-        [&](Connection& session) { return delete_feature(session, collection, id); });
+        [&](DatabaseSession& session) { return delete_feature(session, collection, id); });
   }
 
  private:
   template <class Value>
-  using Work = std::function<Result<Value>(Connection&)>;
+  using Work = std::function<Result<Value>(DatabaseSession&)>;
 
   static Error no_such_collection() {
     return {ErrorCode::not_found, "there is no such collection"};
@@ -170,12 +170,12 @@ class PostgresStore final : public SolidStore {
     if (!lease) return lease.error();
     for (Backoff backoff;;) {
       if (!lease->session) {
-        auto opened = Connection::open(pool_.connection());
-        if (const auto* failed = std::get_if<Connection::OpenFailure>(&opened)) {
+        auto opened = DatabaseSession::open(pool_.connection());
+        if (const auto* failed = std::get_if<DatabaseSession::OpenFailure>(&opened)) {
           if (failed->may_come_back && backoff.pause()) continue;
           return failed->error;
         }
-        lease->session = std::move(std::get<std::unique_ptr<Connection>>(opened));
+        lease->session = std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
       }
       Result<Value> result = work(*lease->session);
       if (result) return result;
@@ -193,7 +193,7 @@ class PostgresStore final : public SolidStore {
   /// One snapshot for all statements of `work`.
   template <class Value>
   Result<Value> read(const Work<Value>& work) {
-    return with_session<Value>([&](Connection& session) -> Result<Value> {
+    return with_session<Value>([&](DatabaseSession& session) -> Result<Value> {
       const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
       if (!begun) return begun.error();
       Result<Value> result = work(session);
@@ -212,7 +212,7 @@ class PostgresStore final : public SolidStore {
     const Result<Token> token = new_token();
     if (!token) return token.error();
     std::optional<Value> in_doubt;  // the result of an attempt whose COMMIT was not answered
-    Result<Value> result = with_session<Value>([&](Connection& session) -> Result<Value> {
+    Result<Value> result = with_session<Value>([&](DatabaseSession& session) -> Result<Value> {
       const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE");
       if (!begun) return begun.error();
       const Result<Rows> marked = session.run(
@@ -243,7 +243,7 @@ class PostgresStore final : public SolidStore {
 
   /// Removes old receipts, and headers that no feature uses any more.
   void sweep() {
-    const Result<Done> swept = with_session<Done>([](Connection& session) -> Status {
+    const Result<Done> swept = with_session<Done>([](DatabaseSession& session) -> Status {
       for (const char* statement :
            {"DELETE FROM watertight.write_receipt WHERE written < now() - interval '1 day'",
             "DELETE FROM watertight.document_header h WHERE NOT EXISTS"

@@ -279,14 +279,15 @@ class Cluster {
   pid_t child_ = 0;  // the postmaster if we started it and have not reaped it
 };
 
-Result<std::unique_ptr<Connection>> connect(const std::string& connection) {
-  auto opened = Connection::open(connection);
-  if (auto* failed = std::get_if<Connection::OpenFailure>(&opened)) return std::move(failed->error);
-  return std::move(std::get<std::unique_ptr<Connection>>(opened));
+Result<std::unique_ptr<DatabaseSession>> connect(const std::string& connection) {
+  auto opened = DatabaseSession::open(connection);
+  if (auto* failed = std::get_if<DatabaseSession::OpenFailure>(&opened))
+    return std::move(failed->error);
+  return std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
 }
 
 Status ensure_database(const Cluster& cluster) {
-  const Result<std::unique_ptr<Connection>> session = connect(cluster.connection("postgres"));
+  const Result<std::unique_ptr<DatabaseSession>> session = connect(cluster.connection("postgres"));
   if (!session) return session.error();
   const Result<Rows> found =
       (*session)->run("SELECT datname FROM pg_database WHERE datname = 'watertight'");
@@ -301,7 +302,8 @@ Status ensure_database(const Cluster& cluster) {
 /// Where the server has the extension, the database gets it. Storing needs no extension, so a
 /// failure is no error: CREATE EXTENSION by hand tells its reason.
 Status ensure_extension(const Cluster& cluster) {
-  const Result<std::unique_ptr<Connection>> session = connect(cluster.connection("watertight"));
+  const Result<std::unique_ptr<DatabaseSession>> session =
+      connect(cluster.connection("watertight"));
   if (!session) return session.error();
   const Result<Rows> known = (*session)->run(
       "SELECT installed_version IS NULL FROM pg_available_extensions WHERE name = 'watertight'");

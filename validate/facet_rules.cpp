@@ -131,7 +131,7 @@ void check_normals(ExaminedSolid& examined, Index facet) {
     for (std::size_t axis = 0; axis < 3; ++axis) mean[axis] += normals.back()[axis];
   }
   // Two normals within half the limit of a third direction are within the limit of each other.
-  mean = unit(mean);
+  mean = direction_of(mean);
   const double half = std::cos(limit / 2 * (std::numbers::pi / 180.0));
   if (std::all_of(normals.begin(), normals.end(),
                   [&](const Vector& normal) { return dot(normal, mean) >= half; })) {

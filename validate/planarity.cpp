@@ -18,7 +18,7 @@ Vector near_one(const Vector& v) {
 
 }  // namespace
 
-Vector unit(const Vector& v) {
+Vector direction_of(const Vector& v) {
   const Vector near = near_one(v);
   const double length = std::sqrt(dot(near, near));
   if (!(length > 0)) return {};
@@ -26,7 +26,7 @@ Vector unit(const Vector& v) {
 }
 
 Vector unit_normal(const Vector& u, const Vector& v) {
-  return unit(cross(near_one(u), near_one(v)));
+  return direction_of(cross(near_one(u), near_one(v)));
 }
 
 }  // namespace watertight

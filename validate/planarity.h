@@ -17,7 +17,7 @@ inline Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 /// The vector's direction, of length 1; zero stays zero. No size of vector underflows or overflows.
-Vector unit(const Vector& v);
+Vector direction_of(const Vector& v);
 
 /// The direction of cross(u, v), of length 1, for vectors of any size.
 Vector unit_normal(const Vector& u, const Vector& v);

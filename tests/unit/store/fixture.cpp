@@ -31,10 +31,10 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path, ignored);
 }
 
-std::unique_ptr<Connection> session_in(const std::string& connection) {
-  auto opened = Connection::open(connection);
-  REQUIRE(std::holds_alternative<std::unique_ptr<Connection>>(opened));
-  return std::move(std::get<std::unique_ptr<Connection>>(opened));
+std::unique_ptr<DatabaseSession> session_in(const std::string& connection) {
+  auto opened = DatabaseSession::open(connection);
+  REQUIRE(std::holds_alternative<std::unique_ptr<DatabaseSession>>(opened));
+  return std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
 }
 
 std::string ask(const std::string& connection, const std::string& statement) {
@@ -89,8 +89,8 @@ void Database::add_many_features() const {
 }
 
 bool Database::end_sessions() const {
-  auto opened = Connection::open(cluster_->connection());
-  auto* session = std::get_if<std::unique_ptr<Connection>>(&opened);
+  auto opened = DatabaseSession::open(cluster_->connection());
+  auto* session = std::get_if<std::unique_ptr<DatabaseSession>>(&opened);
   if (session == nullptr) return false;
   return (*session)
       ->run("SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity WHERE datname = '" +

@@ -48,7 +48,7 @@ class Database {
   std::string connection_;
 };
 
-std::unique_ptr<Connection> session_in(const std::string& connection);
+std::unique_ptr<DatabaseSession> session_in(const std::string& connection);
 std::string ask(const std::string& connection, const std::string& statement);
 
 /// A feature with a box, two solids and bytes that no text encoding would survive.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Starts a server, beside the parts that talk to the database, and lets clients come and go.
+#include <cstdio>
+#include <string>
+#include <utility>  // used by Asio, which does not include it
+
+#include <boost/asio.hpp>
+
+#include "server/listener.h"
+#include "store/connection.h"
+
+namespace {
+
+using watertight::HttpServer;
+using watertight::IsCancelled;
+using watertight::Lane;
+using watertight::Request;
+using watertight::Response;
+
+/// The first line of the answer to GET /, "" if none came.
+std::string status_line(std::uint16_t port) {
+  boost::asio::io_context context;
+  boost::asio::ip::tcp::socket socket(context);
+  socket.connect({boost::asio::ip::make_address("127.0.0.1"), port});
+  const std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  boost::asio::write(socket, boost::asio::buffer(request));
+  std::string answer;
+  boost::system::error_code error;
+  boost::asio::read_until(socket, boost::asio::dynamic_buffer(answer), "\r\n", error);
+  return answer.substr(0, answer.find("\r\n"));
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "%s\n", message.c_str());
+  return 1;
+}
+
+}  // namespace
+
+int main() {
+  // So that the linker takes the database's connections into this program.
+  if (watertight::connection_option("host", "h") != "host='h'") return fail("no libpq options");
+  watertight::ServerOptions options;
+  options.port = 0;
+  watertight::Application application;
+  application.lane = [](const Request&) { return Lane::quick; };
+  application.respond = [](const Request&, const IsCancelled&) { return Response{}; };
+  auto server = HttpServer::start(options, application, [](const std::string&) {});
+  if (!server) return fail(to_string(server.error()));
+  for (int i = 0; i < 3; ++i) {
+    const std::string line = status_line((*server)->port());
+    if (line != "HTTP/1.1 200 OK") return fail("answer " + std::to_string(i) + ": " + line);
+  }
+  (*server)->stop();
+  return 0;
+}

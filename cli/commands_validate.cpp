@@ -11,7 +11,7 @@
 #include "cli/inputs.h"
 #include "cli/printable.h"
 #include "cli/progress.h"
-#include "formats/interior_shells.h"
+#include "formats/mesh/interior_shells.h"
 #include "pipeline/validate_stream.h"
 #include "report/feature_report.h"
 #include "validate/report_json.h"

@@ -33,7 +33,7 @@ std::string_view to_string(Mode mode);
 struct EncodeOptions {
   Mode mode = Mode::automatic;
   bool keep_order = true;              // decode returns the source order
-  std::uint8_t models = kModelNumber;  // the set of priors (codec/models.h)
+  std::uint8_t models = kModelNumber;  // the set of priors (codec/page/model_sets.h)
   /// With a certificate and mode bitmap: store its Steiner vertices (the paper's setting).
   const Certificate* certificate = nullptr;
 };

@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "codec/page.h"
-#include "codec/page_bytes.h"
-#include "codec/version_0.h"
+#include "codec/page/container.h"
+#include "codec/version_0/version_0.h"
 
 namespace watertight {
 namespace {

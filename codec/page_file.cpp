@@ -10,7 +10,7 @@
 
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
-#include "codec/page_bytes.h"
+#include "codec/page/container.h"
 
 namespace watertight {
 namespace {

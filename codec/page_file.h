@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/frame.h"
+#include "codec/page/solid_coder.h"
 #include "codec/page.h"
 
 namespace watertight {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "formats/document.h"
-#include "formats/mesh_text.h"
+#include "formats/mesh/mesh_text.h"
 
 namespace watertight {
 namespace {

@@ -5,11 +5,11 @@
 #include <string_view>
 #include <utility>
 
-#include "formats/city_json.h"
+#include "formats/city_json/model.h"
 #include "formats/ewkb.h"
-#include "formats/gml.h"
+#include "formats/gml/gml.h"
 #include "formats/json_fg.h"
-#include "formats/mesh_text.h"
+#include "formats/mesh/mesh_text.h"
 
 namespace watertight {
 namespace {

@@ -89,7 +89,7 @@ struct Feature {
   /// Everything but the solids' geometry, as UTF-8 JSON; write_feature needs it. Opaque.
   std::string skeleton;
   /// How the text of the document was written (ReadOptions::keep_text), so that the same bytes come
-  /// back; empty: compact JSON is written. Opaque (formats/text_layout.h).
+  /// back; empty: compact JSON is written. Opaque (formats/text/text_layout.h).
   Bytes layout = {};
   /// Instances of geometry templates, also of those that are no solids; in document order.
   std::vector<TemplateInstance> instances = {};

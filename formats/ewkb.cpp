@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "formats/mesh_text.h"
+#include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 
 namespace watertight {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "formats/document.h"
-#include "formats/text_layout.h"
+#include "formats/text/text_layout.h"
 
 namespace watertight {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "formats/json.h"
-#include "formats/numbers.h"
+#include "formats/text/json.h"
+#include "formats/text/numbers.h"
 #include "formats/surface.h"
 
 namespace watertight {

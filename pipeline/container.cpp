@@ -12,7 +12,7 @@
 
 #include "base/checksum.h"
 #include "codec/page_file.h"
-#include "formats/packed_text.h"
+#include "formats/text/packed_text.h"
 #include "pipeline/container_reader.h"
 
 namespace watertight {

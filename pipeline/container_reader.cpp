@@ -7,7 +7,7 @@
 
 #include "base/checksum.h"
 #include "codec/page_file.h"
-#include "formats/packed_text.h"
+#include "formats/text/packed_text.h"
 
 namespace watertight {
 namespace {

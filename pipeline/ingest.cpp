@@ -4,7 +4,7 @@
 #include <optional>
 #include <set>
 
-#include "formats/packed_text.h"
+#include "formats/text/packed_text.h"
 #include "geometry/parallel.h"
 #include "pipeline/groups.h"
 #include "pipeline/instances.h"

@@ -8,7 +8,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "formats/packed_text.h"
+#include "formats/text/packed_text.h"
 #include "pipeline/merged_vertices.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "validate/rules.h"
+#include "validate/rules/rules.h"
 #include "validate/snap.h"
 
 namespace watertight {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "codec/integer_solid.h"
+#include "codec/page/integer_solid.h"
 #include "geometry/canonical_form.h"
 #include "geometry/valid_solid.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/corpus/corpus.h"
-#include "codec/page_bytes.h"
+#include "codec/page/container.h"
 
 namespace watertight {
 

@@ -24,9 +24,9 @@
 #include "bench/corpus/corpus.h"
 #include "bench/corpus/split.h"
 #include "bench/corpus/training_meshes.h"
-#include "codec/frame.h"
-#include "codec/modes.h"
-#include "codec/page_bytes.h"
+#include "codec/page/solid_coder.h"
+#include "codec/page/modes.h"
+#include "codec/page/container.h"
 
 using namespace watertight;
 

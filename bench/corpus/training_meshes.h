@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/integer_solid.h"
+#include "codec/page/integer_solid.h"
 
 namespace watertight {
 

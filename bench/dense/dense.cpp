@@ -21,7 +21,7 @@
 #include "bench/dense/quantized_mesh.h"
 #include "bench/dense/summary.h"
 #include "bench/dense/whole_blob.h"
-#include "codec/page_bytes.h"
+#include "codec/page/container.h"
 #include "formats/document.h"
 #include "validate/certify.h"
 

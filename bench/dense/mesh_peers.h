@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "codec/integer_solid.h"
+#include "codec/page/integer_solid.h"
 
 namespace watertight {
 

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "codec/integer_solid.h"
+#include "codec/page/integer_solid.h"
 #include "geometry/solid.h"
 
 namespace watertight {

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 #include "codec/blob.h"
-#include "codec/integer_solid.h"
+#include "codec/page/integer_solid.h"
 
 namespace watertight {
 

@@ -9,9 +9,9 @@
 #include <iterator>
 #include <string>
 
-#include "codec/order_section.h"
-#include "codec/source_order.h"
-#include "formats/packed_text.h"
+#include "codec/version_0/order_section.h"
+#include "codec/page/source_order.h"
+#include "formats/text/packed_text.h"
 #include "pipeline/container.h"
 
 using namespace watertight;

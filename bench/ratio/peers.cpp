@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "codec/integer_solid.h"
+#include "codec/page/integer_solid.h"
 #include "formats/ewkb.h"
 
 namespace watertight {

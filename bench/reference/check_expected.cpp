@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/interior_shells.h"
+#include "formats/mesh/interior_shells.h"
 #include "pipeline/pipeline.h"
 
 using namespace watertight;

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "validate/certify.h"
-#include "validate/rules.h"
+#include "validate/rules/rules.h"
 
 using namespace watertight;
 

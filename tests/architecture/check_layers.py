@@ -24,7 +24,7 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "repair", "codec",
+FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
            "formats", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
 
@@ -37,7 +37,7 @@ HOMES = [
     (r"nlohmann/", "nlohmann-json",
      [r"formats/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
     (r"CGAL/", "CGAL",
-     [r"geometry/", r"tessellate/", r"delaunay/", r"repair/", r"tests/", r"bench/"]),
+     [r"geometry/", r"tessellate/", r"delaunay/", r"tests/", r"bench/"]),
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),
     (r"CLI/", "CLI11", [r"cli/", r"bench/"]),
     (r"(zstd|zstd_errors|zdict)\.h", "zstd", [r"formats/", r"bench/"]),

@@ -22,8 +22,8 @@ import subprocess
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
-FOLDERS = ("base", "workers", "geometry", "tessellate", "delaunay", "validate", "repair", "codec",
-           "formats", "store", "pipeline", "server", "cli", "sql")
+FOLDERS = ("base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
+           "formats", "store", "pipeline", "report", "server", "cli", "sql")
 TOO_HEAVY = ("CGAL/", "boost/", "tetgen.h")
 
 

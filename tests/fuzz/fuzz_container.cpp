@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "base/checksum.h"
-#include "formats/packed_text.h"
+#include "formats/text/packed_text.h"
 #include "fuzz_formats.h"
 #include "pipeline/container.h"
 

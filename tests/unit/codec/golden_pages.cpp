@@ -6,10 +6,10 @@
 #include <bit>
 
 #include "base/checksum.h"
-#include "codec/coordinates.h"
+#include "codec/page/coordinates.h"
 #include "codec/encode_boundary.h"
-#include "codec/facet_listing.h"
-#include "codec/page_bytes.h"
+#include "codec/page/facet_listing.h"
+#include "codec/page/container.h"
 #include "codec/page_file.h"
 #include "generated_solids.h"
 #include "geometry/canonical_form.h"

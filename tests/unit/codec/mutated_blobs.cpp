@@ -7,7 +7,7 @@
 
 #include "codec/encode_boundary.h"
 #include "codec/page.h"
-#include "codec/page_bytes.h"
+#include "codec/page/container.h"
 #include "generated_variety.h"
 
 namespace watertight::generated {

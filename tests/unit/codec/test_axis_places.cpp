@@ -9,8 +9,8 @@
 #include <map>
 #include <vector>
 
-#include "codec/axis_places.h"
-#include "codec/modes.h"
+#include "codec/mode_parallelogram/axis_places.h"
+#include "codec/page/modes.h"
 #include "generated_solids.h"
 #include "geometry/canonical_form.h"
 

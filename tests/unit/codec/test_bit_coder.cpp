@@ -2,7 +2,7 @@
 #include <array>
 #include <catch2/catch_test_macros.hpp>
 
-#include "codec/bit_coder.h"
+#include "codec/mode_bitmap/bit_coder.h"
 #include "generated_solids.h"
 
 using namespace watertight;

@@ -6,10 +6,10 @@
 #include <catch2/catch_test_macros.hpp>
 #include <set>
 
-#include "codec/compose.h"
-#include "codec/coordinates.h"
-#include "codec/decompose.h"
-#include "codec/face_marks.h"
+#include "codec/mode_bitmap/compose.h"
+#include "codec/page/coordinates.h"
+#include "codec/mode_bitmap/decompose.h"
+#include "codec/mode_bitmap/face_marks.h"
 #include "generated_solids.h"
 
 using namespace watertight;

@@ -6,7 +6,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <vector>
 
-#include "codec/modes.h"
+#include "codec/page/modes.h"
 #include "generated_solids.h"
 #include "geometry/canonical_form.h"
 

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "codec/entropy_stream.h"
-#include "codec/model_bank.h"
-#include "codec/models.h"
+#include "codec/entropy/entropy_stream.h"
+#include "codec/entropy/model_bank.h"
+#include "codec/page/model_sets.h"
 
 using namespace watertight;
 

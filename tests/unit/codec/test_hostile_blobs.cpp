@@ -9,7 +9,7 @@
 #include <string>
 
 #include "codec/blob.h"
-#include "codec/columns.h"
+#include "codec/mode_walk/columns.h"
 #include "codec/encode_boundary.h"
 #include "codec/page.h"
 #include "codec/page_file.h"

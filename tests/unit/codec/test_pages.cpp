@@ -7,7 +7,7 @@
 
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
-#include "codec/page_bytes.h"
+#include "codec/page/container.h"
 #include "codec/page_file.h"
 #include "mutated_blobs.h"
 

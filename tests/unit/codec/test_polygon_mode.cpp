@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "codec/modes.h"
+#include "codec/page/modes.h"
 #include "generated_solids.h"
 #include "geometry/canonical_form.h"
 

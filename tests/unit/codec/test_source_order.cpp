@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "codec/source_order.h"
+#include "codec/page/source_order.h"
 #include "tests/unit/codec/generated_solids.h"
 
 namespace watertight {

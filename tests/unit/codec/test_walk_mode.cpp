@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "codec/delaunay_walk.h"
-#include "codec/modes.h"
+#include "codec/mode_walk/walk.h"
+#include "codec/page/modes.h"
 #include "generated_solids.h"
 #include "geometry/canonical_form.h"
 

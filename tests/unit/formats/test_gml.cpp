@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/gml.h"
+#include "formats/gml/gml.h"
 #include "gml_samples.h"
 
 namespace watertight {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/document.h"
-#include "formats/text_layout.h"
+#include "formats/text/text_layout.h"
 #include "samples.h"
 
 namespace watertight {

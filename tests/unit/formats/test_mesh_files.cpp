@@ -12,7 +12,7 @@
 #include <string>
 
 #include "formats/document.h"
-#include "formats/interior_shells.h"
+#include "formats/mesh/interior_shells.h"
 #include "samples.h"
 
 namespace watertight {

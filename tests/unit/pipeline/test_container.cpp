@@ -7,7 +7,7 @@
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "codec/page_file.h"
-#include "formats/packed_text.h"
+#include "formats/text/packed_text.h"
 #include "generated_solids.h"
 #include "pipeline/container.h"
 #include "pipeline/container_reader.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "formats/packed_text.h"
+#include "formats/text/packed_text.h"
 #include "pipeline/container.h"
 #include "tests/unit/pipeline/samples.h"
 

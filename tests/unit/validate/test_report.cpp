@@ -3,7 +3,7 @@
 
 #include "tests/unit/validate/solids.h"
 #include "validate/report_json.h"
-#include "validate/rules.h"
+#include "validate/rules/rules.h"
 
 using namespace watertight;
 using namespace watertight::test;

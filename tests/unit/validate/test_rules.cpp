@@ -6,7 +6,7 @@
 
 #include "tests/unit/validate/solids.h"
 #include "validate/finding_kinds.h"
-#include "validate/rules.h"
+#include "validate/rules/rules.h"
 
 using namespace watertight;
 using namespace watertight::test;

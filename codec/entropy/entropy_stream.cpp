@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/entropy/entropy_stream.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <utility>
+
+#include "base/assert.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::uint32_t kHalf = 32768;
+constexpr std::size_t kWindow = 4;  // bytes
+
+constexpr std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones) {
+  return low + static_cast<std::uint32_t>((static_cast<std::uint64_t>(high - low) * ones) >> 16);
+}
+
+/// The shortest bytes that, with zeros after them, lie in [low, high]; of those the smallest.
+struct Tail {
+  std::array<std::uint8_t, kWindow> bytes{};
+  std::size_t size = 0;
+};
+
+Tail shortest_tail(std::uint32_t low, std::uint32_t high) {
+  Tail tail;
+  for (std::size_t size = 0; size <= kWindow; ++size) {
+    const std::uint64_t unit = std::uint64_t{1} << (8 * (kWindow - size));
+    const std::uint64_t value = (low + unit - 1) / unit * unit;
+    if (value > high) continue;
+    tail.size = size;
+    for (std::size_t i = 0; i < size; ++i) {
+      tail.bytes[i] = static_cast<std::uint8_t>(value >> (8 * (kWindow - 1 - i)));
+    }
+    break;
+  }
+  return tail;
+}
+
+/// log2(65536 / ones) in 1/65536 bit, by repeated squaring.
+constexpr std::uint32_t cost_of(std::uint32_t ones) {
+  int whole = 0;
+  std::uint64_t mantissa = static_cast<std::uint64_t>(ones) << 15;  // 16.15 of 65536
+  while (mantissa < (std::uint64_t{1} << 31)) {
+    mantissa <<= 1;
+    ++whole;
+  }
+  std::uint32_t fraction = 0;  // of log2(mantissa / 2^31)
+  for (int i = 0; i < kCostBits; ++i) {
+    mantissa = (mantissa * mantissa) >> 31;
+    fraction <<= 1;
+    if (mantissa >= (std::uint64_t{1} << 32)) {
+      mantissa >>= 1;
+      fraction |= 1U;
+    }
+  }
+  return (static_cast<std::uint32_t>(whole) << kCostBits) - fraction;
+}
+
+/// By the probability's upper 12 bits, at the middle of what shares them.
+constexpr auto kCosts = [] {
+  std::array<std::uint32_t, 4096> costs{};
+  for (std::uint32_t i = 0; i < costs.size(); ++i) costs[i] = cost_of(16 * i + 8);
+  return costs;
+}();
+
+}  // namespace
+
+EntropyStream::EntropyStream(Direction direction, ByteView source)
+    : direction_(direction), source_(source) {
+  if (direction_ != Direction::read) return;
+  for (std::size_t i = 0; i < kWindow; ++i) window_ = (window_ << 8) | next_byte();
+}
+
+std::uint32_t EntropyStream::next_byte() {
+  const std::uint32_t byte = position_ < source_.size() ? source_[position_] : 0U;
+  ++position_;
+  if (position_ > source_.size() + kWindow) failed_ = true;
+  return byte;
+}
+
+void EntropyStream::shift_out() {
+  while (((low_ ^ high_) >> 24) == 0) {
+    if (direction_ == Direction::write) {
+      bytes_.push_back(static_cast<std::uint8_t>(low_ >> 24));
+    } else {
+      window_ = (window_ << 8) | next_byte();
+    }
+    low_ <<= 8;
+    high_ = (high_ << 8) | 0xFFU;
+  }
+}
+
+bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
+  WATERTIGHT_ASSERT(ones_of_65536 > 0 && ones_of_65536 < 65536);
+  if (failed_) return false;
+  bool result = value;
+  if (direction_ != Direction::measure) {
+    const std::uint32_t middle = split(low_, high_, ones_of_65536);
+    if (is_reading()) result = window_ <= middle;
+    if (result) {
+      high_ = middle;
+    } else {
+      low_ = middle + 1;
+    }
+    shift_out();
+  }
+  costs_[part_] += kCosts[(result ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
+  return result;
+}
+
+std::uint64_t EntropyStream::cost() const {
+  return std::accumulate(costs_.begin(), costs_.end(), std::uint64_t{0});
+}
+
+std::uint64_t EntropyStream::code_bits(std::uint64_t value, int count) {
+  std::uint64_t result = 0;
+  for (int i = count - 1; i >= 0; --i) {
+    result = (result << 1) | static_cast<std::uint64_t>(code(((value >> i) & 1U) != 0, kHalf));
+  }
+  return result;
+}
+
+std::uint64_t EntropyStream::code_uniform(std::uint64_t value, std::uint64_t size) {
+  WATERTIGHT_ASSERT(size > 0 && (is_reading() || value < size));
+  // Truncated binary: the first `shorts` values take one bit less than the others.
+  const int width = static_cast<int>(std::bit_width(size)) - 1;
+  const std::uint64_t shorts = (std::uint64_t{2} << width) - size;
+  const bool is_short = value < shorts;
+  const std::uint64_t word = is_short ? value : (value + shorts) >> 1;
+  const std::uint64_t front = code_bits(word, width);
+  if (is_reading() ? front < shorts : is_short) return front;
+  return ((front << 1) | code_bits((value + shorts) & 1U, 1)) - shorts;
+}
+
+Bytes EntropyStream::finish() && {
+  const Tail tail = shortest_tail(low_, high_);
+  bytes_.insert(bytes_.end(), tail.bytes.begin(), tail.bytes.begin() + tail.size);
+  return std::move(bytes_);
+}
+
+bool EntropyStream::is_finished() const {
+  if (failed_) return false;
+  const Tail tail = shortest_tail(low_, high_);
+  const ByteView rest = source_.subspan(std::min(position_ - kWindow, source_.size()));
+  return std::equal(rest.begin(), rest.end(), tail.bytes.begin(), tail.bytes.begin() + tail.size);
+}
+
+}  // namespace watertight

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/entropy/model_bank.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/assert.h"
+
+namespace watertight {
+namespace {
+
+// The logistic domain: x stands for ln(p / (1 - p)) = x / 256, from -2047 to 2047.
+constexpr std::int32_t kDomain = 2047;
+constexpr std::uint32_t kLeastProbability = 32;  // of 65536; the greatest likewise
+
+/// round(65536 / (1 + exp((32 - i) / 4))) for i = 0 to 64: part of the format.
+constexpr std::array<std::int32_t, 65> kSquash{
+    22,    28,    36,    47,    60,    77,    98,    126,   162,   208,   267,   342,   439,
+    562,   720,   922,   1179,  1506,  1921,  2446,  3108,  3938,  4971,  6249,  7812,  9702,
+    11955, 14595, 17625, 21025, 24743, 28693, 32768, 36843, 40793, 44511, 47911, 50941, 53581,
+    55834, 57724, 59287, 60565, 61598, 62428, 63090, 63615, 64030, 64357, 64614, 64816, 64974,
+    65097, 65194, 65269, 65328, 65374, 65410, 65438, 65459, 65476, 65489, 65500, 65508, 65514};
+
+/// The probability of 65536 at `x`, linear between the table's points.
+constexpr std::int32_t squash(std::int32_t x) {
+  const std::int32_t offset = std::clamp(x, -kDomain, kDomain) + 2048;
+  const auto i = static_cast<std::size_t>(offset >> 6);
+  const std::int32_t rest = offset & 63;
+  return (kSquash[i] * (64 - rest) + kSquash[i + 1] * rest) >> 6;
+}
+
+/// By the upper 12 bits of a probability: the least x whose squash() is not below it.
+constexpr auto kStretch = [] {
+  std::array<std::int16_t, 4096> table{};
+  std::int32_t x = -kDomain;
+  for (std::int32_t i = 0; i < 4096; ++i) {
+    while (x < kDomain && squash(x) < 16 * i + 8) ++x;
+    table[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(x);
+  }
+  return table;
+}();
+
+// A counter: 22 bits of probability above 10 bits of observations.
+constexpr std::uint32_t kMaxCount = 250;
+constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, never observed
+
+/// 65536 / (n + 1.5).
+constexpr auto kRates = [] {
+  std::array<std::int32_t, kMaxCount + 1> rates{};
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(rates.size()); ++n) {
+    rates[static_cast<std::size_t>(n)] = 131072 / (2 * n + 3);
+  }
+  return rates;
+}();
+
+/// How far a counter that observed n decisions is to be believed, of 256: n / (n + 0.4).
+constexpr auto kConfidence = [] {
+  std::array<std::int32_t, kMaxCount + 1> table{};
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(table.size()); ++n) {
+    table[static_cast<std::size_t>(n)] = 2560 * n / (10 * n + 4);
+  }
+  return table;
+}();
+
+std::uint32_t learned(std::uint32_t counter, bool value) {
+  const std::uint32_t count = counter & 1023U;
+  const auto probability = static_cast<std::int64_t>(counter >> 10);
+  const std::int64_t target = value ? (1 << 22) - 1 : 0;
+  const std::int64_t next = probability + (((target - probability) * kRates[count]) >> 16);
+  return (static_cast<std::uint32_t>(next) << 10) | std::min(count + 1, kMaxCount);
+}
+
+std::int32_t input_of(std::uint32_t counter) {
+  return (kStretch[counter >> 20] * kConfidence[counter & 1023U]) >> 8;
+}
+
+// Weights: 16.16. A bias comes after the weights of the inputs.
+constexpr std::int32_t kBiasInput = 64;
+constexpr std::int64_t kWeightLimit = 8 << 16;
+constexpr std::uint32_t kMaxMixed = 1000;
+
+/// The step size of a weight set that has seen `mixed` decisions, in 1/4096.
+std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
+
+// The families of a number: its length in unary, the bits after the first, the sign.
+constexpr std::uint32_t kLengths = 48;        // longer ones share the last context
+constexpr std::uint32_t kMantissaStates = 7;  // none, one or two of the bits after the first known
+constexpr std::uint32_t kMantissaLengths = 16;
+constexpr int kModelledBits = 3;
+
+}  // namespace
+
+ModelBank::ModelBank(const ModelLayout& layout) : is_agile_(layout.is_agile) {
+  for (const FamilyShape& shape : layout.families) add_family(shape);
+  number_base_ = families_.size();
+  for (const NumberShape& number : layout.numbers) {
+    FamilyShape length{number.selectors, {}};
+    FamilyShape mantissa{kModelledBits, {kLengths * kMantissaStates}};
+    const FamilyShape sign{number.selectors, number.contexts};
+    for (std::size_t i = 0; i < kMaxInputs && number.contexts[i] != 0; ++i) {
+      WATERTIGHT_ASSERT(i + 1 < kMaxInputs);
+      length.contexts[i] = number.contexts[i] * kLengths;
+      mantissa.contexts[i + 1] = number.contexts[i] * kMantissaLengths * kMantissaStates;
+    }
+    add_family(length);
+    add_family(mantissa);
+    add_family(sign);
+  }
+}
+
+std::int32_t ModelBank::first_weight(std::uint32_t inputs) const {
+  return static_cast<std::int32_t>(is_agile_ ? (1U << 16) / inputs : (4U << 16) / (3U + inputs));
+}
+
+void ModelBank::add_family(const FamilyShape& shape) {
+  Family family;
+  family.selectors = shape.selectors;
+  family.first_weight = static_cast<std::uint32_t>(weights_.size());
+  family.first_rate = static_cast<std::uint32_t>(mixed_.size());
+  while (family.inputs < kMaxInputs && shape.contexts[family.inputs] != 0) {
+    const std::uint32_t size = shape.contexts[family.inputs];
+    family.first_counter[family.inputs] = static_cast<std::uint32_t>(counters_.size());
+    family.sizes[family.inputs++] = size;
+    counters_.insert(counters_.end(), size, kUnknown);
+  }
+  for (std::uint32_t selector = 0; selector < shape.selectors; ++selector) {
+    weights_.insert(weights_.end(), family.inputs, first_weight(family.inputs));
+    weights_.push_back(0);
+    mixed_.push_back(0);
+  }
+  families_.push_back(family);
+}
+
+ModelBank::Mix ModelBank::mix(const Family& family, std::uint32_t selector,
+                              const std::uint32_t* contexts) const {
+  Mix result;
+  const std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+  std::int64_t sum = 0;
+  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+    WATERTIGHT_ASSERT(contexts[i] < family.sizes[i]);
+    result.counter[i] = family.first_counter[i] + contexts[i];
+    result.input[i] = input_of(counters_[result.counter[i]]);
+    sum += static_cast<std::int64_t>(weight[i]) * result.input[i];
+  }
+  result.input[family.inputs] = kBiasInput;
+  sum += static_cast<std::int64_t>(weight[family.inputs]) * kBiasInput;
+
+  const auto x = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum >> 16, -kDomain, kDomain));
+  result.ones = std::clamp(static_cast<std::uint32_t>(squash(x)), kLeastProbability,
+                           65536 - kLeastProbability);
+  return result;
+}
+
+bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
+                        const std::uint32_t* contexts, bool value) {
+  const Mix mixed = mix(family, selector, contexts);
+  if (trials_ > 0) note_changes(family, selector, mixed);
+  const bool bit = stream.code(value, mixed.ones);
+
+  std::uint32_t& seen = mixed_[family.first_rate + selector];
+  std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+  const std::int64_t step = ((bit ? 65536 : 0) - static_cast<std::int64_t>(mixed.ones)) *
+                            mixing_rate(seen) * (is_agile_ ? 2 : 1);
+  for (std::uint32_t i = 0; i <= family.inputs; ++i) {
+    weight[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(
+        weight[i] + ((step * mixed.input[i]) >> 20), -kWeightLimit, kWeightLimit));
+  }
+  seen = std::min(seen + 1, kMaxMixed);
+  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+    std::uint32_t& counter = counters_[mixed.counter[i]];
+    counter = learned(counter, bit);
+  }
+  return bit;
+}
+
+void ModelBank::note_changes(const Family& family, std::uint32_t selector, const Mix& mixed) {
+  const auto weights = static_cast<std::uint32_t>(counters_.size());
+  const auto seen = static_cast<std::uint32_t>(weights + weights_.size());
+  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+    changes_.push_back({mixed.counter[i], counters_[mixed.counter[i]]});
+  }
+  const std::uint32_t first = family.first_weight + selector * (family.inputs + 1);
+  for (std::uint32_t i = first; i <= first + family.inputs; ++i) {
+    changes_.push_back({weights + i, static_cast<std::uint32_t>(weights_[i])});
+  }
+  changes_.push_back({seen + family.first_rate + selector, mixed_[family.first_rate + selector]});
+}
+
+void ModelBank::undo(const Change& change) {
+  const std::size_t weight = change.place - counters_.size();
+  if (change.place < counters_.size()) {
+    counters_[change.place] = change.before;
+  } else if (weight < weights_.size()) {
+    weights_[weight] = static_cast<std::int32_t>(change.before);
+  } else {
+    mixed_[weight - weights_.size()] = change.before;
+  }
+}
+
+BankTrial::BankTrial(ModelBank& bank, std::size_t vertices)
+    : bank_(bank), begin_(bank.changes_.size()) {
+  // A vertex changes some hundred numbers, each noted for several times the cost of copying one.
+  constexpr std::size_t kCountersPerVertex = 1000;
+  if (vertices > bank.counter_count() / kCountersPerVertex) {
+    before_ = bank;
+  } else {
+    ++bank.trials_;
+  }
+}
+
+BankTrial::~BankTrial() {
+  if (before_) {
+    bank_ = *std::move(before_);
+    return;
+  }
+  std::vector<ModelBank::Change>& changes = bank_.changes_;
+  for (; changes.size() > begin_; changes.pop_back()) bank_.undo(changes.back());
+  --bank_.trials_;
+}
+
+std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selector,
+                                     std::span<const std::uint32_t> contexts) const {
+  WATERTIGHT_ASSERT(family < number_base_ && contexts.size() == families_[family].inputs);
+  return mix(families_[family], selector, contexts.data()).ones;
+}
+
+bool ModelBank::code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
+                     std::span<const std::uint32_t> contexts, bool value) {
+  WATERTIGHT_ASSERT(family < number_base_ && contexts.size() == families_[family].inputs);
+  return code_at(stream, families_[family], selector, contexts.data(), value);
+}
+
+std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number,
+                                     std::uint32_t selector,
+                                     std::initializer_list<std::uint32_t> contexts,
+                                     std::uint64_t value, int max_length) {
+  const Family& lengths = families_[number_base_ + 3 * std::size_t{number}];
+  const Family& mantissas = families_[number_base_ + 3 * std::size_t{number} + 1];
+  WATERTIGHT_ASSERT(contexts.size() == lengths.inputs);
+  std::array<std::uint32_t, kMaxInputs> at{};
+
+  // The length of the number, 0 for 0: that many zeros, a one.
+  const auto true_length = static_cast<int>(std::bit_width(value));
+  int length = 0;
+  while (true) {
+    const std::uint32_t step = std::min(static_cast<std::uint32_t>(length), kLengths - 1);
+    std::size_t i = 0;
+    for (const std::uint32_t context : contexts) at[i++] = context * kLengths + step;
+    if (code_at(stream, lengths, selector, at.data(), length == true_length)) break;
+    if (++length > max_length || stream.failed()) {
+      stream.fail();
+      return 0;
+    }
+  }
+  if (length <= 1) return static_cast<std::uint64_t>(length);
+
+  // The bits after the first: some under models, the others plain.
+  std::uint64_t result = 1;
+  const int modelled = std::min(length - 1, kModelledBits);
+  for (int bit = 0; bit < modelled; ++bit) {
+    const auto state = static_cast<std::uint32_t>(result - 1);  // 0; 1, 2; 3 to 6
+    const auto lower = static_cast<std::uint32_t>(length);
+    at[0] = std::min(lower, kLengths - 1) * kMantissaStates + state;
+    std::size_t i = 1;
+    for (const std::uint32_t context : contexts) {
+      at[i++] =
+          (context * kMantissaLengths + std::min(lower, kMantissaLengths - 1)) * kMantissaStates +
+          state;
+    }
+    const bool one = ((value >> (length - 2 - bit)) & 1U) != 0;
+    result =
+        (result << 1) | static_cast<std::uint64_t>(code_at(
+                            stream, mantissas, static_cast<std::uint32_t>(bit), at.data(), one));
+  }
+  const int rest = length - 1 - modelled;
+  return rest == 0 ? result : (result << rest) | stream.code_bits(value, rest);
+}
+
+std::int64_t ModelBank::code_signed(EntropyStream& stream, std::uint32_t number,
+                                    std::uint32_t selector,
+                                    std::initializer_list<std::uint32_t> contexts,
+                                    std::int64_t value, int max_length) {
+  const std::uint64_t magnitude =
+      code_number(stream, number, selector, contexts,
+                  static_cast<std::uint64_t>(value < 0 ? -value : value), max_length);
+  if (magnitude == 0) return 0;
+  const Family& signs = families_[number_base_ + 3 * std::size_t{number} + 2];
+  const bool is_negative = code_at(stream, signs, selector, contexts.begin(), value < 0);
+  const auto result = static_cast<std::int64_t>(magnitude);
+  return is_negative ? -result : result;
+}
+
+Bytes ModelBank::save(const PriorShape& shape) const {
+  ByteWriter writer;
+  const auto is_kept = [&](std::size_t i) {
+    return (counters_[i] & 1023U) >= std::max(shape.least_count, 1U);
+  };
+  for (std::size_t i = 0; i < counters_.size();) {
+    if (is_kept(i)) {
+      const std::uint32_t count = counters_[i] & 1023U;
+      writer.u8(static_cast<std::uint8_t>(std::min({count, shape.max_count, 255U})));
+      writer.u16(static_cast<std::uint16_t>(counters_[i++] >> 16));
+      continue;
+    }
+    std::size_t next = i;  // a run of counters that nobody observed
+    while (next < counters_.size() && !is_kept(next)) ++next;
+    writer.u8(0);
+    writer.varint(next - i);
+    i = next;
+  }
+  const auto put_weight = [&](std::int32_t weight) {
+    writer.u16(static_cast<std::uint16_t>(
+        static_cast<std::int16_t>(std::clamp(weight >> 4, -32768, 32767))));
+  };
+  for (const Family& family : families_) {
+    for (std::uint32_t selector = 0; selector < family.selectors; ++selector) {
+      const std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+      for (std::uint32_t i = 0; i <= family.inputs; ++i) {
+        const std::int32_t neutral = i < family.inputs ? first_weight(family.inputs) : 0;
+        put_weight(shape.has_weights ? weight[i] : neutral);
+      }
+    }
+  }
+  for (const std::uint32_t mixed : mixed_) {
+    writer.u8(static_cast<std::uint8_t>(shape.has_weights ? std::min(mixed, 255U) : 0));
+  }
+  return std::move(writer).bytes();
+}
+
+bool ModelBank::load(ByteView state) {
+  ModelBank loaded = *this;
+  ByteReader reader(state);
+  std::fill(loaded.counters_.begin(), loaded.counters_.end(), kUnknown);
+  for (std::size_t i = 0; i < loaded.counters_.size();) {
+    const std::uint32_t count = reader.u8();
+    if (reader.failed() || count > kMaxCount) return false;
+    if (count > 0) {
+      loaded.counters_[i++] = (static_cast<std::uint32_t>(reader.u16()) << 16) | count;
+      continue;
+    }
+    const std::uint64_t run = reader.varint();
+    if (run == 0 || run > loaded.counters_.size() - i) return false;
+    i += run;
+  }
+  for (std::int32_t& weight : loaded.weights_) {
+    weight = static_cast<std::int16_t>(reader.u16()) * 16;
+  }
+  for (std::uint32_t& mixed : loaded.mixed_) mixed = reader.u8();
+  if (reader.failed() || reader.remaining() != 0) return false;
+  *this = std::move(loaded);
+  return true;
+}
+
+}  // namespace watertight

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Based on: M. Mahoney, lpaq1 (2007), the carry-less binary arithmetic coder.
+// Departures: 16-bit probabilities; the final flush writes the shortest byte string inside the
+// interval; a decoder that runs past the end says so.
+#include "codec/mode_bitmap/bit_coder.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+
+#include "base/assert.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::uint32_t kHalf = 32768;
+constexpr std::uint32_t kLeast =
+    32;  // no bit is ever cheaper than 2^-11 of a bit, nor dearer than 11
+constexpr std::uint32_t kLongestMemory = 30;
+
+// 65536 / (count + 1.6): the first observation moves the estimate by 0.62 of the error, the 31st
+// and all later ones by 1/32.
+constexpr std::array<std::uint32_t, kLongestMemory + 1> make_rates() {
+  std::array<std::uint32_t, kLongestMemory + 1> rates{};
+  for (std::uint32_t count = 0; count <= kLongestMemory; ++count) {
+    rates[count] = 655360U / (count * 10U + 16U);
+  }
+  return rates;
+}
+constexpr auto kRates = make_rates();
+
+// An arithmetic stream ends inside the four bytes that the decoder keeps ahead.
+constexpr std::size_t kLookahead = 4;
+
+std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones_of_65536) {
+  const std::uint64_t range = std::uint64_t{high} - low;
+  return low + static_cast<std::uint32_t>((range * ones_of_65536) >> 16);
+}
+
+/// The last bytes of an arithmetic stream: the decoder reads zeros past the end, so these are the
+/// shortest bytes b with low <= b000 <= high, and the smallest of them.
+struct Tail {
+  std::array<std::uint8_t, kLookahead> bytes{};
+  std::ptrdiff_t size = 0;
+};
+
+Tail shortest_tail(std::uint32_t low, std::uint32_t high) {
+  Tail tail;
+  std::uint64_t value = 0;
+  while (value < low || value > high) {
+    ++tail.size;
+    const std::uint64_t unit = std::uint64_t{1} << (32 - 8 * tail.size);
+    value = (std::uint64_t{low} + unit - 1) / unit * unit;
+  }
+  for (std::size_t i = 0; i < kLookahead; ++i) {
+    tail.bytes[i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
+  }
+  return tail;
+}
+
+}  // namespace
+
+void AdaptiveBit::learn(bool bit) {
+  const std::uint32_t rate = kRates[count_];
+  if (bit) {
+    ones_ += static_cast<std::uint32_t>((std::uint64_t{65536U - ones_} * rate) >> 16);
+    if (ones_ > 65536U - kLeast) ones_ = 65536U - kLeast;
+  } else {
+    ones_ -= static_cast<std::uint32_t>((std::uint64_t{ones_} * rate) >> 16);
+    if (ones_ < kLeast) ones_ = kLeast;
+  }
+  if (count_ < kLongestMemory) ++count_;
+}
+
+void BitEncoder::raw_bit(bool value) {
+  pending_ |= static_cast<std::uint32_t>(value) << pending_count_;
+  if (++pending_count_ == 8) {
+    bytes_.push_back(static_cast<std::uint8_t>(pending_));
+    pending_ = 0;
+    pending_count_ = 0;
+  }
+}
+
+void BitEncoder::narrow(bool value, std::uint32_t ones_of_65536) {
+  const std::uint32_t middle = split(low_, high_, ones_of_65536);
+  if (value) {
+    high_ = middle;
+  } else {
+    low_ = middle + 1;
+  }
+  while (((low_ ^ high_) >> 24) == 0) {
+    bytes_.push_back(static_cast<std::uint8_t>(high_ >> 24));
+    low_ <<= 8;
+    high_ = (high_ << 8) | 0xFFU;
+  }
+}
+
+void BitEncoder::bit(bool value, AdaptiveBit& model) {
+  if (coding_ == BitCoding::plain) {
+    raw_bit(value);
+    return;
+  }
+  narrow(value, model.ones_of_65536());
+  model.learn(value);
+}
+
+void BitEncoder::uniform(std::uint64_t value, std::uint64_t size) {
+  WATERTIGHT_ASSERT(value < size);
+  // Truncated binary: the first `shorts` values take one bit less than the others.
+  const int width = static_cast<int>(std::bit_width(size)) - 1;
+  const std::uint64_t shorts = (std::uint64_t{2} << width) - size;
+  const bool is_short = value < shorts;
+  const std::uint64_t word = is_short ? value : value + shorts;
+  for (int i = is_short ? width - 1 : width; i >= 0; --i) {
+    const bool next = ((word >> i) & 1U) != 0;
+    if (coding_ == BitCoding::plain) {
+      raw_bit(next);
+    } else {
+      narrow(next, kHalf);
+    }
+  }
+}
+
+void BitEncoder::unary(std::uint64_t value, AdaptiveBit& model) {
+  for (std::uint64_t i = 0; i < value; ++i) bit(true, model);
+  bit(false, model);
+}
+
+Bytes BitEncoder::finish() && {
+  if (coding_ == BitCoding::plain) {
+    if (pending_count_ > 0) bytes_.push_back(static_cast<std::uint8_t>(pending_));
+    return std::move(bytes_);
+  }
+  const Tail tail = shortest_tail(low_, high_);
+  bytes_.insert(bytes_.end(), tail.bytes.begin(), tail.bytes.begin() + tail.size);
+  return std::move(bytes_);
+}
+
+BitDecoder::BitDecoder(ByteView bytes, BitCoding coding) : bytes_(bytes), coding_(coding) {
+  if (coding_ == BitCoding::plain) return;
+  for (std::size_t i = 0; i < kLookahead; ++i) code_ = (code_ << 8) | next_byte();
+}
+
+std::uint32_t BitDecoder::next_byte() {
+  const std::uint32_t byte = position_ < bytes_.size() ? bytes_[position_] : 0U;
+  ++position_;
+  if (position_ > bytes_.size() + kLookahead) failed_ = true;
+  return byte;
+}
+
+bool BitDecoder::raw_bit() {
+  if (position_ >= bytes_.size()) {
+    failed_ = true;
+    return false;
+  }
+  const bool value = ((bytes_[position_] >> bit_position_) & 1U) != 0;
+  if (++bit_position_ == 8) {
+    bit_position_ = 0;
+    ++position_;
+  }
+  return value;
+}
+
+bool BitDecoder::narrow(std::uint32_t ones_of_65536) {
+  if (failed_) return false;
+  const std::uint32_t middle = split(low_, high_, ones_of_65536);
+  const bool value = code_ <= middle;
+  if (value) {
+    high_ = middle;
+  } else {
+    low_ = middle + 1;
+  }
+  while (((low_ ^ high_) >> 24) == 0) {
+    low_ <<= 8;
+    high_ = (high_ << 8) | 0xFFU;
+    code_ = (code_ << 8) | next_byte();
+  }
+  return value;
+}
+
+bool BitDecoder::bit(AdaptiveBit& model) {
+  if (coding_ == BitCoding::plain) return raw_bit();
+  const bool value = narrow(model.ones_of_65536());
+  model.learn(value);
+  return value;
+}
+
+std::uint64_t BitDecoder::uniform(std::uint64_t size) {
+  const int width = static_cast<int>(std::bit_width(size)) - 1;
+  const std::uint64_t shorts = (std::uint64_t{2} << width) - size;
+  const auto next = [this] { return coding_ == BitCoding::plain ? raw_bit() : narrow(kHalf); };
+  std::uint64_t word = 0;
+  for (int i = 0; i < width; ++i) word = (word << 1) | static_cast<std::uint64_t>(next());
+  if (word < shorts) return word;
+  return ((word << 1) | static_cast<std::uint64_t>(next())) - shorts;
+}
+
+std::uint64_t BitDecoder::unary(std::uint64_t limit, AdaptiveBit& model) {
+  for (std::uint64_t value = 0; value <= limit; ++value) {
+    if (!bit(model)) return value;
+    if (failed_) break;
+  }
+  failed_ = true;
+  return 0;
+}
+
+bool BitDecoder::is_finished() const {
+  if (failed_) return false;
+  if (coding_ == BitCoding::arithmetic) {
+    const Tail tail = shortest_tail(low_, high_);
+    const ByteView rest = bytes_.subspan(std::min(position_ - kLookahead, bytes_.size()));
+    return std::equal(rest.begin(), rest.end(), tail.bytes.begin(), tail.bytes.begin() + tail.size);
+  }
+  if (bit_position_ == 0) return position_ == bytes_.size();
+  const bool is_last = position_ + 1 == bytes_.size();
+  return is_last && (bytes_[position_] >> bit_position_) == 0;
+}
+
+}  // namespace watertight

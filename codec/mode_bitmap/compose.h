@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The composition of a polyhedron from its nodes, the bitmap and the unrecovered faces: mode
+// bitmap's side of the decoder, step by step as in the paper. Trusts nothing.
+// Source: Verbree & Si 2008, section 4.1, composition steps 1-7.
+#pragma once
+
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/limits.h"
+#include "codec/mode_bitmap/bit_coder.h"
+#include "delaunay/canonical_delaunay.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// The sections of a bitmap blob; views into it.
+struct BitmapSections {
+  ByteView vertices;
+  ByteView steiner;  // may be absent: empty
+  BitCoding bitmap_coding = BitCoding::plain;
+  ByteView bitmap;
+  ByteView unrecovered;  // may be absent: empty
+  BitCoding facet_coding = BitCoding::plain;
+  bool lists_facets = false;
+  ByteView facets;
+};
+
+/// Vertices, then Steiner vertices.
+struct Nodes {
+  std::vector<Point> points;
+  Index vertex_count = 0;
+};
+
+struct Composition {
+  SolidArrays arrays;  // exterior shell and ring first; else in no particular order
+  Index steiner_vertices = 0;
+  Index delaunay_faces = 0;
+  Index marked_faces = 0;
+  Index unrecovered_faces = 0;
+};
+
+/// 1. Read the CDT's nodes. Errors: malformed; limit_exceeded.
+Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits);
+
+/// 2. Create the Delaunay tetrahedralization of the nodes.
+/// Errors: malformed where an encoder would not have chosen mode bitmap.
+Result<CanonicalDelaunay> create_delaunay(const Nodes& nodes);
+
+/// 3. Read the bitmap. Errors: malformed.
+Result<std::vector<bool>> read_bitmap(const BitmapSections& sections,
+                                      const CanonicalDelaunay& delaunay);
+
+/// 4. Order the Delaunay faces (they come ordered) and set each according to the bitmap.
+/// 5. Create the polygonal surface out of the marked Delaunay faces: the marked ones, sorted.
+std::vector<Triangle> create_surface(const CanonicalDelaunay& delaunay,
+                                     const std::vector<bool>& marks);
+
+/// 6. Read the unrecovered faces. Errors: malformed.
+Result<std::vector<Triangle>> read_unrecovered_faces(const BitmapSections& sections,
+                                                     std::size_t point_count);
+
+/// 7. Create a watertight boundary by completing the surface with the unrecovered faces; rings,
+/// holes and shells by the facet section. Errors: malformed; limit_exceeded.
+Result<SolidArrays> complete_boundary(const BitmapSections& sections, const Nodes& nodes,
+                                      std::vector<Triangle> surface,
+                                      const std::vector<Triangle>& unrecovered,
+                                      const Limits& limits);
+
+/// All steps. Errors: malformed; limit_exceeded.
+Result<Composition> compose(const BitmapSections& sections, const Limits& limits);
+
+}  // namespace watertight

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The decomposition of a polyhedron into vertices, Steiner vertices, a bitmap of Delaunay faces and
+// a list of unrecovered faces: mode bitmap's side of the encoder, step by step as in the paper.
+// Source: Verbree & Si 2008, section 4.1, decomposition steps 1-7.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "codec/mode_bitmap/bit_coder.h"
+#include "codec/mode_bitmap/facet_structure.h"
+#include "delaunay/canonical_delaunay.h"
+#include "delaunay/certificate.h"
+#include "geometry/canonical_form.h"
+
+namespace watertight {
+
+/// The nodes of the CDT and its faces on the boundary.
+struct BoundaryComplex {
+  std::vector<Point> points;  // canonical vertices, then Steiner vertices, sorted
+  Index vertex_count = 0;
+  std::vector<Triangle> triangles;  // vertices of each increasing; in no particular order
+  std::vector<Index> facet_of;      // canonical facet of each triangle
+  /// Where step 1 had to make it already, for step 4.
+  std::optional<CanonicalDelaunay> delaunay;
+};
+
+/// What the decomposition stores.
+struct Decomposition {
+  Bytes vertices;
+  Bytes steiner;  // empty without Steiner vertices
+  BitCoding bitmap_coding = BitCoding::plain;
+  Bytes bitmap;
+  Bytes unrecovered;                  // empty if every boundary face is a Delaunay face
+  std::optional<CodedFacets> facets;  // nothing: the caller lists them
+};
+
+/// True if the canonical Delaunay tetrahedralization of these points may be part of a blob: each
+/// coordinate is 0 or of a magnitude in [2^-100, 2^100], integers or not.
+bool has_storable_delaunay(std::span<const Point> points);
+
+/// At most this many tetrahedra: the decoder's time stays in proportion to the blob.
+std::uint64_t storable_tetrahedra(std::size_t point_count);
+
+/// 1. Create a CDT of the polyhedron. With a certificate: its tetrahedralization. Without, no
+/// Steiner vertex is needed: the facets' triangulation that follows the Delaunay
+/// tetrahedralization. Errors: not_encodable if a facet has no triangulation or the certificate is
+/// not of this solid.
+Result<BoundaryComplex> create_cdt(const CanonicalSolid& solid, const Certificate* certificate);
+
+/// 2. Store the CDT's nodes: vertices and Steiner vertices.
+void store_nodes(const BoundaryComplex& complex, Decomposition& result);
+
+/// 3. Mark the CDT's faces on the boundary: the marked ones, sorted.
+/// Errors: not_encodable if two boundary triangles coincide.
+Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex);
+
+/// 4. Create the Delaunay tetrahedralization of the nodes.
+/// Errors: not_encodable if it is flat or has too many tetrahedra.
+Result<CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex);
+
+/// 5. Mark the Delaunay faces that are marked CDT faces.
+std::vector<bool> mark_delaunay_faces(const MarkedFaces& marked, const CanonicalDelaunay& delaunay);
+
+/// 6. Store the bitmap of marked and non-marked Delaunay faces: the shorter coding.
+void store_bitmap(const CanonicalDelaunay& delaunay, const std::vector<bool>& marks,
+                  Decomposition& result);
+
+/// 7. Store the marked CDT faces without a Delaunay face.
+void store_unrecovered_faces(const MarkedFaces& marked, const CanonicalDelaunay& delaunay,
+                             Decomposition& result);
+
+/// All steps, and the facet structure. Errors: not_encodable.
+Result<Decomposition> decompose(const CanonicalSolid& solid, const Certificate* certificate);
+
+}  // namespace watertight

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The bitmap: one mark per face of the Delaunay tetrahedralization in the order of sorted vertex
+// triples, plain or arithmetic coded under what the marks before say (docs/format-0.md, "Mode
+// bitmap"). And the list of unrecovered faces.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/bytes.h"
+#include "codec/mode_bitmap/bit_coder.h"
+#include "delaunay/canonical_delaunay.h"
+
+namespace watertight {
+
+/// Requires one mark per face. Cost: O(n log n).
+Bytes write_marks(BitCoding coding, const CanonicalDelaunay& delaunay,
+                  const std::vector<bool>& marks);
+
+/// Errors: malformed if the section is not exactly one mark per face.
+Result<std::vector<bool>> read_marks(ByteView section, BitCoding coding,
+                                     const CanonicalDelaunay& delaunay);
+
+/// Requires strictly increasing triples of increasing vertices.
+Bytes write_face_list(std::span<const Triangle> faces);
+
+/// Guarantees what write_face_list requires, with vertices below `vertex_count`.
+/// Errors: malformed. Each face takes at least three bytes of the section.
+Result<std::vector<Triangle>> read_face_list(ByteView section, std::size_t vertex_count);
+
+}  // namespace watertight

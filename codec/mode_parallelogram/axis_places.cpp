@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/mode_parallelogram/axis_places.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "codec/mode_parallelogram/vectors.h"
+
+namespace watertight {
+namespace {
+
+__extension__ using Wide = __int128;
+
+constexpr std::int64_t kRange = std::int64_t{1} << 54;  // of values
+constexpr int kShiftBits = 6;
+constexpr int kMostShift = 40;
+constexpr int kStepBits = 61;
+constexpr int kMostBits = 54;
+constexpr std::uint32_t kLengths = 16;
+/// The part of the bits between two values that a residual saves, for the writer's choice alone.
+constexpr double kShare = 0.7;
+
+std::uint32_t length_of(std::int64_t value) {
+  return std::min(static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint64_t>(value))),
+                  kLengths - 1);
+}
+
+/// What each value of a line of equal steps is the floor of.
+struct Line {
+  double least = 0;  // least and greatest offset of the line at the place of number 0
+  double greatest = 0;
+  std::size_t lower = 0;  // the values that set them
+  std::size_t upper = 0;
+};
+
+/// The offsets with which values[i] <= offset + places[i] * step < values[i] + 1 for all i.
+Line offsets_at(const std::vector<std::int64_t>& values, const std::vector<std::int64_t>& places,
+                double step) {
+  Line line{-1e300, 1e300, 0, 0};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double low = static_cast<double>(values[i]) - static_cast<double>(places[i]) * step;
+    if (low > line.least) {
+      line.least = low;
+      line.lower = i;
+    }
+    if (low + 1 < line.greatest) {
+      line.greatest = low + 1;
+      line.upper = i;
+    }
+  }
+  return line;
+}
+
+/// The numbers of steps from the first value to each, found by refining the step from near values
+/// to far ones; nothing if no step from 1.2 on fits.
+std::optional<std::vector<std::int64_t>> count_steps(const std::vector<std::int64_t>& values,
+                                                     double& step) {
+  std::int64_t least_gap = kRange;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    least_gap = std::min(least_gap, values[i] - values[i - 1]);
+  }
+  double low = std::max(1.2, static_cast<double>(least_gap) - 1);
+  double high = static_cast<double>(least_gap) + 1;
+  // By distances from a value to the next but few, the shortest first.
+  for (std::size_t reach = 1; reach < values.size(); reach += 1 + reach / 2) {
+    for (std::size_t i = 0; i + reach < values.size(); i += reach) {
+      const auto distance = static_cast<double>(values[i + reach] - values[i]);
+      const double fewest = std::ceil((distance - 1) / high);
+      const double most = std::floor((distance + 1) / low);
+      if (most < fewest || most < 1) return std::nullopt;
+      if (most != fewest) continue;
+      low = std::max(low, (distance - 1) / most);
+      high = std::min(high, (distance + 1) / most);
+      if (!(low < high)) return std::nullopt;
+    }
+  }
+  step = 0.5 * (low + high);
+  std::vector<std::int64_t> places;
+  for (const std::int64_t value : values) {
+    places.push_back(static_cast<std::int64_t>(
+        std::floor(static_cast<double>(value - values.front()) / step + 0.5)));
+    if (places.size() > 1 && places.back() <= places[places.size() - 2]) return std::nullopt;
+  }
+  return places;
+}
+
+/// A step for which one offset fits all places, between the least and the greatest such.
+bool fit_line(const std::vector<std::int64_t>& values, const std::vector<std::int64_t>& places,
+              double& step, double& offset) {
+  const double reach = 2 / static_cast<double>(places.back());
+  double low = step - reach;
+  double high = step + reach;
+  for (int turn = 0; turn < 100; ++turn) {
+    step = 0.5 * (low + high);
+    const Line line = offsets_at(values, places, step);
+    if (line.greatest - line.least > 1e-3) {
+      offset = 0.5 * (line.least + line.greatest);
+      return true;
+    }
+    // The room grows towards where the two values that leave none come apart.
+    (places[line.lower] > places[line.upper] ? low : high) = step;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool AxisPlaces::find_value(std::int64_t place, std::int64_t& value) const {
+  if (kind_ == Kind::listed) {
+    if (place < 0 || place >= static_cast<std::int64_t>(list_.size())) return false;
+    value = list_[static_cast<std::size_t>(place)];
+    return true;
+  }
+  const Wide wide = kind_ == Kind::every
+                        ? Wide{place}
+                        : (Wide{place} * step_ + offset_) >> shift_;  // step and place below 2^63
+  if (wide <= -kRange || wide >= kRange) return false;
+  value = static_cast<std::int64_t>(wide);
+  return true;
+}
+
+std::int64_t AxisPlaces::place_of(std::int64_t value) const {
+  if (kind_ == Kind::every) return value;
+  if (kind_ == Kind::listed) {
+    return std::lower_bound(list_.begin(), list_.end(), value) - list_.begin();
+  }
+  // The first place whose value is not below: exactly, at any magnitude.
+  const Wide above = (Wide{value} << shift_) - offset_ + step_ - 1;
+  return static_cast<std::int64_t>(above / step_ - (above % step_ < 0 ? 1 : 0));
+}
+
+double AxisPlaces::position_of(double coordinate) const {
+  if (kind_ == Kind::every) return coordinate;
+  if (kind_ == Kind::stepped) {
+    // In the middle of what the floor of a place comes from.
+    return ((coordinate + 0.5) * static_cast<double>(std::int64_t{1} << shift_) -
+            static_cast<double>(offset_)) /
+           static_cast<double>(step_);
+  }
+  const auto after = std::upper_bound(
+      list_.begin(), list_.end(), coordinate,
+      [](double wanted, std::int64_t value) { return wanted < static_cast<double>(value); });
+  if (after == list_.begin()) return 0;
+  const auto place = static_cast<double>(after - list_.begin() - 1);
+  if (after == list_.end()) return place;
+  const auto below = static_cast<double>(*(after - 1));
+  return place + (coordinate - below) / (static_cast<double>(*after) - below);
+}
+
+double AxisPlaces::spread_of(double coordinate, double distance) const {
+  if (kind_ == Kind::every) return distance;
+  if (kind_ == Kind::stepped) {
+    return distance * static_cast<double>(std::int64_t{1} << shift_) / static_cast<double>(step_);
+  }
+  return 0.5 * (position_of(coordinate + distance) - position_of(coordinate - distance));
+}
+
+bool AxisPlaces::code_steps(EntropyStream& stream, ModelBank& models, std::uint32_t number) {
+  shift_ = static_cast<int>(stream.code_bits(static_cast<std::uint64_t>(shift_), kShiftBits));
+  if (shift_ > kMostShift) return false;
+  const std::uint64_t whole = models.code_number(
+      stream, number, 0, {0, 0}, static_cast<std::uint64_t>(step_ >> shift_), kMostBits);
+  if (whole == 0 || (whole >> (kStepBits - shift_)) != 0) return false;
+  const std::uint64_t rest = stream.code_bits(static_cast<std::uint64_t>(step_), shift_);
+  step_ = static_cast<std::int64_t>((whole << shift_) | rest);
+  offset_ =
+      static_cast<std::int64_t>(stream.code_bits(static_cast<std::uint64_t>(offset_), shift_));
+  return true;
+}
+
+/// From the value 0 downward, then upward: how many, and how far each is from the one before.
+bool AxisPlaces::code_list(EntropyStream& stream, ModelBank& models, std::uint32_t number,
+                           const Limits& limits) {
+  const std::vector<std::int64_t> truth = std::move(list_);
+  const auto zero = std::lower_bound(truth.begin(), truth.end(), 0) - truth.begin();
+  list_ = {0};
+  for (const std::int64_t sign : {-1, 1}) {
+    const auto there = static_cast<std::uint64_t>(sign < 0 ? zero : std::ssize(truth) - zero - 1);
+    const std::uint64_t count = models.code_number(stream, number, 0, {1, 0}, there, 32);
+    if (count > limits.vertices) return false;
+    std::int64_t value = 0;
+    std::uint32_t before = 0;
+    std::uint32_t earlier = 0;
+    for (std::int64_t i = 1; i <= static_cast<std::int64_t>(count); ++i) {
+      const std::int64_t gap =
+          stream.is_reading() ? 1
+                              : sign * (truth[static_cast<std::size_t>(zero + sign * i)] - value);
+      const auto coded = static_cast<std::int64_t>(
+          models.code_number(stream, number, 1, {kLengths + before, before * kLengths + earlier},
+                             static_cast<std::uint64_t>(gap - 1), kMostBits));
+      value += sign * (coded + 1);
+      if (stream.failed() || value <= -kRange || value >= kRange) return false;
+      list_.push_back(value);
+      earlier = before;
+      before = length_of(coded);
+    }
+    if (sign < 0) std::reverse(list_.begin(), list_.end());
+  }
+  return true;
+}
+
+Result<AxisPlaces> AxisPlaces::code(EntropyStream& stream, ModelBank& models, std::uint32_t family,
+                                    std::uint32_t number, Kind before, const AxisPlaces& places,
+                                    const Limits& limits) {
+  AxisPlaces result = places;
+  const std::uint32_t context = 2 * static_cast<std::uint32_t>(before);
+  if (!models.code(stream, family, 0, {context}, places.kind_ != Kind::every)) return AxisPlaces{};
+  const bool is_listed =
+      models.code(stream, family, 0, {context + 1}, places.kind_ == Kind::listed);
+  result.kind_ = is_listed ? Kind::listed : Kind::stepped;
+  const bool is_sound = is_listed ? result.code_list(stream, models, number, limits)
+                                  : result.code_steps(stream, models, number);
+  if (!is_sound || stream.failed()) {
+    return Error{ErrorCode::malformed, "an axis has no list of values"};
+  }
+  return result;
+}
+
+AxisPlaces AxisPlaces::stepped(const std::vector<std::int64_t>& values) {
+  double step = 0;
+  double offset = 0;
+  const auto places = count_steps(values, step);
+  if (!places || !fit_line(values, *places, step, offset)) return {};
+  // The first vertex, of value 0, becomes the place of number 0.
+  const auto zero = std::lower_bound(values.begin(), values.end(), 0) - values.begin();
+  offset += static_cast<double>((*places)[static_cast<std::size_t>(zero)]) * step;
+  AxisPlaces result;
+  result.kind_ = Kind::stepped;
+  for (int shift = 0; shift <= kMostShift; shift += 4) {
+    const double unit = std::ldexp(1.0, shift);
+    if (step * unit >= std::ldexp(1.0, kStepBits)) break;
+    result.shift_ = shift;
+    result.step_ = static_cast<std::int64_t>(std::floor(step * unit + 0.5));
+    result.offset_ = std::clamp<std::int64_t>(static_cast<std::int64_t>(offset * unit), 0,
+                                              (std::int64_t{1} << shift) - 1);
+    const bool fits = std::all_of(values.begin(), values.end(), [&](std::int64_t value) {
+      std::int64_t found = 0;
+      return result.find_value(result.place_of(value), found) && found == value;
+    });
+    if (fits) return result;
+  }
+  return {};
+}
+
+AxisPlaces AxisPlaces::suggest(std::vector<std::int64_t> values) {
+  const auto count = static_cast<double>(values.size());
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  const auto taken = static_cast<double>(values.size());
+  if (values.size() < 2) return {};
+  const double mean_gap =
+      static_cast<double>(values.back() - values.front()) / static_cast<double>(values.size() - 1);
+  if (mean_gap < 1.2) return {};
+  const AxisPlaces steps = stepped(values);
+  const double list_gain =
+      kShare * count * rough_log2(mean_gap) - taken * (rough_log2(mean_gap) + 1.5);
+  double step_gain = 0;
+  if (steps.kind_ == Kind::stepped) {
+    const double step = std::ldexp(static_cast<double>(steps.step_), -steps.shift_);
+    step_gain = kShare * count * rough_log2(step) - 2 * steps.shift_ - 20;
+  }
+  if (step_gain <= 0 && list_gain <= 0) return {};
+  if (step_gain >= list_gain) return steps;
+  AxisPlaces result;
+  result.kind_ = Kind::listed;
+  result.list_ = std::move(values);
+  return result;
+}
+
+}  // namespace watertight

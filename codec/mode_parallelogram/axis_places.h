@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The values that the coordinates of a solid take on one axis, numbered in ascending order: a
+// residual that counts places of such a list instead of grid steps is smaller where a solid uses
+// few of the steps (parts of machines; grids finer than their source). For mode parallelogram.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/limits.h"
+#include "base/result.h"
+#include "codec/entropy/entropy_stream.h"
+#include "codec/entropy/model_bank.h"
+
+namespace watertight {
+
+class AxisPlaces {
+ public:
+  enum class Kind : std::uint8_t { every, stepped, listed };
+
+  /// Every number is the value of the place of that number.
+  AxisPlaces() = default;
+
+  Kind kind() const { return kind_; }
+  /// Whether `place` has a value, which goes to `value`: within 2^54 and, if listed, on the list.
+  bool find_value(std::int64_t place, std::int64_t& value) const;
+  /// The place of a value that has one. Cost: logarithmic in the list.
+  std::int64_t place_of(std::int64_t value) const;
+  /// Where a coordinate lies among the places, between them in proportion; 0 to the last place if
+  /// listed. Cost: likewise.
+  double position_of(double coordinate) const;
+  /// How many places a distance around `coordinate` takes.
+  double spread_of(double coordinate, double distance) const;
+
+  /// Writes, reads or measures what the list is. The first vertex of the solid has the value 0.
+  /// Errors: malformed; limit_exceeded.
+  static Result<AxisPlaces> code(EntropyStream& stream, ModelBank& models, std::uint32_t family,
+                                 std::uint32_t number, Kind before, const AxisPlaces& places,
+                                 const Limits& limits);
+
+  /// The kind that promises least for coordinates relative to the first vertex; every if none is
+  /// worth a trial. Cost: n log n.
+  static AxisPlaces suggest(std::vector<std::int64_t> values);
+
+ private:
+  bool code_steps(EntropyStream& stream, ModelBank& models, std::uint32_t number);
+  bool code_list(EntropyStream& stream, ModelBank& models, std::uint32_t number,
+                 const Limits& limits);
+  static AxisPlaces stepped(const std::vector<std::int64_t>& values);
+
+  Kind kind_ = Kind::every;
+  std::int64_t step_ = 0;  // of 2^shift_
+  std::int64_t offset_ = 0;
+  int shift_ = 0;
+  std::vector<std::int64_t> list_;
+};
+
+/// The shapes of the family and the number that AxisPlaces::code takes.
+inline constexpr FamilyShape kPlacesFamily{1, {6}};
+inline constexpr NumberShape kPlacesNumber{2, {2 * 16, 16 * 16}};
+
+}  // namespace watertight

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The surface that mode parallelogram writes: the triangles of a solid as a manifold, vertices and
+// edges where several of its sheets meet being cut apart.
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "codec/page/integer_solid.h"
+#include "geometry/point.h"
+
+namespace watertight {
+
+/// Half-edge 3 t + k runs from corner k of triangle t to the next corner.
+struct CutSurface {
+  std::vector<Triangle> triangles;     // in the order of the solid's facets; of fans
+  std::vector<Index> twin;             // half-edge -> the opposite one
+  std::vector<GridPoint> positions;    // of each fan of triangles around a vertex
+  std::vector<Index> component_first;  // component -> one of its triangles, by shells
+  std::vector<bool> is_new_shell;      // per component
+};
+
+/// Errors: not_encodable unless all facets are triangles and each shell is closed.
+Result<CutSurface> cut_surface(const IntegerSolid& solid);
+
+}  // namespace watertight

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/mode_parallelogram/cut_surface.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "codec/mode_parallelogram/corner_contexts.h"
+#include "codec/page/modes.h"
+#include "codec/mode_parallelogram/families.h"
+#include "codec/mode_parallelogram/front.h"
+#include "codec/mode_parallelogram/vectors.h"
+#include "codec/mode_parallelogram/vertex_coder.h"
+
+namespace watertight {
+
+using namespace parallelogram;
+
+namespace {
+
+constexpr int kCandidateSteps = 256;
+
+Error malformed() { return {ErrorCode::malformed, "these triangles make no closed surface"}; }
+
+/// The surface in the order of the stream, written or read.
+class SurfaceCoder {
+ public:
+  SurfaceCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
+               const Limits& limits)
+      : stream_(stream),
+        models_(models),
+        limits_(limits),
+        vertices_(stream, models, memory, limits) {}
+
+  /// Measuring: ends after so many triangles.
+  void stop_after(std::size_t triangles) { most_triangles_ = triangles; }
+  std::size_t triangle_count() const { return front_.triangles().size(); }
+
+  Status code(const CutSurface* surface, IntegerSolid& solid, const VertexOptions& options) {
+    surface_ = surface;
+    vertices_.code_options(options);
+    if (surface_) {
+      code_of_.assign(surface_->positions.size(), kNone);
+      gate_of_.assign(surface_->twin.size(), kNone);
+    }
+    bool has_more = true;
+    for (Index component = 0; has_more; ++component) {
+      if (component > 0) {
+        shells_.push_back(models_.code(stream_, kNewShell, 0, {0},
+                                       surface_ && surface_->is_new_shell[component]));
+      }
+      starts_.push_back(static_cast<Index>(front_.triangles().size()));
+      if (Status coded = code_component(component); !coded) return coded;
+      if (triangle_count() >= most_triangles_) return Done{};
+      has_more = models_.code(stream_, kMore, 0, {component > 0 ? 1U : 0U},
+                              surface_ && component + 1 < surface_->component_first.size());
+    }
+    return is_writing() ? Status(Done{}) : finish(solid);
+  }
+
+ private:
+  bool is_writing() const { return surface_ != nullptr; }
+  Index true_vertex(Index half_edge) const {
+    return surface_->triangles[half_edge / 3][half_edge % 3];
+  }
+  static Index next_of(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  static Index previous_of(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+  const GridPoint* true_position(Index true_index) const {
+    return is_writing() ? &surface_->positions[true_index] : nullptr;
+  }
+
+  Status code_component(Index component) {
+    std::array<Index, 3> half_edges{kNone, kNone, kNone};
+    std::array<Index, 3> truth{};
+    if (is_writing()) {
+      const Index first = 3 * surface_->component_first[component];
+      half_edges = {first, first + 1, first + 2};
+      for (std::size_t k = 0; k < 3; ++k) truth[k] = true_vertex(half_edges[k]);
+    }
+    Triangle seed{};
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (Status coded = vertices_.code_seed(k, true_position(truth[k])); !coded) return coded;
+      seed[k] = note_vertex(truth[k]);
+    }
+    front_.add_seed(seed, half_edges);
+    note_gates(3);
+    return walk();
+  }
+
+  static Status stuck() {
+    return Error{ErrorCode::not_encodable, "two triangles meet along two edges"};
+  }
+
+  /// The number of the vertex that was coded last.
+  Index note_vertex(Index true_index) {
+    const Index vertex = vertices_.count() - 1;
+    if (is_writing()) code_of_[true_index] = vertex;
+    stream_.enter(StreamPart::connectivity);
+    return vertex;
+  }
+
+  /// Where the new gates of the front are, by half-edges.
+  void note_gates(Index count) {
+    if (!is_writing()) return;
+    for (Index gate = front_.gate_count() - count; gate < front_.gate_count(); ++gate) {
+      gate_of_[front_[gate].half_edge] = gate;
+    }
+  }
+
+  /// Until the component is closed.
+  Status walk() {
+    for (Index corner = front_.next_corner(); corner != kNone; corner = front_.next_corner()) {
+      if (is_stuck_) return stuck();
+      if (stream_.failed()) return malformed();
+      if (front_.triangles().size() >= limits_.facets) {
+        return Error{ErrorCode::limit_exceeded, "the solid has too many facets"};
+      }
+      if (triangle_count() >= most_triangles_) return Done{};
+      if (!front_[corner].is_refused && code_close(corner)) continue;
+      const Index before = front_[corner].previous;
+      if (!front_[before].is_refused && code_close(before)) continue;
+      if (Status extended = extend(corner); !extended) return extended;
+    }
+    if (is_stuck_) return stuck();
+    return front_.open_count() == 0 ? Status(Done{}) : Status(malformed());
+  }
+
+  /// Whether a triangle fills the corner; adds it or refuses.
+  bool code_close(Index corner) {
+    const Gate& gate = front_[corner];
+    const Gate& after = front_[gate.next];
+    const bool ends = after.next == gate.previous;
+    Index half_edge = kNone;
+    bool truth = false;
+    if (is_writing()) {
+      const Index beyond = surface_->twin[gate.half_edge];
+      truth = surface_->twin[previous_of(beyond)] == after.half_edge;
+      half_edge = next_of(beyond);
+      if (ends && truth) {
+        // In a loop of three a triangle ends all or none.
+        is_stuck_ = surface_->twin[half_edge] != front_[gate.previous].half_edge;
+      }
+    }
+    const CornerView view{front_,
+                          centres_,
+                          corner,
+                          vertices_.predict(front_, corner),
+                          vertices_.predict(front_, gate.next),
+                          mean_edge_,
+                          closings_};
+    const bool closes = models_.code(stream_, kClose,
+                                     ends                               ? 2U
+                                     : front_[gate.previous].is_refused ? 1U
+                                                                        : 0U,
+                                     corner_contexts(view), truth);
+    closings_ = (closings_ * 2 + (closes ? 1U : 0U)) & 255U;
+    if (closes) {
+      front_.close_corner(corner, half_edge);
+      if (!ends) note_gates(1);
+      return true;
+    }
+    front_.refuse(corner);
+    if (ends) {  // the same triangle at all three corners
+      front_.refuse(gate.next);
+      front_.refuse(gate.previous);
+    }
+    return false;
+  }
+
+  /// The triangle beyond the gate has a new vertex or joins the front elsewhere.
+  Status extend(Index corner) {
+    const Gate gate = front_[corner];
+    std::array<Index, 2> half_edges{kNone, kNone};
+    Index tip = kNone;
+    if (is_writing()) {
+      const Index beyond = surface_->twin[gate.half_edge];
+      half_edges = {next_of(beyond), previous_of(beyond)};
+      tip = true_vertex(half_edges[1]);
+    }
+    const bool is_new =
+        models_.code(stream_, kNew, 0,
+                     {bucket(gate.room * 4, 32), bucket(front_[gate.previous].room * 4, 32), news_,
+                      (news_ & 7U) * 64 + (closings_ & 63U)},
+                     is_writing() && code_of_[tip] == kNone);
+    news_ = (news_ * 2 + (is_new ? 1U : 0U)) & 63U;
+    const Vector predicted = vertices_.predict(front_, corner);
+    if (!is_new) return join(corner, half_edges, predicted);
+    if (Status coded =
+            vertices_.code_tip(front_, corner, is_writing() ? true_position(tip) : nullptr);
+        !coded)
+      return coded;
+    const Index vertex = note_vertex(tip);
+    const double size = length(centres_[vertex] - centres_[gate.start]);
+    mean_edge_ += (size - mean_edge_) / (1.0 + std::min<double>(vertex, 1000));
+    front_.add_vertex(corner, vertex, half_edges);
+    note_gates(2);
+    return Done{};
+  }
+
+  /// Which corner of the front: by its distance from the prediction among those near on the loop.
+  Status join(Index corner, const std::array<Index, 2>& half_edges, const Vector& predicted) {
+    const Gate& gate = front_[corner];
+    Index truth = kNone;
+    if (is_writing()) {
+      // The known triangle that is met first on turning around the vertex.
+      Index incoming = surface_->twin[half_edges[1]];
+      const Index first = incoming;
+      while (gate_of_[incoming] == kNone || !front_[gate_of_[incoming]].is_open) {
+        incoming = surface_->twin[next_of(incoming)];
+        if (incoming == first) return stuck();
+      }
+      truth = gate_of_[incoming];
+    }
+    candidates_.clear();
+    const Index last = front_[front_[gate.previous].previous].previous;
+    Index ahead = front_[gate.next].next;
+    for (int steps = 0; steps < kCandidateSteps && ahead != last && ahead != corner; ++steps) {
+      add_candidate(ahead, predicted);
+      ahead = front_[ahead].next;
+    }
+    Index behind = last;
+    for (int steps = 0; steps < kCandidateSteps && ahead != corner && behind != ahead; ++steps) {
+      add_candidate(behind, predicted);
+      behind = front_[behind].previous;
+    }
+    if (ahead == last && ahead != corner) add_candidate(ahead, predicted);
+    std::sort(candidates_.begin(), candidates_.end(), [](const auto& a, const auto& b) {
+      return a.distance != b.distance ? a.distance < b.distance : a.corner < b.corner;
+    });
+    candidates_.erase(
+        std::unique(candidates_.begin(), candidates_.end(),
+                    [](const auto& a, const auto& b) { return a.corner == b.corner; }),
+        candidates_.end());
+    const auto found = std::find_if(candidates_.begin(), candidates_.end(),
+                                    [&](const auto& c) { return c.corner == truth; });
+    const auto place = static_cast<std::uint64_t>(found - candidates_.begin());
+    const std::uint64_t rank =
+        models_.code_number(stream_, kRank, 0, {0}, found == candidates_.end() ? 0 : place + 1, 32);
+    if (rank > candidates_.size() || stream_.failed()) return malformed();
+    const auto other = rank > 0
+                           ? candidates_[rank - 1].corner
+                           : static_cast<Index>(stream_.code_uniform(truth, front_.gate_count()));
+    const Gate& target = front_[other];
+    const bool is_neighbour = other == corner || other == gate.previous || other == gate.next ||
+                              other == front_[gate.previous].previous;
+    if (!target.is_open || is_neighbour) {
+      return is_writing() ? stuck() : Status(malformed());
+    }
+    front_.join_corner(corner, other, half_edges);
+    note_gates(2);
+    return Done{};
+  }
+
+  void add_candidate(Index corner, const Vector& predicted) {
+    const Vector offset = centres_[front_[corner].end] - predicted;
+    candidates_.push_back({dot(offset, offset), corner});
+  }
+
+  /// Glues what was cut apart, by position.
+  Status finish(IntegerSolid& solid) const {
+    const std::vector<GridPoint>& cells = vertices_.cells();
+    std::vector<Index> order(cells.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::sort(order.begin(), order.end(),
+              [&](Index a, Index b) { return cells[a] != cells[b] ? cells[a] < cells[b] : a < b; });
+    std::vector<Index> glued(cells.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const GridPoint& position = cells[order[i]];
+      if (i == 0 || position != cells[order[i - 1]]) {
+        GridPoint absolute{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          absolute[k] = position[k] + vertices_.origin()[k];
+          if (absolute[k] <= -(std::int64_t{1} << 53) || absolute[k] >= (std::int64_t{1} << 53)) {
+            return malformed();
+          }
+        }
+        solid.vertices.push_back(absolute);
+      }
+      glued[order[i]] = static_cast<Index>(solid.vertices.size() - 1);
+    }
+    const auto& triangles = front_.triangles();
+    for (std::size_t t = 0, component = 1; t < triangles.size(); ++t) {
+      if (component < starts_.size() && starts_[component] == t) {
+        if (shells_[component - 1]) solid.shell_offsets.push_back(solid.facet_count());
+        ++component;
+      }
+      for (const Index vertex : triangles[t]) solid.ring_vertices.push_back(glued[vertex]);
+      solid.ring_offsets.push_back(static_cast<Index>(solid.ring_vertices.size()));
+      solid.facet_offsets.push_back(solid.ring_count());
+    }
+    solid.shell_offsets.push_back(solid.facet_count());
+    if (solid.shell_count() > limits_.shells) {
+      return Error{ErrorCode::limit_exceeded, "the solid has too many shells"};
+    }
+    return Done{};
+  }
+
+  struct Candidate {
+    double distance = 0;
+    Index corner = 0;
+  };
+
+  EntropyStream& stream_;
+  ModelBank& models_;
+  Limits limits_;
+  const CutSurface* surface_ = nullptr;  // nothing when reading
+  VertexCoder vertices_;
+  const std::vector<Vector>& centres_ = vertices_.centres();
+  SurfaceFront front_{centres_};
+  std::vector<Index> starts_;   // component -> first triangle
+  std::vector<bool> shells_;    // component but the first -> whether it begins a shell
+  std::vector<Index> code_of_;  // writing: vertex of the surface -> its number in the stream
+  std::vector<Index> gate_of_;  // writing: half-edge of the surface -> gate
+  std::vector<Candidate> candidates_;
+  std::size_t most_triangles_ = ~std::size_t{0};
+  double mean_edge_ = 1;
+  std::uint32_t closings_ = 0;  // the last answers of Close, latest lowest
+  std::uint32_t news_ = 0;      // of New
+  bool is_stuck_ = false;       // writing: the surface has edges between the same two vertices
+};
+
+/// What the options are measured on: so many triangles of a surface.
+constexpr std::size_t kTrialTriangles = 2500;
+
+/// Smaller ones are not worth the time of trying all.
+constexpr std::size_t kFewTriangles = 64;
+
+/// Tries options on a part of a surface.
+class OptionTrials {
+ public:
+  OptionTrials(const CutSurface& surface, ModelBank& models, const PageMemory& memory,
+               const Limits& limits)
+      : surface_(surface), models_(models), memory_(memory), limits_(limits) {}
+
+  Status attempt(const VertexOptions& options) {
+    EntropyStream meter = EntropyStream::meter();
+    const BankTrial trial(models_, surface_.positions.size());
+    IntegerSolid unused;
+    SurfaceCoder coder(meter, models_, memory_, limits_);
+    coder.stop_after(kTrialTriangles);
+    if (Status coded = coder.code(&surface_, unused, options); !coded) return coded;
+    // The lists of values come once, the rest goes on for all triangles.
+    const auto once = static_cast<double>(meter.cost(StreamPart::position));
+    const double share = static_cast<double>(surface_.triangles.size()) /
+                         static_cast<double>(coder.triangle_count());
+    const double cost = once + (static_cast<double>(meter.cost()) - once) * share;
+    if (has_best_ && cost >= least_) return Done{};
+    has_best_ = true;
+    least_ = cost;
+    best_ = options;
+    return Done{};
+  }
+  const VertexOptions& best() const { return best_; }
+
+ private:
+  const CutSurface& surface_;
+  ModelBank& models_;  // as it was, after each trial
+  const PageMemory& memory_;
+  Limits limits_;
+  VertexOptions best_;
+  double least_ = 0;
+  bool has_best_ = false;
+};
+
+std::array<AxisPlaces, 3> suggest_places(const CutSurface& surface) {
+  std::array<AxisPlaces, 3> places{};
+  const GridPoint& origin = surface.positions[surface.triangles.front()[0]];
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::vector<std::int64_t> values;
+    for (const GridPoint& position : surface.positions) values.push_back(position[k] - origin[k]);
+    places[k] = AxisPlaces::suggest(std::move(values));
+  }
+  return places;
+}
+
+/// The options that take least: of all with places for every number, and of those near the best
+/// of them with the places that the coordinates take.
+Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& models,
+                                     const PageMemory& memory, const Limits& limits) {
+  OptionTrials trials(surface, models, memory, limits);
+  const bool is_small = surface.triangles.size() < kFewTriangles;
+  std::vector<VertexOptions> options{{}, {.has_repeats = true}};
+  if (!is_small) options.push_back({.has_guesses = true});
+  for (const VertexOptions& tried : options) {
+    if (const Status status = trials.attempt(tried); !status) return status.error();
+  }
+  if (is_small) return trials.best();
+  if (trials.best().has_guesses || trials.best().has_repeats) {
+    const Status status = trials.attempt({.has_repeats = true, .has_guesses = true});
+    if (!status) return status.error();
+  }
+  VertexOptions base = trials.best();
+  base.places = suggest_places(surface);
+  const bool has_places = std::any_of(
+      base.places.begin(), base.places.end(),
+      [](const AxisPlaces& places) { return places.kind() != AxisPlaces::Kind::every; });
+  for (unsigned change = 0; has_places && change < 3; ++change) {
+    VertexOptions changed = base;
+    if (change == 1) changed.has_repeats = !changed.has_repeats;
+    if (change == 2) changed.has_guesses = !changed.has_guesses;
+    if (const Status tried = trials.attempt(changed); !tried) return tried.error();
+  }
+  if (trials.best().has_guesses) {
+    VertexOptions changed = trials.best();
+    changed.habit = 1;
+    if (const Status tried = trials.attempt(changed); !tried) return tried.error();
+  }
+  return trials.best();
+}
+
+}  // namespace
+
+Status code_parallelogram(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
+                          IntegerSolid& solid, WriterChoice& choice, const Limits& limits) {
+  if (stream.is_reading()) {
+    return SurfaceCoder(stream, models, memory, limits).code(nullptr, solid, {});
+  }
+  const Result<CutSurface> surface = cut_surface(solid);
+  if (!surface) return surface.error();
+  if (!choice.vertex_options) {
+    auto options = choose_options(*surface, models, memory, limits);
+    if (!options) return options.error();
+    choice.vertex_options = std::move(options).value();
+  }
+  return SurfaceCoder(stream, models, memory, limits)
+      .code(&*surface, solid, *choice.vertex_options);
+}
+
+}  // namespace watertight

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where the third vertex of the triangle beyond a gate is expected: a sum of offsets between the
+// vertices around it, whose coefficients follow the surface. For mode parallelogram.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/mode_parallelogram/least_squares.h"
+#include "codec/mode_parallelogram/front.h"
+#include "codec/mode_parallelogram/vectors.h"
+
+namespace watertight {
+
+class TipPrediction {
+ public:
+  static constexpr std::uint32_t kGuesses = 6;
+  /// What is expected at a gate.
+  struct Tip {
+    /// What the coefficients say; then, each by itself: the parallelogram beyond the gate, the one
+    /// beyond the next gate, the apex mirrored in the gate, the parallelogram of the triangle of
+    /// the next gate, and the previous gate prolonged.
+    std::array<Vector, kGuesses> guesses{};
+    Vector normal{};          // of the known triangle
+    double size = 0;          // of the gate
+    std::uint32_t bends = 0;  // how flat the surface is at both sides, of kBendClasses
+    std::uint32_t spans = 0;  // how far both corners of the gate are open, of kSpanClasses
+  };
+  static constexpr std::uint32_t kSpanClasses = 16;
+  static constexpr std::uint32_t kBendClasses = 64;
+
+  /// Predicts the tip beyond the gate of `corner`. `centres` are of the vertices.
+  const Tip& predict(const SurfaceFront& front, const std::vector<Vector>& centres, Index corner);
+  const Tip& tip() const { return tip_; }
+
+  /// How far to go along the axis that is coded last, when the coordinates coded before leave the
+  /// plane of the known triangle by `slope`.
+  double shift_along(std::size_t axis, double slope);
+  /// The same coordinate turned out to be `missed` from the prediction without shift.
+  void learn_shift(double missed, double expected);
+  /// The tip that was predicted is at `centre`; its miss was expected to be `expected`.
+  void learn(const Vector& centre, double expected);
+
+ private:
+  static constexpr std::size_t kOffsets = 9;
+  static constexpr double kMemory = 0.995;  // of the coefficients, by vertex
+  using Predictor = LeastSquares<kOffsets>;
+
+  Tip tip_;
+  std::array<Predictor::Features, 3> features_{};  // by axis
+  Vector middle_{};                                // of the gate
+  double shift_ = 0;                               // to the plane of the known triangle
+  double predicted_shift_ = 0;
+  std::vector<Predictor> predictors_{kSpanClasses, Predictor{{1, 0, 0, 0, 0, 0, 0, 0, 0}, 3}};
+  std::vector<LeastSquares<1>> shift_predictors_{kBendClasses, LeastSquares<1>{{0.5}, 4}};
+};
+
+/// Within the range of coordinates, also if it is no number.
+inline double tamed(double x) { return x > -9e15 ? (x < 9e15 ? x : 9e15) : -9e15; }
+
+}  // namespace watertight

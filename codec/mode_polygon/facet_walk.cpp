@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Shells, facets, and where a ring begins. Its other vertices: polygon_ring.cpp.
+#include "codec/mode_polygon/facet_walk.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "codec/mode_polygon/families.h"
+
+namespace watertight {
+namespace polygon {
+
+Result<WalkedSurface> SurfaceWalk::run() {
+  for (Index shell = 0; !stopped(); ++shell) {
+    if (shell >= limits_.shells) {
+      fail(ErrorCode::limit_exceeded, "a solid has more shells than allowed");
+      break;
+    }
+    code_shell(shell);
+    PolygonSurface& surface = result_.surface;
+    surface.shell_offsets.push_back(surface.facet_count());
+    const bool more = truth_ != nullptr && shell + 1 < truth_->first_half.size();
+    if (!code(kMoreShells, 0, {capped(shell, 2)}, more)) break;
+  }
+  if (error_) return *error_;
+  if (stream_.failed()) return Error{ErrorCode::malformed, "the walk over the facets ends early"};
+  return std::move(result_);
+}
+
+void SurfaceWalk::code_shell(Index shell) {
+  for (Index component = 0; !stopped(); ++component) {
+    Index truth_half = kNone;
+    if (truth_ != nullptr) {
+      truth_half = component == 0 ? truth_->first_half[shell] : unvisited_half(shell);
+    }
+    if (component > 0 &&
+        !code(kMoreShells, 0, {2 + capped(component - 1, 2)}, truth_half != kNone)) {
+      return;
+    }
+    code_component(truth_half);
+  }
+}
+
+Index SurfaceWalk::unvisited_half(Index shell) {
+  const PolygonSurface& surface = truth_->surface;
+  unvisited_ = std::max(unvisited_, surface.shell_offsets[shell]);
+  while (unvisited_ < surface.shell_offsets[shell + 1] && facet_done_[unvisited_]) ++unvisited_;
+  if (unvisited_ == surface.shell_offsets[shell + 1]) return kNone;
+  return surface.ring_offsets[surface.facet_offsets[unvisited_]];
+}
+
+void SurfaceWalk::code_component(Index truth_half) {
+  code_facet(kNone, truth_half);
+  PolygonSurface& surface = result_.surface;
+  for (; gate_ < surface.vertex.size() && !stopped(); ++gate_) {
+    if (surface.twin[gate_] != kNone) continue;
+    code_facet(gate_, truth_ ? truth_->surface.twin[half_truth_[gate_]] : kNone);
+  }
+}
+
+void SurfaceWalk::code_facet(Index gate, Index truth_half) {
+  PolygonSurface& surface = result_.surface;
+  if (surface.facet_count() >= limits_.facets) {
+    fail(ErrorCode::limit_exceeded, "a solid has more facets than allowed");
+    return;
+  }
+  ring_level_ = gate == kNone ? std::uint8_t{0}
+                              : static_cast<std::uint8_t>(capped(
+                                    level_[surface.facet_of[surface.ring_of[gate]]] + 1, kLevels));
+  level_.push_back(ring_level_);
+  code_ring(gate, truth_half, false);
+  const Index size = size_;
+  std::vector<Index> interiors;  // half-edges of the truth in the other rings of the facet
+  if (truth_ != nullptr) {
+    const PolygonSurface& truth = truth_->surface;
+    const Index own = truth.ring_of[truth_half];
+    const Index facet = truth.facet_of[own];
+    facet_done_[facet] = true;
+    for (Index ring = truth.facet_offsets[facet]; ring < truth.facet_offsets[facet + 1]; ++ring) {
+      if (ring != own) interiors.push_back(truth.ring_offsets[ring]);
+    }
+  }
+  Index rings = 1;
+  for (; !stopped(); ++rings) {
+    const bool more = rings <= interiors.size();
+    if (!code(
+            kMoreRings, 0,
+            {capped(rings - 1, 3) * 3 + ring_level_, capped(rings - 1, 3) * 16 + capped(size, 16)},
+            more)) {
+      break;
+    }
+    code_ring(kNone, more ? interiors[rings - 1] : kNone, true);
+  }
+  if (stopped()) return;
+  code_exterior(rings, truth_half);
+  surface.facet_offsets.push_back(static_cast<Index>(surface.ring_offsets.size() - 1));
+}
+
+/// Which of the rings of the last facet is the exterior one: most often the first.
+void SurfaceWalk::code_exterior(Index rings, Index truth_half) {
+  Index exterior = 0;
+  if (truth_ != nullptr) {
+    // The rings come in the order of the truth, but for the one that was reached first.
+    const PolygonSurface& truth = truth_->surface;
+    const Index own = truth.ring_of[truth_half];
+    exterior = own == truth.facet_offsets[truth.facet_of[own]] ? 0 : 1;
+  }
+  if (rings > 1) exterior = static_cast<Index>(stream_.code_uniform(exterior, rings));
+  result_.exterior.push_back(result_.surface.facet_offsets.back() + exterior);
+}
+
+void SurfaceWalk::code_ring(Index gate, Index truth_half, bool is_interior) {
+  const PolygonSurface& surface = result_.surface;
+  ring_number_ = static_cast<Index>(surface.ring_offsets.size() - 1);
+  if (ring_number_ >= limits_.rings) {
+    fail(ErrorCode::limit_exceeded, "a solid has more rings than allowed");
+    return;
+  }
+  backward_.clear();
+  forward_.clear();
+  is_closed_ = false;
+  end_twin_ = kNone;
+  size_ = 0;
+  if (gate != kNone) {
+    begin_at_gate(gate, truth_half);
+  } else if (is_interior) {
+    begin_interior(truth_half);
+  } else {
+    begin_at_vertex(kNone, truth_half);
+  }
+  if (stopped()) return;
+  code_size(is_interior);
+  fill();
+  if (!stopped()) append_ring();
+}
+
+void SurfaceWalk::begin_at_gate(Index gate, Index truth_half) {
+  const Index from = target(gate);
+  const Index to = result_.surface.vertex[gate];
+  seen_in_ring_[from] = seen_in_ring_[to] = ring_number_;
+  forward_.push_back({from, gate, truth_half});
+  end_ = to;
+  end_twin_ = gate;
+  end_truth_ = truth_next(truth_half);
+  extend_forward();
+  if (!is_closed_) extend_backward();
+}
+
+/// Where all facets but one are known around a vertex, the ring goes on along the known edge.
+void SurfaceWalk::extend_forward() {
+  while (chain_count_[end_] == 1 && remaining_[end_] == 1 && !stopped()) {
+    const Index edge = chains_[first_chain_[end_]].in;
+    const Index to = result_.surface.vertex[edge];
+    forward_.push_back({end_, edge, end_truth_});
+    end_twin_ = edge;
+    end_truth_ = end_truth_ == kNone ? kNone : truth_next(end_truth_);
+    end_ = to;
+    if (to == forward_.front().vertex) {
+      is_closed_ = true;
+      return;
+    }
+    if (seen_in_ring_[to] == ring_number_) return fail(ErrorCode::malformed, "a ring meets itself");
+    seen_in_ring_[to] = ring_number_;
+  }
+}
+
+void SurfaceWalk::extend_backward() {
+  Index start = forward_.front().vertex;
+  Index truth = forward_.front().truth;
+  while (chain_count_[start] == 1 && remaining_[start] == 1 && !stopped()) {
+    const Index edge = chains_[first_chain_[start]].out;
+    start = target(edge);
+    truth = truth_ ? truth_->surface.previous(truth) : kNone;
+    backward_.push_back({start, edge, truth});
+    if (start == end_) {
+      // The last step was to the end of the ring: its edge closes it.
+      forward_.push_back(backward_.back());
+      backward_.pop_back();
+      is_closed_ = true;
+      return;
+    }
+    if (seen_in_ring_[start] == ring_number_) {
+      return fail(ErrorCode::malformed, "a ring meets itself");
+    }
+    seen_in_ring_[start] = ring_number_;
+  }
+}
+
+void SurfaceWalk::begin_interior(Index truth_half) {
+  Start start = Start::fresh;
+  Index steps = 0;
+  Index found = kNone;
+  if (truth_ != nullptr) {
+    const PolygonSurface& truth = truth_->surface;
+    const Index ring = truth.ring_of[truth_half];
+    Index steps_here = 0;
+    for (Index half = gate_; half < last_gate() && steps_here < kGateLimit; ++half) {
+      if (result_.surface.twin[half] != kNone) continue;
+      if (truth.ring_of[truth.twin[half_truth_[half]]] == ring) {
+        start = Start::gate;
+        steps = steps_here;
+        break;
+      }
+      ++steps_here;
+    }
+    Index best = kNone;
+    if (start != Start::gate) {
+      for (Index i = 0; i < truth.ring_size(ring); ++i) {
+        const Index half = truth.ring_offsets[ring] + i;
+        if (known_as_[truth_vertex(half)] == kNone) continue;
+        if (best == kNone) best = half;
+      }
+      if (best != kNone) {
+        start = Start::known;
+        found = best;
+      }
+    }
+  }
+  const bool is_fresh = code(kRingStart, 0, {0}, start == Start::fresh);
+  if (is_fresh) return begin_at_vertex(kNone, truth_half);
+  if (code(kRingStart, 0, {1}, start == Start::gate)) {
+    steps = static_cast<Index>(models_.code_number(stream_, kGateSteps, 0, {0}, steps, 9));
+    Index gate = gate_;
+    for (; gate < last_gate(); ++gate) {
+      if (result_.surface.twin[gate] == kNone && steps-- == 0) break;
+    }
+    if (gate >= last_gate()) {
+      return fail(ErrorCode::malformed, "an interior ring begins at no edge");
+    }
+    return begin_at_gate(gate, truth_ ? truth_->surface.twin[half_truth_[gate]] : kNone);
+  }
+  const Index vertex = truth_ ? known_as_[truth_vertex(found)] : 0;
+  const auto known =
+      static_cast<Index>(stream_.code_uniform(vertex, result_.surface.vertex_count()));
+  begin_at_vertex(known, found);
+}
+
+/// `vertex` is kNone for a new one.
+void SurfaceWalk::begin_at_vertex(Index vertex, Index truth_half) {
+  end_truth_ = truth_half;
+  end_ = vertex;
+  if (vertex == kNone) {
+    // Its degree is told before the size of the ring.
+    end_ = new_vertex();
+    if (stopped()) return;
+  } else if (remaining_[vertex] == 0) {
+    return fail(ErrorCode::malformed, "a ring comes to a vertex that is finished");
+  }
+  seen_in_ring_[end_] = ring_number_;
+}
+
+void SurfaceWalk::code_size(bool is_interior) {
+  const auto run = static_cast<Index>(backward_.size() + forward_.size() + (is_closed_ ? 0 : 1));
+  if (is_closed_) {
+    size_ = run;
+    if (run < 3) fail(ErrorCode::malformed, "a ring has fewer than 3 vertices");
+    return;
+  }
+  list_loop();
+  const Index least = std::max(run, Index{3});
+  const Index truth_size =
+      truth_ ? truth_->surface.ring_size(truth_->surface.ring_of[end_truth_]) : least;
+  const std::uint32_t place =
+      is_interior ? 3U : static_cast<std::uint32_t>(ring_level_);  // 0: the first ring of all
+  // The size that would close the loop of the front.
+  const std::int64_t closing =
+      loop_reaches_start_ ? std::int64_t{run} + static_cast<std::int64_t>(loop_.size()) : 0;
+  const Index gate_size =
+      forward_.empty() || forward_.front().twin == kNone
+          ? 0
+          : result_.surface.ring_size(result_.surface.ring_of[forward_.front().twin]);
+  for (size_ = least; size_ < least + kUnaryLimit; ++size_) {
+    const std::uint32_t step = capped(size_ - least, 12);
+    const std::uint32_t number = capped(size_ - 3, 16);
+    const std::uint32_t to_closing = closing == 0 ? 0U : 1 + capped(closing + 1 - size_, 4);
+    if (code(kRingSize, place,
+             {step * 32 + capped(run - 1, 8) * 4 + place, number * 4 + place,
+              (capped(run - 1, 8) * 5 + to_closing) * 4 + capped(step, 4),
+              (capped(gate_size, 8) * 4 + place) * 4 + capped(step, 4),
+              (number * 4 + capped(last_degree_ - 2, 4)) * 3 + capped(run - 1, 3)},
+             size_ == truth_size)) {
+      return;
+    }
+    if (stopped()) return;
+  }
+  const std::uint64_t rest =
+      models_.code_number(stream_, kLongRing, 0, {0}, truth_ ? truth_size - size_ : 0, kCountBits);
+  size_ += static_cast<Index>(rest);
+}
+
+/// The vertices that follow the end of the ring along the front, those whose facets can grow.
+void SurfaceWalk::list_loop() {
+  loop_.clear();
+  loop_reaches_start_ = false;
+  if (chain_count_[end_] == 0) return;
+  const Index start = backward_.empty() ? (forward_.empty() ? end_ : forward_.front().vertex)
+                                        : backward_.back().vertex;
+  const Index own = end_twin_ == kNone ? first_chain_[end_] : chain_with_out(end_, end_twin_);
+  Index half = chains_[own].in;
+  for (Index step = 0; step < kLoopLimit; ++step) {
+    const Index vertex = result_.surface.vertex[half];
+    if (vertex == start) {
+      loop_reaches_start_ = true;
+      return;
+    }
+    if (vertex == end_) return;
+    if (step > 0 && remaining_[vertex] > chain_count_[vertex] &&
+        seen_in_ring_[vertex] != ring_number_) {
+      loop_.push_back(vertex);
+    }
+    half = chains_[chain_with_out(vertex, half)].in;
+  }
+}
+
+}  // namespace polygon
+
+Result<WalkedSurface> code_surface(EntropyStream& stream, ModelBank& models,
+                                   const SurfaceTruth* truth, const Limits& limits) {
+  return polygon::SurfaceWalk(stream, models, truth, limits).run();
+}
+
+}  // namespace watertight

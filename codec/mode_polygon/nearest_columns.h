@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The columns of earlier solids of a page near a place, best first: a vertex that stands in one of
+// them is coded by its rank. For mode `polygon`.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "codec/mode_polygon/plane_geometry.h"
+
+namespace watertight {
+
+/// How little a column is to be expected, from its offset to a place: the sum of the absolute
+/// offsets along and `across_weight` times across the direction of `turn`.
+struct ColumnScore {
+  GridColumn base{};
+  Turn turn{Flat{}};
+  std::uint64_t across_weight = 1;
+  std::uint64_t operator()(const GridColumn& column) const;
+};
+
+/// The `keep` columns of the least score, ties by the column, among the `window` columns before and
+/// after the place in sorted order. `columns` are sorted. Cost: O(window log keep).
+std::vector<GridColumn> nearest_columns(std::span<const GridColumn> columns,
+                                        const ColumnScore& score, std::size_t window,
+                                        std::size_t keep);
+
+}  // namespace watertight

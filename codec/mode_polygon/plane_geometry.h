@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Plane geometry for predictions in mode `polygon`: whole numbers, or IEEE + - * / sqrt in a fixed
+// order, so that every machine predicts the same. For the mode only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "codec/page/integer_solid.h"
+
+namespace watertight {
+
+/// A vector of the xy plane in grid steps.
+struct Flat {
+  double x = 0;
+  double y = 0;
+};
+inline Flat operator-(Flat a, Flat b) { return {a.x - b.x, a.y - b.y}; }
+inline double dot(Flat a, Flat b) { return a.x * b.x + a.y * b.y; }
+inline double cross(Flat a, Flat b) { return a.x * b.y - a.y * b.x; }
+
+/// The nearest whole number; halves upward. Magnitudes from 2^62 on become 0: no prediction.
+std::int64_t to_whole(double value);
+
+using GridColumn = std::array<std::int64_t, 2>;
+
+/// A turn of the integer plane that is one to one: quarter turns, then three shears with rounding.
+/// Within about one step of the true rotation.
+class Turn {
+ public:
+  /// Turns `direction` to the first axis. The zero vector gives the identity.
+  explicit Turn(Flat direction);
+  GridColumn forward(GridColumn offset) const;
+  GridColumn back(GridColumn turned) const;
+
+ private:
+  int quarters_ = 0;
+  double shear_ = 0;  // -tan of half the angle
+  double lift_ = 0;   // sine of the angle
+};
+
+/// The plane of three points: normal . (point - origin) = 0.
+struct FacetPlane {
+  enum class Kind : std::uint8_t { unknown, level, steep, wall };
+  std::array<Index, 3> points{kNone, kNone, kNone};  // known vertices, as many as there are
+  int count = 0;
+  std::array<double, 3> normal{};
+  double area = 0;  // squared length of the normal
+  Kind kind = Kind::unknown;
+  GridPoint origin{};
+
+  /// Takes one more vertex into account: keeps those three that span the largest triangle.
+  void add(Index vertex, const std::vector<GridPoint>& points_of);
+  /// The height of the plane in a column, of its origin if that is 2^53 or more. Requires a kind
+  /// that is level or steep.
+  std::int64_t height(GridColumn column) const;
+  /// How far that is from what is known: squared distance from the origin by twice the area of the
+  /// triangle in the xy plane, times 16. The same requirement.
+  double reach(GridColumn column) const;
+};
+
+}  // namespace watertight

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How mode `polygon` codes the position of one vertex after the other: the state that both
+// directions of the stream keep alike. For the mode only.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "codec/mode_polygon/plane_geometry.h"
+#include "codec/mode_polygon/positions.h"
+
+namespace watertight::polygon {
+
+inline constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
+inline constexpr int kCoordinateBits = 55;
+inline constexpr std::size_t kFanLimit = 12;    // corners of a vertex that are looked at
+inline constexpr std::size_t kLevelLimit = 12;  // heights that are remembered
+inline constexpr std::size_t kHeightLimit = 6;  // of them those that are offered
+
+using Kind = FacetPlane::Kind;
+
+/// What a column is predicted from: one model selector each.
+enum class Frame : std::uint8_t { start, bare, edge, corner, closing, wall, walls };
+inline constexpr std::uint32_t kFrames = 7;
+inline constexpr std::size_t kDirectionLimit = 8;
+/// Squared sine of what counts as the same direction.
+inline constexpr double kDirectionSlack = 0.003 * 0.003;
+
+/// Whether `edge` has the direction of `line`, up to kDirectionSlack or two grid steps.
+inline bool is_along(Flat edge, Flat line) {
+  const double off = cross(edge, line);
+  const double length = dot(line, line);
+  return off * off <= length * std::max(kDirectionSlack * dot(edge, edge), 4.0);
+}
+
+inline Flat quarter_turned(Flat vector) { return {-vector.y, vector.x}; }
+
+struct Neighbor {
+  Index vertex = kNone;
+  Index facet = kNone;         // left of the edge to it
+  Index other_facet = kNone;   // right of it
+  std::uint32_t relation = 2;  // 0: the one before in the ring, 1: the one after, 2: another
+};
+
+struct Prediction {
+  Frame frame = Frame::start;
+  GridColumn base{};
+  Flat direction{};
+  bool is_steady = false;  // the direction is that of a longer edge
+};
+
+inline std::uint32_t bits_of(std::int64_t value) {
+  return static_cast<std::uint32_t>(
+      std::bit_width(static_cast<std::uint64_t>(value < 0 ? -value : value)));
+}
+
+/// Of the greater of both coordinates.
+inline std::uint32_t length_bits(Flat vector) {
+  return std::max(bits_of(to_whole(vector.x)), bits_of(to_whole(vector.y)));
+}
+
+inline GridColumn column_of(const GridPoint& point) { return {point[0], point[1]}; }
+
+class PositionCoder {
+ public:
+  PositionCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
+                const PolygonSurface& surface, std::span<const GridPoint> truth)
+      : stream_(stream), models_(models), memory_(memory), surface_(surface), truth_(truth) {
+    planes_.resize(surface.facet_count());
+    uprights_.assign(surface.facet_count(), 0);
+    has_upright_.assign(surface.vertex_count(), 0);
+    turns_.assign(surface.vertex_count(), 0);
+    in_known_column_.assign(surface.vertex_count(), 0);
+  }
+
+  Result<CodedPositions> run();
+
+ private:
+  void find_copies();
+  bool code_copy(Index vertex);
+  void code_vertex(Index vertex);
+  void look_around(Index vertex);
+  bool code_upright(Index vertex);
+  void code_column(Index vertex);
+  bool code_known_column(const Prediction& prediction);
+  void code_offset(const Prediction& prediction);
+  Prediction predicted_column(Index vertex) const;
+  bool predict_on_walls(Prediction& prediction) const;
+  void code_height(Index vertex);
+  bool code_height_on_planes(Index vertex);
+  void code_other_height(Index vertex);
+  void remember_direction(Index vertex);
+  bool follow_direction(Flat& direction) const;
+  void remember_height(std::int64_t height);
+  void learn(Index vertex);
+
+  bool is_known(Index vertex) const { return vertex < current_; }
+  Flat flat(Index vertex) const {
+    const GridPoint& point = points_[vertex];
+    return {static_cast<double>(point[0] - points_[0][0]),
+            static_cast<double>(point[1] - points_[0][1])};
+  }
+  GridPoint& point() { return points_[current_]; }
+  std::int64_t truth_at(std::size_t axis) const {
+    return truth_.empty() ? 0 : truth_[current_][axis];
+  }
+
+  EntropyStream& stream_;
+  ModelBank& models_;
+  const PageMemory& memory_;
+  const PolygonSurface& surface_;
+  std::span<const GridPoint> truth_;
+
+  std::vector<GridPoint> points_;
+  std::vector<Index> same_as_;
+  bool has_copies_ = false;
+  std::vector<FacetPlane> planes_;
+  std::vector<std::uint8_t> uprights_;         // facet -> vertical edges known, at most 2
+  std::vector<std::uint8_t> has_upright_;      // vertex -> vertical edges known, at most 2
+  std::vector<std::uint8_t> in_known_column_;  // vertex -> 1 if coded by a column of the page
+  Index last_top_ = kNone;                     // the last vertex in the column of a neighbour
+  std::uint32_t known_columns_ = 0;
+  std::vector<Flat> directions_;      // of long edges, each the longest of its kind
+  std::vector<std::uint8_t> turns_;   // vertex -> how its edge turned: 1 left, 2 right, 3 not
+  std::vector<std::int64_t> levels_;  // heights, the latest first
+
+  // Of the vertex being coded.
+  Index current_ = 0;
+  Index before_ = kNone;  // neighbours in the ring that it was met in, where known
+  Index after_ = kNone;
+  Index before_two_ = kNone;
+  Index after_two_ = kNone;
+  std::uint32_t ring_size_ = 0;
+  bool in_first_facet_ = false;
+  std::vector<Neighbor> neighbors_;
+  std::vector<Index> facets_;  // around it
+  Index below_ = kNone;        // the neighbour in the same column
+};
+
+}  // namespace watertight::polygon

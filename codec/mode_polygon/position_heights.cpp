@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Heights and the directions of edges.
+#include <algorithm>
+#include <bit>
+
+#include "codec/mode_polygon/families.h"
+#include "codec/mode_polygon/position_coder.h"
+
+namespace watertight::polygon {
+
+/// The longest edge of the solid that is parallel or perpendicular to `direction`, turned to it.
+bool PositionCoder::follow_direction(Flat& direction) const {
+  double longest = dot(direction, direction);
+  if (longest == 0) {
+    if (directions_.empty()) return false;
+    direction = directions_.front();
+    return true;
+  }
+  Flat best = direction;
+  for (Flat line : directions_) {
+    const double length = dot(line, line);
+    if (!(length > longest)) continue;
+    if (!is_along(direction, line)) line = quarter_turned(line);
+    if (!is_along(direction, line)) continue;
+    longest = length;
+    best = dot(direction, line) < 0 ? Flat{-line.x, -line.y} : line;
+  }
+  const bool found = longest > dot(direction, direction);
+  direction = best;
+  return found;
+}
+
+void PositionCoder::remember_direction(Index vertex) {
+  if (below_ != kNone || before_ == kNone) return;
+  Flat edge = flat(vertex) - flat(before_);
+  // The longer edge, if the vertices before are on one line with this one.
+  Index half = surface_.previous(surface_.out_half[vertex]);
+  const Flat last = flat(before_);
+  for (int i = 0; i < 8; ++i) {
+    half = surface_.previous(half);
+    const Index other = surface_.vertex[half];
+    if (other >= vertex) break;
+    const Flat line = flat(vertex) - flat(other);
+    const double off = cross(line, last - flat(other));
+    if (!(off * off <= 4 * dot(line, line) && dot(line, line) > dot(edge, edge))) break;
+    edge = line;
+  }
+  const double length = dot(edge, edge);
+  if (length == 0) return;
+  for (Flat& line : directions_) {
+    if (!is_along(edge, line) && !is_along(edge, quarter_turned(line))) continue;
+    if (length > dot(line, line)) line = edge;
+    return;
+  }
+  if (directions_.size() == kDirectionLimit) directions_.pop_back();
+  directions_.push_back(edge);
+}
+
+void PositionCoder::code_height(Index vertex) {
+  if (vertex == 0) {
+    const auto number = memory_.is_first() ? kFirstPosition : kFirstOffset;
+    const std::int64_t base = memory_.last_position[2];
+    point()[2] =
+        base + models_.code_signed(stream_, number, 0, {2}, truth_at(2) - base, kCoordinateBits);
+  } else if (!code_height_on_planes(vertex)) {
+    code_other_height(vertex);
+  }
+}
+
+bool PositionCoder::code_height_on_planes(Index /*vertex*/) {
+  const FacetPlane* best = nullptr;
+  std::uint32_t count = 0;
+  std::int64_t height = 0;
+  double reach = 0;
+  bool agree = true;
+  for (const Index facet : facets_) {
+    const FacetPlane& plane = planes_[facet];
+    if (plane.kind != Kind::level && plane.kind != Kind::steep) continue;
+    const std::int64_t own = plane.height(column_of(point()));
+    const double own_reach = plane.reach(column_of(point()));
+    if (count > 0 && own != height) agree = false;
+    if (best == nullptr || own_reach < reach) {
+      best = &plane;
+      height = own;
+      reach = own_reach;
+    }
+    ++count;
+  }
+  if (best == nullptr) return false;
+  const std::uint32_t level = best->kind == Kind::level ? 1 : 0;
+  const std::uint32_t upright = below_ == kNone ? 0 : 1;
+  const std::uint32_t far =
+      capped(std::bit_width(static_cast<std::uint64_t>(to_whole(reach))) / 2, 8);
+  const std::int64_t residual =
+      models_.code_signed(stream_, kPlaneResidual, level,
+                          {(level * 3 + capped(count - 1, 3)) * 2 + (agree ? 1U : 0U),
+                           upright * 2 + (in_first_facet_ ? 1U : 0U), far * 2 + level},
+                          truth_at(2) - height, kCoordinateBits);
+  point()[2] = height + residual;
+  return true;
+}
+
+void PositionCoder::code_other_height(Index /*vertex*/) {
+  // Heights of the neighbours in the ring, then those seen last.
+  std::array<std::int64_t, kHeightLimit> offered{};
+  std::array<std::uint32_t, kHeightLimit> source{};
+  std::size_t count = 0;
+  const auto offer = [&](std::int64_t height, std::uint32_t kind) {
+    if (count == kHeightLimit) return;
+    if (below_ != kNone && height == points_[below_][2]) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (offered[i] == height) return;
+    }
+    offered[count] = height;
+    source[count++] = kind;
+  };
+  if (before_ != kNone) offer(points_[before_][2], 0);
+  if (after_ != kNone) offer(points_[after_][2], 1);
+  for (const Neighbor& neighbor : neighbors_) offer(points_[neighbor.vertex][2], 2);
+  for (const std::int64_t height : levels_) offer(height, 3);
+  const std::uint32_t upright = below_ == kNone ? 0 : 1;
+  const std::uint32_t first = in_first_facet_ ? 1 : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t context = (static_cast<std::uint32_t>(i) * 4 + source[i]) * 2 + upright;
+    if (models_.code(stream_, kKnownHeight, upright,
+                     {context, ((source[i] * 2 + upright) * 2 + first) * 8 + capped(ring_size_, 8),
+                      capped(count - i, 6) * 6 + capped(levels_.size(), 6)},
+                     truth_at(2) == offered[i])) {
+      point()[2] = offered[i];
+      return;
+    }
+  }
+  // Else from a neighbour in the ring that is not in the same column, from the vertex before that
+  // was found above another, or from the one below.
+  std::uint32_t from = 3;
+  Index near = current_ - 1;
+  const auto is_beside = [&](Index other) {
+    return other != kNone &&
+           (below_ == kNone || points_[other][0] != point()[0] || points_[other][1] != point()[1]);
+  };
+  if (is_beside(before_)) {
+    near = before_;
+    from = 0;
+  } else if (is_beside(after_)) {
+    near = after_;
+    from = 1;
+  } else if (below_ != kNone && last_top_ != kNone) {
+    near = last_top_;
+    from = 2;
+  } else if (below_ != kNone) {
+    near = below_;
+  }
+  point()[2] = points_[near][2] +
+               models_.code_signed(stream_, kHeightResidual, upright,
+                                   {(upright * 4 + from) * 4 + capped(levels_.size(), 4), first},
+                                   truth_at(2) - points_[near][2], kCoordinateBits);
+}
+
+void PositionCoder::remember_height(std::int64_t height) {
+  const auto found = std::find(levels_.begin(), levels_.end(), height);
+  if (found != levels_.end()) {
+    levels_.erase(found);
+  } else if (levels_.size() == kLevelLimit) {
+    levels_.pop_back();
+  }
+  levels_.insert(levels_.begin(), height);
+}
+
+}  // namespace watertight::polygon

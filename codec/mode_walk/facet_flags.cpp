@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/mode_walk/facet_flags.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace watertight {
+namespace {
+
+__extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
+using Vector = std::array<double, 3>;
+
+// The families of the facets.
+constexpr std::uint32_t kIsInterior = 0;
+constexpr std::uint32_t kRare = 1;
+// Contexts of kRare.
+constexpr std::uint32_t kAllTriangles = 0;
+constexpr std::uint32_t kIsNotExteriorShell = 1;
+constexpr std::uint32_t kIsNotExteriorRing = 2;
+
+constexpr std::uint32_t kOffsets = 9;
+constexpr std::uint32_t kAngles = 7;
+constexpr std::uint32_t kSlopes = 3;
+constexpr std::uint32_t kLengths = 16;
+constexpr std::uint32_t kKnown = 16;
+
+Error not_encodable() {
+  return {ErrorCode::not_encodable, "flags of edges cannot tell the facets"};
+}
+
+Vector difference(const Point& p, const Point& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
+Vector cross(const Vector& u, const Vector& v) {
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+double dot(const Vector& u, const Vector& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
+
+/// True if the differences of whole numbers below 2^31 span no volume, exactly.
+bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
+  const auto whole = [](double x) { return static_cast<Wide>(static_cast<std::int64_t>(x)); };
+  return whole(w[0]) * (whole(u[1]) * whole(v[2]) - whole(u[2]) * whole(v[1])) +
+             whole(w[1]) * (whole(u[2]) * whole(v[0]) - whole(u[0]) * whole(v[2])) +
+             whole(w[2]) * (whole(u[0]) * whole(v[1]) - whole(u[1]) * whole(v[0])) ==
+         0;
+}
+
+/// How two triangles meet at an edge.
+struct Meeting {
+  std::uint32_t offset;  // of either's corner from the other's plane, in grid steps; 0: in plane
+  std::uint32_t angle;   // between the normals
+  std::uint32_t slope;   // of the first triangle: horizontal, vertical, other
+  std::uint32_t course;  // of the edge: vertical, horizontal, other
+  std::uint32_t length;  // of the edge, octaves
+};
+
+Meeting meeting(const Point& a, const Point& b, const Point& o, const Point& w) {
+  const Vector along = difference(b, a);
+  const Vector to_o = difference(o, a);
+  const Vector to_w = difference(w, a);
+  const Vector first = cross(along, to_o);
+  const Vector second = cross(to_w, along);
+  const double first2 = dot(first, first);
+  const double second2 = dot(second, second);
+  Meeting m{};
+  if (!is_flat(along, to_o, to_w)) {
+    constexpr std::array<double, 7> kSquares{0.36, 1.44, 6.25, 25, 100, 900, 10000};
+    const double volume = dot(first, to_w);
+    const double most = std::max(first2, second2);
+    m.offset = 1;
+    for (const double square : kSquares) m.offset += volume * volume > square * most ? 1U : 0U;
+  }
+  constexpr std::array<double, 6> kCosines{0.9999999, 0.99999, 0.999, 0.99, 0.9, 0.0};
+  const double product = dot(first, second);
+  const double both = std::sqrt(first2 * second2);
+  while (m.angle < kCosines.size() && !(product > kCosines[m.angle] * both)) ++m.angle;
+  m.slope = first[0] == 0 && first[1] == 0 ? 0 : first[2] == 0 ? 1 : 2;
+  m.course = along[0] == 0 && along[1] == 0 ? 0 : along[2] == 0 ? 1 : 2;
+  const auto squared = static_cast<std::uint64_t>(std::min(dot(along, along), 0x1p62));
+  m.length = std::min(static_cast<std::uint32_t>(std::bit_width(squared)) / 2, kLengths - 1);
+  return m;
+}
+
+/// A ring of a facet of the mesh, its smallest vertex first.
+struct FlagRing {
+  Index facet = 0;
+  std::vector<Index> vertices;
+  double size = 0;  // squared diagonal of its box
+};
+
+double squared_diagonal(std::span<const Point> points, std::span<const Index> vertices) {
+  Box box;
+  for (const Index v : vertices) box.include(points[v]);
+  const Vector diagonal = difference(box.max, box.min);
+  return dot(diagonal, diagonal);
+}
+
+class Facets {
+ public:
+  Facets(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
+         std::span<const Point> points, const BoundaryMesh& mesh, std::span<const Index> facet_of,
+         IntegerSolid& solid)
+      : stream_(stream),
+        models_(models),
+        family_(first_family),
+        points_(points),
+        mesh_(mesh),
+        facet_of_(facet_of),
+        solid_(solid),
+        root_(mesh.triangles.size()),
+        is_interior_(mesh.twin.size(), false),
+        known_(mesh.triangles.size(), 0) {
+    std::iota(root_.begin(), root_.end(), Index{0});
+  }
+
+  Status run();
+
+ private:
+  bool is_reading() const { return stream_.is_reading(); }
+  bool rare(std::uint32_t context, bool value) {
+    return models_.code(stream_, family_ + kRare, 0, {context}, value);
+  }
+  Index vertex_at(Index half_edge) const { return mesh_.triangles[half_edge / 3][half_edge % 3]; }
+  static Index next_of(Index half_edge) {
+    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
+  }
+  Index root_of(Index triangle) {
+    while (root_[triangle] != triangle) {
+      root_[triangle] = root_[root_[triangle]];
+      triangle = root_[triangle];
+    }
+    return triangle;
+  }
+  void code_flags();
+  void code_flag(Index half_edge);
+  void number_facets();
+  void walk_rings();
+  void walk_ring(Index start, std::vector<bool>& is_done);
+  void close_ring(Index facet, std::span<const Index> walk);
+  bool order_rings();
+  bool order_shells();
+  template <class Matches>
+  std::size_t code_choice(std::uint32_t context, std::size_t count, const Matches& matches);
+  bool matches_solid() const;
+  void write_arrays();
+
+  EntropyStream& stream_;
+  ModelBank& models_;
+  std::uint32_t family_;
+  std::span<const Point> points_;
+  const BoundaryMesh& mesh_;
+  std::span<const Index> facet_of_;
+  IntegerSolid& solid_;
+  std::vector<Index> root_;  // triangle -> one of the same facet
+  std::vector<bool> is_interior_;
+  std::vector<std::uint8_t> known_;    // per triangle: interior edges so far, 4 times those not
+  std::uint32_t history_ = 0;          // of the flags of flat edges
+  std::vector<Index> facet_;           // triangle -> facet
+  std::vector<Index> first_triangle_;  // facet -> its first triangle
+  std::vector<FlagRing> rings_;
+  std::vector<Index> first_ring_;  // facet -> into rings_
+  std::vector<Index> shells_;      // components, the exterior one first
+};
+
+void Facets::code_flag(Index half_edge) {
+  const Index twin = mesh_.twin[half_edge];
+  const Index t = half_edge / 3;
+  const Index u = twin / 3;
+  const Index a = vertex_at(twin);
+  const Index b = vertex_at(next_of(twin));
+  const Meeting m = meeting(points_[a], points_[b], points_[vertex_at(next_of(next_of(twin)))],
+                            points_[vertex_at(next_of(next_of(half_edge)))]);
+  const Index t_root = root_of(t);
+  const Index u_root = root_of(u);
+  const std::uint32_t linked = t_root == u_root ? 1 : 0;
+  const std::uint32_t direction = m.slope * 3 + m.course;
+  const bool interior =
+      models_.code(stream_, family_ + kIsInterior, m.offset,
+                   {((m.offset * kAngles + m.angle) * kKnown + known_[t]) * kKnown + known_[u],
+                    (m.offset * 9 + direction) * 2 + linked, (m.angle * 9 + direction) * 2 + linked,
+                    (m.offset * kAngles + m.angle) * 9 + direction,
+                    (m.offset * kLengths + m.length) * kSlopes + m.course,
+                    (m.offset * 16 + history_) * 2 + linked},
+                   !facet_of_.empty() && facet_of_[t] == facet_of_[u]);
+  if (m.offset < 3) history_ = (history_ * 2 + (interior ? 1U : 0U)) & 15U;
+  known_[t] = static_cast<std::uint8_t>(known_[t] + (interior ? 1 : 4));
+  known_[u] = static_cast<std::uint8_t>(known_[u] + (interior ? 1 : 4));
+  if (!interior) return;
+  is_interior_[half_edge] = is_interior_[twin] = true;
+  root_[std::max(t_root, u_root)] = std::min(t_root, u_root);
+}
+
+void Facets::code_flags() {
+  bool all_triangles = false;
+  if (!is_reading()) all_triangles = solid_.facet_count() == mesh_.triangles.size();
+  if (rare(kAllTriangles, all_triangles)) return;
+  for (Index h = 0; h < mesh_.twin.size(); ++h) {
+    if (mesh_.twin[h] < h && !stream_.failed()) code_flag(h);
+  }
+}
+
+void Facets::number_facets() {
+  facet_.resize(mesh_.triangles.size());
+  for (Index t = 0; t < facet_.size(); ++t) {
+    const Index root = root_of(t);  // the least of the facet
+    if (root == t) {
+      facet_[t] = static_cast<Index>(first_triangle_.size());
+      first_triangle_.push_back(t);
+    } else {
+      facet_[t] = facet_[root];
+    }
+  }
+}
+
+void Facets::close_ring(Index facet, std::span<const Index> walk) {
+  FlagRing ring{facet, {walk.begin(), walk.end()}, squared_diagonal(points_, walk)};
+  std::rotate(ring.vertices.begin(), std::min_element(ring.vertices.begin(), ring.vertices.end()),
+              ring.vertices.end());
+  rings_.push_back(std::move(ring));
+}
+
+/// Follows the boundary of a facet until it closes; split at vertices that come twice.
+void Facets::walk_ring(Index start, std::vector<bool>& is_done) {
+  std::vector<Index> walk;
+  Index h = start;
+  do {
+    is_done[h] = true;
+    walk.push_back(vertex_at(h));
+    h = next_of(h);
+    while (is_interior_[h]) h = next_of(mesh_.twin[h]);
+  } while (h != start);
+  const Index facet = facet_[start / 3];
+  std::vector<Index> sorted = walk;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) {
+    close_ring(facet, walk);
+    return;
+  }
+  // A loop that closes on the stack is a ring of its own.
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  std::vector<bool> is_on_stack(sorted.size(), false);
+  const auto place_of = [&](Index vertex) {
+    return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), vertex) -
+                                    sorted.begin());
+  };
+  std::vector<Index> stack;
+  for (const Index vertex : walk) {
+    if (is_on_stack[place_of(vertex)]) {
+      std::size_t begin = stack.size() - 1;
+      while (stack[begin] != vertex) --begin;
+      close_ring(facet, std::span<const Index>(stack).subspan(begin));
+      for (std::size_t i = begin; i < stack.size(); ++i) is_on_stack[place_of(stack[i])] = false;
+      stack.resize(begin);
+    }
+    is_on_stack[place_of(vertex)] = true;
+    stack.push_back(vertex);
+  }
+  close_ring(facet, stack);
+}
+
+/// All rings, those of a facet together, the largest first.
+void Facets::walk_rings() {
+  std::vector<bool> is_done(is_interior_.size(), false);
+  for (Index h = 0; h < is_interior_.size(); ++h) {
+    if (!is_interior_[h] && !is_done[h]) walk_ring(h, is_done);
+  }
+  std::stable_sort(rings_.begin(), rings_.end(), [](const FlagRing& x, const FlagRing& y) {
+    return x.facet != y.facet ? x.facet < y.facet : x.size > y.size;
+  });
+  first_ring_.assign(first_triangle_.size() + 1, 0);
+  for (const FlagRing& ring : rings_) ++first_ring_[ring.facet + 1];
+  for (std::size_t f = 0; f < first_triangle_.size(); ++f) first_ring_[f + 1] += first_ring_[f];
+}
+
+/// Which of `count` alternatives is the one, in unary. Writing: `count` if none.
+template <class Matches>
+std::size_t Facets::code_choice(std::uint32_t context, std::size_t count, const Matches& matches) {
+  std::size_t choice = 0;
+  if (!is_reading()) {
+    while (choice < count && !matches(choice)) ++choice;
+    if (choice == count) return count;
+  }
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    if (!rare(context, i != choice)) return i;
+    if (stream_.failed()) return 0;
+  }
+  return count - 1;
+}
+
+/// Puts the exterior ring of each facet first. False if the solid's is not there.
+bool Facets::order_rings() {
+  for (std::size_t f = 0; f + 1 < first_ring_.size(); ++f) {
+    const auto begin = rings_.begin() + first_ring_[f];
+    const std::size_t count = first_ring_[f + 1] - first_ring_[f];
+    if (count == 0) return false;
+    const std::size_t exterior = code_choice(kIsNotExteriorRing, count, [&](std::size_t i) {
+      const auto wanted = solid_.ring(solid_.facet_offsets[facet_of_[first_triangle_[f]]]);
+      const auto& ring = (begin + static_cast<std::ptrdiff_t>(i))->vertices;
+      return std::equal(wanted.begin(), wanted.end(), ring.begin(), ring.end());
+    });
+    if (exterior == count) return false;
+    std::swap(*begin, *(begin + static_cast<std::ptrdiff_t>(exterior)));
+  }
+  return true;
+}
+
+/// Lists the components, the exterior one first. False unless each is one shell of the solid.
+bool Facets::order_shells() {
+  struct Sized {
+    Index component;
+    double size;
+  };
+  std::vector<Sized> sized;
+  for (Index c = 0; c < mesh_.component_count(); ++c) {
+    Box box;
+    for (Index t = mesh_.component_first[c]; t < mesh_.component_first[c + 1]; ++t) {
+      for (const Index v : mesh_.triangles[t]) box.include(points_[v]);
+    }
+    const Vector diagonal = difference(box.max, box.min);
+    sized.push_back({c, dot(diagonal, diagonal)});
+  }
+  std::stable_sort(sized.begin(), sized.end(),
+                   [](const Sized& x, const Sized& y) { return x.size > y.size; });
+  const std::size_t exterior = code_choice(kIsNotExteriorShell, sized.size(), [&](std::size_t i) {
+    return facet_of_[mesh_.component_first[sized[i].component]] < solid_.shell_offsets[1];
+  });
+  if (exterior == sized.size()) return false;
+  std::swap(sized[0], sized[exterior]);
+  for (const Sized& component : sized) shells_.push_back(component.component);
+  return true;
+}
+
+/// Writing: true if the facets found are those of the solid, ring by ring.
+bool Facets::matches_solid() const {
+  if (mesh_.component_count() != solid_.shell_count()) return false;
+  if (first_triangle_.size() != solid_.facet_count() || rings_.size() != solid_.ring_count()) {
+    return false;
+  }
+  for (std::size_t f = 0; f < first_triangle_.size(); ++f) {
+    const Index facet = facet_of_[first_triangle_[f]];
+    const Index begin = solid_.facet_offsets[facet];
+    const Index end = solid_.facet_offsets[facet + 1];
+    if (first_ring_[f + 1] - first_ring_[f] != end - begin) return false;
+    for (Index r = first_ring_[f]; r < first_ring_[f + 1]; ++r) {
+      bool is_there = false;
+      for (Index i = begin; i < end && !is_there; ++i) {
+        const auto ring = solid_.ring(i);
+        is_there = std::equal(ring.begin(), ring.end(), rings_[r].vertices.begin(),
+                              rings_[r].vertices.end());
+      }
+      if (!is_there) return false;
+    }
+  }
+  return true;
+}
+
+void Facets::write_arrays() {
+  std::vector<std::vector<Index>> facets_of(mesh_.component_count());
+  Index component = 0;
+  for (Index f = 0; f < first_triangle_.size(); ++f) {
+    while (first_triangle_[f] >= mesh_.component_first[component + 1]) ++component;
+    facets_of[component].push_back(f);
+  }
+  for (const Index shell : shells_) {
+    for (const Index f : facets_of[shell]) {
+      for (Index r = first_ring_[f]; r < first_ring_[f + 1]; ++r) {
+        const auto& ring = rings_[r].vertices;
+        solid_.ring_vertices.insert(solid_.ring_vertices.end(), ring.begin(), ring.end());
+        solid_.ring_offsets.push_back(static_cast<Index>(solid_.ring_vertices.size()));
+      }
+      solid_.facet_offsets.push_back(solid_.ring_count());
+    }
+    solid_.shell_offsets.push_back(solid_.facet_count());
+  }
+}
+
+Status Facets::run() {
+  const Error malformed{ErrorCode::malformed, "the facets of the triangles"};
+  code_flags();
+  if (stream_.failed()) return malformed;
+  number_facets();
+  walk_rings();
+  if (!is_reading() && !matches_solid()) return not_encodable();
+  const bool is_ordered = order_rings() && order_shells();
+  if (!is_ordered || stream_.failed()) return is_reading() ? malformed : not_encodable();
+  if (is_reading()) write_arrays();
+  return Done{};
+}
+
+}  // namespace
+
+const std::array<FamilyShape, kFacetFamilyCount> kFacetFamilies{
+    FamilyShape{kOffsets,
+                {kOffsets * kAngles * kKnown * kKnown, kOffsets * 9 * 2, kAngles * 9 * 2,
+                 kOffsets* kAngles * 9, kOffsets* kLengths* kSlopes, kOffsets * 16 * 2}},
+    FamilyShape{1, {3}}};
+
+Status code_facets(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
+                   std::span<const Point> points, const BoundaryMesh& mesh,
+                   std::span<const Index> facet_of, IntegerSolid& solid) {
+  stream.enter(StreamPart::facets);
+  return Facets(stream, models, first_family, points, mesh, facet_of, solid).run();
+}
+
+}  // namespace watertight

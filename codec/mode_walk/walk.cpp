@@ -1,0 +1,546 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/mode_walk/walk.h"
+
+#include <algorithm>
+#include <bit>
+#include <queue>
+#include <utility>
+
+#include "codec/mode_walk/delaunay_edges.h"
+#include "codec/mode_walk/front.h"
+#include "codec/mode_walk/triangle_classes.h"
+#include "codec/mode_walk/given_surface.h"
+
+namespace watertight {
+namespace {
+
+// The families of the walk.
+constexpr std::uint32_t kCandidate = 0;  // is it this vertex, of those near at hand?
+constexpr std::uint32_t kDistant = 1;    // the same of the other Delaunay neighbours
+constexpr std::uint32_t kRare = 2;
+constexpr std::uint32_t kSeed = 3;
+constexpr std::uint32_t kChoice = 4;  // kCandidate again, knowing how likely it and the next are
+
+/// What a candidate is to the front: new, used, closing the left or right edge or both, or out of
+/// the question in a manifold.
+constexpr std::uint32_t kStates = 6;
+constexpr std::uint32_t kCounts = 7;
+constexpr std::uint32_t kHalfSpheres = (kSphereClasses + 1) / 2;
+constexpr std::uint32_t kKinds = 3;  // a face, the only face, no face
+constexpr std::uint32_t kCloses = 4;
+
+// Contexts of kRare.
+constexpr std::uint32_t kIsManifold = 0;
+constexpr std::uint32_t kIsListed = 1;  // 4 by the length of the list
+constexpr std::uint32_t kIsMore = 5;
+constexpr std::uint32_t kRares = 7;
+
+constexpr std::size_t kInputs = 8;
+constexpr FamilyShape kCandidateShape{
+    kStates * kKinds,
+    {kBendClasses * kStates * kCounts, kSphereClasses* kBendClasses / 2 * kStates,
+     kRadiusClasses* kParallelogramClasses* kCloses* kGabrielClasses,
+     kSphereClasses* kRadiusClasses* kSideClasses,
+     kStates* kGabrielClasses* kDeviationClasses* kSideClasses,
+     kRatioClasses* kSphereClasses* kStates, kParallelogramClasses* kHalfSpheres* kStates * 5,
+     kRadiusClasses* kBendClasses* kCloses* kGabrielClasses}};
+
+constexpr std::uint32_t kLikelihoods = 64;
+constexpr std::uint32_t kRanks = 4;
+constexpr FamilyShape kChoiceShape{
+    kRanks,
+    {kLikelihoods * kRanks * kKinds, kLikelihoods / 2 * kLikelihoods / 2,
+     kLikelihoods / 2 * kStates* kRanks}};
+
+/// A probability of 65536 in half octaves, of itself or of the rest to one.
+std::uint32_t likelihood(std::uint32_t probability) {
+  const bool is_high = probability > 32768;
+  const std::uint32_t lesser = is_high ? 65536 - probability : probability;
+  if (lesser == 0) return 0;
+  const auto width = static_cast<std::uint32_t>(std::bit_width(lesser));  // 1 to 16
+  const std::uint32_t half = width > 1 ? (lesser >> (width - 2)) & 1U : 0;
+  const std::uint32_t place = std::min(2 * (width - 1) + half, kLikelihoods / 2 - 1);
+  return is_high ? kLikelihoods - 1 - place : place;
+}
+
+/// An edge as certain as this is not scored again when a triangle comes beside it.
+constexpr std::uint32_t kCertain = 32768;
+
+/// What a walk may take, whatever its bytes say: vertices of degree d take about d^2 steps. Solids
+/// of 1 to 100,000 vertices took up to 120 for each (docs/format.md, "Limits").
+constexpr std::uint64_t kStepsPerPoint = 256;
+constexpr std::uint64_t kFreeSteps = 1U << 20;
+
+struct Candidate {
+  Index vertex = 0;
+  std::uint32_t probability = 0;
+  std::uint32_t selector = 0;
+  std::array<std::uint32_t, kInputs> contexts{};
+};
+
+bool is_more_likely(const Candidate& x, const Candidate& y) {
+  return x.probability != y.probability ? x.probability > y.probability : x.vertex < y.vertex;
+}
+
+Error not_encodable(const char* reason) { return {ErrorCode::not_encodable, reason}; }
+
+class Walk {
+ public:
+  Walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
+       std::span<const Point> points, const CanonicalDelaunay& delaunay, WalkTruth* truth)
+      : stream_(stream),
+        models_(models),
+        family_(first_family),
+        points_(points),
+        delaunay_(delaunay),
+        edges_(delaunay, static_cast<Index>(points.size())),
+        truth_(truth),
+        front_(static_cast<Index>(points.size())),
+        face_shapes_(delaunay.faces.size(), kUnknownShape),
+        mark_(points.size(), 0),
+        closing_mark_(points.size(), 0),
+        closing_sides_(points.size(), 0),
+        steps_left_(kStepsPerPoint * points.size() + kFreeSteps) {}
+
+  Status run(BoundaryMesh& mesh);
+
+ private:
+  static constexpr FaceShape kUnknownShape{255, 0, 0};
+  struct Entry {
+    std::uint32_t probability;
+    Index half_edge;
+    bool operator<(const Entry& other) const {
+      return probability != other.probability ? probability < other.probability
+                                              : half_edge > other.half_edge;
+    }
+  };
+
+  bool rare(std::uint32_t context, bool value) {
+    return models_.code(stream_, family_ + kRare, 0, {context}, value);
+  }
+  bool is_reading() const { return truth_ == nullptr; }
+  Error broken() const {
+    return is_reading() ? Error{ErrorCode::malformed, "the boundary among the Delaunay faces"}
+                        : not_encodable("the boundary is beyond the walk");
+  }
+
+  Status code_component(Index seed);
+  Status code_seed(Index seed);
+  void list_seeds(Index seed);
+  Status code_gate(Index gate);
+  bool code_candidate(std::size_t place, Index truth);
+  Index code_distant(Index gate, Index truth);
+  void add(const Triangle& triangle, Index source);
+  std::uint32_t greatest_probability() const;
+  void push(Index half_edge);
+  void push_open(Index triangle);
+
+  void mark_used(Index gate);
+  bool is_possible(Index w) const;
+  void list_candidates(Index gate);
+  void list_distant(Index gate);
+  void describe(const Gate& gate, Index from, Index to, Index w, Index face, std::uint32_t faces,
+                Candidate& candidate);
+  const FaceShape& shape_of(Index face);
+  std::uint32_t state_of(Index w) const;
+  void score(std::uint32_t family, std::vector<Candidate>& list);
+
+  EntropyStream& stream_;
+  EntropyStream lessons_ = EntropyStream::meter();  // what only teaches
+  ModelBank& models_;
+  std::uint32_t family_;
+  std::span<const Point> points_;
+  const CanonicalDelaunay& delaunay_;
+  DelaunayEdges edges_;
+  WalkTruth* truth_;
+  WalkFront front_;
+  std::vector<FaceShape> face_shapes_;
+  bool is_manifold_ = true;
+  std::vector<Index> source_;  // writing: half-edge given for the first half-edge of each triangle
+
+  // About the gate at hand. A vertex is marked with the stamp once it is listed or ruled out.
+  std::vector<Candidate> candidates_;
+  std::vector<Candidate> distant_;
+  std::vector<Index> mark_;
+  Index stamp_ = 0;
+  std::vector<Index>
+      closing_;  // vertices beyond open edges; marked with the stamp, and which edges
+  std::vector<Index> closing_mark_;
+  std::vector<std::uint8_t> closing_sides_;
+  std::vector<std::pair<Triangle, std::uint32_t>> seeds_;  // with the context
+  std::priority_queue<Entry> queue_;
+  std::vector<std::uint32_t> pushed_;  // half-edge -> its probability in the queue
+  std::uint64_t steps_left_;
+};
+
+const FaceShape& Walk::shape_of(Index face) {
+  FaceShape& shape = face_shapes_[face];
+  if (shape.sphere == kUnknownShape.sphere) {
+    shape = face_shape(points_, delaunay_.faces[face], delaunay_.apexes[face]);
+  }
+  return shape;
+}
+
+/// Rules out the vertices to which an edge is used already, and notes those beyond open edges.
+/// The triangle (b, a, w) needs the half-edges a -> w and w -> b.
+void Walk::mark_used(Index gate) {
+  const Index a = front_.from(gate);
+  const Index b = front_.to(gate);
+  ++stamp_;
+  closing_.clear();
+  mark_[a] = mark_[b] = mark_[front_.corner(gate)] = stamp_;
+  const auto close = [&](Index w, std::uint32_t side) {
+    if (closing_mark_[w] != stamp_) {
+      closing_mark_[w] = stamp_;
+      closing_sides_[w] = 0;
+      closing_.push_back(w);
+    }
+    closing_sides_[w] = static_cast<std::uint8_t>(closing_sides_[w] | side);
+  };
+  std::uint64_t steps = 1;
+  for (Index h = front_.first_at(a); h != kNone; h = front_.next_at(h), ++steps) {
+    mark_[front_.to(h)] = stamp_;
+    const Index incoming = WalkFront::previous_of(h);
+    if (front_.is_open(incoming)) close(front_.from(incoming), 1);
+  }
+  for (Index h = front_.first_at(b); h != kNone; h = front_.next_at(h), ++steps) {
+    mark_[front_.from(WalkFront::previous_of(h))] = stamp_;
+    if (front_.is_open(h)) close(front_.to(h), 2);
+  }
+  steps_left_ -= std::min(steps, steps_left_);
+}
+
+bool Walk::is_possible(Index w) const {
+  return mark_[w] != stamp_ && !(is_manifold_ && front_.is_closed(w));
+}
+
+std::uint32_t Walk::state_of(Index w) const {
+  if (closing_mark_[w] == stamp_) return 1U + closing_sides_[w];
+  if (front_.is_closed(w)) return 5;
+  return front_.is_used(w) ? 1 : 0;
+}
+
+void Walk::describe(const Gate& gate, Index from, Index to, Index w, Index face,
+                    std::uint32_t faces, Candidate& candidate) {
+  const FaceShape shape = face == kNone ? no_face((edges_.faces_at(from, w).empty() ? 0U : 1U) +
+                                                  (edges_.faces_at(to, w).empty() ? 0U : 2U))
+                                        : shape_of(face);
+  const Continuation c = continuation(gate, points_[w]);
+  const std::uint32_t state = state_of(w);
+  const std::uint32_t closes = state >= 2 && state <= 4 ? state - 1 : 0;
+  const std::uint32_t count = std::min(faces, kCounts - 1);
+  const std::uint32_t kind = face == kNone ? 2 : faces == 1 ? 1 : 0;
+  candidate.vertex = w;
+  candidate.selector = state * kKinds + kind;
+  candidate.contexts = {
+      (c.bend * kStates + state) * kCounts + count,
+      (shape.sphere * (kBendClasses / 2) + c.bend / 2) * kStates + state,
+      ((c.radius * kParallelogramClasses + c.parallelogram) * kCloses + closes) * kGabrielClasses +
+          shape.gabriel,
+      (shape.sphere * kRadiusClasses + c.radius) * kSideClasses + c.side,
+      ((state * kGabrielClasses + shape.gabriel) * kDeviationClasses + c.deviation) * kSideClasses +
+          c.side,
+      (shape.ratio * kSphereClasses + shape.sphere) * kStates + state,
+      ((c.parallelogram * kHalfSpheres + shape.sphere / 2U) * kStates + state) * 5 +
+          std::min(count, 4U),
+      ((c.radius * kBendClasses + c.bend) * kCloses + closes) * kGabrielClasses + shape.gabriel};
+}
+
+void Walk::score(std::uint32_t family, std::vector<Candidate>& list) {
+  for (Candidate& candidate : list) {
+    candidate.probability =
+        models_.probability(family_ + family, candidate.selector, candidate.contexts);
+  }
+}
+
+/// The Delaunay faces at the gate, then the vertices beyond open edges beside it.
+void Walk::list_candidates(Index gate) {
+  const Index a = front_.from(gate);
+  const Index b = front_.to(gate);
+  mark_used(gate);
+  candidates_.clear();
+  const Gate frame(points_[a], points_[b], points_[front_.corner(gate)]);
+  const auto faces = edges_.faces_at(a, b);
+  std::uint32_t count = 0;
+  const auto opposite = [&](Index face) {
+    Index w = kNone;
+    for (const Index v : delaunay_.faces[face]) {
+      if (v != a && v != b) w = v;
+    }
+    return w;
+  };
+  for (const Index face : faces) count += is_possible(opposite(face)) ? 1U : 0U;
+  for (const Index face : faces) {
+    const Index w = opposite(face);
+    const bool possible = is_possible(w);
+    mark_[w] = stamp_;
+    if (possible) describe(frame, a, b, w, face, count, candidates_.emplace_back());
+  }
+  for (std::size_t i = 0; i < closing_.size(); ++i) {
+    const Index w = closing_[i];
+    if (!is_possible(w)) continue;
+    mark_[w] = stamp_;
+    describe(frame, a, b, w, kNone, count, candidates_.emplace_back());
+  }
+  steps_left_ -= std::min<std::uint64_t>(faces.size(), steps_left_);
+  score(kCandidate, candidates_);
+}
+
+/// All other Delaunay neighbours of the gate's ends. Requires list_candidates() before.
+void Walk::list_distant(Index gate) {
+  const Index a = front_.from(gate);
+  const Index b = front_.to(gate);
+  const Gate frame(points_[a], points_[b], points_[front_.corner(gate)]);
+  distant_.clear();
+  for (const Index end : {a, b}) {
+    for (const auto neighbours : {edges_.smaller_neighbours(end), edges_.greater_neighbours(end)}) {
+      steps_left_ -= std::min<std::uint64_t>(neighbours.size(), steps_left_);
+      for (const Index w : neighbours) {
+        if (!is_possible(w)) continue;
+        mark_[w] = stamp_;
+        describe(frame, a, b, w, kNone, 0, distant_.emplace_back());
+      }
+    }
+  }
+  score(kDistant, distant_);
+  std::sort(distant_.begin(), distant_.end(), is_more_likely);
+}
+
+void Walk::add(const Triangle& triangle, Index source) {
+  front_.add(triangle);
+  if (is_reading()) return;
+  truth_->use(source);
+  source_.push_back(source);
+}
+
+std::uint32_t Walk::greatest_probability() const {
+  std::uint32_t greatest = 0;
+  for (const Candidate& c : candidates_) greatest = std::max(greatest, c.probability);
+  return greatest;
+}
+
+void Walk::push(Index half_edge) {
+  list_candidates(half_edge);
+  const std::uint32_t now = greatest_probability();
+  if (now <= pushed_[half_edge] && now > 0) return;
+  pushed_[half_edge] = now;
+  queue_.push({now, half_edge});
+}
+
+/// Puts the open edges at the corners of a new triangle into the queue, where they are not there
+/// already as more certain.
+void Walk::push_open(Index triangle) {
+  pushed_.resize(front_.twin.size(), 0);
+  for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
+    if (front_.is_open(h)) push(h);
+  }
+  for (const Index v : front_.triangles[triangle]) {
+    for (Index h = front_.first_at(v); h != kNone; h = front_.next_at(h)) {
+      const Index incoming = WalkFront::previous_of(h);
+      if (h / 3 == triangle) continue;
+      if (front_.is_open(h) && pushed_[h] < kCertain) push(h);
+      if (front_.is_open(incoming) && pushed_[incoming] < kCertain) push(incoming);
+    }
+  }
+}
+
+Index Walk::code_distant(Index gate, Index truth) {
+  list_distant(gate);
+  const auto is_truth = [&](const Candidate& c) { return c.vertex == truth; };
+  const bool is_listed =
+      !distant_.empty() &&
+      rare(kIsListed + static_cast<std::uint32_t>(std::min<std::size_t>(distant_.size() / 4, 3)),
+           std::any_of(distant_.begin(), distant_.end(), is_truth));
+  if (!is_listed) {
+    const Index w =
+        static_cast<Index>(stream_.code_uniform(truth == kNone ? 0 : truth, points_.size()));
+    return w;
+  }
+  for (std::size_t i = 0; i + 1 < distant_.size(); ++i) {
+    const Candidate& c = distant_[i];
+    if (models_.code(stream_, family_ + kDistant, c.selector, c.contexts, is_truth(c))) {
+      return c.vertex;
+    }
+  }
+  return distant_.back().vertex;
+}
+
+/// Is it this candidate? The family that ranked it learns the answer too.
+bool Walk::code_candidate(std::size_t place, Index truth) {
+  const Candidate& c = candidates_[place];
+  const std::uint32_t next =
+      place + 1 < candidates_.size() ? candidates_[place + 1].probability : 0;
+  const std::uint32_t own = likelihood(c.probability);
+  const auto rank = static_cast<std::uint32_t>(std::min<std::size_t>(place, kRanks - 1));
+  const bool is_it = models_.code(stream_, family_ + kChoice, rank,
+                                  {(own * kRanks + rank) * kKinds + c.selector % kKinds,
+                                   own / 2 * (kLikelihoods / 2) + likelihood(next) / 2,
+                                   (own / 2 * kStates + c.selector / kKinds) * kRanks + rank},
+                                  c.vertex == truth);
+  models_.code(lessons_, family_ + kCandidate, c.selector, c.contexts, is_it);
+  return is_it;
+}
+
+/// Codes the triangle beyond an open edge. Requires list_candidates(gate) just before.
+Status Walk::code_gate(Index gate) {
+  const Index a = front_.from(gate);
+  const Index b = front_.to(gate);
+  Index source = kNone;
+  Index truth = kNone;
+  if (!is_reading()) {
+    source = truth_->twin_of(truth_->turned(source_[gate / 3], gate % 3));
+    truth = truth_->corner(source);
+  }
+  std::sort(candidates_.begin(), candidates_.end(), is_more_likely);
+  Index w = kNone;
+  for (std::size_t i = 0; i < candidates_.size() && w == kNone; ++i) {
+    if (code_candidate(i, truth)) w = candidates_[i].vertex;
+  }
+  if (w == kNone) {
+    w = code_distant(gate, truth);
+    if (w == a || w == b || w == front_.corner(gate) || front_.find(a, w) != kNone ||
+        front_.find(w, b) != kNone || (is_manifold_ && front_.is_closed(w))) {
+      return broken();
+    }
+  }
+  const auto triangle = static_cast<Index>(front_.triangles.size());
+  add({b, a, w}, source);
+  push_open(triangle);
+  return Done{};
+}
+
+/// First the faces on the hull seen from outside, then seen from inside, then all others.
+void Walk::list_seeds(Index seed) {
+  seeds_.clear();
+  const auto list = [&](Index face) {
+    const Triangle& t = delaunay_.faces[face];
+    const auto& apexes = delaunay_.apexes[face];
+    const std::uint32_t sphere = shape_of(face).sphere;
+    // The first apex sees the triangle turn clockwise from outside: it lies inside beside it.
+    const Triangle reverse{t[0], t[2], t[1]};
+    const bool hull = apexes[0] == kNone || apexes[1] == kNone;
+    const bool first_inside = apexes[1] == kNone;
+    const std::uint32_t base = hull ? 0 : 2 * kSphereClasses;
+    seeds_.emplace_back(first_inside ? reverse : t, base + sphere);
+    seeds_.emplace_back(first_inside ? t : reverse, base + kSphereClasses + sphere);
+  };
+  Index last = kNone;
+  std::vector<Index> faces;
+  for (const auto neighbours : {edges_.smaller_neighbours(seed), edges_.greater_neighbours(seed)}) {
+    for (const Index w : neighbours) {
+      const auto around = edges_.faces_at(seed, w);
+      faces.insert(faces.end(), around.begin(), around.end());
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  for (const Index face : faces) {
+    if (face != last) list(face);
+    last = face;
+  }
+  std::stable_sort(seeds_.begin(), seeds_.end(), [](const auto& x, const auto& y) {
+    return std::min(x.second / kSphereClasses, 2U) < std::min(y.second / kSphereClasses, 2U);
+  });
+  steps_left_ -= std::min<std::uint64_t>(seeds_.size(), steps_left_);
+}
+
+Status Walk::code_seed(Index seed) {
+  list_seeds(seed);
+  Index truth = kNone;
+  std::size_t place = seeds_.size();
+  if (!is_reading()) {
+    for (std::size_t i = 0; i < seeds_.size() && truth == kNone; ++i) {
+      truth = truth_->find_unused(seeds_[i].first);
+      place = i;
+    }
+    if (truth == kNone) place = seeds_.size();
+  }
+  for (std::size_t i = 0; i < seeds_.size(); ++i) {
+    if (!models_.code(stream_, family_ + kSeed, 0, {seeds_[i].second}, i == place)) continue;
+    add(seeds_[i].first, truth);
+    return Done{};
+  }
+  // No Delaunay face there: any triangle.
+  if (!is_reading()) truth = truth_->any_unused_at(seed);
+  if (!is_reading() && truth == kNone) return not_encodable("a vertex without triangles");
+  Triangle triangle{seed, 0, 0};
+  for (Index k = 1; k < 3; ++k) {
+    const Index v = truth == kNone ? 0 : truth_->from(truth_->turned(truth, k));
+    triangle[k] = static_cast<Index>(stream_.code_uniform(v, points_.size()));
+  }
+  if (triangle[1] == seed || triangle[2] == seed || triangle[1] == triangle[2]) return broken();
+  add(triangle, truth);
+  return Done{};
+}
+
+Status Walk::code_component(Index seed) {
+  front_.start_component();
+  const std::size_t open_before = front_.open_edges();
+  const auto first = static_cast<Index>(front_.triangles.size());
+  if (Status status = code_seed(seed); !status) return status;
+  push_open(first);
+  while (front_.open_edges() > open_before) {
+    if (queue_.empty() || stream_.failed() || steps_left_ == 0) return broken();
+    const Entry entry = queue_.top();
+    queue_.pop();
+    if (!front_.is_open(entry.half_edge)) continue;
+    if (entry.probability != pushed_[entry.half_edge]) continue;  // there is a more recent one
+    list_candidates(entry.half_edge);
+    const std::uint32_t now = greatest_probability();
+    if (now + 1024 < entry.probability && !queue_.empty() && now < queue_.top().probability) {
+      pushed_[entry.half_edge] = now;
+      queue_.push({now, entry.half_edge});
+      continue;
+    }
+    if (Status status = code_gate(entry.half_edge); !status) return status;
+    if (front_.triangles.size() > std::size_t{4} * points_.size() + 64) return broken();
+  }
+  queue_ = {};
+  return Done{};
+}
+
+Status Walk::run(BoundaryMesh& mesh) {
+  is_manifold_ = rare(kIsManifold, !is_reading() && truth_->is_manifold());
+  std::vector<Index> component_first;
+  Index next = 0;
+  while (true) {
+    while (next < points_.size() && front_.is_known(next)) ++next;
+    Index seed = next;
+    if (next == points_.size()) {
+      seed = is_reading() ? kNone : truth_->unused_vertex();
+      if (!rare(kIsMore, seed != kNone)) break;
+      seed = static_cast<Index>(stream_.code_uniform(seed == kNone ? 0 : seed, points_.size()));
+    }
+    component_first.push_back(static_cast<Index>(front_.triangles.size()));
+    if (Status status = code_component(seed); !status) return status;
+  }
+  component_first.push_back(static_cast<Index>(front_.triangles.size()));
+  mesh.triangles = std::move(front_.triangles);
+  mesh.twin = std::move(front_.twin);
+  mesh.component_first = std::move(component_first);
+  mesh.source.clear();
+  if (!is_reading()) {
+    for (const Index half_edge : source_) mesh.source.push_back(half_edge / 3);
+  }
+  return Done{};
+}
+
+}  // namespace
+
+const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies{
+    kCandidateShape, kCandidateShape, FamilyShape{1, {kRares}},
+    FamilyShape{1, {4 * kSphereClasses}}, kChoiceShape};
+
+Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
+                          std::span<const Point> points, const CanonicalDelaunay& delaunay,
+                          BoundaryMesh& mesh) {
+  if (stream.is_reading()) {
+    return Walk(stream, models, first_family, points, delaunay, nullptr).run(mesh);
+  }
+  WalkTruth truth;
+  if (!truth.take(mesh, static_cast<Index>(points.size()))) {
+    return not_encodable("the triangles of the boundary do not meet in pairs");
+  }
+  return Walk(stream, models, first_family, points, delaunay, &truth).run(mesh);
+}
+
+}  // namespace watertight

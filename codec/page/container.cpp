@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/page/container.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "base/checksum.h"
+#include "codec/page/blob_header.h"
+#include "codec/page/coordinates.h"
+#include "codec/mode_bitmap/decompose.h"
+#include "codec/page/facet_listing.h"
+#include "codec/page.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::uint8_t kMagic[2] = {'W', 'T'};
+constexpr std::uint8_t kPageFlag = 0x80;  // of the version byte
+constexpr std::size_t kHeaderBytes = 4;
+
+// What a stream of so many bytes may bring forth: docs/format.md, "Limits".
+constexpr std::uint64_t kFreeVertices = 4096;
+constexpr std::uint64_t kVerticesPerByte = 64;
+
+std::size_t checksum_bytes(PageKind kind) { return kind == PageKind::blob ? 3 : 4; }
+
+std::size_t size_of(const PlainSections& plain) {
+  return std::accumulate(plain.sections.begin(), plain.sections.end(), std::size_t{0},
+                         [](std::size_t sum, const Bytes& part) { return sum + part.size(); });
+}
+
+/// The checksum of a page is that of its solids' checksums; of a blob, the lower three bytes of its
+/// solid's.
+std::uint32_t page_checksum(const PageContents& page, PageKind kind) {
+  ByteWriter writer;
+  std::uint32_t sum = 0;
+  for (const PageSolid& solid : page.solids) {
+    sum = checksum_of(page.frame.acceptance, solid.canonical->boundary.solid(),
+                      solid.keeps_order ? solid.canonical->order : SourceOrder{});
+    writer.u32(sum);
+  }
+  return kind == PageKind::blob ? sum & 0xFFFFFFU : crc32c(writer.bytes());
+}
+
+Result<PlainSections> plain_sections(const CanonicalSolid& canonical, Mode mode,
+                                     const Certificate* certificate) {
+  const Solid& solid = canonical.boundary.solid();
+  PlainSections plain;
+  if (mode == Mode::raw) {
+    plain.sections = {write_vertices(solid.vertices()), write_facet_listing(solid.arrays())};
+    return plain;
+  }
+  auto parts = decompose(canonical, certificate);
+  if (!parts) return parts.error();
+  unsigned flags = 0;
+  plain.sections.push_back(std::move(parts->vertices));
+  if (!parts->steiner.empty()) {
+    flags |= kHasSteiner;
+    plain.sections.push_back(std::move(parts->steiner));
+  }
+  if (parts->bitmap_coding == BitCoding::arithmetic) flags |= kCodedBitmap;
+  plain.sections.push_back(std::move(parts->bitmap));
+  if (!parts->unrecovered.empty()) {
+    flags |= kHasUnrecovered;
+    plain.sections.push_back(std::move(parts->unrecovered));
+  }
+  if (!parts->facets) {
+    flags |= kExplicitFacets;
+    plain.sections.push_back(write_facet_listing(solid.arrays()));
+  } else {
+    if (parts->facets->coding == BitCoding::arithmetic) flags |= kCodedFacets;
+    plain.sections.push_back(std::move(parts->facets->bytes));
+  }
+  plain.flags = static_cast<std::uint8_t>(flags);
+  return plain;
+}
+
+Status make_plain(PageSolid& solid, Mode mode, const Certificate* certificate) {
+  auto plain = plain_sections(*solid.canonical, mode, certificate);
+  if (!plain) return plain.error();
+  solid.mode = mode;
+  solid.plain = std::move(plain).value();
+  return Done{};
+}
+
+/// The cheapest mode for integers; where none can hold the solid, the shorter of raw and bitmap.
+Status choose_mode(const SolidCoder& coder, PageSolid& solid) {
+  solid.mode = coder.cheapest_mode(solid);
+  if (solid.mode != Mode::automatic) return Done{};
+  if (auto status = make_plain(solid, Mode::raw, nullptr); !status) return status;
+  if ((solid.declined >> static_cast<unsigned>(Mode::bitmap) & 1U) != 0) return Done{};
+  PageSolid bitmap = solid;
+  if (make_plain(bitmap, Mode::bitmap, nullptr) && size_of(bitmap.plain) < size_of(solid.plain)) {
+    solid = std::move(bitmap);
+  }
+  return Done{};
+}
+
+/// The header, what the decisions about each part took, the checksum.
+std::vector<BlobInfo::Part> parts_of(const PageSolid& solid, const PageContents& page) {
+  constexpr const char* kNames[kStreamParts] = {"frame",  "position",    "connectivity",
+                                                "facets", "coordinates", "order"};
+  std::vector<BlobInfo::Part> parts;
+  const bool is_alone = page.solids.size() == 1;
+  if (is_alone) parts.push_back({"header", static_cast<double>(kHeaderBytes)});
+  for (std::size_t i = 0; i < kStreamParts; ++i) {
+    const std::uint64_t cost = solid.costs[i] + (is_alone && i == 0 ? page.frame_cost : 0);
+    if (cost == 0) continue;
+    const double bytes = static_cast<double>(cost) / (8.0 * (1 << kCostBits));
+    parts.push_back({kNames[i], std::round(bytes * 100) / 100});
+  }
+  if (is_alone) parts.push_back({"checksum", static_cast<double>(checksum_bytes(page.kind))});
+  return parts;
+}
+
+Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
+  const std::uint8_t first = reader.u8();
+  const std::uint8_t second = reader.u8();
+  const std::uint8_t version = reader.u8();
+  const std::uint8_t models = reader.u8();
+  if (reader.failed()) return reader.error("header");
+  if (first != kMagic[0] || second != kMagic[1]) {
+    return Error{ErrorCode::malformed, "this is no blob: it does not start with WT", 0};
+  }
+  if ((version & 0x7FU) != kFormatVersion) {
+    return Error{ErrorCode::unsupported,
+                 "format version " + std::to_string(version & 0x7FU) +
+                     "; this program reads versions 0 and 1",
+                 2};
+  }
+  if (((version & kPageFlag) != 0) != (kind == PageKind::page)) {
+    return Error{ErrorCode::malformed,
+                 kind == PageKind::page ? "a blob, not a page" : "a page, not a blob", 2};
+  }
+  return models;
+}
+
+}  // namespace
+
+PageSolid page_solid(const OrientedBoundary& boundary, const EncodeOptions& options) {
+  PageSolid solid;
+  solid.canonical = canonical_form(boundary);
+  solid.keeps_order = options.keep_order && !solid.canonical->order.is_identity();
+  const Solid& canonical = solid.canonical->boundary.solid();
+  if (auto gridded = grid_solid(canonical)) {
+    solid.gridded = std::move(*gridded);
+    solid.has_grid = true;
+  }
+  solid.mode = options.mode;
+  return solid;
+}
+
+Frame frame_of(const Solid& solid, const Acceptance& acceptance) {
+  PageGrid grid{solid.lattice().kind, solid.lattice().step, solid.lattice().origin};
+  if (const auto gridded = grid_solid(solid)) grid = gridded->grid;
+  return {acceptance, solid.srid(), grid};
+}
+
+Result<Bytes> write_page_bytes(PageContents& page, PageKind kind, const Certificate* certificate) {
+  auto models = ModelSet::make(page.models);
+  if (!models) return models.error();
+  const Limits none{.bytes = ~std::uint64_t{0},
+                    .vertices = kNone,
+                    .facets = kNone,
+                    .rings = kNone,
+                    .shells = kNone};
+  EntropyStream stream = EntropyStream::writer();
+  if (kind == PageKind::page) stream.code_uniform(page.solids.size() - 1, kMaxPageSolids);
+  if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.frame); !status) {
+    return status.error();
+  }
+  SolidCoder coder(stream, *models, page.frame, none);
+  for (PageSolid& solid : page.solids) {
+    if (solid.mode == Mode::automatic) {
+      if (auto status = choose_mode(coder, solid); !status) return status.error();
+    }
+    const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
+    if (is_plain && solid.plain.sections.empty()) {
+      if (auto status = make_plain(solid, solid.mode, certificate); !status) return status.error();
+    }
+    if (auto status = coder.code(solid); !status) return status.error();
+  }
+  ByteWriter writer;
+  writer.append(kMagic);
+  writer.u8(static_cast<std::uint8_t>(kFormatVersion | (kind == PageKind::page ? kPageFlag : 0U)));
+  writer.u8(page.models);
+  writer.append(std::move(stream).finish());
+  page.checksum = page_checksum(page, kind);
+  for (std::size_t i = 0; i < checksum_bytes(kind); ++i) {
+    writer.u8(static_cast<std::uint8_t>(page.checksum >> (8 * i)));
+  }
+  return std::move(writer).bytes();
+}
+
+Limits limits_of_stream(std::size_t bytes, const Limits& limits) {
+  Limits result = limits;
+  const std::uint64_t most = kFreeVertices + kVerticesPerByte * bytes;
+  result.vertices = std::min(limits.vertices, most);
+  result.facets = std::min(limits.facets, 2 * most);
+  result.rings = std::min(limits.rings, 2 * most);
+  result.shells = std::min(limits.shells, most);
+  return result;
+}
+
+Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits) {
+  if (bytes.size() > limits.bytes) {
+    return Error{ErrorCode::limit_exceeded, "a blob of " + std::to_string(bytes.size()) +
+                                                " bytes; the limit is " +
+                                                std::to_string(limits.bytes)};
+  }
+  ByteReader reader(bytes);
+  const auto number = read_layout(reader, kind);
+  if (!number) return number.error();
+  if (bytes.size() < kHeaderBytes + checksum_bytes(kind)) {
+    return Error{ErrorCode::malformed, "the blob ends before its checksum", bytes.size()};
+  }
+  const std::size_t size = bytes.size() - kHeaderBytes - checksum_bytes(kind);
+  PageContents page;
+  page.models = *number;
+  auto models = ModelSet::make(page.models);
+  if (!models) return models.error();
+  EntropyStream stream = EntropyStream::reader(reader.take(size));
+  for (std::size_t i = 0; i < checksum_bytes(kind); ++i) {
+    page.checksum |= static_cast<std::uint32_t>(reader.u8()) << (8 * i);
+  }
+  const std::uint64_t count =
+      kind == PageKind::page ? stream.code_uniform(0, kMaxPageSolids) + 1 : 1;
+  if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.frame); !status) {
+    return status.error();
+  }
+  page.kind = kind;
+  page.frame_cost = stream.cost();
+  SolidCoder coder(stream, *models, page.frame, limits_of_stream(size, limits));
+  for (std::uint64_t i = 0; i < count; ++i) {
+    PageSolid solid;
+    if (auto status = coder.code(solid); !status) {
+      Error error = std::move(status).error();
+      if (kind == PageKind::page) error.message += "; solid " + std::to_string(i);
+      if (!error.byte_offset) error.byte_offset = kHeaderBytes + stream.position();
+      return error;
+    }
+    page.solids.push_back(std::move(solid));
+  }
+  if (!stream.is_finished()) {
+    return Error{ErrorCode::malformed, "the blob does not end where its solid ends",
+                 bytes.size() - checksum_bytes(kind)};
+  }
+  if (page_checksum(page, kind) != page.checksum) {
+    return Error{ErrorCode::malformed, "the checksum does not match the solid",
+                 bytes.size() - checksum_bytes(kind)};
+  }
+  return page;
+}
+
+Result<Decoded> decoded_of(const PageContents& page, std::size_t number) {
+  const PageSolid& stored = page.solids[number];
+  const Solid& canonical = stored.canonical->boundary.solid();
+  BlobInfo info;
+  info.version = kFormatVersion;
+  info.models = page.models;
+  info.mode = stored.mode;
+  info.acceptance = page.frame.acceptance;
+  info.srid = page.frame.srid;
+  info.lattice = canonical.lattice();
+  info.vertices = canonical.vertex_count();
+  info.facets = canonical.facet_count();
+  info.rings = canonical.ring_count();
+  info.shells = canonical.shell_count();
+  info.steiner_vertices = stored.composition.steiner_vertices;
+  info.delaunay_faces = stored.composition.delaunay_faces;
+  info.marked_faces = stored.composition.marked_faces;
+  info.unrecovered_faces = stored.composition.unrecovered_faces;
+  info.has_order = stored.keeps_order;
+  info.checksum = page.checksum;
+  info.parts = parts_of(stored, page);
+  if (!stored.keeps_order) return Decoded{canonical, std::move(info)};
+  auto restored = restore_order(canonical, stored.canonical->order);
+  if (!restored) return restored.error();
+  return Decoded{std::move(restored).value(), std::move(info)};
+}
+
+}  // namespace watertight

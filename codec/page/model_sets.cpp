@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/page/model_sets.h"
+
+#include <string>
+#include <utility>
+
+#include "codec/page/solid_coder.h"
+#include "codec/page/modes.h"
+
+namespace watertight {
+
+/// The file codec/models/model-1.bin; made by codec/models/embed.cmake.
+extern const std::span<const std::uint8_t> kModel1;
+
+namespace {
+
+using Priors = std::array<ModelBank, kModelParts>;
+
+constexpr std::uint8_t kMagic[3] = {'W', 'T', 'M'};
+
+ModelBank neutral(ModelPart part) { return ModelBank(layout_of(part)); }
+
+/// Read once, when first used.
+const Priors* priors_of(std::uint8_t number) {
+  static const Priors zero = neutral_priors();
+  static const Result<Priors> one = read_models(kModel1, 1);
+  if (number == 0) return &zero;
+  return number == 1 && one ? &*one : nullptr;
+}
+
+}  // namespace
+
+const ModelLayout& layout_of(ModelPart part) {
+  switch (part) {
+    case ModelPart::frame:
+      break;
+    case ModelPart::order:
+      return order_layout();
+    case ModelPart::polygon:
+      return polygon_layout();
+    case ModelPart::walk:
+      return walk_layout();
+    case ModelPart::parallelogram:
+      return parallelogram_layout();
+  }
+  return frame_layout();
+}
+
+Priors neutral_priors() {
+  return {neutral(ModelPart::frame), neutral(ModelPart::order), neutral(ModelPart::polygon),
+          neutral(ModelPart::walk), neutral(ModelPart::parallelogram)};
+}
+
+Result<ModelSet> ModelSet::make(std::uint8_t number) {
+  const Priors* priors = priors_of(number);
+  if (priors == nullptr) {
+    return Error{ErrorCode::unsupported, "model set " + std::to_string(number) + " is unknown"};
+  }
+  ModelSet set(*priors);
+  set.number_ = number;
+  return set;
+}
+
+ModelBank& ModelSet::operator[](ModelPart part) {
+  const auto i = static_cast<std::size_t>(part);
+  if (!banks_[i]) banks_[i] = (*priors_)[i];
+  return *banks_[i];
+}
+
+Bytes write_models(const Priors& banks, std::uint8_t number,
+                   const std::array<PriorShape, kModelParts>& shapes) {
+  ByteWriter writer;
+  writer.append(kMagic);
+  writer.u8(number);
+  for (std::size_t i = 0; i < kModelParts; ++i) {
+    const Bytes state = banks[i].save(shapes[i]);
+    writer.varint(state.size());
+    writer.append(state);
+  }
+  return std::move(writer).bytes();
+}
+
+Result<Priors> read_models(ByteView file, std::uint8_t number) {
+  ByteReader reader(file);
+  bool fits = true;
+  for (const std::uint8_t byte : kMagic) fits = fits && reader.u8() == byte;
+  fits = fits && reader.u8() == number;
+  Priors priors = neutral_priors();
+  for (ModelBank& bank : priors) fits = fits && bank.load(reader.take(reader.varint()));
+  if (!fits || reader.failed() || reader.remaining() != 0) {
+    return Error{ErrorCode::malformed, "no model file of this number and these layouts"};
+  }
+  return priors;
+}
+
+}  // namespace watertight

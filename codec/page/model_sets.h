@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The numbered, immutable sets of priors (docs/format.md, "Models"): what the banks of each part of
+// the format start from. Number 0 is the neutral set; every other one is a file of this folder,
+// built into the program. A released number never changes and stays decodable.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "base/bytes.h"
+#include "base/result.h"
+#include "codec/entropy/model_bank.h"
+
+namespace watertight {
+
+/// The parts of the format that have models of their own, in the order of the model files.
+enum class ModelPart : std::uint8_t { frame, order, polygon, walk, parallelogram };
+inline constexpr std::size_t kModelParts = 5;
+
+const ModelLayout& layout_of(ModelPart part);
+
+/// One bank for each part, copied from its prior when it is first asked for.
+class ModelSet {
+ public:
+  /// Errors: unsupported if no set has this number.
+  static Result<ModelSet> make(std::uint8_t number);
+  /// A set of one's own, for training; `priors` must outlive it.
+  explicit ModelSet(const std::array<ModelBank, kModelParts>& priors) : priors_(&priors) {}
+  explicit ModelSet(std::array<ModelBank, kModelParts>&& priors) = delete;
+
+  ModelBank& operator[](ModelPart part);
+  std::uint8_t number() const { return number_; }
+
+ private:
+  const std::array<ModelBank, kModelParts>* priors_;
+  std::uint8_t number_ = 0;
+  std::array<std::optional<ModelBank>, kModelParts> banks_;
+};
+
+/// All priors neutral.
+std::array<ModelBank, kModelParts> neutral_priors();
+
+/// A model file: "WTM", the number, and each bank's state after its length (varint).
+Bytes write_models(const std::array<ModelBank, kModelParts>& banks, std::uint8_t number,
+                   const std::array<PriorShape, kModelParts>& shapes);
+/// Errors: malformed.
+Result<std::array<ModelBank, kModelParts>> read_models(ByteView file, std::uint8_t number);
+
+}  // namespace watertight

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The entropy coded modes: each one a layout of models and one function that writes, reads or
+// measures a solid on its page's grid (docs/format.md). For encode, decode and training.
+#pragma once
+
+#include <optional>
+
+#include "base/limits.h"
+#include "base/result.h"
+#include "codec/entropy/entropy_stream.h"
+#include "codec/page/integer_solid.h"
+#include "codec/entropy/model_bank.h"
+#include "codec/mode_parallelogram/vertex_coder.h"
+
+namespace watertight {
+
+/// What a mode chose for a solid when it was measured: writing takes the same instead of choosing
+/// again.
+struct WriterChoice {
+  std::optional<VertexOptions> vertex_options;  // of mode parallelogram
+};
+
+/// What every mode takes. `memory` is only looked at; the caller extends it after each solid.
+/// Writing and measuring: requires a canonical solid; errors: not_encodable where the mode cannot
+/// hold it (the stream and the bank are then useless). Reading: `solid` must be empty; its vertices
+/// and facets come in any order; errors: malformed; limit_exceeded before anything large is
+/// allocated.
+using CodeSolid = Status(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
+                         IntegerSolid& solid, WriterChoice& choice, const Limits& limits);
+
+/// Mode `polygon` (B): connectivity first, then coordinates by planes and right angles.
+const ModelLayout& polygon_layout();
+CodeSolid code_polygon;
+
+/// Mode `walk` (A): columns of coordinates, then the boundary among the Delaunay faces.
+const ModelLayout& walk_layout();
+CodeSolid code_walk;
+
+/// Mode `parallelogram`: a front over triangles, each vertex predicted from those around it.
+const ModelLayout& parallelogram_layout();
+CodeSolid code_parallelogram;
+
+}  // namespace watertight

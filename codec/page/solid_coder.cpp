@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/page/solid_coder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "codec/page/blob_header.h"
+#include "codec/page/coordinates.h"
+#include "codec/page/facet_listing.h"
+#include "codec/page/source_order.h"
+
+namespace watertight {
+namespace {
+
+enum Family : std::uint32_t { kImplied, kProof, kKind, kOneStep, kPhase, kMode, kOrigin, kOrder };
+constexpr FamilyShape kFamilies[] = {
+    {1, {1}},      // kImplied: the tolerances are the implied ones
+    {1, {1}},      // kProof
+    {1, {3}},      // kKind: by the bits so far
+    {1, {1}},      // kOneStep
+    {1, {1}},      // kPhase: it is 0
+    {1, {8 * 8}},  // kMode: by the bits so far and the mode of the solid before
+    {1, {2 * 4}},  // kOrigin: which question, by the answer for the solid before
+    {1, {2}},      // kOrder: by the answer for the solid before
+};
+enum Number : std::uint32_t { kRuleSetNumber, kSrid, kMantissa, kExponent, kOffset, kSection };
+constexpr NumberShape kNumbers[] = {
+    {1, {1}},  // kRuleSetNumber
+    {1, {1}},  // kSrid
+    {1, {2}},  // kMantissa: of a step; of a phase
+    {1, {2}},  // kExponent: likewise
+    {1, {3}},  // kOffset: by axis
+    {1, {1}},  // kSection: its length
+};
+constexpr ModelLayout kLayout{kFamilies, kNumbers};
+
+constexpr std::uint32_t kNoMode = 7;
+constexpr int kModeBits = 3;
+
+double code_double(EntropyStream& stream, double value) {
+  return std::bit_cast<double>(stream.code_bits(std::bit_cast<std::uint64_t>(value), 64));
+}
+
+Status code_tolerances(EntropyStream& stream, ModelBank& models, Tolerances& tolerances) {
+  const bool implied = models.code(stream, kImplied, 0, {0}, tolerances == kImpliedTolerances);
+  if (implied) {
+    tolerances = kImpliedTolerances;
+    return Done{};
+  }
+  tolerances.planarity_metres = code_double(stream, tolerances.planarity_metres);
+  tolerances.planarity_degrees = code_double(stream, tolerances.planarity_degrees);
+  tolerances.snap_metres = code_double(stream, tolerances.snap_metres);
+  const bool is_number = std::isfinite(tolerances.planarity_metres) &&
+                         std::isfinite(tolerances.planarity_degrees) &&
+                         std::isfinite(tolerances.snap_metres);
+  if (!is_number || tolerances == kImpliedTolerances) {
+    return Error{ErrorCode::malformed, "the acceptance makes no sense"};
+  }
+  return Done{};
+}
+
+void code_grid_number(EntropyStream& stream, ModelBank& models, std::uint32_t which,
+                      GridNumber& number) {
+  number.mantissa = models.code_signed(stream, kMantissa, 0, {which}, number.mantissa, 63);
+  number.exponent = static_cast<std::int32_t>(
+      models.code_signed(stream, kExponent, 0, {which}, number.exponent, 20));
+}
+
+Status code_grid(EntropyStream& stream, ModelBank& models, PageGrid& grid) {
+  const auto kind = static_cast<unsigned>(grid.kind);
+  const bool high = models.code(stream, kKind, 0, {0}, (kind & 2U) != 0);
+  const bool low = models.code(stream, kKind, 0, {high ? 2U : 1U}, (kind & 1U) != 0);
+  if (high && low) return Error{ErrorCode::malformed, "the lattice is of no known kind"};
+  grid.kind = high ? LatticeKind::float64 : low ? LatticeKind::binary : LatticeKind::decimal;
+  if (grid.kind == LatticeKind::float64) return Done{};
+  const bool one_step = models.code(stream, kOneStep, 0, {0},
+                                    grid.step[0] == grid.step[1] && grid.step[1] == grid.step[2]);
+  code_grid_number(stream, models, 0, grid.step[0]);
+  for (std::size_t axis = 1; axis < 3; ++axis) {
+    if (one_step) {
+      grid.step[axis] = grid.step[0];
+    } else {
+      code_grid_number(stream, models, 0, grid.step[axis]);
+    }
+  }
+  for (GridNumber& phase : grid.phase) {
+    if (models.code(stream, kPhase, 0, {0}, phase == GridNumber{})) continue;
+    code_grid_number(stream, models, 1, phase);
+  }
+  return Done{};
+}
+
+/// Code the bytes of a section as they are.
+void code_section(EntropyStream& stream, ModelBank& models, Bytes& section) {
+  const std::uint64_t size = models.code_number(stream, kSection, 0, {0}, section.size(), 40);
+  for (std::uint64_t i = 0; i < size && !stream.failed(); ++i) {
+    const std::uint8_t byte = stream.is_reading() ? std::uint8_t{0} : section[i];
+    const auto coded = static_cast<std::uint8_t>(stream.code_bits(byte, 8));
+    if (stream.is_reading()) section.push_back(coded);
+  }
+}
+
+std::size_t section_count(Mode mode, std::uint8_t flags) {
+  if (mode == Mode::raw) return 2;
+  return 3U + ((flags & kHasSteiner) != 0 ? 1U : 0U) + ((flags & kHasUnrecovered) != 0 ? 1U : 0U);
+}
+
+Result<Composition> compose_plain(Mode mode, const PlainSections& plain, const Limits& limits) {
+  if (mode == Mode::raw) {
+    auto vertices = read_vertices(plain.sections[0], limits);
+    if (!vertices) return vertices.error();
+    auto arrays =
+        read_facet_listing(plain.sections[1], static_cast<Index>(vertices->size()), limits);
+    if (!arrays) return arrays.error();
+    Composition result;
+    result.arrays = std::move(arrays).value();
+    result.arrays.vertices = std::move(vertices).value();
+    return result;
+  }
+  const auto has = [&](BlobFlag flag) { return (plain.flags & flag) != 0; };
+  BitmapSections parts;
+  std::size_t next = 0;
+  parts.vertices = plain.sections[next++];
+  if (has(kHasSteiner)) parts.steiner = plain.sections[next++];
+  parts.bitmap = plain.sections[next++];
+  if (has(kHasUnrecovered)) parts.unrecovered = plain.sections[next++];
+  parts.facets = plain.sections[next++];
+  parts.bitmap_coding = has(kCodedBitmap) ? BitCoding::arithmetic : BitCoding::plain;
+  parts.facet_coding = has(kCodedFacets) ? BitCoding::arithmetic : BitCoding::plain;
+  parts.lists_facets = has(kExplicitFacets);
+  if ((has(kHasSteiner) && parts.steiner.empty()) ||
+      (has(kHasUnrecovered) && parts.unrecovered.empty())) {
+    return Error{ErrorCode::malformed, "a section is empty"};
+  }
+  if (parts.lists_facets && has(kCodedFacets)) {
+    return Error{ErrorCode::malformed, "the facet section has two codings"};
+  }
+  return compose(parts, limits);
+}
+
+/// The canonical solid of arrays in any order; nothing that is not closed.
+Result<CanonicalSolid> canonical_of(Result<Solid> solid) {
+  if (!solid) return solid.error();
+  auto boundary = OrientedBoundary::make(std::move(solid).value());
+  if (!boundary) {
+    return Error{ErrorCode::malformed, "no closed boundary: " + boundary.error().message};
+  }
+  CanonicalSolid canonical = canonical_form(*boundary);
+  return canonical;
+}
+
+GridPoint smallest_corner(const IntegerSolid& solid) {
+  GridPoint corner{};
+  for (std::size_t axis = 0; axis < 3 && !solid.vertices.empty(); ++axis) {
+    corner[axis] = solid.vertices.front()[axis];
+    for (const GridPoint& vertex : solid.vertices) {
+      corner[axis] = std::min(corner[axis], vertex[axis]);
+    }
+  }
+  return corner;
+}
+
+struct ModeCoder {
+  ModelPart part;
+  CodeSolid* code;
+};
+
+ModeCoder coder_of(Mode mode) {
+  switch (mode) {
+    case Mode::walk:
+      return {ModelPart::walk, code_walk};
+    case Mode::polygon:
+      return {ModelPart::polygon, code_polygon};
+    case Mode::parallelogram:
+      return {ModelPart::parallelogram, code_parallelogram};
+    default:
+      return {ModelPart::frame, nullptr};
+  }
+}
+
+std::array<std::uint64_t, kStreamParts> costs_of(const EntropyStream& stream) {
+  std::array<std::uint64_t, kStreamParts> costs{};
+  for (std::size_t i = 0; i < kStreamParts; ++i) costs[i] = stream.cost(static_cast<StreamPart>(i));
+  return costs;
+}
+
+/// Mode parallelogram holds no other facets.
+bool is_all_triangles(const IntegerSolid& solid) {
+  return solid.ring_vertices.size() == 3 * std::size_t{solid.facet_count()} &&
+         solid.ring_count() == solid.facet_count();
+}
+
+/// A coordinate leaves 53 bits if hostile deltas add up.
+bool are_in_range(const IntegerSolid& solid) {
+  constexpr std::int64_t kLimit = std::int64_t{1} << 53;
+  return std::all_of(solid.vertices.begin(), solid.vertices.end(), [](const GridPoint& vertex) {
+    return std::all_of(vertex.begin(), vertex.end(),
+                       [](std::int64_t c) { return c < kLimit && c > -kLimit; });
+  });
+}
+
+/// Of triangles only, and so large that mode walk is not tried: it takes twice the time and memory
+/// of mode parallelogram and has been larger on every such mesh (bench/results/dense.md).
+bool is_large_mesh(const IntegerSolid& solid) {
+  constexpr std::size_t kMostVertices = 20'000;
+  return solid.vertices.size() > kMostVertices &&
+         solid.ring_vertices.size() == 3 * std::size_t{solid.facet_count()};
+}
+
+}  // namespace
+
+const ModelLayout& frame_layout() { return kLayout; }
+
+const ModelLayout& order_layout() {
+  static const ModelLayout layout{order_families(), {}};
+  return layout;
+}
+
+Status code_frame(EntropyStream& stream, ModelBank& models, Frame& frame) {
+  Acceptance& acceptance = frame.acceptance;
+  if (auto status = code_tolerances(stream, models, acceptance.tolerances); !status) return status;
+  acceptance.proof = models.code(stream, kProof, 0, {0}, acceptance.proof == Proof::boundary)
+                         ? Proof::boundary
+                         : Proof::tetrahedralization;
+  acceptance.rule_set = static_cast<std::uint16_t>(
+      models.code_number(stream, kRuleSetNumber, 0, {0}, acceptance.rule_set, 16));
+  frame.srid =
+      static_cast<std::uint32_t>(models.code_number(stream, kSrid, 0, {0}, frame.srid, 32));
+  if (auto status = code_grid(stream, models, frame.grid); !status) return status;
+  if (!stream.is_reading()) return Done{};
+  if (stream.failed()) return Error{ErrorCode::malformed, "truncated or malformed frame"};
+  const auto lattice = lattice_at(frame.grid, GridPoint{});
+  return lattice ? Status{Done{}} : lattice.error();
+}
+
+Mode SolidCoder::code_mode(Mode mode) {
+  ModelBank& models = models_[ModelPart::frame];
+  std::uint32_t bits = 1;
+  for (int bit = kModeBits - 1; bit >= 0; --bit) {
+    const bool one = ((static_cast<unsigned>(mode) >> bit) & 1U) != 0;
+    bits = 2 * bits + (models.code(stream_, kMode, 0, {8 * last_mode_ + bits}, one) ? 1U : 0U);
+  }
+  last_mode_ = bits & kNoMode;
+  return static_cast<Mode>(last_mode_);
+}
+
+Status SolidCoder::code_geometry(PageSolid& solid) {
+  const ModeCoder coder = coder_of(solid.mode);
+  if (coder.code == nullptr) {
+    return Error{ErrorCode::unsupported,
+                 "mode " + std::to_string(static_cast<unsigned>(solid.mode)) + " is unknown"};
+  }
+  if (frame_.grid.kind == LatticeKind::float64) {
+    const ErrorCode code = stream_.is_reading() ? ErrorCode::malformed : ErrorCode::not_encodable;
+    return Error{code, "mode " + std::string(to_string(solid.mode)) +
+                           " is for integers, and the coordinates are on no grid"};
+  }
+  return coder.code(stream_, models_[coder.part], memory_, solid.gridded.solid, solid.choice,
+                    limits_);
+}
+
+Status SolidCoder::code_plain(PageSolid& solid) {
+  PlainSections& plain = solid.plain;
+  if (solid.mode == Mode::bitmap) {
+    plain.flags = static_cast<std::uint8_t>(stream_.code_bits(plain.flags, 8));
+    const unsigned known =
+        kHasSteiner | kHasUnrecovered | kCodedBitmap | kCodedFacets | kExplicitFacets;
+    if ((plain.flags & ~known) != 0) {
+      return Error{ErrorCode::malformed, "a flag of mode bitmap is unknown"};
+    }
+  }
+  plain.sections.resize(section_count(solid.mode, plain.flags));
+  stream_.enter(StreamPart::coordinates);
+  for (Bytes& section : plain.sections) {
+    code_section(stream_, models_[ModelPart::frame], section);
+    stream_.enter(StreamPart::connectivity);
+  }
+  return Done{};
+}
+
+/// The origin of the solid's lattice: the smallest corner of the solid (0), the origin of the solid
+/// before (1), or any (2).
+void SolidCoder::code_origin(PageSolid& solid) {
+  if (frame_.grid.kind == LatticeKind::float64) return;
+  ModelBank& models = models_[ModelPart::frame];
+  const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
+  GridPoint& origin = solid.gridded.origin;
+  const GridPoint corner = is_plain ? memory_.last_position : smallest_corner(solid.gridded.solid);
+  std::uint32_t which = 0;
+  if (!is_plain && !models.code(stream_, kOrigin, 0, {2 * last_origin_case_}, origin == corner)) {
+    which = models.code(stream_, kOrigin, 0, {2 * last_origin_case_ + 1}, origin == last_origin_)
+                ? 1
+                : 2;
+  }
+  if (is_plain) which = 2;
+  if (which == 0) origin = corner;
+  if (which == 1) origin = last_origin_;
+  for (std::uint32_t axis = 0; axis < 3 && which == 2; ++axis) {
+    origin[axis] = corner[axis] +
+                   models.code_signed(stream_, kOffset, 0, {axis}, origin[axis] - corner[axis], 55);
+  }
+  if (!is_plain) last_origin_case_ = 1 + which;
+  last_origin_ = origin;
+}
+
+Status SolidCoder::rebuild(PageSolid& solid) const {
+  if (stream_.failed()) return Error{ErrorCode::malformed, "truncated or malformed solid"};
+  if (solid.mode != Mode::raw && solid.mode != Mode::bitmap) {
+    if (!are_in_range(solid.gridded.solid)) {
+      return Error{ErrorCode::malformed, "a coordinate is out of range"};
+    }
+    solid.gridded.grid = frame_.grid;
+    auto canonical = canonical_of(ungrid_solid(solid.gridded, frame_.srid, limits_));
+    if (!canonical) return canonical.error();
+    solid.canonical = std::move(canonical).value();
+    return Done{};
+  }
+  auto composition = compose_plain(solid.mode, solid.plain, limits_);
+  if (!composition) return composition.error();
+  auto lattice = lattice_at(frame_.grid, solid.gridded.origin);
+  if (!lattice) return lattice.error();
+  solid.composition = std::move(composition).value();
+  auto canonical = canonical_of(
+      Solid::make(std::move(solid.composition.arrays), *lattice, frame_.srid, limits_));
+  if (!canonical) return canonical.error();
+  const bool is_listed = solid.mode == Mode::raw || (solid.plain.flags & kExplicitFacets) != 0;
+  if (is_listed && !canonical->order.is_identity()) {
+    return Error{ErrorCode::malformed, "the listed facets are not in canonical order"};
+  }
+  solid.canonical = std::move(canonical).value();
+  return Done{};
+}
+
+Status SolidCoder::code_order(PageSolid& solid) {
+  solid.keeps_order =
+      models_[ModelPart::frame].code(stream_, kOrder, 0, {last_order_}, solid.keeps_order);
+  last_order_ = solid.keeps_order ? 1 : 0;
+  if (!solid.keeps_order) return Done{};
+  watertight::code_order(stream_, models_[ModelPart::order], 0, solid.canonical->boundary.solid(),
+                         solid.canonical->order);
+  if (stream_.is_reading() && solid.canonical->order.is_identity()) {
+    return Error{ErrorCode::malformed, "an order that orders nothing"};
+  }
+  return Done{};
+}
+
+void SolidCoder::take_from_limits(const Solid& solid) {
+  const auto take = [](std::uint64_t& limit, std::uint64_t count) {
+    limit -= std::min(limit, count);
+  };
+  take(limits_.vertices, solid.vertex_count());
+  take(limits_.facets, solid.facet_count());
+  take(limits_.rings, solid.ring_count());
+  take(limits_.shells, solid.shell_count());
+}
+
+Status SolidCoder::code(PageSolid& solid) {
+  const auto before = costs_of(stream_);
+  stream_.enter(StreamPart::frame);
+  solid.mode = code_mode(solid.mode);
+  const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
+  if (auto status = is_plain ? code_plain(solid) : code_geometry(solid); !status) return status;
+  stream_.enter(StreamPart::position);
+  code_origin(solid);
+  if (stream_.is_reading()) {
+    if (auto status = rebuild(solid); !status) return status;
+  }
+  stream_.enter(StreamPart::order);
+  if (auto status = code_order(solid); !status) return status;
+  solid.costs = costs_of(stream_);
+  for (std::size_t i = 0; i < kStreamParts; ++i) solid.costs[i] -= before[i];
+  if (stream_.failed()) return Error{ErrorCode::malformed, "truncated or malformed solid"};
+  if (!is_plain) memory_.add(solid.gridded.solid);
+  take_from_limits(solid.canonical->boundary.solid());
+  return Done{};
+}
+
+std::optional<std::uint64_t> SolidCoder::cost(PageSolid& solid, Mode mode) const {
+  const ModeCoder coder = coder_of(mode);
+  if (coder.code == nullptr || !solid.has_grid) return std::nullopt;
+  if (mode == Mode::parallelogram && !is_all_triangles(solid.gridded.solid)) return std::nullopt;
+  EntropyStream meter = EntropyStream::meter();
+  ModelBank& models = models_[coder.part];
+  IntegerSolid& integers = solid.gridded.solid;
+  const BankTrial trial(models, integers.vertices.size());
+  if (!coder.code(meter, models, memory_, integers, solid.choice, limits_)) return std::nullopt;
+  return meter.cost();
+}
+
+Mode SolidCoder::cheapest_mode(PageSolid& solid) const {
+  Mode best = Mode::automatic;
+  std::uint64_t least = ~std::uint64_t{0};
+  for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {
+    if ((solid.declined >> static_cast<unsigned>(mode) & 1U) != 0) continue;
+    if (mode == Mode::walk && is_large_mesh(solid.gridded.solid)) continue;
+    const auto needed = cost(solid, mode);
+    if (needed && *needed < least) {
+      least = *needed;
+      best = mode;
+    }
+  }
+  return best;
+}
+
+}  // namespace watertight

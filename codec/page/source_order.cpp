@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/page/source_order.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+namespace watertight {
+namespace {
+
+enum Family : std::uint32_t { kStraight, kCandidate, kScan, kStart };
+
+/// Where a candidate for the next facet comes from.
+enum Habit : std::uint32_t { kNextEdge, kLastEdge, kNeighbour, kSuccessor, kFirstLeft, kNoHabit };
+constexpr std::uint32_t kHabits = 6;
+constexpr std::uint32_t kFacings = 5;    // of facets: up, down, upright, slanting up, slanting down
+constexpr std::uint32_t kRelations = 9;  // of a ring place to the facets before
+constexpr Index kMostScanned = 64;
+constexpr Index kMostNeighbours = 12;
+
+constexpr std::array<FamilyShape, 4> kShapes{{
+    {1, {8}},
+    {kHabits, {kHabits * kHabits * kHabits, kFacings* kFacings* kHabits, 16 * kHabits* kHabits}},
+    {1, {kFacings * kFacings * 2, kFacings * 2 * 8, 64}},
+    {kFacings,
+     {8 * 2 * kFacings * kRelations, 2 * 2 * 3 * kFacings * 2, 27 * kFacings,
+      kRelations* kRelations * 8, 16 * 16, 2 * 2 * 3 * 3 * 4}},
+}};
+
+std::vector<Index> inverse_of(const std::vector<Index>& order) {
+  std::vector<Index> inverse(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) inverse[order[i]] = static_cast<Index>(i);
+  return inverse;
+}
+
+/// Elements that are left, with the successor of each in O(log n) amortized.
+class Left {
+ public:
+  Left(Index begin, Index end)
+      : begin_(begin), next_(end - begin + 1), is_left_(end - begin, true) {
+    std::iota(next_.begin(), next_.end(), Index{0});
+    left_ = end - begin;
+  }
+  Index count() const { return left_; }
+  bool has(Index element) const {
+    return element >= begin_ && element - begin_ < is_left_.size() && is_left_[element - begin_];
+  }
+  void remove(Index element) {
+    is_left_[element - begin_] = false;
+    next_[element - begin_] = element - begin_ + 1;
+    --left_;
+  }
+  /// The first one left from `element` on; the end when there is none.
+  Index from(Index element) {
+    Index root = element - begin_;
+    while (next_[root] != root) root = next_[root];
+    for (Index at = element - begin_; next_[at] != at;) {
+      const Index after = next_[at];
+      next_[at] = root;
+      at = after;
+    }
+    return begin_ + root;
+  }
+
+ private:
+  Index begin_;
+  std::vector<Index> next_;
+  std::vector<bool> is_left_;
+  Index left_ = 0;
+};
+
+/// Sign of each difference, 0 to 2.
+std::uint32_t sign_of(double from, double to) { return to < from ? 0U : to > from ? 2U : 1U; }
+
+class OrderCoder {
+ public:
+  OrderCoder(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family, const Solid& solid,
+             SourceOrder& order)
+      : stream_(stream), bank_(bank), first_(first_family), solid_(solid), order_(order) {}
+
+  void run() {
+    stream_.enter(StreamPart::order);
+    prepare();
+    const std::vector<Index> shells = shells_in_source_order();
+    Index facet = 0;
+    Index ring = 0;
+    for (const Index shell : shells) code_facets(shell, facet, ring);
+    code_vertices();
+  }
+
+ private:
+  bool decide(Family family, std::uint32_t selector, std::initializer_list<std::uint32_t> contexts,
+              bool value) {
+    return bank_.code(stream_, first_ + family, selector, contexts, value);
+  }
+
+  void prepare() {
+    if (stream_.is_reading()) {
+      order_.vertex.resize(solid_.vertex_count());
+      order_.shell.resize(solid_.shell_count());
+      order_.facet.resize(solid_.facet_count());
+      order_.ring.resize(solid_.ring_count());
+      for (auto* list : {&order_.vertex, &order_.shell, &order_.facet, &order_.ring}) {
+        std::iota(list->begin(), list->end(), Index{0});
+      }
+      order_.ring_start.assign(solid_.ring_count(), 0);
+    }
+    source_facet_ = inverse_of(order_.facet);
+    source_ring_ = inverse_of(order_.ring);
+    is_seen_.assign(solid_.vertex_count(), false);
+    number_.assign(solid_.vertex_count(), kNone);
+    link_corners();
+    measure_facets();
+  }
+
+  /// The facet across each corner's edge (from the corner to the next of its ring).
+  void link_corners() {
+    struct Edge {
+      Index from, to, corner;
+    };
+    std::vector<Edge> edges;
+    corner_begin_.assign(1, 0);
+    facet_of_ring_.resize(solid_.ring_count());
+    std::vector<Index> facet_of_corner;
+    for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
+      const IndexRange rings = solid_.rings_of(facet);
+      for (Index ring = rings.begin; ring < rings.end; ++ring) {
+        facet_of_ring_[ring] = facet;
+        const auto vertices = solid_.ring(ring);
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+          edges.push_back({vertices[i], vertices[(i + 1) % vertices.size()],
+                           static_cast<Index>(facet_of_corner.size())});
+          facet_of_corner.push_back(facet);
+        }
+        corner_begin_.push_back(static_cast<Index>(facet_of_corner.size()));
+      }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+      return std::tie(a.from, a.to, a.corner) < std::tie(b.from, b.to, b.corner);
+    });
+    across_.assign(facet_of_corner.size(), kNone);
+    for (const Edge& edge : edges) {
+      const auto twin =
+          std::lower_bound(edges.begin(), edges.end(), edge, [](const Edge& a, const Edge& b) {
+            return std::tie(a.from, a.to) < std::tie(b.to, b.from);
+          });
+      if (twin == edges.end() || twin->from != edge.to || twin->to != edge.from) continue;
+      across_[edge.corner] = facet_of_corner[twin->corner];
+    }
+  }
+
+  /// Facing and twice the projected area, by Newell's sums over the exterior ring.
+  void measure_facets() {
+    facing_.resize(solid_.facet_count());
+    size_.resize(solid_.facet_count());
+    for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
+      const auto ring = solid_.ring(solid_.rings_of(facet).begin);
+      std::array<double, 3> normal{};
+      const Point origin = solid_.vertices()[ring[0]];
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Point& p = solid_.vertices()[ring[i]];
+        const Point& q = solid_.vertices()[ring[(i + 1) % ring.size()]];
+        for (int axis = 0; axis < 3; ++axis) {
+          const int u = (axis + 1) % 3;
+          const int v = (axis + 2) % 3;
+          const double one = (p[u] - origin[u]) * (q[v] - origin[v]);
+          const double other = (p[v] - origin[v]) * (q[u] - origin[u]);
+          normal[static_cast<std::size_t>(axis)] += one - other;
+        }
+      }
+      const double flat = std::fabs(normal[0]) + std::fabs(normal[1]);
+      const double upright = std::fabs(normal[2]);
+      std::uint32_t& facing = facing_[facet];
+      facing = normal[2] > 0 ? 3 : 4;
+      if (upright * 16 <= flat) facing = 2;
+      if (flat * 16 <= upright) facing = normal[2] > 0 ? 0 : 1;
+      size_[facet] = flat + upright;
+    }
+  }
+
+  std::vector<Index> shells_in_source_order() {
+    std::vector<Index> source = inverse_of(order_.shell);
+    code_arrangement(source, 1, 0);
+    if (stream_.is_reading()) order_.shell = inverse_of(source);
+    return source;
+  }
+
+  /// A permutation of 0 .. size-1 whose first `fixed` elements stay: one decision when it is the
+  /// identity, else plain.
+  void code_arrangement(std::vector<Index>& sequence, Index fixed, std::uint32_t context) {
+    if (sequence.size() < std::size_t{fixed} + 2) return;
+    const bool is_straight =
+        decide(kStraight, 0, {context}, std::is_sorted(sequence.begin(), sequence.end()));
+    if (is_straight || stream_.failed()) {
+      std::iota(sequence.begin(), sequence.end(), Index{0});
+      return;
+    }
+    // As the exchanges that sort it: each element with one of those from it on.
+    std::vector<Index> rest(sequence.size());
+    std::iota(rest.begin(), rest.end(), Index{0});
+    std::vector<Index> place = rest;  // of each element in `rest`
+    for (std::size_t i = fixed; i + 1 < sequence.size(); ++i) {
+      const std::size_t wanted = stream_.is_reading() ? i : place[sequence[i]];
+      const auto chosen =
+          i + static_cast<std::size_t>(stream_.code_uniform(wanted - i, sequence.size() - i));
+      std::swap(rest[i], rest[chosen]);
+      place[rest[i]] = static_cast<Index>(i);
+      place[rest[chosen]] = static_cast<Index>(chosen);
+    }
+    sequence = rest;
+  }
+
+  void code_facets(Index shell, Index& source_facet, Index& source_ring) {
+    const IndexRange facets = solid_.facets_of(shell);
+    Left left(facets.begin, facets.end);
+    reference_ = kNone;
+    last_ = kNone;
+    habits_ = {kNoHabit, kNoHabit};
+    for (Index i = 0; i < facets.size(); ++i) {
+      Index facet = source_facet_[source_facet];
+      facet = next_facet(left, facets, facet);
+      left.remove(facet);
+      source_facet_[source_facet] = facet;
+      order_.facet[facet] = source_facet++;
+      last_ = facet;
+      code_rings(facet, source_ring);
+    }
+  }
+
+  struct Candidate {
+    Index facet, reference, place;
+    Habit habit;
+  };
+
+  /// Facets that habits would take next, each once.
+  void collect_candidates(Left& left, IndexRange facets) {
+    candidates_.clear();
+    if (last_ == kNone) return;
+    const auto add = [&](Index facet, Index reference, Index place, Habit habit) {
+      if (facet == kNone || !left.has(facet)) return;
+      for (const Candidate& known : candidates_) {
+        if (known.facet == facet) return;
+      }
+      candidates_.push_back({facet, reference, place, habit});
+    };
+    const auto across = [&](Index reference, Index place) {
+      const Index ring = solid_.rings_of(reference).begin;
+      const auto size = static_cast<Index>(solid_.ring(ring).size());
+      return across_[corner_begin_[ring] + (order_.ring_start[ring] + place) % size];
+    };
+    const auto ring_size = [&](Index facet) {
+      return static_cast<Index>(solid_.ring(solid_.rings_of(facet).begin).size());
+    };
+    if (reference_ != kNone) {
+      const Index size = ring_size(reference_);
+      const Index next = (place_ + 1) % size;
+      const Index previous = (place_ + size - 1) % size;
+      add(across(reference_, next), reference_, next, kNextEdge);
+      add(across(reference_, previous), reference_, previous, kLastEdge);
+    }
+    const Index most = std::min(ring_size(last_), kMostNeighbours);
+    for (Index place = 0; place < most; ++place) {
+      add(across(last_, place), last_, place, kNeighbour);
+    }
+    const Index successor = left.from(last_);
+    if (successor < facets.end) add(successor, kNone, 0, kSuccessor);
+    add(left.from(facets.begin), kNone, 0, kFirstLeft);
+  }
+
+  Index next_facet(Left& left, IndexRange facets, Index wanted) {
+    if (left.count() == 1) return left.from(facets.begin);
+    collect_candidates(left, facets);
+    const std::uint32_t last_facing = last_ == kNone ? 0 : facing_[last_];
+    std::uint32_t index = 0;
+    for (const Candidate& candidate : candidates_) {
+      const bool is_it =
+          decide(kCandidate, candidate.habit,
+                 {(habits_[0] * kHabits + habits_[1]) * kHabits + candidate.habit,
+                  (last_facing * kFacings + facing_[candidate.facet]) * kHabits + candidate.habit,
+                  (std::min(index, 15U) * kHabits + candidate.habit) * kHabits + habits_[0]},
+                 candidate.facet == wanted);
+      if (stream_.failed()) return left.from(facets.begin);
+      ++index;
+      if (!is_it) continue;
+      habits_ = {candidate.habit, habits_[0]};
+      // A neighbour of the last facet makes that the reference only when the old one is used up.
+      reference_ = candidate.reference;
+      place_ = candidate.place;
+      return candidate.facet;
+    }
+    habits_ = {kNoHabit, habits_[0]};
+    reference_ = kNone;
+    return scanned_facet(left, facets, wanted, last_facing);
+  }
+
+  bool is_candidate(Index facet) const {
+    return std::any_of(candidates_.begin(), candidates_.end(),
+                       [facet](const Candidate& candidate) { return candidate.facet == facet; });
+  }
+
+  /// A facet that follows no habit: looked for among those left, by facing and size.
+  Index scanned_facet(Left& left, IndexRange facets, Index wanted, std::uint32_t last_facing) {
+    scanned_.clear();
+    for (Index facet = left.from(facets.begin);
+         facet < facets.end && scanned_.size() <= kMostScanned; facet = left.from(facet + 1)) {
+      if (!is_candidate(facet)) scanned_.push_back(facet);
+    }
+    if (scanned_.empty()) {  // read: all candidates were refused
+      stream_.fail();
+      return left.from(facets.begin);
+    }
+    if (scanned_.size() > kMostScanned) return any_facet(left, facets, wanted);
+    std::array<double, kFacings> largest{};
+    for (const Index facet : scanned_) {
+      largest[facing_[facet]] = std::max(largest[facing_[facet]], size_[facet]);
+    }
+    for (std::size_t i = 0; i + 1 < scanned_.size(); ++i) {
+      const Index facet = scanned_[i];
+      const std::uint32_t facing = facing_[facet];
+      const std::uint32_t is_largest = size_[facet] >= largest[facing] ? 1 : 0;
+      const auto rest = static_cast<std::uint32_t>(scanned_.size() - i);
+      const bool is_it = decide(
+          kScan, 0,
+          {(last_facing * kFacings + facing) * 2 + is_largest,
+           (facing * 2 + is_largest) * 8 + (last_ == kNone ? 1U : 0U) * 4 + std::min(rest / 4, 3U),
+           std::min(rest, 63U)},
+          facet == wanted);
+      if (is_it || stream_.failed()) return facet;
+    }
+    return scanned_.back();
+  }
+
+  Index any_facet(Left& left, IndexRange facets, Index wanted) {
+    const std::uint64_t place = stream_.code_uniform(wanted - facets.begin, facets.size());
+    const Index facet =
+        facets.begin + static_cast<Index>(std::min<std::uint64_t>(place, facets.size() - 1));
+    if (left.has(facet)) return facet;
+    stream_.fail();
+    return left.from(facets.begin);
+  }
+
+  void code_rings(Index facet, Index& source_ring) {
+    const IndexRange rings = solid_.rings_of(facet);
+    std::vector<Index> arrangement(rings.size());
+    for (Index i = 0; i < rings.size(); ++i) {
+      arrangement[i] = stream_.is_reading() ? i : source_ring_[source_ring + i] - rings.begin;
+    }
+    code_arrangement(arrangement, 1, 1);
+    for (const Index member : arrangement) {
+      const Index ring = rings.begin + member;
+      order_.ring[ring] = source_ring;
+      source_ring_[source_ring++] = ring;
+      code_start(ring, facet);
+      see(ring);
+    }
+  }
+
+  /// How the edge before or after a corner lies to the facets that came before.
+  std::uint32_t relation(Index across_this, Index across_last) const {
+    const auto of = [this](Index facet) {
+      if (facet == kNone || facet == last_) return 0U;
+      if (facet == before_last_) return 1U;
+      return order_known(facet) ? 2U : 0U;
+    };
+    return of(across_this) * 3 + of(across_last);
+  }
+  bool order_known(Index facet) const { return is_placed_[facet]; }
+
+  void code_start(Index ring, Index facet) {
+    const auto vertices = solid_.ring(ring);
+    const auto size = static_cast<Index>(vertices.size());
+    Index& start = order_.ring_start[ring];
+    Index oldest = kNone;
+    double low = solid_.vertices()[vertices[0]].z;
+    for (const Index vertex : vertices) {
+      oldest = std::min(oldest, number_[vertex]);
+      low = std::min(low, solid_.vertices()[vertex].z);
+    }
+    const std::uint32_t facing = facing_[facet];
+    Index place = 0;
+    for (; place + 1 < size; ++place) {
+      const Index before = vertices[(place + size - 1) % size];
+      const Index here = vertices[place];
+      const Index after = vertices[(place + 1) % size];
+      const Point& p = solid_.vertices()[here];
+      const Point& q = solid_.vertices()[after];
+      const std::uint32_t seen =
+          (is_seen_[before] ? 4U : 0U) + (is_seen_[here] ? 2U : 0U) + (is_seen_[after] ? 1U : 0U);
+      const std::uint32_t is_oldest = oldest != kNone && number_[here] == oldest ? 1 : 0;
+      const std::uint32_t related =
+          relation(across_[corner_begin_[ring] + place],
+                   across_[corner_begin_[ring] + (place + size - 1) % size]);
+      const std::uint32_t rise = sign_of(p.z, q.z);
+      const std::uint32_t is_low = p.z <= low ? 1 : 0;
+      const std::uint32_t first = place == 0 ? 1 : 0;
+      const std::uint32_t turn = (sign_of(p.x, q.x) * 3 + sign_of(p.y, q.y)) * 3 + rise;
+      const std::uint32_t fall = sign_of(solid_.vertices()[before].z, p.z);
+      const bool is_it =
+          decide(kStart, facing,
+                 {((seen * 2 + is_oldest) * kFacings + facing) * kRelations + related,
+                  (((first * 2 + is_low) * 3 + rise) * kFacings + facing) * 2 + is_oldest,
+                  turn * kFacings + facing, (last_relation_ * kRelations + related) * 8 + seen,
+                  std::min(place, Index{15}) * 16 + std::min(size, Index{15}),
+                  (((first * 2 + is_low) * 3 + rise) * 3 + fall) * 4 + (seen & 3U)},
+                 place == start);
+      if (stream_.failed()) {
+        place = 0;
+        break;
+      }
+      if (is_it) {
+        last_relation_ = related;
+        break;
+      }
+    }
+    start = place;
+  }
+
+  void see(Index ring) {
+    const auto vertices = solid_.ring(ring);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Index vertex = vertices[(order_.ring_start[ring] + i) % vertices.size()];
+      if (is_seen_[vertex]) continue;
+      is_seen_[vertex] = true;
+      number_[vertex] = static_cast<Index>(first_use_.size());
+      first_use_.push_back(vertex);
+    }
+    const Index facet = facet_of_ring_[ring];
+    is_placed_[facet] = true;
+    before_last_ = facet;
+  }
+
+  /// Vertices against the order of their first use.
+  void code_vertices() {
+    for (Index vertex = 0; vertex < solid_.vertex_count(); ++vertex) {
+      if (!is_seen_[vertex]) {
+        number_[vertex] = static_cast<Index>(first_use_.size());
+        first_use_.push_back(vertex);
+      }
+    }
+    std::vector<Index> sequence(solid_.vertex_count());  // source vertex -> place in first_use_
+    for (Index vertex = 0; vertex < solid_.vertex_count(); ++vertex) {
+      if (!stream_.is_reading()) sequence[order_.vertex[vertex]] = number_[vertex];
+    }
+    code_arrangement(sequence, 0, 2);
+    for (Index source = 0; source < sequence.size(); ++source) {
+      order_.vertex[first_use_[sequence[source]]] = source;
+    }
+  }
+
+  EntropyStream& stream_;
+  ModelBank& bank_;
+  std::uint32_t first_;
+  const Solid& solid_;
+  SourceOrder& order_;
+  std::vector<Index> source_facet_;   // source facet -> canonical
+  std::vector<Index> source_ring_;    // source ring -> canonical
+  std::vector<Index> facet_of_ring_;  // canonical
+  std::vector<Index> corner_begin_;   // ring -> its first corner
+  std::vector<Index> across_;         // corner -> facet across its edge
+  std::vector<std::uint32_t> facing_;
+  std::vector<double> size_;
+  std::vector<bool> is_seen_;  // vertices of rings so far
+  std::vector<bool> is_placed_ = std::vector<bool>(solid_.facet_count(), false);
+  std::vector<Index> number_;  // vertex -> place in first_use_
+  std::vector<Index> first_use_;
+  std::vector<Candidate> candidates_;
+  std::vector<Index> scanned_;
+  Index last_ = kNone;
+  Index before_last_ = kNone;
+  Index reference_ = kNone;
+  Index place_ = 0;  // of the reference's edge, from its ring start
+  std::array<std::uint32_t, 2> habits_{kNoHabit, kNoHabit};
+  std::uint32_t last_relation_ = 0;
+};
+
+}  // namespace
+
+std::span<const FamilyShape> order_families() { return kShapes; }
+
+void code_order(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family,
+                const Solid& canonical, SourceOrder& order) {
+  OrderCoder(stream, bank, first_family, canonical, order).run();
+}
+
+}  // namespace watertight

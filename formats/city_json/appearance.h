@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Materials, textures and texture vertices of a CityJSON: moved from the document into a feature
+// that uses them, and from features into one document. Internal to formats/.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "formats/text/json.h"
+
+namespace watertight {
+
+/// A growing list of distinct JSON values.
+class DistinctValues {
+ public:
+  /// The position of `value`, which is appended if it is new.
+  std::size_t position_of(const Json& value);
+  Json take() { return Json(std::move(values_)); }
+  bool is_empty() const { return values_.empty(); }
+
+ private:
+  Json::array_t values_;
+  std::unordered_map<std::string, std::size_t> position_;  // by text
+};
+
+/// Collects what geometries refer to and renumbers the references.
+class AppearanceCollector {
+ public:
+  /// Starts with all of `appearance`, in its order, so that references to it keep their numbers
+  /// (unless it holds a value twice). Null when there is none.
+  void include(const Json* appearance);
+
+  /// Makes `geometry`, whose indices refer to `source`, refer to this collection.
+  /// Errors: malformed if an index is out of range (JSON Pointer within the geometry).
+  Status adopt(Json& geometry, const Json* source);
+
+  /// The `appearance` object, null when nothing was collected. `themes` gives the members that are
+  /// not lists (default themes), or is null.
+  Json take(const Json* themes);
+
+ private:
+  DistinctValues materials_;
+  DistinctValues textures_;
+  DistinctValues texture_vertices_;
+};
+
+}  // namespace watertight

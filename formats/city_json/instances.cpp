@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Instances of geometry templates: which template, and where its matrix and its vertex put it.
+#include <algorithm>
+#include <utility>
+
+#include "formats/city_json/model.h"
+#include "formats/text/numbers.h"
+
+namespace watertight {
+namespace {
+
+Error wrong(std::string message, std::string pointer) {
+  return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
+}
+
+Result<std::array<GridNumber, kMatrixSize>> read_matrix(const Json& geometry,
+                                                        const std::string& pointer) {
+  const Json* values = find_member(geometry, "transformationMatrix");
+  const bool is_matrix = values != nullptr && values->is_array() && values->size() == kMatrixSize &&
+                         std::all_of(values->begin(), values->end(), is_number_value);
+  if (!is_matrix) return wrong("a transformationMatrix needs 16 numbers", pointer);
+  std::array<GridNumber, kMatrixSize> matrix;
+  for (std::size_t i = 0; i < kMatrixSize; ++i) {
+    auto exact = exact_number(json_text((*values)[i]));
+    if (!exact) return wrong(exact.error().message, pointer + pointer_token(i));
+    matrix[i] = exact->value;
+  }
+  const auto placement = placement_of_matrix(matrix, {});
+  if (!placement) return wrong(placement.error().message, pointer);
+  return matrix;
+}
+
+// The vertex that the instance stands on, in the world.
+Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const InstanceRef& ref,
+                                            const CityHeader& header, const std::string& pointer) {
+  const auto tokens = model.boundary(ref.boundary);
+  const auto vertex =
+      std::find_if(tokens.begin(), tokens.end(), [](BoundaryToken t) { return t < kClose; });
+  if (vertex == tokens.end()) {
+    return wrong("a geometry instance needs the vertex it stands on", pointer);
+  }
+  const VertexList& list = model.vertices;
+  auto points = list.are_integers ? lattice_of_integers({&list.integers[*vertex], 1},
+                                                        header.transform.value_or(Transform{}))
+                                  : lattice_of_decimals({&list.decimals[*vertex], 1});
+  if (!points) return wrong(points.error().message, pointer);
+  // The one point is the origin of its lattice, unless it is beyond all decimal grids.
+  if (points->lattice.kind == LatticeKind::decimal) return points->lattice.origin;
+  std::array<GridNumber, 3> anchor;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place = points->lattice.world(points->points.front()[axis], axis);
+    anchor[static_cast<std::size_t>(axis)] = shortest_decimal(place);
+  }
+  return anchor;
+}
+
+}  // namespace
+
+Result<InstanceRef> read_instance(const Json& geometry, const std::string& pointer,
+                                  std::uint64_t template_count) {
+  const Json* number = find_member(geometry, "template");
+  if (number == nullptr || !number->is_number_unsigned()) {
+    return wrong("a geometry instance needs the index of its template", pointer + "/template");
+  }
+  InstanceRef ref;
+  ref.template_number = number->get<std::uint64_t>();
+  if (ref.template_number >= template_count) {
+    return wrong("template " + std::to_string(ref.template_number) + " is out of range (" +
+                     std::to_string(template_count) + " templates)",
+                 pointer + "/template");
+  }
+  const Json* boundaries = find_member(geometry, "boundaries");
+  if (boundaries == nullptr) {
+    return wrong("a geometry instance needs the vertex it stands on", pointer + "/boundaries");
+  }
+  ref.boundary = boundaries->get<std::size_t>();
+  auto matrix = read_matrix(geometry, pointer + "/transformationMatrix");
+  if (!matrix) return std::move(matrix).error();
+  ref.matrix = *matrix;
+  return ref;
+}
+
+Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
+                                                     const ModelIndex& index,
+                                                     const CityHeader& header) {
+  std::vector<TemplateInstance> instances;
+  instances.reserve(index.instances.size());
+  for (const InstanceRef& ref : index.instances) {
+    TemplateInstance instance;
+    instance.template_number = ref.template_number;
+    instance.source = {index.ids[ref.object],
+                       "GeometryInstance",
+                       {},
+                       ref.geometry,
+                       0,
+                       "/CityObjects" + pointer_token(index.ids[ref.object]) + "/geometry" +
+                           pointer_token(ref.geometry)};
+    auto anchor = anchor_of(model, ref, header, instance.source.pointer + "/boundaries");
+    if (!anchor) return std::move(anchor).error();
+    auto placement = placement_of_matrix(ref.matrix, *anchor);
+    if (!placement) return std::move(placement).error();
+    instance.placement = *placement;
+    instance.placement.srid = header.srid;
+    const Index building = index.building_of[ref.object];
+    if (building != kNone) instance.source.building_id = index.ids[building];
+    instances.push_back(std::move(instance));
+  }
+  return instances;
+}
+
+}  // namespace watertight

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+#include "formats/city_json/model.h"
+#include "formats/text/numbers.h"
+
+namespace watertight {
+namespace {
+
+Error wrong(std::string message, std::string pointer) {
+  return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
+}
+
+std::string geometry_pointer(std::string_view id, std::size_t geometry) {
+  return "/CityObjects" + pointer_token(id) + "/geometry" + pointer_token(geometry);
+}
+
+Status read_axes(const Json& transform, std::string_view name, std::array<GridNumber, 3>& axes) {
+  const std::string pointer = "/transform" + pointer_token(name);
+  const Json* values = find_member(transform, name);
+  if (values == nullptr || !values->is_array() || values->size() != 3) {
+    return wrong("a transform needs three numbers for each of scale and translate", pointer);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Json& value = (*values)[axis];
+    if (!is_number_value(value)) return wrong("not a number", pointer + pointer_token(axis));
+    auto exact = exact_number(json_text(value));
+    if (!exact) return wrong(exact.error().message, pointer + pointer_token(axis));
+    axes[axis] = exact->value;
+  }
+  return Done{};
+}
+
+Result<Transform> read_transform(const Json& value) {
+  Transform transform;
+  if (auto status = read_axes(value, "scale", transform.scale); !status) return status.error();
+  if (auto status = read_axes(value, "translate", transform.translate); !status) {
+    return status.error();
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (transform.scale[axis].mantissa <= 0) {
+      return wrong("the scale of a transform must be positive",
+                   "/transform/scale" + pointer_token(axis));
+    }
+  }
+  return transform;
+}
+
+bool is_known_version(std::string_view version) {
+  for (const std::string_view known : {"1.0", "1.1", "2.0"}) {
+    if (version == known) return true;
+    if (version.starts_with(known) && version.size() > 3 && version[3] == '.') return true;
+  }
+  return false;
+}
+
+Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref,
+                      std::uint64_t template_count, ModelIndex& index) {
+  const std::string pointer = geometry_pointer(id, ref.geometry);
+  if (!geometry.is_object()) return wrong("a geometry must be an object", pointer);
+  const Json* type = find_member(geometry, "type");
+  if (type == nullptr || !type->is_string()) return wrong("the geometry has no type", pointer);
+  ref.type = type->get<std::string>();
+  if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
+    ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
+  }
+  if (ref.type == "GeometryInstance") {
+    auto instance = read_instance(geometry, pointer, template_count);
+    if (!instance) return std::move(instance).error();
+    instance->object = ref.object;
+    instance->geometry = ref.geometry;
+    index.instances.push_back(*std::move(instance));
+  }
+  const Json* boundaries = find_member(geometry, "boundaries");
+  if (boundaries == nullptr) {
+    if (ref.is_of_solids()) return wrong("the geometry has no boundaries", pointer);
+    return Done{};
+  }
+  ref.boundary = boundaries->get<std::size_t>();
+  index.geometries.push_back(std::move(ref));
+  return Done{};
+}
+
+Status index_object(const Json& object, std::uint32_t number, std::uint64_t template_count,
+                    ModelIndex& index) {
+  const std::string& id = index.ids[number];
+  const std::string pointer = "/CityObjects" + pointer_token(id);
+  if (!object.is_object()) return wrong("a city object must be an object", pointer);
+  const Json* type = find_member(object, "type");
+  if (type == nullptr || !type->is_string()) return wrong("the city object has no type", pointer);
+  const Json* geometries = find_member(object, "geometry");
+  if (geometries == nullptr) return Done{};
+  if (!geometries->is_array()) return wrong("geometry must be an array", pointer + "/geometry");
+  std::uint32_t position = 0;
+  for (const Json& geometry : geometries->get_ref<const Json::array_t&>()) {
+    auto status = index_geometry(geometry, id, GeometryRef{number, position++, 0, {}, {}},
+                                 template_count, index);
+    if (!status) return status;
+  }
+  return Done{};
+}
+
+// The first of the object's parents that the document holds, or kNone.
+Index parent_of(const Json& object, const std::unordered_map<std::string_view, Index>& by_id) {
+  const Json* parents = find_member(object, "parents");
+  if (parents == nullptr || !parents->is_array()) return kNone;
+  for (const Json& parent : parents->get_ref<const Json::array_t&>()) {
+    if (!parent.is_string()) continue;
+    const auto found = by_id.find(parent.get_ref<const std::string&>());
+    if (found != by_id.end()) return found->second;
+  }
+  return kNone;
+}
+
+// A child that the document does not hold is a solid that nobody would miss.
+Status check_children(const Json& object, std::string_view id,
+                      const std::unordered_map<std::string_view, Index>& by_id) {
+  const Json* children = find_member(object, "children");
+  if (children == nullptr) return Done{};
+  const std::string pointer = "/CityObjects" + pointer_token(id) + "/children";
+  if (!children->is_array()) return wrong("children must be an array", pointer);
+  for (std::size_t i = 0; i < children->size(); ++i) {
+    const Json& child = (*children)[i];
+    if (!child.is_string() || !by_id.contains(child.get_ref<const std::string&>())) {
+      return wrong("the child names none of the CityObjects", pointer + pointer_token(i));
+    }
+  }
+  return Done{};
+}
+
+// Follows the parents up to the top-level object, each chain once.
+Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
+  index.root_of.assign(parent.size(), kNone);
+  std::vector<Index> chain;
+  std::vector<bool> is_in_chain(parent.size(), false);
+  for (Index start = 0; start < parent.size(); ++start) {
+    Index at = start;
+    chain.clear();
+    while (index.root_of[at] == kNone && parent[at] != kNone) {
+      if (is_in_chain[at]) {
+        return wrong("the city object is its own ancestor",
+                     "/CityObjects" + pointer_token(index.ids[at]) + "/parents");
+      }
+      is_in_chain[at] = true;
+      chain.push_back(at);
+      at = parent[at];
+    }
+    if (index.root_of[at] == kNone) index.root_of[at] = at;
+    for (const Index object : chain) {
+      index.root_of[object] = index.root_of[at];
+      is_in_chain[object] = false;
+    }
+  }
+  return Done{};
+}
+
+// Buildings, and the parts of which the parents, up to a Building, are parts. Requires parents
+// without cycles.
+std::vector<std::uint32_t> buildings_of(const std::vector<Index>& parent,
+                                        const Json::object_t& objects) {
+  std::vector<std::string> types;
+  for (const auto& [id, object] : objects) types.push_back(string_member(object, "type"));
+  std::vector<std::uint32_t> building(parent.size(), kNone);
+  for (Index start = 0; start < parent.size(); ++start) {
+    Index at = start;
+    std::size_t steps = 0;  // deeper nesting of parts is not looked into
+    while (at != kNone && types[at] == "BuildingPart" && ++steps <= 16) at = parent[at];
+    if (at != kNone && types[at] == "Building") building[start] = at;
+  }
+  return building;
+}
+
+std::optional<std::int64_t> as_integer(const GridNumber& number) {
+  std::int64_t value = number.mantissa;
+  if (number.exponent < 0) return std::nullopt;
+  for (std::int32_t i = 0; i < number.exponent; ++i) {
+    if (__builtin_mul_overflow(value, std::int64_t{10}, &value)) return std::nullopt;
+  }
+  return value;
+}
+
+}  // namespace
+
+Status require_integers(VertexList& list) {
+  if (list.are_integers) return Done{};
+  list.integers.resize(list.decimals.size());
+  for (std::size_t i = 0; i < list.decimals.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto value = as_integer(list.decimals[i][axis]);
+      if (!value) {
+        return wrong("with a transform, coordinates must be integers of at most 64 bits",
+                     "/vertices" + pointer_token(i) + pointer_token(axis));
+      }
+      list.integers[i][axis] = *value;
+    }
+  }
+  list.decimals = {};
+  list.are_integers = true;
+  return Done{};
+}
+
+Result<CityHeader> city_header(const Json& root) {
+  CityHeader header;
+  const Json* version = find_member(root, "version");
+  if (version == nullptr || !version->is_string()) {
+    return wrong("a CityJSON needs a version (\"1.0\", \"1.1\" or \"2.0\")", "/version");
+  }
+  header.version = version->get<std::string>();
+  if (!is_known_version(header.version)) {
+    return Error{
+        ErrorCode::unsupported, "only CityJSON 1.0, 1.1 and 2.0 are known", {}, "/version"};
+  }
+  if (const Json* transform = find_member(root, "transform"); transform != nullptr) {
+    auto exact = read_transform(*transform);
+    if (!exact) return exact.error();
+    header.transform = *exact;
+  }
+  if (const Json* metadata = find_member(root, "metadata"); metadata != nullptr) {
+    header.srid = epsg_code(string_member(*metadata, "referenceSystem"));
+  }
+  if (const Json* section = find_member(root, "geometry-templates"); section != nullptr) {
+    const Json* templates = find_member(*section, "templates");
+    if (templates == nullptr || !templates->is_array()) {
+      return wrong("templates is missing or not an array", "/geometry-templates/templates");
+    }
+    header.template_count = templates->size();
+  }
+  return header;
+}
+
+Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count) {
+  const Json* objects = find_member(model.root, "CityObjects");
+  if (objects == nullptr || !objects->is_object()) {
+    return wrong("CityObjects is missing or not an object", "/CityObjects");
+  }
+  if (!model.vertices.is_present) return wrong("vertices is missing or not an array", "/vertices");
+
+  ModelIndex index;
+  const auto& members = objects->get_ref<const Json::object_t&>();
+  index.ids.reserve(members.size());
+  std::unordered_map<std::string_view, Index> by_id;
+  for (const auto& [id, object] : members) {
+    by_id.emplace(id, static_cast<Index>(index.ids.size()));
+    index.ids.push_back(id);
+  }
+  std::vector<Index> parent;
+  std::uint32_t number = 0;
+  for (const auto& [id, object] : members) {
+    if (auto status = index_object(object, number++, template_count, index); !status)
+      return status.error();
+    if (auto status = check_children(object, id, by_id); !status) return status.error();
+    parent.push_back(parent_of(object, by_id));
+  }
+  if (auto status = find_roots(parent, index); !status) return status.error();
+  index.building_of = buildings_of(parent, members);
+  return index;
+}
+
+}  // namespace watertight

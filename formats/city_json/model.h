@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// CityJSON and CityJSONSeq between text and features. Internal to formats/; the public face is
+// formats/document.h.
+//
+// Skeleton of a feature: its CityJSONFeature (or the whole CityJSON) as compact JSON in which
+//   - the boundaries of a Solid are {"solid": k} and those of a MultiSolid or CompositeSolid
+//     {"solids": [k, n]}: solid k, or solids k to k + n - 1, of the feature;
+//   - "vertices" is {"count": N, "kind": "integers" | "decimals", "solids": [runs...],
+//     "others": [x, y, z, x, ...]}: for each solid, which vertex of the document each of its
+//     vertices is, as runs [first, length, first, length, ...]; then the vertices that no solid
+//     uses, in their order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/city_json/sax.h"
+#include "formats/document.h"
+#include "formats/text/json.h"
+
+namespace watertight {
+
+/// A geometry of a city object whose boundaries were captured.
+struct GeometryRef {
+  std::uint32_t object = 0;    // position of the city object in the document
+  std::uint32_t geometry = 0;  // position in the object's geometry array
+  std::size_t boundary = 0;    // into CityModel
+  std::string type;
+  std::string lod;
+
+  bool is_solid() const { return type == "Solid"; }
+  bool is_of_solids() const {
+    return is_solid() || type == "MultiSolid" || type == "CompositeSolid";
+  }
+};
+
+/// A geometry of a city object that is an instance of a geometry template.
+struct InstanceRef {
+  std::uint32_t object = 0;    // position of the city object in the document
+  std::uint32_t geometry = 0;  // position in the object's geometry array
+  std::size_t boundary = 0;    // into CityModel: the vertex it stands on
+  std::uint64_t template_number = 0;
+  std::array<GridNumber, 16> matrix{};  // row by row
+};
+
+/// What refers to what in a city model.
+struct ModelIndex {
+  std::vector<std::string> ids;        // of the city objects, in document order
+  std::vector<std::uint32_t> root_of;  // object -> its top-level object
+  /// Object -> the Building that it is or is a part of, by number; kNone for others and templates.
+  std::vector<std::uint32_t> building_of;
+  std::vector<GeometryRef> geometries;  // by object, then geometry
+  std::vector<InstanceRef> instances;   // likewise; they are among the geometries too
+  std::vector<std::string> notes;
+  bool are_templates = false;  // the "objects" are geometry templates without ids, one each
+};
+
+/// A solid with the vertex of the document that each of its vertices is.
+struct CitySolid {
+  SubmittedSolid submitted;
+  std::vector<Index> vertex_of;
+  std::uint32_t object = 0;
+  std::size_t boundary = 0;
+};
+
+/// Checks the shape of the document and finds geometries and top-level objects. Geometry instances
+/// may refer to `template_count` templates. Errors: malformed with JSON Pointer.
+Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count);
+
+/// Reads a GeometryInstance, all but its object and geometry. Errors: malformed with JSON Pointer
+/// (a template that is not there, no vertex, a matrix that is none).
+Result<InstanceRef> read_instance(const Json& geometry, const std::string& pointer,
+                                  std::uint64_t template_count);
+
+/// The model's instances with their places, in document order. Vertex indices must be in range.
+/// Errors: malformed with JSON Pointer.
+Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
+                                                     const ModelIndex& index,
+                                                     const CityHeader& header);
+
+/// One lattice for all solids whose objects have the same top-level object, or, for a
+/// CityJSONFeature, one for all. Solids come in document order.
+Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIndex& index,
+                                           const CityHeader& header, const Limits& limits);
+
+/// Under a transform vertices are grid integers; 10.0 is one too. Errors: malformed.
+Status require_integers(VertexList& list);
+
+/// The header that a document or first line states. Errors: malformed, unsupported.
+Result<CityHeader> city_header(const Json& root);
+
+/// One feature per top-level object. Takes the model apart.
+Result<std::vector<Feature>> split_city_model(CityModel model, const ModelIndex& index,
+                                              std::vector<CitySolid> solids,
+                                              const CityHeader& header);
+
+/// Appends a JSON value with the `boundaries` of its geometries replaced.
+using BoundaryPrinter = std::function<void(const Json& boundaries, std::string& out)>;
+void append_city_object(std::string& out, const Json& object, const BoundaryPrinter& print);
+void append_city_objects(std::string& out, const Json& objects, const BoundaryPrinter& print);
+
+/// Calls `visit` with each vertex index in the `location` of the object's addresses, which are the
+/// only vertex references outside of geometries.
+template <class Visit>
+Status for_each_address_vertex(Json& object, Visit visit) {
+  Json* addresses = find_member(object, "address");
+  if (addresses == nullptr) return Done{};
+  const auto each_address = [&](Json& address) -> Status {
+    Json* location = find_member(address, "location");
+    Json* boundaries = location == nullptr ? nullptr : find_member(*location, "boundaries");
+    if (boundaries == nullptr || !boundaries->is_array()) return Done{};
+    for (Json& vertex : *boundaries) {
+      if (auto status = visit(vertex); !status) return status;
+    }
+    return Done{};
+  };
+  if (!addresses->is_array()) return each_address(*addresses);
+  for (Json& address : *addresses) {
+    if (auto status = each_address(address); !status) return status;
+  }
+  return Done{};
+}
+
+/// Appends nested arrays; `vertex_of(i)` is what index i becomes.
+void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
+                     const std::function<std::uint64_t(Index)>& vertex_of);
+
+/// Appends "[first,length,first,length]".
+void append_vertex_runs(std::string& out, std::span<const Index> vertices);
+/// The inverse, for a solid of `solid_vertex_count` vertices of a document of `vertex_count`.
+/// Errors: malformed.
+Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex_count,
+                                            std::size_t solid_vertex_count);
+
+/// The members of the skeleton's "vertices". `others` are indices into the model's vertices.
+std::string skeleton_vertices(const CityModel& model, std::size_t count,
+                              std::span<const std::vector<Index>> vertex_of,
+                              std::span<const Index> others);
+
+Result<Document> read_city_json(std::string_view text, const ReadOptions& options);
+Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& options);
+Result<std::string> write_city_json(const Document& document);
+Result<std::string> write_city_json_seq(const Document& document);
+
+/// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the
+/// finest decimal grid among them. Errors: unsupported for coordinates on no decimal grid.
+Result<Document> as_city_model(const Document& document);
+
+}  // namespace watertight

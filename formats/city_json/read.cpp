@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <utility>
+
+#include "formats/city_json/model.h"
+#include "formats/feature_reader.h"
+#include "formats/text/text_layout.h"
+
+namespace watertight {
+namespace {
+
+struct ReadModel {
+  CityModel model;
+  ModelIndex index;
+  std::vector<CitySolid> solids;
+  std::vector<TemplateInstance> instances;
+};
+
+Result<ReadModel> read_model(CityModel model, const CityHeader& header, const Limits& limits) {
+  auto index = index_city_model(model, header.template_count);
+  if (!index) return std::move(index).error();
+  if (header.transform) {
+    if (auto status = require_integers(model.vertices); !status) return status.error();
+  }
+  auto solids = city_solids(model, *index, header, limits);
+  if (!solids) return std::move(solids).error();
+  auto instances = city_instances(model, *index, header);
+  if (!instances) return std::move(instances).error();
+  return ReadModel{std::move(model), std::move(*index), std::move(*solids), std::move(*instances)};
+}
+
+// boundary -> the part of the skeleton that stands for it; "" for boundaries without solids.
+std::vector<std::string> solid_references(const ReadModel& read) {
+  std::vector<std::string> references(read.model.boundary_begin.size() - 1);
+  for (const GeometryRef& ref : read.index.geometries) {
+    if (ref.is_of_solids()) references[ref.boundary] = "{\"solids\":[0,0]}";
+  }
+  for (std::size_t begin = 0; begin < read.solids.size();) {
+    std::size_t end = begin;
+    const std::size_t boundary = read.solids[begin].boundary;
+    while (end < read.solids.size() && read.solids[end].boundary == boundary) ++end;
+    const bool is_single = read.solids[begin].submitted.source.geometry_type == "Solid";
+    references[boundary] = is_single ? "{\"solid\":" + std::to_string(begin) + "}"
+                                     : "{\"solids\":[" + std::to_string(begin) + ',' +
+                                           std::to_string(end - begin) + "]}";
+    begin = end;
+  }
+  return references;
+}
+
+// The skeleton of a whole document or feature, with the document's own vertex numbers.
+std::string whole_skeleton(const ReadModel& read) {
+  const std::vector<std::string> references = solid_references(read);
+  const BoundaryPrinter print = [&](const Json& boundaries, std::string& out) {
+    const auto boundary = boundaries.get<std::size_t>();
+    if (!references[boundary].empty()) {
+      out += references[boundary];
+    } else {
+      append_boundary(out, read.model.boundary(boundary), [](Index vertex) { return vertex; });
+    }
+  };
+  std::vector<bool> is_used(read.model.vertices.size(), false);
+  std::vector<std::vector<Index>> vertex_of;
+  for (const CitySolid& solid : read.solids) {
+    for (const Index vertex : solid.vertex_of) is_used[vertex] = true;
+    vertex_of.push_back(solid.vertex_of);
+  }
+  std::vector<Index> others;
+  for (Index vertex = 0; vertex < is_used.size(); ++vertex) {
+    if (!is_used[vertex]) others.push_back(vertex);
+  }
+
+  std::string out = "{";
+  for (const auto& [key, value] : read.model.root.get_ref<const Json::object_t&>()) {
+    if (out.size() > 1) out += ',';
+    append_json_string(out, key);
+    out += ':';
+    if (key == "CityObjects") {
+      append_city_objects(out, value, print);
+    } else if (key == "vertices") {
+      out += skeleton_vertices(read.model, is_used.size(), vertex_of, others);
+    } else {
+      append_json(out, value);
+    }
+  }
+  return out + '}';
+}
+
+void take_solids(std::vector<CitySolid>& solids, Feature& feature) {
+  feature.solids.reserve(solids.size());
+  for (CitySolid& solid : solids) feature.solids.push_back(std::move(solid.submitted));
+}
+
+// Gives each feature the instances of its objects. `features` are those of split_city_model().
+void share_out(std::vector<TemplateInstance> instances, const ModelIndex& index,
+               std::vector<Feature>& features) {
+  std::vector<std::size_t> feature_of(index.ids.size(), 0);
+  std::size_t count = 0;
+  for (std::size_t object = 0; object < index.ids.size(); ++object) {
+    if (index.root_of[object] == object) feature_of[object] = count++;
+  }
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const std::uint32_t root = index.root_of[index.instances[i].object];
+    features[feature_of[root]].instances.push_back(std::move(instances[i]));
+  }
+}
+
+// The first line of a CityJSONSeq that shares what `root` says; appearance moves to the features,
+// except what geometry templates refer to.
+std::string header_text(const Json& root) {
+  std::string out = "{";
+  for (const auto& [key, value] : root.get_ref<const Json::object_t&>()) {
+    const bool is_local = key == "appearance" && find_member(root, "geometry-templates") == nullptr;
+    if (is_local && find_member(value, "default-theme-material") == nullptr &&
+        find_member(value, "default-theme-texture") == nullptr) {
+      continue;
+    }
+    if (out.size() > 1) out += ',';
+    append_json_string(out, key);
+    out += ':';
+    if (key == "CityObjects") {
+      out += "{}";
+    } else if (key == "vertices") {
+      out += "[]";
+    } else if (is_local) {
+      Json themes = Json::object();
+      for (const char* theme : {"default-theme-texture", "default-theme-material"}) {
+        const Json* name = find_member(value, theme);
+        if (name != nullptr) append_member(themes, theme, *name);
+      }
+      append_json(out, themes);
+    } else {
+      append_json(out, value);
+    }
+  }
+  return out + '}';
+}
+
+/// Notes how the feature's text differs from the one we would write. What cannot be written is kept
+/// as it is.
+void keep_text(const CityHeader& header, std::string_view text, Feature& feature) {
+  const auto plain = write_city_json_feature(header, feature);
+  feature.layout = describe_layout(plain ? *plain : std::string(), text);
+}
+
+Error type_error(const Json& root) {
+  const std::string type = string_member(root, "type");
+  if (type == "CityJSONFeature") {
+    return Error{
+        ErrorCode::malformed,
+        "a CityJSONFeature alone does not say its transform: send the CityJSON line of its "
+        "sequence first",
+        {},
+        "/type"};
+  }
+  return Error{ErrorCode::malformed, "the type is not \"CityJSON\"", {}, "/type"};
+}
+
+void note_vertices_without_transform(const CityHeader& header, std::vector<std::string>& notes) {
+  if (!header.transform && !header.version.starts_with("1.0")) {
+    notes.push_back("no transform, which CityJSON " + header.version +
+                    " requires: vertices read as coordinates");
+  }
+}
+
+Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
+                                   const Limits& limits) {
+  const std::string id = string_member(model.root, "id");
+  if (id.empty()) {
+    return Error{ErrorCode::malformed, "the CityJSONFeature has no id", {}, "/id"};
+  }
+  auto read = read_model(std::move(model), header, limits);
+  if (!read) return std::move(read).error();
+  const Json* object = find_member(*find_member(read->model.root, "CityObjects"), id);
+  if (object == nullptr) {
+    return Error{ErrorCode::malformed, "the id names none of the CityObjects", {}, "/id"};
+  }
+  Feature feature;
+  feature.id = id;
+  feature.type = string_member(*object, "type");
+  feature.srid = header.srid;
+  feature.skeleton = whole_skeleton(*read);
+  take_solids(read->solids, feature);
+  feature.instances = std::move(read->instances);
+  return feature;
+}
+
+}  // namespace
+
+Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits) {
+  auto model = parse_city_model(line, CityText::document, limits);
+  if (!model) return std::move(model).error();
+  if (string_member(model->root, "type") != "CityJSON") return type_error(model->root);
+  const Json* objects = find_member(model->root, "CityObjects");
+  if (objects != nullptr && !objects->empty()) {
+    return Error{ErrorCode::malformed,
+                 "the first line of a CityJSONSeq must have no city objects of its own",
+                 {},
+                 "/CityObjects"};
+  }
+  auto header = city_header(model->root);
+  if (!header) return header;
+  if (!model->root.contains("CityObjects"))
+    append_member(model->root, "CityObjects", Json::object());
+  if (model->vertices.is_present) {
+    *find_member(model->root, "vertices") = Json::array();
+  } else {
+    append_member(model->root, "vertices", Json::array());
+  }
+  header->text = json_text(model->root);
+  return header;
+}
+
+Result<Feature> read_city_json_feature(const CityHeader& header, std::string_view line,
+                                       const ReadOptions& options) {
+  auto model = parse_city_model(line, CityText::document, options.limits);
+  if (!model) return std::move(model).error();
+  if (string_member(model->root, "type") != "CityJSONFeature") {
+    return Error{ErrorCode::malformed, "the type is not \"CityJSONFeature\"", {}, "/type"};
+  }
+  auto feature = read_feature_model(std::move(*model), header, options.limits);
+  if (feature && options.keep_text) keep_text(header, line, *feature);
+  return feature;
+}
+
+Result<Document> read_city_json(std::string_view text, const ReadOptions& options) {
+  Document document;
+  document.format = Format::city_json;
+  if (text.starts_with(kByteOrderMark)) document.notes.push_back("byte order mark skipped");
+  auto model = parse_city_model(text, CityText::document, options.limits);
+  if (!model) return std::move(model).error();
+  if (string_member(model->root, "type") != "CityJSON") return type_error(model->root);
+  auto header = city_header(model->root);
+  if (!header) return std::move(header).error();
+  header->text = header_text(model->root);
+  document.header = header->text;
+  note_vertices_without_transform(*header, document.notes);
+  auto templates = read_geometry_templates(*header, options.limits);
+  if (!templates) return std::move(templates).error();
+  document.templates = std::move(*templates);
+
+  auto read = read_model(std::move(*model), *header, options.limits);
+  if (!read) return std::move(read).error();
+  for (std::string& note : read->index.notes) document.notes.push_back(std::move(note));
+  if (options.split_features) {
+    auto features =
+        split_city_model(std::move(read->model), read->index, std::move(read->solids), *header);
+    if (!features) return std::move(features).error();
+    document.features = std::move(*features);
+    share_out(std::move(read->instances), read->index, document.features);
+    return document;
+  }
+  Feature feature;
+  feature.type = "CityJSON";
+  feature.srid = header->srid;
+  feature.skeleton = whole_skeleton(*read);
+  take_solids(read->solids, feature);
+  feature.instances = std::move(read->instances);
+  if (options.keep_text) keep_text(*header, text, feature);
+  document.features.push_back(std::move(feature));
+  return document;
+}
+
+Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& options) {
+  const auto rest_of_text = [&text](std::span<std::uint8_t> bytes) -> Result<std::size_t> {
+    const std::size_t count = std::min(text.size(), bytes.size());
+    std::copy_n(text.begin(), count, bytes.begin());
+    text.remove_prefix(count);
+    return count;
+  };
+  auto reader = FeatureReader::open(rest_of_text, ".jsonl", options);
+  if (!reader) return std::move(reader).error();
+  std::vector<Feature> features;
+  for (;;) {
+    auto found = reader->next();
+    if (!found) return std::move(found).error();
+    if (!*found) break;
+    auto feature = reader->read(**std::move(found));
+    if (!feature) return std::move(feature).error();
+    features.push_back(*std::move(feature));
+  }
+  Document document = reader->document();
+  document.features = std::move(features);
+  if (options.keep_text) document.framing = reader->framing();
+  return document;
+}
+
+}  // namespace watertight

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One pass over the text of a CityJSON, a CityJSONFeature or one of our skeletons. The `boundaries`
+// of geometries and the `vertices` go to flat arrays; everything else becomes a Json value.
+// Checks syntax, UTF-8, nesting and duplicate keys; knows nothing of what a solid is.
+// Internal to formats/.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/limits.h"
+#include "base/result.h"
+#include "formats/text/json.h"
+#include "geometry/lattice.h"
+#include "geometry/point.h"
+
+namespace watertight {
+
+/// Nested arrays of vertex indices as a flat sequence: an index, or one of these two.
+using BoundaryToken = std::uint32_t;
+inline constexpr BoundaryToken kOpen = 0xFFFFFFFF;
+inline constexpr BoundaryToken kClose = 0xFFFFFFFE;
+
+/// The `vertices` of a city model: integers, or exact decimals as soon as one number is none.
+struct VertexList {
+  bool are_integers = true;
+  bool is_present = false;
+  std::vector<std::array<std::int64_t, 3>> integers;
+  std::vector<std::array<GridNumber, 3>> decimals;
+  std::vector<Index> rounded;  // vertices with a number of more than 18 digits
+  std::size_t size() const { return are_integers ? integers.size() : decimals.size(); }
+};
+
+/// What a city model says. `root` is the document with `vertices` replaced by null and each
+/// boundary, at /CityObjects/*/geometry/*/boundaries, by its index into `boundary_begin`.
+struct CityModel {
+  Json root;
+  VertexList vertices;
+  std::vector<BoundaryToken> tokens;
+  std::vector<std::size_t> boundary_begin{0};  // boundary -> tokens; one more at the end
+
+  std::span<const BoundaryToken> boundary(std::size_t index) const {
+    return std::span<const BoundaryToken>(tokens).subspan(
+        boundary_begin[index], boundary_begin[index + 1] - boundary_begin[index]);
+  }
+};
+
+/// Documents come from outside; in a skeleton (formats/city_json/model.h) `vertices` and the boundaries
+/// of solids are objects, which stay Json values.
+enum class CityText : std::uint8_t { document, skeleton };
+
+/// Errors: malformed with byte offset (syntax, UTF-8) or JSON Pointer (content); limit_exceeded.
+/// Cost: linear.
+Result<CityModel> parse_city_model(std::string_view text, CityText kind, const Limits& limits);
+
+}  // namespace watertight

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "formats/city_json/model.h"
+
+namespace watertight {
+namespace {
+
+void append_geometry(std::string& out, const Json& geometry, const BoundaryPrinter& print) {
+  if (!geometry.is_object()) return append_json(out, geometry);
+  out += '{';
+  bool is_first = true;
+  for (const auto& [key, value] : geometry.get_ref<const Json::object_t&>()) {
+    if (!is_first) out += ',';
+    is_first = false;
+    append_json_string(out, key);
+    out += ':';
+    if (key == "boundaries") {
+      print(value, out);
+    } else {
+      append_json(out, value);
+    }
+  }
+  out += '}';
+}
+
+void append_geometries(std::string& out, const Json& geometries, const BoundaryPrinter& print) {
+  out += '[';
+  bool is_first = true;
+  for (const Json& geometry : geometries.get_ref<const Json::array_t&>()) {
+    if (!is_first) out += ',';
+    is_first = false;
+    append_geometry(out, geometry, print);
+  }
+  out += ']';
+}
+
+}  // namespace
+
+void append_vertex_runs(std::string& out, std::span<const Index> vertices) {
+  out += '[';
+  for (std::size_t begin = 0; begin < vertices.size();) {
+    std::size_t end = begin + 1;
+    while (end < vertices.size() && vertices[end] == vertices[end - 1] + 1) ++end;
+    if (begin > 0) out += ',';
+    out += std::to_string(vertices[begin]) + ',' + std::to_string(end - begin);
+    begin = end;
+  }
+  out += ']';
+}
+
+namespace {
+
+std::string decimal_text(const GridNumber& number) {
+  std::string text = std::to_string(number.mantissa);
+  if (number.exponent == 0) return text;
+  return text + 'e' + std::to_string(number.exponent);
+}
+
+}  // namespace
+
+void append_city_object(std::string& out, const Json& object, const BoundaryPrinter& print) {
+  if (!object.is_object()) return append_json(out, object);
+  out += '{';
+  bool is_first = true;
+  for (const auto& [key, value] : object.get_ref<const Json::object_t&>()) {
+    if (!is_first) out += ',';
+    is_first = false;
+    append_json_string(out, key);
+    out += ':';
+    if (key == "geometry" && value.is_array()) {
+      append_geometries(out, value, print);
+    } else {
+      append_json(out, value);
+    }
+  }
+  out += '}';
+}
+
+void append_city_objects(std::string& out, const Json& objects, const BoundaryPrinter& print) {
+  out += '{';
+  bool is_first = true;
+  for (const auto& [id, object] : objects.get_ref<const Json::object_t&>()) {
+    if (!is_first) out += ',';
+    is_first = false;
+    append_json_string(out, id);
+    out += ':';
+    append_city_object(out, object, print);
+  }
+  out += '}';
+}
+
+void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
+                     const std::function<std::uint64_t(Index)>& vertex_of) {
+  bool needs_comma = false;
+  for (const BoundaryToken token : tokens) {
+    if (token == kClose) {
+      out += ']';
+      needs_comma = true;
+      continue;
+    }
+    if (needs_comma) out += ',';
+    if (token == kOpen) {
+      out += '[';
+    } else {
+      out += std::to_string(vertex_of(token));
+    }
+    needs_comma = token != kOpen;
+  }
+}
+
+std::string skeleton_vertices(const CityModel& model, std::size_t count,
+                              std::span<const std::vector<Index>> vertex_of,
+                              std::span<const Index> others) {
+  const VertexList& list = model.vertices;
+  std::string out = "{\"count\":" + std::to_string(count) + ",\"kind\":\"";
+  out += list.are_integers ? "integers" : "decimals";
+  out += "\",\"solids\":[";
+  for (std::size_t i = 0; i < vertex_of.size(); ++i) {
+    if (i > 0) out += ',';
+    append_vertex_runs(out, vertex_of[i]);
+  }
+  out += "],\"others\":[";
+  bool is_first = true;
+  for (const Index vertex : others) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!is_first) out += ',';
+      is_first = false;
+      out += list.are_integers ? std::to_string(list.integers[vertex][axis])
+                               : decimal_text(list.decimals[vertex][axis]);
+    }
+  }
+  return out + "]}";
+}
+
+}  // namespace watertight

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <utility>
+
+#include "formats/city_json/model.h"
+#include "formats/surface.h"
+
+namespace watertight {
+namespace {
+
+// The pointer to the token at `position`, found again from the start: for errors only.
+std::string pointer_to(std::span<const BoundaryToken> tokens, std::size_t position) {
+  std::vector<std::size_t> counters;
+  for (std::size_t i = 0; i < position; ++i) {
+    if (tokens[i] == kOpen) {
+      counters.push_back(0);
+    } else {
+      if (tokens[i] == kClose) counters.pop_back();
+      if (!counters.empty()) ++counters.back();
+    }
+  }
+  std::string pointer;
+  for (const std::size_t counter : counters) pointer += pointer_token(counter);
+  return pointer;
+}
+
+// Arrays of the solids of one geometry; ring vertices are still those of the document.
+class SolidCutter {
+ public:
+  SolidCutter(std::span<const BoundaryToken> tokens, int levels_above)
+      : tokens_(tokens), levels_above_(levels_above) {}
+
+  Status cut(std::size_t vertex_count) {
+    for (position_ = 0; position_ < tokens_.size(); ++position_) {
+      const BoundaryToken token = tokens_[position_];
+      if (token == kOpen) {
+        if (++depth_ > levels_above_ + 4) return wrong("arrays are nested too deep for a solid");
+      } else if (token == kClose) {
+        end_level(depth_-- - levels_above_);
+      } else {
+        if (depth_ - levels_above_ != 4) {
+          return wrong("a vertex index outside of a ring: the arrays are not nested deep enough");
+        }
+        if (token >= vertex_count) {
+          return wrong("vertex index " + std::to_string(token) + " is out of range (" +
+                       std::to_string(vertex_count) + " vertices)");
+        }
+        current_.ring_vertices.push_back(token);
+      }
+    }
+    return Done{};
+  }
+
+  std::vector<SolidArrays>& solids() { return solids_; }
+
+ private:
+  Error wrong(std::string message) const {
+    return Error{ErrorCode::malformed, std::move(message), {}, pointer_to(tokens_, position_)};
+  }
+
+  void end_level(int level) {
+    if (level == 4) current_.end_ring();
+    if (level == 3) current_.end_facet();
+    if (level == 2) current_.end_shell();
+    if (level == 1) solids_.push_back(std::exchange(current_, SolidArrays{}));
+  }
+
+  std::span<const BoundaryToken> tokens_;
+  int levels_above_;
+  int depth_ = 0;
+  std::size_t position_ = 0;
+  SolidArrays current_;
+  std::vector<SolidArrays> solids_;
+};
+
+struct CutSolid {
+  SolidArrays arrays;
+  std::vector<Index> vertex_of;
+  SolidSource source;
+  std::uint32_t object = 0;
+  std::size_t boundary = 0;
+};
+
+Status check_range(std::span<const BoundaryToken> tokens, std::size_t vertex_count) {
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    if (tokens[i] < kClose && tokens[i] >= vertex_count) {
+      return Error{ErrorCode::malformed,
+                   "vertex index " + std::to_string(tokens[i]) + " is out of range (" +
+                       std::to_string(vertex_count) + " vertices)",
+                   {},
+                   pointer_to(tokens, i)};
+    }
+  }
+  return Done{};
+}
+
+std::string boundary_pointer(const ModelIndex& index, const GeometryRef& ref) {
+  if (index.are_templates) {
+    return "/geometry-templates/templates" + pointer_token(ref.geometry) + "/boundaries";
+  }
+  return "/CityObjects" + pointer_token(index.ids[ref.object]) + "/geometry" +
+         pointer_token(ref.geometry) + "/boundaries";
+}
+
+Result<std::vector<CutSolid>> cut_solids(const CityModel& model, const ModelIndex& index) {
+  std::vector<CutSolid> all;
+  std::vector<Index> number_of(model.vertices.size(), kNone);
+  for (const GeometryRef& ref : index.geometries) {
+    const std::string pointer = boundary_pointer(index, ref);
+    const auto within = [&](Error error) {
+      error.pointer = pointer + error.pointer;
+      return error;
+    };
+    const auto tokens = model.boundary(ref.boundary);
+    if (!ref.is_of_solids()) {
+      if (auto status = check_range(tokens, model.vertices.size()); !status) {
+        return within(status.error());
+      }
+      continue;
+    }
+    SolidCutter cutter(tokens, ref.is_solid() ? 0 : 1);
+    if (auto status = cutter.cut(model.vertices.size()); !status) return within(status.error());
+    std::uint32_t ordinal = 0;
+    for (SolidArrays& arrays : cutter.solids()) {
+      CutSolid cut;
+      cut.vertex_of = number_by_first_use(arrays, number_of);
+      cut.arrays = std::move(arrays);
+      cut.source = {index.ids[ref.object],
+                    ref.type,
+                    ref.lod,
+                    ref.geometry,
+                    ordinal,
+                    ref.is_solid() ? pointer : pointer + pointer_token(ordinal)};
+      const Index building = index.are_templates ? kNone : index.building_of[ref.object];
+      if (building != kNone) cut.source.building_id = index.ids[building];
+      cut.object = ref.object;
+      cut.boundary = ref.boundary;
+      ++ordinal;
+      all.push_back(std::move(cut));
+    }
+  }
+  return all;
+}
+
+Result<LatticePoints> lattice_of(const CityModel& model, std::span<const Index> used,
+                                 const CityHeader& header) {
+  const VertexList& list = model.vertices;
+  if (!list.are_integers) {
+    std::vector<std::array<GridNumber, 3>> decimals;
+    decimals.reserve(used.size());
+    for (const Index vertex : used) decimals.push_back(list.decimals[vertex]);
+    return lattice_of_decimals(decimals);
+  }
+  std::vector<std::array<std::int64_t, 3>> integers;
+  integers.reserve(used.size());
+  for (const Index vertex : used) integers.push_back(list.integers[vertex]);
+  return lattice_of_integers(integers, header.transform.value_or(Transform{}));
+}
+
+// Puts the cut solids of one top-level object on their common lattice.
+class FeatureLattice {
+ public:
+  FeatureLattice(const CityModel& model, const CityHeader& header, const Limits& limits)
+      : model_(model),
+        header_(header),
+        limits_(limits),
+        slot_of_(model.vertices.size(), kNone),
+        was_rounded_(model.vertices.size(), false) {
+    for (const Index vertex : model.vertices.rounded) was_rounded_[vertex] = true;
+  }
+
+  Status place(std::vector<CutSolid>& cut, std::span<const std::size_t> members,
+               std::vector<CitySolid>& solids) {
+    std::vector<Index> used;
+    for (const std::size_t i : members) {
+      for (const Index vertex : cut[i].vertex_of) {
+        if (slot_of_[vertex] != kNone) continue;
+        slot_of_[vertex] = static_cast<Index>(used.size());
+        used.push_back(vertex);
+      }
+    }
+    auto status = place_used(cut, members, used, solids);
+    for (const Index vertex : used) slot_of_[vertex] = kNone;
+    return status;
+  }
+
+ private:
+  Status place_used(std::vector<CutSolid>& cut, std::span<const std::size_t> members,
+                    std::span<const Index> used, std::vector<CitySolid>& solids) {
+    const std::string pointer = cut[members.front()].source.pointer;
+    if (used.size() > limits_.vertices) {
+      return Error{ErrorCode::limit_exceeded,
+                   std::to_string(used.size()) + " vertices in one feature; the limit is " +
+                       std::to_string(limits_.vertices),
+                   {},
+                   pointer};
+    }
+    auto lattice = lattice_of(model_, used, header_);
+    if (!lattice) return located(lattice.error(), pointer);
+    std::vector<bool> is_rounded(used.size(), false);
+    for (const Index slot : lattice->rounded) is_rounded[slot] = true;
+    for (std::size_t slot = 0; slot < used.size(); ++slot) {
+      if (was_rounded_[used[slot]]) is_rounded[slot] = true;
+    }
+    for (const std::size_t i : members) {
+      auto solid = make(cut[i], *lattice, is_rounded);
+      if (!solid) return located(solid.error(), cut[i].source.pointer);
+      solids[i] = std::move(*solid);
+    }
+    return Done{};
+  }
+
+  static Error located(Error error, const std::string& pointer) {
+    if (error.pointer.empty()) error.pointer = pointer;
+    return error;
+  }
+
+  Result<CitySolid> make(CutSolid& cut, const LatticePoints& lattice,
+                         const std::vector<bool>& is_rounded) {
+    std::vector<Index> rounded;
+    cut.arrays.vertices.reserve(cut.vertex_of.size());
+    for (Index i = 0; i < cut.vertex_of.size(); ++i) {
+      const Index slot = slot_of_[cut.vertex_of[i]];
+      cut.arrays.vertices.push_back(lattice.points[slot]);
+      if (is_rounded[slot]) rounded.push_back(i);
+    }
+    auto solid = Solid::make(std::move(cut.arrays), lattice.lattice, header_.srid, limits_);
+    if (!solid) return solid.error();
+    CitySolid made{SubmittedSolid{std::move(*solid), std::move(cut.source), std::move(rounded)},
+                   std::move(cut.vertex_of), cut.object, cut.boundary};
+    made.submitted.is_origin_rounded = lattice.is_origin_rounded;
+    return made;
+  }
+
+  const CityModel& model_;
+  const CityHeader& header_;
+  const Limits& limits_;
+  std::vector<Index> slot_of_;     // document vertex -> point; kNone between features
+  std::vector<bool> was_rounded_;  // document vertex -> by reading its numbers
+};
+
+}  // namespace
+
+Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIndex& index,
+                                           const CityHeader& header, const Limits& limits) {
+  auto cut = cut_solids(model, index);
+  if (!cut) return std::move(cut).error();
+  const bool is_one_feature = string_member(model.root, "type") == "CityJSONFeature";
+
+  std::vector<std::size_t> order(cut->size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto root_of = [&](std::size_t i) {
+    return is_one_feature ? 0 : index.root_of[(*cut)[i].object];
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return root_of(a) < root_of(b); });
+
+  // Every entry is assigned below: each solid belongs to one top-level object.
+  auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
+  if (!nothing) return std::move(nothing).error();
+  std::vector<CitySolid> solids(cut->size(), CitySolid{SubmittedSolid{*nothing, {}, {}}, {}, 0, 0});
+  FeatureLattice feature(model, header, limits);
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin;
+    while (end < order.size() && root_of(order[end]) == root_of(order[begin])) ++end;
+    const std::span<const std::size_t> members(order.data() + begin, end - begin);
+    if (auto status = feature.place(*cut, members, solids); !status) return status.error();
+    begin = end;
+  }
+  return solids;
+}
+
+}  // namespace watertight

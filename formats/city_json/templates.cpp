@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <utility>
+
+#include "formats/city_json/model.h"
+#include "formats/text/numbers.h"
+
+namespace watertight {
+namespace {
+
+constexpr std::string_view kTemplates = "/geometry-templates/templates";
+
+Error wrong(std::string message, std::string pointer) {
+  return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
+}
+
+// The templates' boundaries and vertices as a model of their own, so that solids are cut, and
+// errors found, as in a document.
+class TemplateReader {
+ public:
+  explicit TemplateReader(const Json& section) : section_(section) {}
+
+  Result<ModelIndex> read() {
+    const Json* templates = find_member(section_, "templates");
+    if (templates == nullptr || !templates->is_array()) {
+      return wrong("templates is missing or not an array", std::string(kTemplates));
+    }
+    if (auto status = read_vertices(); !status) return status.error();
+    ModelIndex index;
+    index.are_templates = true;
+    for (std::uint32_t i = 0; i < templates->size(); ++i) {
+      index.ids.emplace_back();
+      index.root_of.push_back(i);
+      if (auto status = read_template((*templates)[i], i, index); !status) return status.error();
+    }
+    return index;
+  }
+
+  CityModel& model() { return model_; }
+
+ private:
+  Status read_vertices() {
+    const std::string pointer = "/geometry-templates/vertices-templates";
+    const Json* vertices = find_member(section_, "vertices-templates");
+    if (vertices == nullptr || !vertices->is_array()) {
+      return wrong("vertices-templates is missing or not an array", pointer);
+    }
+    VertexList& list = model_.vertices;
+    list.are_integers = false;
+    list.is_present = true;
+    list.decimals.reserve(vertices->size());
+    for (std::size_t i = 0; i < vertices->size(); ++i) {
+      const Json& vertex = (*vertices)[i];
+      if (!vertex.is_array() || vertex.size() != 3) {
+        return wrong("a vertex is an array of three numbers", pointer + pointer_token(i));
+      }
+      std::array<GridNumber, 3> position;
+      bool is_rounded = false;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        auto exact = exact_member(vertex[axis]);
+        if (!exact) {
+          return wrong(exact.error().message, pointer + pointer_token(i) + pointer_token(axis));
+        }
+        position[axis] = exact->value;
+        is_rounded = is_rounded || exact->is_rounded;
+      }
+      if (is_rounded) list.rounded.push_back(static_cast<Index>(i));
+      list.decimals.push_back(position);
+    }
+    return Done{};
+  }
+
+  static Result<ExactNumber> exact_member(const Json& value) {
+    if (!is_number_value(value)) return Error{ErrorCode::malformed, "not a number", {}, {}};
+    return exact_number(json_text(value));
+  }
+
+  Status read_template(const Json& geometry, std::uint32_t number, ModelIndex& index) {
+    const std::string pointer = std::string(kTemplates) + pointer_token(number);
+    GeometryRef ref{
+        number, number, model_.boundary_begin.size() - 1, string_member(geometry, "type"), {}};
+    if (ref.type.empty()) return wrong("the template has no type", pointer);
+    if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
+      ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
+    }
+    const Json* boundaries = find_member(geometry, "boundaries");
+    if (boundaries == nullptr || !boundaries->is_array()) {
+      return wrong("the template has no boundaries", pointer);
+    }
+    if (auto status = append_tokens(*boundaries, pointer + "/boundaries"); !status) return status;
+    model_.boundary_begin.push_back(model_.tokens.size());
+    index.geometries.push_back(std::move(ref));
+    return Done{};
+  }
+
+  // Nested arrays of indices as tokens. The nesting of the text was limited when it was parsed.
+  Status append_tokens(const Json& boundaries, const std::string& pointer) {
+    struct Level {
+      const Json* array;
+      std::size_t next;
+    };
+    std::vector<Level> open{{&boundaries, 0}};
+    model_.tokens.push_back(kOpen);
+    while (!open.empty()) {
+      Level& top = open.back();
+      if (top.next == top.array->size()) {
+        model_.tokens.push_back(kClose);
+        open.pop_back();
+        continue;
+      }
+      const Json& value = (*top.array)[top.next++];
+      if (value.is_array()) {
+        model_.tokens.push_back(kOpen);
+        open.push_back({&value, 0});
+      } else if (value.is_number_unsigned() && value.get<std::uint64_t>() < kClose) {
+        model_.tokens.push_back(static_cast<BoundaryToken>(value.get<std::uint64_t>()));
+      } else {
+        std::string path = pointer;
+        for (const Level& level : open) path += pointer_token(level.next - 1);
+        return wrong("boundaries are nested arrays of vertex indices", std::move(path));
+      }
+    }
+    return Done{};
+  }
+
+  const Json& section_;
+  CityModel model_;
+};
+
+}  // namespace
+
+Result<std::vector<SubmittedSolid>> read_geometry_templates(const CityHeader& header,
+                                                            const Limits& limits) {
+  if (header.template_count == 0) return std::vector<SubmittedSolid>{};
+  Limits unlimited = limits;
+  unlimited.bytes = ~0ULL;  // the header was read within the limit
+  const auto root = parse_json(header.text, unlimited);
+  if (!root) return root.error();
+  const Json* section = find_member(*root, "geometry-templates");
+  if (section == nullptr) return std::vector<SubmittedSolid>{};
+  TemplateReader reader(*section);
+  auto index = reader.read();
+  if (!index) return std::move(index).error();
+  auto solids = city_solids(reader.model(), *index, CityHeader{}, limits);
+  if (!solids) return std::move(solids).error();
+  std::vector<SubmittedSolid> submitted;
+  submitted.reserve(solids->size());
+  for (CitySolid& solid : *solids) submitted.push_back(std::move(solid.submitted));
+  return submitted;
+}
+
+}  // namespace watertight

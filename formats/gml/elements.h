@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The names of GML that the reader knows. Internal to formats/.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "formats/gml/model.h"
+
+namespace watertight {
+
+inline constexpr std::string_view kXlinkSpace = "http://www.w3.org/1999/xlink";
+
+/// GML 3.1.1 (also GML 2) and GML 3.2.
+bool is_gml_space(std::string_view space);
+
+/// What a geometry element of GML is; nothing for an element that is no geometry.
+std::optional<GmlKind> geometry_kind(std::string_view name);
+
+/// The role of a property of a geometry of `kind`; nothing when it has no such property.
+std::optional<GmlRole> role_of(GmlKind kind, std::string_view property);
+
+/// Properties of a geometry that say nothing about its shape as a solid's boundary.
+bool is_remark(std::string_view property);
+
+/// Objects that only hold top-level objects: CityModel, FeatureCollection, ...
+bool is_container(std::string_view name);
+
+/// A property of an object whose reference is a geometry of that object.
+bool is_geometry_property(std::string_view name);
+
+/// 'n' of a property named "lodn...", '\0' without.
+char lod_of(std::string_view property);
+
+}  // namespace watertight

@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/gml/gml.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/gml/model.h"
+#include "formats/gml/shapes.h"
+#include "formats/text/numbers.h"
+#include "formats/surface.h"
+
+namespace watertight {
+namespace {
+
+struct Draft {
+  GmlSolid solid;
+  SolidSource source;
+};
+
+// "1 0 0 0 ...", row by row; the shift is that of the matrix alone.
+Result<Placement> read_placement(std::string_view text) {
+  std::vector<GridNumber> numbers;
+  for (std::size_t at = 0; at < text.size() && numbers.size() <= kMatrixSize;) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n", at);
+    if (begin == std::string_view::npos) break;
+    at = std::min(text.find_first_of(" \t\r\n", begin), text.size());
+    auto exact = exact_number(text.substr(begin, at - begin));
+    if (!exact) return std::move(exact).error();
+    numbers.push_back(exact->value);
+  }
+  return placement_of_matrix(numbers, {});
+}
+
+class GmlReader {
+ public:
+  GmlReader(const GmlModel& model, std::uint64_t byte_count, const Limits& limits)
+      : model_(model), limits_(limits), shapes_(model, byte_count, limits) {}
+
+  Result<Document> read() {
+    document_.format = Format::gml;
+    // Geometries of one feature need not follow one another: features can hold collections.
+    std::vector<std::vector<Index>> of_object(model_.objects.size());
+    std::vector<std::vector<Index>> groups;
+    for (Index i = 0; i < model_.geometries.size(); ++i) {
+      const GmlGeometry& geometry = model_.geometries[i];
+      if (geometry.object != kNone && !geometry.is_template) {
+        of_object[model_.objects[geometry.object].feature].push_back(i);
+      }
+    }
+    std::vector<bool> is_grouped(model_.objects.size(), false);
+    for (Index i = 0; i < model_.geometries.size(); ++i) {
+      const GmlGeometry& geometry = model_.geometries[i];
+      if (geometry.object == kNone || geometry.is_template) {
+        if (auto status = feature_of({i}, geometry); !status) return std::move(status).error();
+        continue;
+      }
+      const Index feature = model_.objects[geometry.object].feature;
+      if (is_grouped[feature]) continue;
+      is_grouped[feature] = true;
+      auto status = feature_of(of_object[feature], geometry);
+      if (!status) return std::move(status).error();
+    }
+    if (auto status = add_instances(); !status) return std::move(status).error();
+    add_notes();
+    return std::move(document_);
+  }
+
+ private:
+  static Error in_object(Error error, const std::string& id) {
+    if (!id.empty()) error.message.append(", of object '").append(id).append("'");
+    return error;
+  }
+
+  // Geometries of one top-level object, one geometry outside of objects, or one template.
+  Status feature_of(const std::vector<Index>& geometries, const GmlGeometry& first) {
+    drafts_.clear();
+    positions_ = {};
+    geometries_of_.clear();
+    for (const Index geometry : geometries) {
+      auto status = add_geometry(model_.geometries[geometry]);
+      if (!status) return status;
+    }
+    if (drafts_.empty()) return Done{};
+    Feature feature;
+    if (first.object != kNone) {
+      const GmlObject& top = model_.objects[model_.objects[first.object].feature];
+      feature.id = top.id;
+      feature.type = top.type;
+    } else {
+      feature.id = drafts_.front().source.object_id;
+    }
+    auto status = finish(feature, first.is_template);
+    if (!status) return in_object(std::move(status).error(), feature.id);
+    if (first.is_template) {
+      for (SubmittedSolid& solid : feature.solids) {
+        document_.templates.push_back(std::move(solid));
+      }
+    } else {
+      document_.features.push_back(std::move(feature));
+    }
+    return Done{};
+  }
+
+  Status add_geometry(const GmlGeometry& geometry) {
+    const GmlLink& link = model_.links[geometry.link];
+    // The template that an implicit geometry refers to is judged where it stands.
+    if (geometry.is_template && link.node == kNone) return Done{};
+    auto target = shapes_.resolve(link);
+    if (!target) return in_object(std::move(target).error(), id_of(geometry, kNone));
+    SolidSource source;
+    source.object_id = id_of(geometry, *target);
+    if (geometry.object != kNone && !geometry.is_template) {
+      source.building_id = model_.objects[geometry.object].building_id;
+    }
+    if (geometry.lod != '\0') source.lod = geometry.lod;
+    source.geometry = next_geometry(geometry.is_template, source.object_id);
+    auto status = add_solids(*target, geometry.is_template, source);
+    if (geometry.is_template) templates_of_[*target] = {source.geometry, templates_};
+    if (!status) return in_object(std::move(status).error(), source.object_id);
+    return status;
+  }
+
+  // Implicit geometries may refer to templates that come later. Those that refer to no template of
+  // solids, or to nothing in the document, are left out.
+  Status add_instances() {
+    for (const GmlGeometry& geometry : model_.geometries) {
+      if (geometry.implicit == kNone) continue;
+      const GmlImplicit& implicit = model_.implicits[geometry.implicit];
+      if (implicit.matrix.size == 0) continue;
+      const auto target = shapes_.resolve(model_.links[geometry.link]);
+      const auto numbers = target ? templates_of_.find(*target) : templates_of_.end();
+      if (numbers == templates_of_.end()) continue;
+      auto placement = read_placement(model_.name(implicit.matrix));
+      if (!placement) {
+        return in_object(
+            error_at(implicit.place, placement.error().code, placement.error().message),
+            id_of(geometry, *target));
+      }
+      TemplateInstance instance;
+      instance.source.object_id = id_of(geometry, *target);
+      instance.source.geometry_type = "ImplicitGeometry";
+      instance.placement = *placement;
+      for (Index number = numbers->second.begin; number < numbers->second.end; ++number) {
+        instance.template_number = number;
+        document_.instances.push_back(instance);
+      }
+    }
+    return Done{};
+  }
+
+  std::string id_of(const GmlGeometry& geometry, Index node) const {
+    if (geometry.object != kNone) return model_.objects[geometry.object].id;
+    return node == kNone ? "" : std::string(model_.name(model_.nodes[node].id));
+  }
+
+  // Objects of one feature that have no gml:id, or the same, are counted on together, so that id
+  // and number name one geometry.
+  std::uint32_t next_geometry(bool is_template, const std::string& object_id) {
+    return is_template ? templates_++ : geometries_of_[object_id]++;
+  }
+
+  // The solids of a geometry: itself, or those of a collection and of the collections in it. A
+  // CompositeSolid within another collection is a geometry of its own: its members must fit
+  // together, the collection's need not.
+  Status add_solids(Index root, bool is_template, SolidSource source) {
+    const GmlKind kind = model_.nodes[root].kind;
+    if (kind == GmlKind::solid) return add_solid(root, source);
+    if (kind != GmlKind::solids && kind != GmlKind::mixed) {
+      ++passed_over_;
+      return Done{};
+    }
+    std::vector<Index> composites{root};
+    for (std::size_t i = 0; i < composites.size(); ++i) {
+      if (i > 0) source.geometry = next_geometry(is_template, source.object_id);
+      source.ordinal = 0;
+      if (auto status = add_members(composites[i], composites, source); !status) return status;
+    }
+    return Done{};
+  }
+
+  Status add_members(Index root, std::vector<Index>& composites, SolidSource& source) {
+    struct Step {
+      Index node;
+      Index link;  // the next to follow
+    };
+    std::vector<Step> path;
+    const auto open = [&](Index node) -> Status {
+      if (auto status = shapes_.check(node); !status) return status;
+      if (!shapes_.enter(node)) {
+        return error_at(model_.nodes[node].place, ErrorCode::malformed,
+                        shapes_.title(node) + " contains itself by xlink");
+      }
+      path.push_back({node, model_.nodes[node].first_link});
+      return Done{};
+    };
+    const bool is_composite = is_composite_solid(root);
+    if (auto status = open(root); !status) return status;
+    while (!path.empty()) {
+      const Step step = path.back();
+      if (step.link == kNone) {
+        shapes_.leave(step.node);
+        path.pop_back();
+        continue;
+      }
+      const GmlLink& link = model_.links[step.link];
+      path.back().link = link.next;
+      auto node = shapes_.resolve(link);
+      if (!node) return std::move(node).error();
+      const GmlKind kind = model_.nodes[*node].kind;
+      Status status = Done{};
+      if (kind == GmlKind::solid) {
+        source.geometry_type = model_.name(model_.nodes[root].name);
+        status = add_solid(*node, source);
+        ++source.ordinal;
+      } else if (is_composite_solid(*node) && !is_composite) {
+        composites.push_back(*node);
+      } else if (kind == GmlKind::solids || kind == GmlKind::mixed) {
+        status = open(*node);
+      } else if (model_.nodes[step.node].kind == GmlKind::solids) {
+        status = error_at(link.place, ErrorCode::malformed,
+                          shapes_.title(*node) + " where a solid is expected");
+      }
+      if (!status) return status;
+    }
+    return Done{};
+  }
+
+  bool is_composite_solid(Index node) const {
+    return model_.name(model_.nodes[node].name) == "CompositeSolid";
+  }
+
+  Status add_solid(Index node, SolidSource source) {
+    if (source.geometry_type.empty()) source.geometry_type = model_.name(model_.nodes[node].name);
+    auto solid = shapes_.solid(node, positions_);
+    if (!solid) return std::move(solid).error();
+    drafts_.push_back({std::move(*solid), std::move(source)});
+    return Done{};
+  }
+
+  // The reference system of the drafts.
+  Result<Index> common_system() const {
+    Index system = kNone;
+    for (const Draft& draft : drafts_) {
+      if (system == kNone) system = draft.solid.system;
+      if (!shapes_.is_same_system(system, draft.solid.system)) {
+        return error_at(draft.solid.place, ErrorCode::unsupported,
+                        "a solid in '" + model_.systems[draft.solid.system] +
+                            "' beside solids in '" + model_.systems[system] + "'");
+      }
+    }
+    return system;
+  }
+
+  // Latitude, longitude, height are left-handed axes: as x, y, z they would turn solids inside out.
+  void put_longitude_first(Index system) {
+    const double pole = shapes_.pole_of_first_axis(system);
+    if (pole == 0) return;
+    const auto can_be_latitude = [&](const std::array<GridNumber, 3>& position) {
+      const double size = std::abs(static_cast<double>(position[0].mantissa));
+      return size * std::pow(10.0, position[0].exponent) <= pole;
+    };
+    auto& values = positions_.values;
+    if (!std::all_of(values.begin(), values.end(), can_be_latitude)) {
+      wrongly_ordered_.insert(model_.systems[system]);
+      return;
+    }
+    latitude_first_.insert(model_.systems[system]);
+    for (auto& position : values) std::swap(position[0], position[1]);
+  }
+
+  // Puts the drafts on their common lattice.
+  Status finish(Feature& feature, bool is_template) {
+    const Draft& first = drafts_.front();
+    // Templates have axes of their own, whatever the system of the document.
+    if (!is_template) {
+      const auto system = common_system();
+      if (!system) return system.error();
+      feature.srid = shapes_.srid(*system);
+      if (*system != kNone && feature.srid == 0) unknown_systems_.insert(model_.systems[*system]);
+      put_longitude_first(*system);
+    }
+    auto points = lattice_of_decimals(positions_.values);
+    if (!points) return error_at(first.solid.place, points.error().code, points.error().message);
+    std::vector<bool> is_rounded(points->points.size(), false);
+    for (const Index position : points->rounded) is_rounded[position] = true;
+    for (const Index position : positions_.rounded) is_rounded[position] = true;
+    for (std::size_t i = 0; i < drafts_.size(); ++i) {
+      const std::size_t begin = drafts_[i].solid.first_position;
+      const std::size_t end =
+          i + 1 < drafts_.size() ? drafts_[i + 1].solid.first_position : points->points.size();
+      LatticePoints own{points->lattice, {}, {}};
+      own.points.assign(points->points.begin() + static_cast<std::ptrdiff_t>(begin),
+                        points->points.begin() + static_cast<std::ptrdiff_t>(end));
+      for (std::size_t k = begin; k < end; ++k) {
+        if (is_rounded[k]) own.rounded.push_back(static_cast<Index>(k - begin));
+      }
+      auto status = place(drafts_[i], own, feature);
+      if (!status) return status;
+    }
+    return Done{};
+  }
+
+  Status place(Draft& draft, const LatticePoints& points, Feature& feature) {
+    auto solid = solid_of_points(std::move(draft.solid.arrays), points, std::move(draft.source),
+                                 feature.srid, limits_);
+    if (!solid) {
+      return error_at(draft.solid.place, solid.error().code, solid.error().message);
+    }
+    solid->unclosed_rings = std::move(draft.solid.unclosed_rings);
+    const auto& ids = draft.solid.facet_ids;
+    const auto has_id = [](const std::string& id) { return !id.empty(); };
+    if (std::any_of(ids.begin(), ids.end(), has_id)) {
+      solid->facet_ids = std::move(draft.solid.facet_ids);
+    }
+    feature.solids.push_back(std::move(*solid));
+    return Done{};
+  }
+
+  void add_notes() {
+    for (const std::string& system : unknown_systems_) {
+      document_.notes.push_back("reference system '" + system + "' has no known EPSG code");
+    }
+    for (const std::string& system : latitude_first_) {
+      document_.notes.push_back("positions in '" + system +
+                                "' are latitude, longitude; read as longitude, latitude");
+    }
+    for (const std::string& system : wrongly_ordered_) {
+      document_.notes.push_back("positions in '" + system +
+                                "' should be latitude, longitude, but some begin beyond the poles; "
+                                "read in the order written");
+    }
+    if (document_.features.empty() && document_.templates.empty()) {
+      document_.notes.push_back("the document has no solids; " + std::to_string(passed_over_) +
+                                " other geometries are passed over");
+    }
+  }
+
+  const GmlModel& model_;
+  const Limits& limits_;
+  GmlShapes shapes_;
+  std::map<std::string, std::uint32_t> geometries_of_;  // object id -> geometries of this feature
+  std::map<Index, IndexRange> templates_of_;            // node -> numbers of its templates
+  std::uint32_t templates_ = 0;
+  std::uint64_t passed_over_ = 0;
+  std::set<std::string> unknown_systems_;
+  std::set<std::string> latitude_first_;
+  std::set<std::string> wrongly_ordered_;
+  std::vector<Draft> drafts_;
+  GmlPositions positions_;
+  Document document_;
+};
+
+}  // namespace
+
+Result<Document> read_gml(ByteView bytes, const Limits& limits) {
+  auto model = read_gml_model(bytes, limits);
+  if (!model) return std::move(model).error();
+  return GmlReader(*model, bytes.size(), limits).read();
+}
+
+}  // namespace watertight

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A GML document as its geometry elements, the links between them, and the objects that own them.
+// Coordinates stay text until a solid uses them: what no solid reaches is not judged. Internal to
+// formats/.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/limits.h"
+#include "base/result.h"
+#include "formats/gml/xml.h"
+#include "geometry/point.h"
+
+namespace watertight {
+
+/// What an element is for the solids. A collection of surfaces is any of Shell, CompositeSurface,
+/// MultiSurface, Surface, PolyhedralSurface, TriangulatedSurface and Tin.
+enum class GmlKind : std::uint8_t {
+  ring,     // LinearRing
+  polygon,  // Polygon, PolygonPatch, Triangle, Rectangle
+  surfaces,
+  orientable,  // OrientableSurface
+  solid,
+  solids,  // MultiSolid, CompositeSolid
+  mixed,   // MultiGeometry: solids are taken, other members are passed over
+  unread   // geometry that is no part of a solid of polygons
+};
+
+enum class GmlRole : std::uint8_t { exterior, interior, member };
+
+/// A part of GmlModel::names or GmlModel::positions.
+struct TextSpan {
+  std::uint64_t at = 0;
+  std::uint64_t size = 0;
+};
+
+/// A property of a geometry (or of an object) with its value: an element, or a reference.
+struct GmlLink {
+  GmlRole role = GmlRole::member;
+  Index node = kNone;  // kNone: `reference` holds the href, or the property is empty
+  TextSpan reference;
+  Index next = kNone;  // of the same element
+  XmlPlace place;
+};
+
+struct GmlNode {
+  GmlKind kind = GmlKind::unread;
+  bool is_reversed = false;      // OrientableSurface with orientation "-"
+  bool is_plane_stated = false;  // ring: positions without srsDimension under a flat Envelope
+  TextSpan name;                 // local name of the element
+  TextSpan id;                   // gml:id
+  TextSpan positions;            // ring: numbers between blanks, three per position
+  Index system = kNone;          // GmlModel::systems
+  Index defect = kNone;          // GmlModel::defects: why it cannot be used
+  Index first_link = kNone;
+  Index last_link = kNone;
+  XmlPlace place;
+};
+
+/// A feature or a part of one. Only objects that own geometry are kept.
+struct GmlObject {
+  std::string id;
+  std::string type;
+  std::string building_id;  // as SolidSource::building_id
+  Index feature = 0;
+};
+
+/// A geometry property of an object.
+struct GmlGeometry {
+  Index link = kNone;
+  Index object = kNone;  // kNone: a geometry outside of any object
+  char lod = '\0';
+  bool is_template = false;  // of an implicit geometry: coordinates of its own
+  Index implicit = kNone;    // GmlModel::implicits, of a template
+};
+
+/// An implicit geometry: a template in a place.
+struct GmlImplicit {
+  TextSpan matrix;  // of GmlModel::names: the text of its transformationMatrix, empty without one
+  XmlPlace place;
+};
+
+struct GmlModel {
+  std::vector<GmlNode> nodes;
+  std::vector<GmlLink> links;
+  std::vector<GmlGeometry> geometries;  // document order
+  std::vector<GmlImplicit> implicits;
+  std::vector<GmlObject> objects;
+  std::vector<Index> features;       // the top-level objects
+  std::vector<std::string> systems;  // values of srsName
+  std::vector<Error> defects;
+  std::string names;
+  std::string positions;
+
+  std::string_view name(TextSpan span) const {
+    return std::string_view(names).substr(span.at, span.size);
+  }
+  std::string_view numbers(TextSpan span) const {
+    return std::string_view(positions).substr(span.at, span.size);
+  }
+};
+
+/// Errors: those of read_xml(). Cost: linear; memory proportional to the document.
+Result<GmlModel> read_gml_model(ByteView bytes, const Limits& limits);
+
+}  // namespace watertight

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From the geometry elements of a GML document to the facets of its solids: references are
+// followed, orientations applied, positions read. Internal to formats/.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/limits.h"
+#include "base/result.h"
+#include "formats/gml/model.h"
+#include "geometry/lattice.h"
+#include "geometry/solid.h"
+
+namespace watertight {
+
+/// A solid whose ring vertices are positions of their own, counted from `first_position`.
+struct GmlSolid {
+  SolidArrays arrays;
+  std::size_t first_position = 0;
+  std::vector<Index> unclosed_rings;
+  std::vector<std::string> facet_ids;  // as SubmittedSolid::facet_ids
+  Index system = kNone;
+  XmlPlace place;
+};
+
+/// Positions of all solids of a feature.
+struct GmlPositions {
+  std::vector<std::array<GridNumber, 3>> values;
+  std::vector<Index> rounded;
+};
+
+class GmlShapes {
+ public:
+  /// `model` must outlive this. `byte_count` of the document bounds what xlinks may repeat.
+  GmlShapes(const GmlModel& model, std::uint64_t byte_count, const Limits& limits);
+
+  /// The element that a link holds or refers to.
+  /// Errors: malformed (no such gml:id, or several), unsupported (another document).
+  Result<Index> resolve(const GmlLink& link);
+
+  /// Errors: the element cannot be used, with its place.
+  Status check(Index node) const;
+
+  /// The shells of a Solid; its positions are appended.
+  Result<GmlSolid> solid(Index node, GmlPositions& positions);
+
+  /// Counts work of which a document without references does less than it has bytes.
+  Status spend(std::uint64_t steps, XmlPlace place);
+
+  /// Marks an element as being followed; false when it already is: it would contain itself.
+  bool enter(Index node);
+  void leave(Index node) { is_entered_[node] = false; }
+
+  /// EPSG code of a system; 0 for kNone.
+  std::uint32_t srid(Index system) const { return system == kNone ? 0 : srids_[system]; }
+  /// Where a system's positions have latitude first: the angle of the pole in its unit, else 0.
+  double pole_of_first_axis(Index system) const { return system == kNone ? 0 : poles_[system]; }
+  /// The same code and order of axes; kNone is the same as any.
+  bool is_same_system(Index a, Index b) const;
+
+  /// "Solid 'id'", "Solid" without gml:id.
+  std::string title(Index node) const;
+
+ private:
+  struct Step {
+    Index node;
+    Index link;  // the next to follow
+    bool is_reversed;
+  };
+
+  Status shell(const GmlLink& link, GmlSolid& solid, GmlPositions& positions);
+  Status surface(std::vector<Step>& path, Index node, bool is_reversed, GmlSolid& solid,
+                 GmlPositions& positions);
+  Status facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositions& positions);
+  Status ring(const GmlLink& link, bool is_reversed, GmlSolid& solid, GmlPositions& positions);
+  Status read_positions(const GmlNode& ring, GmlPositions& positions);
+  Status close_ring(const GmlNode& ring, std::size_t first, GmlSolid& solid,
+                    GmlPositions& positions);
+  Error wrong(XmlPlace place, std::string_view message) const;
+
+  const GmlModel& model_;
+  const Limits& limits_;
+  std::uint64_t allowed_steps_;
+  std::uint64_t steps_ = 0;
+  std::vector<std::pair<std::string_view, Index>> by_id_;  // sorted
+  std::vector<bool> is_entered_;
+  std::vector<std::uint32_t> srids_;
+  std::vector<double> poles_;
+};
+
+}  // namespace watertight

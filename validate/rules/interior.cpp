@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Shells that touch along edges may cut the interior apart (404). Exact, without a
+// tetrahedralization:
+//
+// The canonical triangles, divided where shells touch (delaunay/shell_contacts.h), form a complex:
+// they meet in common vertices and edges only. Consider the inner side of each triangle, the one
+// that the interior is on. Two triangles at an edge that only they have show the same part of the
+// interior there. Around an edge of several shells the triangles are sorted by angle, and two
+// neighbours with interior between them show the same part. Each class of triangles that are linked
+// so is a component of the boundary of one part, moved inward by next to nothing, and a closed
+// surface. A connected bounded region has exactly one outer boundary component, whose volume is
+// positive, turned outward, and the volumes of the others are negative: as many parts as classes of
+// positive volume. Vertices that shells share link nothing: around one, the space that is not
+// interior is made of discs on a small sphere, and cutting their tips off joins and parts nothing.
+//
+// Shells that do not touch cut nothing: the complement of n disjoint closed connected surfaces has
+// n + 1 components (Alexander duality), n - 1 cavities, the outside and one more.
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "delaunay/sort_by_vertices.h"
+#include "geometry/box_partition.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/measures.h"
+#include "geometry/predicates.h"
+#include "validate/facet_diagonals.h"
+#include "validate/rules/rules.h"
+
+namespace watertight {
+namespace {
+
+/// Other diagonals are tried on solids of at most this many triangles, and so many at most: a
+/// second of work.
+constexpr std::size_t kMostTriangles = 5'000;
+constexpr std::size_t kMostFlips = 32;
+
+/// A triangle at one of its edges.
+struct Sheet {
+  Triangle key{};  // the edge's smaller vertex, its larger one, the triangle
+  Index apex = 0;
+  /// The triangle passes the edge from its smaller vertex to its larger one: seen against that
+  /// direction, the interior is clockwise of the triangle.
+  bool is_forward = false;
+};
+
+/// The parts that a boundary cuts the interior into.
+struct InteriorParts {
+  std::size_t count = 0;
+  Index facet = kNone;  // the first around the smallest part
+};
+
+class PartCounter {
+ public:
+  PartCounter(std::span<const Point> points, const FacetTriangles& facets)
+      : points_(points), facets_(facets), sides_(facets.triangles.size()) {}
+
+  /// Nothing if the triangles form no boundary of an interior.
+  std::optional<InteriorParts> run() {
+    collect_sheets();
+    for (std::size_t begin = 0; begin < sheets_.size();) {
+      std::size_t end = begin + 1;
+      while (end < sheets_.size() && sheets_[end].key[0] == sheets_[begin].key[0] &&
+             sheets_[end].key[1] == sheets_[begin].key[1]) {
+        ++end;
+      }
+      if (!link_around(std::span(sheets_).subspan(begin, end - begin))) return std::nullopt;
+      begin = end;
+    }
+    return count();
+  }
+
+ private:
+  void collect_sheets() {
+    sheets_.reserve(3 * facets_.triangles.size());
+    for (Index t = 0; t < facets_.triangles.size(); ++t) {
+      const Triangle& corners = facets_.triangles[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = corners[k];
+        const Index b = corners[(k + 1) % 3];
+        sheets_.push_back({{std::min(a, b), std::max(a, b), t}, corners[(k + 2) % 3], a < b});
+      }
+    }
+    sort_by_vertices(sheets_, points_.size(), [](const Sheet& sheet) { return sheet.key; });
+  }
+
+  /// Links the triangles at one edge that show the same part there. False if inside and outside do
+  /// not alternate.
+  bool link_around(std::span<Sheet> sheets) {
+    if (sheets.size() > 2) sort_by_angle(sheets);
+    for (std::size_t i = 0; i < sheets.size(); ++i) {
+      const Sheet& next = sheets[(i + 1) % sheets.size()];
+      if (sheets[i].is_forward == next.is_forward) return false;
+      if (!sheets[i].is_forward) sides_.join(sheets[i].key[2], next.key[2]);
+    }
+    return true;
+  }
+
+  /// Counter-clockwise, seen against the direction of the edge, from the first sheet on.
+  void sort_by_angle(std::span<Sheet> sheets) const {
+    const Point& low = points_[sheets[0].key[0]];
+    const Point& high = points_[sheets[0].key[1]];
+    const Index first = sheets[0].apex;
+    const auto turn = [&](Index a, Index b) {
+      return a == b ? 0 : orient3d(low, high, points_[a], points_[b]);
+    };
+    // 0 the first, 1 less than half a turn from it, 2 half a turn, 3 more.
+    const auto sector = [&](const Sheet& sheet) {
+      if (sheet.apex == first) return 0;
+      const int side = turn(first, sheet.apex);
+      return side > 0 ? 1 : side == 0 ? 2 : 3;
+    };
+    std::sort(sheets.begin(), sheets.end(), [&](const Sheet& a, const Sheet& b) {
+      const int of_a = sector(a);
+      const int of_b = sector(b);
+      if (of_a != of_b) return of_a < of_b;
+      const int side = turn(a.apex, b.apex);
+      return side != 0 ? side > 0 : a.key[2] < b.key[2];
+    });
+  }
+
+  std::optional<InteriorParts> count() {
+    std::map<Index, std::vector<Index>> classes;  // root -> triangles
+    for (Index t = 0; t < facets_.triangles.size(); ++t) classes[sides_.root(t)].push_back(t);
+    InteriorParts parts;
+    double least = 0;
+    for (const auto& [root, members] : classes) {
+      std::vector<Triangle> triangles;
+      for (const Index t : members) triangles.push_back(facets_.triangles[t]);
+      const int sign = volume_sign(points_, triangles);
+      if (sign == 0) return std::nullopt;
+      if (sign < 0) continue;
+      const double volume = six_volume(points_, triangles);
+      if (parts.count++ > 0 && volume >= least) continue;
+      least = volume;
+      parts.facet = facets_.facet_of[members.front()];
+    }
+    if (parts.count == 0) return std::nullopt;
+    return parts;
+  }
+
+  std::span<const Point> points_;
+  const FacetTriangles& facets_;
+  std::vector<Sheet> sheets_;
+  DisjointSets sides_;  // of triangles: their inner sides
+};
+
+/// True if no two triangles of different facets meet in more than a vertex or an edge of both.
+bool is_complex(const Solid& solid, const FacetTriangles& facets, const CancelPoll& cancel) {
+  IntersectionOptions options;
+  options.limit = 1;
+  options.cancel = cancel;
+  options.group_of = facets.facet_of;
+  const auto pairs = intersecting_pairs(solid.vertices(), facets.triangles, options);
+  return pairs && pairs->empty();
+}
+
+/// Nothing if the contacts cannot be written with the vertices of the solid.
+std::optional<InteriorParts> parts_of(const Solid& solid, const FacetTriangles& facets,
+                                      const ContactTriangles& contacts, const CancelPoll& cancel) {
+  if (!contacts.obstacle.empty()) return std::nullopt;
+  const FacetTriangles& divided = contacts.has_contacts() ? contacts.triangles : facets;
+  if (!is_complex(solid, divided, cancel)) return std::nullopt;
+  return PartCounter(solid.vertices(), divided).run();
+}
+
+/// The canonical triangles with one other diagonal.
+FacetTriangles with_flip(FacetTriangles facets, const Diagonal& diagonal) {
+  const auto [first, second] = diagonal.flipped();
+  facets.triangles[diagonal.first] = first;
+  facets.triangles[diagonal.second] = second;
+  return facets;
+}
+
+class InteriorExaminer {
+ public:
+  InteriorExaminer(ExaminedSolid& examined, const ContactTriangles& contacts)
+      : examined_(examined),
+        solid_(examined.solid()),
+        contacts_(contacts),
+        cancel_([this] { return examined_.ask_cancelled(); }) {}
+
+  /// False if it could not be decided.
+  bool examine() {
+    const auto parts = parts_of(solid_, examined_.triangles(), contacts_, cancel_);
+    if (!parts) return false;
+    if (parts->count > 1) report(*parts);
+    try_other_diagonals(parts->count);
+    return true;
+  }
+
+ private:
+  void report(const InteriorParts& parts) {
+    Finding finding;
+    finding.code = kSolidInteriorDisconnected;
+    finding.place = examined_.at_facet(parts.facet);
+    finding.witness = examined_.world(solid_.ring(solid_.rings_of(parts.facet).begin).front());
+    finding.detail = "the interior has " + std::to_string(parts.count) +
+                     " parts; this facet bounds the smallest";
+    examined_.findings.add(std::move(finding));
+  }
+
+  /// Warning 804 where one other diagonal of a facet that is not flat makes or undoes 404.
+  void try_other_diagonals(std::size_t count) {
+    std::size_t flips = 0;
+    for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
+      if (!examined_.is_not_planar(facet)) continue;
+      for (const Diagonal& diagonal : other_diagonals(solid_, examined_.triangles(), facet)) {
+        if (examined_.triangles().triangles.size() > kMostTriangles || ++flips > kMostFlips) {
+          return examined_.findings.skip({kTriangulationDependent},
+                                         "there are too many diagonals to try each");
+        }
+        if (cancel_()) return;
+        const FacetTriangles flipped = with_flip(examined_.triangles(), diagonal);
+        const auto contacts = divide_at_contacts(solid_, flipped, cancel_);
+        if (!contacts) return;
+        const auto parts = parts_of(solid_, flipped, *contacts, cancel_);
+        if (parts && (parts->count > 1) != (count > 1)) report_flip(facet, diagonal, *parts);
+      }
+    }
+  }
+
+  void report_flip(Index facet, const Diagonal& diagonal, const InteriorParts& parts) {
+    Finding finding;
+    finding.code = kTriangulationDependent;
+    finding.place = examined_.at_facet(facet);
+    finding.place.vertex = examined_.submitted_vertex(diagonal.left);
+    finding.witness = examined_.world(diagonal.left);
+    finding.detail =
+        "with the diagonal between vertices " +
+        std::to_string(examined_.submitted_vertex(diagonal.left)) + " and " +
+        std::to_string(examined_.submitted_vertex(diagonal.right)) +
+        (parts.count > 1 ? " the interior would be in parts" : " the interior would hang together");
+    examined_.findings.add(std::move(finding));
+  }
+
+  ExaminedSolid& examined_;
+  const Solid& solid_;
+  const ContactTriangles& contacts_;
+  CancelPoll cancel_;
+};
+
+}  // namespace
+
+bool check_interior(ExaminedSolid& examined, const ContactTriangles& contacts) {
+  return InteriorExaminer(examined, contacts).examine();
+}
+
+}  // namespace watertight

@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Shells by their edges and vertices alone: two-sided (300), enough facets (301), closed (302),
+// 2-manifold (303), one component (305), facets turned alike (307). Exact: vertices are equal or
+// they are not.
+#include <map>
+
+#include "geometry/disjoint_sets.h"
+#include "geometry/measures.h"
+#include "validate/edge_table.h"
+#include "validate/open_edges.h"
+#include "validate/rules/rules.h"
+#include "validate/wedges.h"
+
+namespace watertight {
+namespace {
+
+class ShellExaminer {
+ public:
+  /// Requires edges that examine the shell.
+  ShellExaminer(ExaminedSolid& examined, const EdgeTable& edges, Index shell)
+      : examined_(examined),
+        solid_(examined.solid()),
+        edges_(edges),
+        shell_(shell),
+        facets_(examined.solid().facets_of(shell)),
+        uses_(edges.uses()),
+        is_shell_faulty_(examined.is_shell_faulty(shell)) {}
+
+  ShellTopology examine();
+
+ private:
+  using EdgeSpan = std::span<const EdgeUse>;
+
+  void sort_edges();
+  void check_facet_count();
+  void report_crowded_edge(EdgeSpan edge);
+  void check_open();
+  void report_junction(const TJunction& junction);
+  void report_border(const Border& border);
+  void link_wedges(DisjointSets& fans, Index first_corner, Index last_corner);
+  void check_umbrellas();
+  void report_pinch(Index vertex, Index facet, std::size_t umbrellas);
+  std::string_view interior_connected();
+  void check_components();
+  void check_orientation();
+  void report_turned(const std::vector<Index>& members, const std::vector<char>& turn);
+
+  static void keep_distinct(std::vector<Index>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  Index number_of(Index vertex) const { return edges_.number_of(vertex); }
+  Index local(Index facet) const { return facet - facets_.begin; }
+  bool is_faulty(EdgeSpan edge) const {
+    return std::any_of(edge.begin(), edge.end(),
+                       [&](const EdgeUse& use) { return examined_.is_faulty(use.facet); });
+  }
+  bool bounds_region(Index facet) const {
+    return examined_.triangles().state[facet] == FacetState::triangulated;
+  }
+  /// The first corner of the first ring that has one. Requires a facet with an edge.
+  Place first_corner(Index facet) const {
+    const Solid& submitted = examined_.submitted();
+    const Index begin = submitted.rings_of(facet).begin;
+    Index ring = 0;
+    while (submitted.ring(begin + ring).empty()) ++ring;
+    return examined_.at_corner(facet, ring, 0);
+  }
+  Place place_of(const EdgeUse& use) const {
+    const CornerPlace place = place_of_corner(solid_, use.facet, use.corner);
+    return examined_.at_corner(use.facet, place.ring_in_facet, place.position);
+  }
+
+  /// Calls visit(a, b) for the two uses of each edge that has two.
+  template <class Visit>
+  void for_each_pair(Visit visit) const {
+    for_each_edge(uses_, [&](EdgeSpan edge) {
+      if (edge.size() == 2) visit(edge[0], edge[1]);
+    });
+  }
+
+  ExaminedSolid& examined_;
+  const Solid& solid_;
+  const EdgeTable& edges_;
+  Index shell_;
+  IndexRange facets_;
+  EdgeSpan uses_;
+  std::vector<EdgeUse> open_;   // used once
+  std::vector<Index> crowded_;  // vertices of edges used more than twice, ascending
+  bool is_shell_faulty_ = false;
+  std::string interior_connected_;
+  ShellTopology topology_;
+};
+
+void ShellExaminer::check_facet_count() {
+  if (facets_.size() >= 4 || solid_.facet_count() == 0) return;
+  Finding finding;
+  finding.code = kTooFewPolygons;
+  finding.place = examined_.at_shell(shell_);
+  finding.measured = static_cast<double>(facets_.size());
+  finding.limit = 4;
+  finding.unit = "facets";
+  finding.detail = "the shell has " + std::to_string(facets_.size()) + " facets";
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::sort_edges() {
+  topology_.is_manifold = true;
+  for_each_edge(uses_, [&](EdgeSpan edge) {
+    if (edge.size() == 1) {
+      open_.push_back(edge[0]);
+    } else if (edge.size() > 2) {
+      topology_.is_manifold = false;
+      crowded_.push_back(edge[0].low);
+      crowded_.push_back(edge[0].high);
+      report_crowded_edge(edge);
+    }
+  });
+  keep_distinct(crowded_);
+  topology_.is_closed = open_.empty() && topology_.is_manifold && !uses_.empty();
+}
+
+void ShellExaminer::report_crowded_edge(EdgeSpan edge) {
+  Finding finding;
+  finding.code = kNonManifold;
+  finding.place = place_of(edge[0]);
+  finding.other = place_of(edge[edge.size() - 1]);
+  finding.witness = examined_.world(edge[0].low);
+  finding.measured = static_cast<double>(edge.size());
+  finding.limit = 2;
+  finding.unit = "facets";
+  finding.detail = "an edge is used by " + std::to_string(edge.size()) + " facets";
+  finding.uncertain = is_faulty(edge);
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::report_junction(const TJunction& junction) {
+  examined_.note_junction(junction.edge.facet, junction.vertex);
+  Finding finding;
+  finding.code = kShellNotClosed;
+  finding.place = place_of(junction.edge);
+  finding.place.vertex = examined_.submitted_vertex(junction.vertex);
+  finding.other = place_of(junction.across);
+  finding.witness = examined_.world(junction.vertex);
+  finding.detail = "T-junction: vertex " + std::to_string(finding.place.vertex) +
+                   " lies inside an edge of facet " + std::to_string(junction.edge.facet) +
+                   ", which does not have it";
+  finding.uncertain =
+      examined_.is_faulty(junction.edge.facet) || examined_.is_faulty(junction.across.facet);
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::report_border(const Border& border) {
+  const EdgeUse& first = border.edges.front();
+  Finding finding;
+  finding.code = kShellNotClosed;
+  finding.place = place_of(first);
+  finding.witness = examined_.world(first.low);
+  finding.measured = static_cast<double>(border.edges.size());
+  finding.limit = 0;
+  finding.unit = "edges";
+  finding.detail = "a border of " + std::to_string(border.edges.size()) +
+                   (border.edges.size() == 1 ? " edge" : " edges") + " that only one facet uses";
+  finding.uncertain = is_faulty(border.edges);
+  examined_.findings.add(std::move(finding));
+}
+
+void ShellExaminer::check_open() {
+  if (open_.empty()) return;
+  const OpenEdges result =
+      examine_open_edges(solid_, open_, [this] { return examined_.is_cancelled(); });
+  for (const TJunction& junction : result.junctions) report_junction(junction);
+  for (const Border& border : result.borders) report_border(border);
+  if (!result.is_complete) {
+    examined_.findings.skip({kShellNotClosed},
+                            "T-junctions were not all looked for: too many "
+                            "open edges in shell " +
+                                std::to_string(shell_));
+  }
+}
+
+/// Links the two edges of each facet that bound its inside at a vertex: those of one corner, but
+/// where several rings of a facet pass the vertex.
+void ShellExaminer::link_wedges(DisjointSets& fans, Index first_corner, Index last_corner) {
+  std::vector<Wedge> shared;
+  for (Index facet = facets_.begin; facet < facets_.end; ++facet) {
+    const std::vector<Wedge> wedges = shared_wedges(solid_, examined_.triangles(), facet);
+    shared.insert(shared.end(), wedges.begin(), wedges.end());
+  }
+  std::sort(shared.begin(), shared.end(),
+            [](const Wedge& a, const Wedge& b) { return a.from < b.from; });
+  auto wedge = shared.begin();
+  for (Index corner = first_corner; corner < last_corner; ++corner) {
+    Index to = corner;
+    if (wedge != shared.end() && wedge->from == corner) to = (wedge++)->to;
+    fans.join(2 * (corner - first_corner) + 1, 2 * (to - first_corner));
+  }
+}
+
+/// Ring edges around a vertex, linked by the facets between them, form one umbrella or several. The
+/// edge that leaves corner c is number 2 c + 1, the one that arrives there 2 c.
+void ShellExaminer::check_umbrellas() {
+  const auto& offsets = solid_.arrays().ring_offsets;
+  const auto& ring_vertices = solid_.arrays().ring_vertices;
+  const Index first_corner = offsets[solid_.arrays().facet_offsets[facets_.begin]];
+  const Index last_corner = offsets[solid_.arrays().facet_offsets[facets_.end]];
+  DisjointSets fans(2 * std::size_t{last_corner - first_corner});
+  const auto arriving = [&](Index corner) { return 2 * (corner - first_corner); };
+  const auto leaving = [&](Index corner) { return arriving(corner) + 1; };
+  link_wedges(fans, first_corner, last_corner);
+  const auto ends = [&](const EdgeUse& use) {  // the edge at its low and at its high vertex
+    const Index next = place_of_corner(solid_, use.facet, use.corner).next;
+    return edges_.is_forward(use) ? std::pair(leaving(use.corner), arriving(next))
+                                  : std::pair(arriving(next), leaving(use.corner));
+  };
+  for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
+    const auto [low_of_a, high_of_a] = ends(a);
+    const auto [low_of_b, high_of_b] = ends(b);
+    fans.join(low_of_a, low_of_b);
+    fans.join(high_of_a, high_of_b);
+  });
+  // Every fan lies around one vertex.
+  struct Around {
+    Index umbrellas = 0;
+    Index facet = kNone;  // the first
+  };
+  std::vector<Around> around(edges_.vertices().size());
+  std::vector<bool> is_seen(2 * std::size_t{last_corner - first_corner}, false);
+  for (const EdgeUse& use : uses_) {
+    const Index root = fans.root(leaving(use.corner));
+    Around& here = around[number_of(ring_vertices[use.corner])];
+    here.facet = std::min(here.facet, use.facet);
+    if (is_seen[root]) continue;
+    is_seen[root] = true;
+    ++here.umbrellas;
+  }
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    if (around[i].umbrellas < 2) continue;
+    const Index vertex = edges_.vertices()[i];
+    if (std::binary_search(crowded_.begin(), crowded_.end(), vertex)) continue;
+    report_pinch(vertex, around[i].facet, around[i].umbrellas);
+  }
+}
+
+void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t umbrellas) {
+  topology_.is_manifold = false;
+  Finding finding;
+  finding.code = kNonManifold;
+  finding.place = examined_.at_facet(facet);
+  finding.place.vertex = examined_.submitted_vertex(vertex);
+  finding.witness = examined_.world(vertex);
+  finding.measured = static_cast<double>(umbrellas);
+  finding.limit = 1;
+  finding.unit = "umbrellas";
+  finding.detail = std::to_string(umbrellas) + " umbrellas of facets touch in a vertex";
+  if (topology_.is_closed) {
+    finding.detail += "; interior_connected: " + std::string(interior_connected());
+  }
+  finding.uncertain = is_shell_faulty_;
+  examined_.findings.add(std::move(finding));
+}
+
+/// For a closed shell that touches itself in vertices: parts that hang together over edges each
+/// bound a region. One part leaves the interior connected; several do when all but one are turned
+/// inward (cavities that touch the outside in a vertex).
+std::string_view ShellExaminer::interior_connected() {
+  if (!interior_connected_.empty()) return interior_connected_;
+  DisjointSets parts(facets_.size());
+  for_each_pair(
+      [&](const EdgeUse& a, const EdgeUse& b) { parts.join(local(a.facet), local(b.facet)); });
+  std::map<Index, std::vector<Triangle>> triangles;
+  const FacetTriangles& all = examined_.triangles();
+  for (Index facet = facets_.begin; facet < facets_.end; ++facet) {
+    auto& list = triangles[parts.root(local(facet))];
+    list.insert(list.end(), all.triangles.begin() + all.first[facet],
+                all.triangles.begin() + all.first[facet + 1]);
+  }
+  std::size_t outward = 0;
+  for (const auto& [root, list] : triangles) {
+    if (volume_sign(solid_.vertices(), list) > 0) ++outward;
+  }
+  interior_connected_ = triangles.size() == 1 || outward == 1 ? "yes" : "no";
+  return interior_connected_;
+}
+
+void ShellExaminer::check_components() {
+  DisjointSets vertices(edges_.vertices().size());
+  for (const EdgeUse& use : uses_) vertices.join(number_of(use.low), number_of(use.high));
+  // A ring of a facet may hang together with the exterior ring by the facet alone.
+  std::vector<Index> anchor(facets_.size(), kNone);
+  for (const EdgeUse& use : uses_) {
+    Index& first = anchor[local(use.facet)];
+    if (first == kNone) first = number_of(use.low);
+    vertices.join(first, number_of(use.low));
+  }
+  const auto is_apart = [&](Index first) {
+    return first != kNone && vertices.root(first) != vertices.root(0);
+  };
+  topology_.is_connected = std::none_of(anchor.begin(), anchor.end(), is_apart);
+  if (topology_.is_connected) return;
+  std::map<Index, std::vector<Index>> components;  // root vertex -> facets
+  for (Index i = 0; i < anchor.size(); ++i) {
+    if (anchor[i] != kNone) components[vertices.root(anchor[i])].push_back(facets_.begin + i);
+  }
+  const auto largest = std::max_element(
+      components.begin(), components.end(),
+      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  for (auto part = components.begin(); part != components.end(); ++part) {
+    if (part == largest) continue;
+    Finding finding;
+    finding.code = kMultipleComponents;
+    finding.place = first_corner(part->second.front());
+    finding.witness = examined_.submitted().world(finding.place.vertex);
+    finding.measured = static_cast<double>(part->second.size());
+    finding.unit = "facets";
+    finding.detail = "a part of " + std::to_string(part->second.size()) +
+                     " facets shares no vertex with the rest of the shell";
+    finding.uncertain = is_shell_faulty_;
+    examined_.findings.add(std::move(finding));
+  }
+}
+
+void ShellExaminer::check_orientation() {
+  // Neighbours over each facet, in edge order.
+  struct Link {
+    Index from, to;
+    bool is_conflict;
+  };
+  topology_.is_oriented = true;
+  for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
+    if (edges_.is_forward(a) == edges_.is_forward(b)) topology_.is_oriented = false;
+  });
+  if (topology_.is_oriented) return;
+  std::vector<Link> links;
+  for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
+    if (!bounds_region(a.facet) || !bounds_region(b.facet)) return;  // has no side to compare
+    const bool is_conflict = edges_.is_forward(a) == edges_.is_forward(b);
+    links.push_back({local(a.facet), local(b.facet), is_conflict});
+    links.push_back({local(b.facet), local(a.facet), is_conflict});
+  });
+  std::stable_sort(links.begin(), links.end(),
+                   [](const Link& a, const Link& b) { return a.from < b.from; });
+  std::vector<std::size_t> first(facets_.size() + 1, 0);
+  for (const Link& link : links) ++first[link.from + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+
+  std::vector<char> turn(facets_.size(), 0);  // +1 as the first facet of its part, -1 opposite
+  for (Index start = 0; start < facets_.size(); ++start) {
+    if (turn[start] != 0) continue;
+    turn[start] = 1;
+    std::vector<Index> members{start};
+    bool is_orientable = true;
+    for (std::size_t next = 0; next < members.size(); ++next) {
+      const Index facet = members[next];
+      for (std::size_t l = first[facet]; l < first[facet + 1]; ++l) {
+        const auto wanted = static_cast<char>(links[l].is_conflict ? -turn[facet] : turn[facet]);
+        if (turn[links[l].to] == 0) {
+          turn[links[l].to] = wanted;
+          members.push_back(links[l].to);
+        } else if (turn[links[l].to] != wanted) {
+          is_orientable = false;
+        }
+      }
+    }
+    if (is_orientable) {
+      report_turned(members, turn);
+      continue;
+    }
+    Finding finding;
+    finding.code = kNotValid2Manifold;
+    finding.place = examined_.at_facet(facets_.begin + start);
+    finding.measured = static_cast<double>(members.size());
+    finding.unit = "facets";
+    finding.detail = "the facets cannot be turned alike: the surface has only one side";
+    finding.uncertain = is_shell_faulty_;
+    examined_.findings.add(std::move(finding));
+  }
+}
+
+/// The smaller group of facets is the one that is turned over.
+void ShellExaminer::report_turned(const std::vector<Index>& members,
+                                  const std::vector<char>& turn) {
+  const auto opposite = static_cast<std::size_t>(
+      std::count_if(members.begin(), members.end(), [&](Index facet) { return turn[facet] < 0; }));
+  if (opposite == 0) return;
+  const char turned = opposite * 2 <= members.size() ? -1 : 1;
+  std::vector<Index> sorted = members;
+  std::sort(sorted.begin(), sorted.end());
+  for (const Index facet : sorted) {
+    if (turn[facet] != turned) continue;
+    Finding finding;
+    finding.code = kPolygonWrongOrientation;
+    finding.place = examined_.at_facet(facets_.begin + facet);
+    finding.detail = "the facet is turned over against most of its neighbours";
+    finding.uncertain = is_shell_faulty_;
+    examined_.findings.add(std::move(finding));
+  }
+}
+
+ShellTopology ShellExaminer::examine() {
+  check_facet_count();
+  if (uses_.empty()) return topology_;
+  sort_edges();
+  for (const auto check : {&ShellExaminer::check_open, &ShellExaminer::check_umbrellas,
+                           &ShellExaminer::check_components, &ShellExaminer::check_orientation}) {
+    if (examined_.is_cancelled()) return {};
+    (this->*check)();
+  }
+  return topology_;
+}
+
+}  // namespace
+
+std::vector<ShellTopology> check_shells(ExaminedSolid& examined) {
+  std::vector<ShellTopology> result(examined.solid().shell_count());
+  EdgeTable edges(examined.solid());
+  for (Index shell = 0; shell < result.size(); ++shell) {
+    if (examined.is_cancelled()) break;
+    edges.examine(shell);
+    result[shell] = ShellExaminer(examined, edges, shell).examine();
+  }
+  if (examined.was_cancelled()) {
+    examined.findings.skip({300, 302, 303, 305, 307}, "the search was cancelled");
+  }
+  examined.index_junctions();
+  return result;
+}
+
+}  // namespace watertight

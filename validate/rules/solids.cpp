@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Solids: shells turned the right way (405), none twice (402), cavities inside the exterior shell
+// (403) and not inside each other (401), shells with a volume (806). Exact.
+#include <algorithm>
+#include <map>
+
+#include "geometry/measures.h"
+#include "geometry/point_in_solid.h"
+#include "validate/point_location.h"
+#include "validate/region_relation.h"
+#include "validate/rules/rules.h"
+
+namespace watertight {
+namespace {
+
+/// Points located and boxes compared while shells are located against each other: a few seconds of
+/// work.
+constexpr std::uint64_t kMostLooks = 10'000'000;
+/// Seven points inside a triangle are located where its corners tell nothing.
+constexpr int kPointExponent = 6;
+
+std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shell) {
+  const IndexRange facets = examined.solid().facets_of(shell);
+  const FacetTriangles& all = examined.triangles();
+  return std::span<const Triangle>(all.triangles)
+      .subspan(all.first[facets.begin], all.first[facets.end] - all.first[facets.begin]);
+}
+
+bool is_triangulated(const ExaminedSolid& examined, Index shell) {
+  const IndexRange facets = examined.solid().facets_of(shell);
+  for (Index facet = facets.begin; facet < facets.end; ++facet) {
+    if (examined.triangles().state[facet] != FacetState::triangulated) return false;
+  }
+  return true;
+}
+
+class SolidExaminer {
+ public:
+  SolidExaminer(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
+                const std::vector<Index>& duplicate_of, const ShellContacts& contacts)
+      : examined_(examined),
+        shells_(shells),
+        duplicate_of_(duplicate_of),
+        contacts_(contacts),
+        volume_signs_(shells.size(), 0) {
+    for (Index shell = 0; shell < shells.size(); ++shell) {
+      Box box;
+      for (const Triangle& t : triangles_of(examined, shell)) {
+        for (const Index vertex : t) box.include(examined.solid().vertices()[vertex]);
+      }
+      boxes_.push_back(box);
+      is_surface_.push_back(shells[shell].is_closed && is_triangulated(examined, shell));
+    }
+  }
+
+  void check_orientation();
+  void check_nesting();
+  /// Why a shell could not be located, "" if all were.
+  const std::string& unlocated() const { return unlocated_; }
+
+ private:
+  bool can_be_located_in(Index shell) const { return is_surface_[shell]; }
+  bool do_intersect(Index a, Index b) const {
+    return std::binary_search(contacts_.intersecting.begin(), contacts_.intersecting.end(),
+                              ShellPair(std::min(a, b), std::max(a, b)));
+  }
+  struct Sides {
+    bool has_inside = false;
+    bool has_outside = false;
+  };
+  Sides locate_shell(Index shell, Index around);
+  void report(int code, Index shell, Index other, std::string detail);
+  void report_no_volume(Index shell);
+  Location locate(const Point& p, Index around);
+  Location locate_inside(const TrianglePoint& point, Index around);
+  bool can_be_related(Index a, Index b) const;
+  const RegionSurface& region(Index shell);
+  RegionRelation relate(Index a, Index b);
+  void check_inside_exterior(Index shell);
+  void check_apart(Index a, Index b);
+  bool is_uncertain() const { return examined_.findings.has_errors_up_to_level(3); }
+  void skip(std::vector<int> codes, const std::string& reason);
+
+  ExaminedSolid& examined_;
+  const std::vector<ShellTopology>& shells_;
+  const std::vector<Index>& duplicate_of_;
+  const ShellContacts& contacts_;
+  std::vector<Box> boxes_;
+  std::vector<bool> is_surface_;   // closed and triangulated
+  std::vector<int> volume_signs_;  // of shells that are closed and turned alike, else 0
+  std::map<Index, PointLocator> locators_;
+  std::map<Index, RegionSurface> regions_;
+  std::string unlocated_;
+  std::uint64_t looks_ = 0;
+  std::vector<std::string> reasons_;
+};
+
+/// Each reason once.
+void SolidExaminer::skip(std::vector<int> codes, const std::string& reason) {
+  if (std::find(reasons_.begin(), reasons_.end(), reason) != reasons_.end()) return;
+  reasons_.push_back(reason);
+  examined_.findings.skip(std::move(codes), reason);
+}
+
+/// A shell without volume has another finding, always: a closed 2-manifold that does not meet
+/// itself encloses some.
+void SolidExaminer::report_no_volume(Index shell) {
+  Finding finding;
+  finding.code = kZeroVolume;
+  finding.place = examined_.at_shell(shell);
+  finding.measured = 0;
+  finding.unit = "cubic units";
+  finding.detail = "the closed shell encloses a volume of exactly zero";
+  finding.uncertain = is_uncertain();
+  examined_.findings.add(std::move(finding));
+}
+
+void SolidExaminer::check_orientation() {
+  for (Index shell = 0; shell < shells_.size(); ++shell) {
+    if (!is_surface_[shell] || !shells_[shell].is_oriented) {
+      skip({kWrongOrientationShell},
+           "the orientation of a shell that is not closed, turned alike and triangulated has no "
+           "meaning");
+      continue;
+    }
+    if (examined_.is_cancelled()) return;
+    const int sign = volume_sign(examined_.solid().vertices(), triangles_of(examined_, shell));
+    volume_signs_[shell] = sign;
+    if (sign == (shell == 0 ? 1 : -1)) continue;
+    if (sign == 0) {
+      report_no_volume(shell);
+      continue;
+    }
+    Finding finding;
+    finding.code = kWrongOrientationShell;
+    finding.place = examined_.at_shell(shell);
+    finding.detail = shell == 0 ? "the normals of the exterior shell point inward (or the axes are "
+                                  "in north, east order)"
+                                : "the normals of the inner shell point out of the cavity";
+    finding.uncertain = is_uncertain();
+    examined_.findings.add(std::move(finding));
+  }
+}
+
+/// Small surfaces are gone through; a tree is made of others when they are first asked about.
+Location SolidExaminer::locate(const Point& p, Index around) {
+  constexpr std::size_t kSmall = 64;
+  if (!boxes_[around].overlaps(Box{p, p})) return Location::outside;
+  const std::span<const Point> vertices = examined_.solid().vertices();
+  const std::span<const Triangle> surface = triangles_of(examined_, around);
+  if (surface.size() <= kSmall) return watertight::locate(p, vertices, surface);
+  auto place = locators_.find(around);
+  if (place == locators_.end()) {
+    place = locators_.emplace(around, PointLocator(vertices, surface)).first;
+  }
+  return place->second.locate(p);
+}
+
+Location SolidExaminer::locate_inside(const TrianglePoint& point, Index around) {
+  if (const auto exact = exact_doubles(point)) return locate(*exact, around);
+  return Location{static_cast<signed char>(
+      locate_exactly(point, examined_.solid().vertices(), triangles_of(examined_, around)))};
+}
+
+/// For shells that have no point in common, or of which one has defects of its own. Where `shell`
+/// lies to `around`, by its points that are not on `around`: by the first when the
+/// shells have no point in common, else by all. Requires shells whose facets neither cross nor
+/// overlap.
+SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
+  const std::span<const Point> vertices = examined_.solid().vertices();
+  const bool is_one_enough = !contacts_.is_touching[shell] || !contacts_.is_touching[around];
+  Sides sides;
+  const auto note = [&](Location location) {
+    sides.has_inside = sides.has_inside || location == Location::inside;
+    sides.has_outside = sides.has_outside || location == Location::outside;
+    return location != Location::boundary;
+  };
+  const auto look = [&](const Point& p) {
+    ++looks_;
+    return note(locate(p, around));
+  };
+  for (const Triangle& t : triangles_of(examined_, shell)) {
+    if (looks_ > kMostLooks || examined_.is_cancelled()) break;
+    bool is_seen = false;
+    for (const Index vertex : t) is_seen = look(vertices[vertex]) || is_seen;
+    // All three corners touch: points inside the triangle.
+    for (std::uint64_t i = 1; i <= triangle_points(kPointExponent) && !is_seen; ++i) {
+      ++looks_;
+      const std::array<Point, 3> corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+      is_seen = note(locate_inside(triangle_point(corners, kPointExponent, i), around));
+    }
+    if (is_seen && is_one_enough) break;
+    if (sides.has_inside && sides.has_outside) break;
+  }
+  return sides;
+}
+
+void SolidExaminer::report(int code, Index shell, Index other, std::string detail) {
+  Finding finding;
+  finding.code = code;
+  finding.place = examined_.at_shell(shell);
+  finding.other = examined_.at_shell(other);
+  finding.witness = examined_.world(triangles_of(examined_, shell).front()[0]);
+  finding.detail = std::move(detail);
+  finding.uncertain = is_uncertain();
+  examined_.findings.add(std::move(finding));
+}
+
+/// True if the shells touch and both are surfaces without a defect of their own, so that the
+/// regions inside them can be compared; else some of their points are located.
+bool SolidExaminer::can_be_related(Index a, Index b) const {
+  const auto is_region = [&](Index shell) {
+    return contacts_.is_touching[shell] && is_surface_[shell] && shells_[shell].is_sound() &&
+           volume_signs_[shell] != 0;
+  };
+  return !is_uncertain() && is_region(a) && is_region(b);
+}
+
+/// The region inside a shell, made when first asked for.
+const RegionSurface& SolidExaminer::region(Index shell) {
+  auto place = regions_.find(shell);
+  if (place == regions_.end()) {
+    const Solid& solid = examined_.solid();
+    place = regions_
+                .emplace(shell, surface_of_shells(solid, solid.vertices(), examined_.triangles(),
+                                                  {shell, shell + 1}, volume_signs_[shell] < 0))
+                .first;
+  }
+  return place->second;
+}
+
+RegionRelation SolidExaminer::relate(Index a, Index b) {
+  const RegionRelation relation =
+      relate_regions(region(a), region(b), {true, true}, [&] { return examined_.ask_cancelled(); });
+  looks_ += relation.looks;
+  return relation;
+}
+
+void SolidExaminer::check_inside_exterior(Index shell) {
+  if (duplicate_of_[shell] == 0 || do_intersect(0, shell)) return;
+  if (can_be_related(shell, 0)) {
+    const RegionRelation relation = relate(shell, 0);
+    if (relation.is_cancelled || relation.is_first_inside) return;
+    if (!relation.do_overlap || relation.is_second_inside) {
+      report(kInnerShellOutside, shell, 0, "the inner shell lies outside the exterior shell");
+    } else {
+      report(kIntersectionShells, shell, 0, "the shells cross along vertices or edges");
+    }
+    return;
+  }
+  if (!can_be_located_in(0) || triangles_of(examined_, shell).empty()) {
+    skip({kInnerShellOutside}, "inner shells cannot be located in a shell that is not closed");
+    return;
+  }
+  const Sides sides = locate_shell(shell, 0);
+  if (sides.has_inside && sides.has_outside) {
+    report(kIntersectionShells, shell, 0, "the shells cross along vertices or edges");
+  } else if (sides.has_outside) {
+    report(kInnerShellOutside, shell, 0, "the inner shell lies outside the exterior shell");
+  } else if (!sides.has_inside) {
+    unlocated_ = "an inner shell could not be located in the exterior shell";
+    skip({kInnerShellOutside}, unlocated_);
+  }
+}
+
+/// Requires overlapping boxes, a != b.
+void SolidExaminer::check_apart(Index a, Index b) {
+  const Index first = std::min(a, b);
+  const Index second = std::max(a, b);
+  if (duplicate_of_[first] != kNone || duplicate_of_[second] != kNone) return;
+  if (do_intersect(first, second)) return;
+  if (can_be_related(first, second)) {
+    const RegionRelation relation = relate(first, second);
+    if (relation.is_cancelled || !relation.do_overlap) return;
+    const bool is_one_inside = relation.is_first_inside || relation.is_second_inside;
+    report(kIntersectionShells, relation.is_second_inside ? second : first,
+           relation.is_second_inside ? first : second,
+           is_one_inside ? "an inner shell lies inside another"
+                         : "the shells cross along vertices or edges");
+    return;
+  }
+  for (const auto& [inner, outer] : {std::pair(first, second), std::pair(second, first)}) {
+    if (!can_be_located_in(outer) || triangles_of(examined_, inner).empty()) continue;
+    const Sides sides = locate_shell(inner, outer);
+    if (!sides.has_inside) continue;
+    report(kIntersectionShells, inner, outer,
+           sides.has_outside ? "the shells cross along vertices or edges"
+                             : "an inner shell lies inside another");
+    return;
+  }
+}
+
+void SolidExaminer::check_nesting() {
+  const auto must_end = [&] { return looks_ > kMostLooks || examined_.is_cancelled(); };
+  for (Index shell = 1; shell < shells_.size() && !must_end(); ++shell) {
+    check_inside_exterior(shell);
+  }
+  // Inner shells against those before them whose boxes overlap theirs.
+  std::vector<Index> shells;
+  std::vector<Box> boxes;
+  for (Index shell = 1; shell < shells_.size(); ++shell) {
+    if (boxes_[shell].is_empty()) continue;
+    shells.push_back(shell);
+    boxes.push_back(boxes_[shell]);
+  }
+  const BoxTree tree(boxes);
+  for (const Index shell : shells) {
+    if (must_end()) break;
+    std::vector<Index> others;
+    tree.visit([&](const Box& box) { return box.overlaps(boxes_[shell]); },
+               [&](Index item) {
+                 const Index other = shells[item];
+                 ++looks_;
+                 if (other < shell && boxes_[other].overlaps(boxes_[shell])) {
+                   others.push_back(other);
+                 }
+               });
+    std::sort(others.begin(), others.end());
+    for (const Index other : others) {
+      if (must_end()) break;
+      check_apart(other, shell);
+    }
+  }
+  if (looks_ > kMostLooks) {
+    unlocated_ = "there are too many shells to locate each against the others";
+    skip({kIntersectionShells, kInnerShellOutside}, unlocated_);
+  }
+  if (examined_.was_cancelled()) {
+    skip({kIntersectionShells, kInnerShellOutside, kWrongOrientationShell},
+         "the search was cancelled");
+  }
+}
+
+}  // namespace
+
+std::vector<Index> check_duplicate_shells(ExaminedSolid& examined) {
+  const Solid& solid = examined.solid();
+  std::vector<Index> result(solid.shell_count(), kNone);
+  if (solid.shell_count() < 2) return result;
+  // Shells as sorted lists of sorted triangles, whichever way they are turned.
+  std::vector<std::pair<std::vector<Triangle>, Index>> shells;
+  for (Index shell = 0; shell < solid.shell_count(); ++shell) {
+    const std::span<const Triangle> source = triangles_of(examined, shell);
+    std::vector<Triangle> triangles(source.begin(), source.end());
+    for (Triangle& t : triangles) std::sort(t.begin(), t.end());
+    std::sort(triangles.begin(), triangles.end());
+    if (!triangles.empty()) shells.emplace_back(std::move(triangles), shell);
+  }
+  std::sort(shells.begin(), shells.end());
+  std::vector<ShellPair> pairs;  // duplicate, original
+  for (std::size_t i = 1; i < shells.size(); ++i) {
+    if (shells[i].first != shells[i - 1].first) continue;
+    const Index before = shells[i - 1].second;
+    const Index original = result[before] == kNone ? before : result[before];
+    result[shells[i].second] = original;
+    pairs.emplace_back(shells[i].second, original);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  for (const auto& [shell, original] : pairs) {
+    Finding finding;
+    finding.code = kDuplicatedShells;
+    finding.place = examined.at_shell(shell);
+    finding.other = examined.at_shell(original);
+    finding.detail = "the shells have the same faces";
+    finding.uncertain = examined.is_shell_faulty(shell);
+    examined.findings.add(std::move(finding));
+  }
+  return result;
+}
+
+std::string check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
+                        const std::vector<Index>& duplicate_of, const ShellContacts& contacts) {
+  SolidExaminer examiner(examined, shells, duplicate_of, contacts);
+  examiner.check_orientation();
+  examiner.check_nesting();
+  return examiner.unlocated();
+}
+
+}  // namespace watertight

@@ -33,6 +33,8 @@ BigDecimal big_product(const BigDecimal& a, const BigDecimal& b) {
 }
 
 BigDecimal big_sum(const BigDecimal& a, const BigDecimal& b) {
+  if (a.mantissa == 0) return b;
+  if (b.mantissa == 0) return a;
   const std::int64_t exponent = std::min(a.exponent, b.exponent);
   return {big_mantissa_at(a, exponent) + big_mantissa_at(b, exponent), exponent};
 }

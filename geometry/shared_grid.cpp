@@ -175,15 +175,25 @@ std::optional<Point> inside_doubles(const std::array<double, 3>& p) {
 
 }  // namespace
 
-std::optional<SharedGrid> SharedGrid::of(std::vector<StandingSolid> solids) {
-  SharedGrid grid;
-  if (solids.empty()) return grid;
-  grid.solids_ = std::move(solids);
-  grid.boxes_.resize(grid.solids_.size());
-  grid.rounded_axes_.resize(grid.solids_.size());
-  const bool is_made = have_one_placement(grid.solids_) ? grid.share_frame() : grid.put_in_world();
-  if (!is_made) return std::nullopt;
+SharedGrid::SharedGrid(std::vector<StandingSolid> solids)
+    : solids_(std::move(solids)), boxes_(solids_.size()), rounded_axes_(solids_.size()) {}
+
+std::optional<SharedGrid> SharedGrid::of_one_frame(std::vector<StandingSolid> solids) {
+  SharedGrid grid(std::move(solids));
+  if (grid.solids_.empty() || !have_one_placement(grid.solids_)) return std::nullopt;
+  if (!grid.share_frame()) return std::nullopt;
   return grid;
+}
+
+std::optional<SharedGrid> SharedGrid::in_world(std::vector<StandingSolid> solids) {
+  SharedGrid grid(std::move(solids));
+  if (grid.solids_.empty() || !grid.put_in_world()) return std::nullopt;
+  return grid;
+}
+
+bool SharedGrid::is_turned_over(std::size_t solid) const {
+  const Placement* placement = solids_[solid].placement;
+  return frame_ == nullptr && placement != nullptr && determinant_sign(*placement) < 0;
 }
 
 bool SharedGrid::share_frame() {
@@ -230,6 +240,9 @@ bool SharedGrid::put_in_world() {
       const auto at = static_cast<int>(axis);
       boxes_[i].min[at] = grid.coordinate(ranges[i].low, axes[i].exponent);
       boxes_[i].max[at] = grid.coordinate(ranges[i].high, axes[i].exponent);
+      if (!(boxes_[i].max[at] < kCoordinateEnd) || !(boxes_[i].min[at] > -kCoordinateEnd)) {
+        return false;
+      }
       rounded_axes_[i][axis] = axes[i].exponent < grid.exponent;
     }
   }

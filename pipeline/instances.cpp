@@ -2,7 +2,9 @@
 #include "pipeline/instances.h"
 
 #include <algorithm>
+#include <tuple>
 
+#include "base/assert.h"
 #include "geometry/crs.h"
 #include "pipeline/groups.h"
 
@@ -16,6 +18,32 @@ constexpr std::size_t kMostEffects = 4096;
 bool is_silent(const InspectedGroup& group) {
   return group.report.verdict == Verdict::valid && group.report.findings.empty() &&
          group.report.not_run.empty();
+}
+
+/// The candidates that are solids of the feature: its own, the first ones; instances that are not
+/// valid; and those that the report of a group refers to.
+std::vector<bool> shown(std::span<const GroupCandidate> candidates, std::size_t own,
+                        std::span<const InspectedGroup> groups) {
+  std::vector<bool> is_shown(candidates.size());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    is_shown[i] = i < own || candidates[i].member.solid == nullptr;
+  }
+  for (const InspectedGroup& group : groups) {
+    if (is_silent(group)) continue;
+    for (const std::size_t member : group.members) is_shown[member] = true;
+  }
+  return is_shown;
+}
+
+/// Of a group's members that are left, the feature's own.
+bool are_of_two_geometries(std::span<const std::size_t> members, const InspectedFeature& feature) {
+  const auto geometry = [&](std::size_t member) {
+    const SolidSource& source = feature.solids[member].source;
+    return std::tie(source.object_id, source.geometry);
+  };
+  return std::any_of(members.begin(), members.end(), [&](std::size_t member) {
+    return geometry(member) != geometry(members.front());
+  });
 }
 
 bool by_first_member(const InspectedGroup& a, const InspectedGroup& b) {
@@ -60,7 +88,7 @@ InspectedInstances TemplateInspector::inspect(std::span<const TemplateInstance> 
       inspected.solids.push_back(inspect_solid(number, instance, effect));
     }
     if (end - begin > 1 && begin->source.geometry_type == "CompositeSolid") {
-      compare_members(first, effect, inspected);
+      compare_members(first, inspected);
     }
   }
   return inspected;
@@ -87,16 +115,22 @@ InstanceSolid TemplateInspector::inspect_solid(std::size_t solid, const Template
     return result;
   }
   const std::lock_guard lock(mutex_);
+  // An instance that relied on another's proof finds the solid here: both are set together.
   if (!uses.solid) uses.solid = std::move(inspection.unplaced);
+  uses.is_proven = uses.is_proven || determinant_sign(instance.placement) > 0;
+  WATERTIGHT_ASSERT(uses.solid);
   note_valid(solid, instance, effect);
   result.valid = &*uses.solid;
   return result;
 }
 
-/// Compares the solids from `first` on, those of one instance of a composite solid.
-void TemplateInspector::compare_members(std::size_t first, const Effect& effect,
-                                        InspectedInstances& instances) {
+/// Compares the solids from `first` on, those of one instance of a composite solid. An affine map
+/// with an inverse changes nothing but the depth of overlaps.
+void TemplateInspector::compare_members(std::size_t first, InspectedInstances& instances) {
   const std::span<const InstanceSolid> solids = std::span(instances.solids).subspan(first);
+  const Placement& placement = solids.front().instance->placement;
+  const Effect effect =
+      group_options_.overlap_metres > 0 ? full_effect_of(placement) : std::nullopt;
   Uses& uses = uses_[solids.front().template_solid];
   {
     const std::lock_guard lock(mutex_);
@@ -125,10 +159,15 @@ void TemplateInspector::compare_members(std::size_t first, const Effect& effect,
 
 /// Nothing of a placement that is congruent in metres: then the template stands for the instance.
 TemplateInspector::Effect TemplateInspector::effect_of(const Placement& placement) {
-  const std::array<double, 3> units =
-      axis_units(placement.srid, shift_of(placement)).metres_per_unit;
-  if (units == std::array<double, 3>{1, 1, 1} && is_rotation(placement)) return std::nullopt;
-  return std::pair(placement.linear, units);
+  Effect effect = full_effect_of(placement);
+  const bool is_in_metres = effect->second == std::array<double, 3>{1, 1, 1};
+  if (is_in_metres && is_rotation(placement)) effect.reset();
+  return effect;
+}
+
+TemplateInspector::Effect TemplateInspector::full_effect_of(const Placement& placement) {
+  return std::pair(placement.linear,
+                   axis_units(placement.srid, shift_of(placement)).metres_per_unit);
 }
 
 Inspection TemplateInspector::judge(std::size_t solid, const TemplateInstance& instance) {
@@ -145,10 +184,6 @@ Inspection TemplateInspector::judge(std::size_t solid, const TemplateInstance& i
   if (inspection.report.verdict == Verdict::undecided) {
     const std::lock_guard lock(mutex_);
     uses_[solid].is_unproven = true;
-  }
-  if (!is_mirrored && inspection.report.verdict == Verdict::valid) {
-    const std::lock_guard lock(mutex_);
-    uses_[solid].is_proven = true;
   }
   return inspection;
 }
@@ -237,28 +272,22 @@ void add_groups(InspectedInstances instances, const TemplateInspector& templates
     for (std::size_t& member : group.members) member += own;
     groups.push_back(std::move(group));
   }
-  std::vector<bool> is_shown(candidates.size());
-  for (std::size_t i = own; i < candidates.size(); ++i) {
-    is_shown[i] = candidates[i].member.solid == nullptr;
-  }
-  for (const InspectedGroup& group : groups) {
-    if (is_silent(group)) continue;
-    for (const std::size_t member : group.members) is_shown[member] = true;
-  }
-  std::vector<std::size_t> place(
-      candidates.size());  // of each candidate among the feature's solids
+  const std::vector<bool> is_shown = shown(candidates, own, groups);
+  // Of each candidate that is shown, among the feature's solids.
+  std::vector<std::size_t> place(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i < own) {
-      is_shown[i] = true;
       place[i] = i;
     } else if (is_shown[i]) {
       place[i] = templates.show(std::move(instances.solids[i - own]), feature);
     }
   }
   for (InspectedGroup& group : groups) {
+    const std::size_t count = group.members.size();
     std::erase_if(group.members, [&](std::size_t member) { return !is_shown[member]; });
+    if (group.members.size() < count && !are_of_two_geometries(group.members, feature)) continue;
     for (std::size_t& member : group.members) member = place[member];
-    if (group.members.size() > 1) feature.groups.push_back(std::move(group));
+    feature.groups.push_back(std::move(group));
   }
   std::stable_sort(feature.groups.begin(), feature.groups.end(), by_first_member);
 }

@@ -74,11 +74,12 @@ class TemplateInspector {
   };
 
   static Effect effect_of(const Placement& placement);
+  static Effect full_effect_of(const Placement& placement);
   Inspection judge(std::size_t solid, const TemplateInstance& instance);
   void note_valid(std::size_t solid, const TemplateInstance& instance, const Effect& effect);
   InstanceSolid inspect_solid(std::size_t solid, const TemplateInstance& instance,
                               const Effect& effect);
-  void compare_members(std::size_t first, const Effect& effect, InspectedInstances& instances);
+  void compare_members(std::size_t first, InspectedInstances& instances);
 
   std::span<const SubmittedSolid> templates_;
   EngineWorkers* workers_;

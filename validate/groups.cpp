@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -25,8 +26,29 @@ constexpr std::size_t kMostNamed = 8;
 constexpr std::size_t kMostPairs = 10'000'000;
 constexpr std::uint64_t kMostLooks = 2'000'000'000;
 
-/// Overlaps of rounded members up to this many steps are due to the rounding.
+/// Rounded vertices lie within half a step of their places along each axis; distances are computed
+/// in doubles.
 constexpr double kRoundedSteps = 16;
+/// Of coordinates in the world, relative: bounds the rounding of placed vertices for their boxes.
+constexpr double kPlaceError = 1e-14;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Two or all members on one grid.
+struct GroupGrid {
+  SharedGrid grid;
+  StepMetres step_metres{};
+};
+
+/// Two members that are compared, on a grid.
+struct ComparedPair {
+  Index first = kNone;
+  Index second = kNone;
+  const GroupGrid* grid = nullptr;
+  const SolidSurface* first_surface = nullptr;
+  const SolidSurface* second_surface = nullptr;
+  double rounding = 0;  // metres by which vertices may be beside their places
+};
 
 class GroupExaminer {
  public:
@@ -36,6 +58,7 @@ class GroupExaminer {
         unit_of_(unit_of),
         kind_(kind),
         options_(options),
+        boxes_(members.size()),
         surfaces_(members.size()),
         connected_(members.size()) {}
 
@@ -57,15 +80,21 @@ class GroupExaminer {
   }
   void name_invalid_members();
   bool find_grid();
-  void find_metres();
-  Box box(Index member) const { return grid_->box(number_[member]); }
+  void find_boxes();
+  GroupGrid group_grid(SharedGrid grid) const;
+  StandingSolid standing(Index member) const {
+    return {&members_[member].solid->solid(), members_[member].placement};
+  }
   std::uint32_t srid(Index member) const;
-  double allowed_depth(const Pair& pair) const;
   std::optional<std::vector<Pair>> pairs() const;
   bool may_meet(Index a, Index b) const;
-  const SolidSurface* surface(Index member);
+  std::unique_ptr<SolidSurface> surface(Index member, const SharedGrid& grid,
+                                        std::size_t number) const;
+  const SolidSurface* kept_surface(Index member);
   bool compare(const Pair& pair);
-  void report_overlap(const Pair& pair, const SolidRelation& relation);
+  bool compare_apart(const Pair& pair);
+  bool compare(const ComparedPair& pair);
+  void report_overlap(const ComparedPair& pair, const SolidRelation& relation);
   void check_connected();
   Place place(Index member, Index facet) const;
   std::string named(Index member) const;
@@ -75,10 +104,10 @@ class GroupExaminer {
   std::span<const Index> unit_of_;
   GroupKind kind_;
   const GroupOptions& options_;
-  std::vector<Index> present_;  // members that are valid, ascending
-  std::vector<Index> number_;   // of each member among those, kNone for the others
-  std::optional<SharedGrid> grid_;
-  StepMetres step_metres_{};
+  std::vector<Index> present_;     // members that are valid, ascending
+  std::vector<Index> number_;      // of each member among those, kNone for the others
+  std::optional<GroupGrid> grid_;  // of all, if they have one frame; else each pair has its own
+  std::vector<Box> boxes_;         // of all members, not too small
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
   DisjointSets connected_;
   std::vector<Finding> duplicates_;
@@ -123,46 +152,78 @@ bool GroupExaminer::find_grid() {
       give_up("the solids are in different coordinate reference systems");
       return false;
     }
-    solids.push_back({&members_[i].solid->solid(), members_[i].placement});
+    solids.push_back(standing(i));
   }
-  grid_ = SharedGrid::of(std::move(solids));
-  if (!grid_) {
+  if (auto grid = SharedGrid::of_one_frame(std::move(solids))) grid_ = group_grid(*std::move(grid));
+  if (!grid_ && is_composite()) {
     give_up("the coordinates of the solids have no exact grid in common");
     return false;
   }
-  find_metres();
+  find_boxes();
   return true;
 }
 
-void GroupExaminer::find_metres() {
-  Box all;
+/// On the common grid, or in the world with a margin for the rounding of coordinates.
+void GroupExaminer::find_boxes() {
   for (const Index i : present_) {
-    all.include(box(i).min);
-    all.include(box(i).max);
+    if (grid_) {
+      boxes_[i] = grid_->grid.box(number_[i]);
+      continue;
+    }
+    const auto [solid, placement] = standing(i);
+    for (Index v = 0; v < solid->vertex_count(); ++v) {
+      std::array<double, 3> p = solid->world(v);
+      double size = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
+      if (placement != nullptr) {
+        double factor = 0;
+        for (const auto& row : linear_part(*placement)) {
+          for (const double entry : row) factor = std::max(factor, std::abs(entry));
+        }
+        size *= factor;
+        for (const double part : shift_of(*placement)) size += std::abs(part);
+        p = watertight::place(*placement, p);
+      }
+      const bool is_finite = std::isfinite(size) && std::isfinite(p[0] + p[1] + p[2]);
+      const double margin = is_finite ? kPlaceError * size : kInfinity;
+      if (!is_finite) p = {};
+      boxes_[i].include({p[0] - margin, p[1] - margin, p[2] - margin});
+      boxes_[i].include({p[0] + margin, p[1] + margin, p[2] + margin});
+    }
   }
-  const Lattice& lattice = grid_->lattice();
+}
+
+GroupGrid GroupExaminer::group_grid(SharedGrid grid) const {
+  Box all;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    all.include(grid.box(i).min);
+    all.include(grid.box(i).max);
+  }
+  const Lattice& lattice = grid.lattice();
   const std::array<double, 3> low = lattice.world(all.min);
   const std::array<double, 3> high = lattice.world(all.max);
   std::array<double, 3> centre{};
   for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = low[axis] / 2 + high[axis] / 2;
-  const Placement* frame = grid_->frame();
+  const Placement* frame = grid.frame();
   if (frame != nullptr) centre = shift_of(*frame);
   const AxisUnits units = axis_units(srid(present_.front()), centre);
   const auto linear = linear_part(frame != nullptr ? *frame : Placement{});
+  GroupGrid result{std::move(grid)};
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double scale = lattice.scale(static_cast<int>(axis));
-      step_metres_[row][axis] = scale * units.metres_per_unit[row] * linear[row][axis];
+      const double scale = result.grid.lattice().scale(static_cast<int>(axis));
+      result.step_metres[row][axis] = scale * units.metres_per_unit[row] * linear[row][axis];
     }
   }
+  return result;
 }
 
 /// Boxes that share a point (composites: contact matters) or some inside (building parts).
 bool GroupExaminer::may_meet(Index a, Index b) const {
   if (!unit_of_.empty() && unit_of_[a] == unit_of_[b]) return false;
-  if (is_composite()) return box(a).overlaps(box(b));
+  if (is_composite()) return boxes_[a].overlaps(boxes_[b]);
   for (int axis = 0; axis < 3; ++axis) {
-    if (box(a).min[axis] >= box(b).max[axis] || box(b).min[axis] >= box(a).max[axis]) return false;
+    if (boxes_[a].min[axis] >= boxes_[b].max[axis] || boxes_[b].min[axis] >= boxes_[a].max[axis])
+      return false;
   }
   return true;
 }
@@ -172,13 +233,17 @@ bool GroupExaminer::may_meet(Index a, Index b) const {
 std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
   Box all;
   for (const Index i : present_) {
-    all.include(box(i).min);
-    all.include(box(i).max);
+    all.include(boxes_[i].min);
+    all.include(boxes_[i].max);
   }
   int along = 0;
   const auto length = [&](int axis) {
-    double metres = 0;
-    for (const auto& row : step_metres_) metres += std::abs(row[static_cast<std::size_t>(axis)]);
+    double metres = grid_ ? 0 : 1;
+    if (grid_) {
+      for (const auto& row : grid_->step_metres) {
+        metres += std::abs(row[static_cast<std::size_t>(axis)]);
+      }
+    }
     return (all.max[axis] - all.min[axis]) * metres;
   };
   for (const int axis : {1, 2}) {
@@ -186,13 +251,13 @@ std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
   }
   std::vector<Index> order = present_;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::pair(box(a).min[along], a) < std::pair(box(b).min[along], b);
+    return std::pair(boxes_[a].min[along], a) < std::pair(boxes_[b].min[along], b);
   });
   std::vector<Pair> pairs;
   std::vector<Index> active;
   std::uint64_t looks = 0;
   for (const Index i : order) {
-    std::erase_if(active, [&](Index a) { return box(a).max[along] < box(i).min[along]; });
+    std::erase_if(active, [&](Index a) { return boxes_[a].max[along] < boxes_[i].min[along]; });
     for (const Index other : active) {
       if (may_meet(i, other)) pairs.emplace_back(std::min(i, other), std::max(i, other));
     }
@@ -204,18 +269,22 @@ std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
   return pairs;
 }
 
-/// Made when first asked for; null if the solid cannot be brought onto the grid.
-const SolidSurface* GroupExaminer::surface(Index member) {
-  if (surfaces_[member]) return surfaces_[member].get();
+/// Null if the solid cannot be brought onto the grid.
+std::unique_ptr<SolidSurface> GroupExaminer::surface(Index member, const SharedGrid& grid,
+                                                     std::size_t number) const {
   const Solid& solid = members_[member].solid->solid();
-  const auto points = grid_->vertices(number_[member]);
+  const auto points = grid.vertices(number);
   if (!points) return nullptr;
   FacetTriangles facets = triangulate_facets(solid);
-  const Placement* placement = members_[member].placement;
-  if (grid_->frame() == nullptr && placement != nullptr && determinant_sign(*placement) < 0) {
+  if (grid.is_turned_over(number)) {
     for (Triangle& t : facets.triangles) std::swap(t[1], t[2]);
   }
-  surfaces_[member] = std::make_unique<SolidSurface>(solid, *points, facets);
+  return std::make_unique<SolidSurface>(solid, *points, facets);
+}
+
+/// On the grid of all members. Made when first asked for.
+const SolidSurface* GroupExaminer::kept_surface(Index member) {
+  if (!surfaces_[member]) surfaces_[member] = surface(member, grid_->grid, number_[member]);
   return surfaces_[member].get();
 }
 
@@ -261,24 +330,13 @@ std::string GroupExaminer::overlap_detail(const Pair& pair, const SolidRelation&
   return detail;
 }
 
-double GroupExaminer::allowed_depth(const Pair& pair) const {
-  double allowed = options_.overlap_metres;
-  for (const Index member : {pair.first, pair.second}) {
-    const std::array<bool, 3>& is_rounded = grid_->rounded_axes(number_[member]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!is_rounded[axis]) continue;
-      allowed = std::max(allowed, kRoundedSteps * step_metres_[axis][axis]);
-    }
-  }
-  return allowed;
-}
-
-void GroupExaminer::report_overlap(const Pair& pair, const SolidRelation& relation) {
+void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRelation& relation) {
+  const Pair pair{compared.first, compared.second};
   const bool is_duplicate = relation.are_equal && is_composite();
-  const OverlapExtent extent = measure_overlap(surfaces_[pair.first]->boundary(),
-                                               surfaces_[pair.second]->boundary(), step_metres_);
-  const double allowed = allowed_depth(pair);
-  const bool is_allowed = allowed > 0 && extent.depth <= allowed;
+  const OverlapExtent extent =
+      measure_overlap(compared.first_surface->boundary(), compared.second_surface->boundary(),
+                      compared.grid->step_metres);
+  const bool is_allowed = extent.depth > 0 && extent.depth <= options_.overlap_metres;
   if (is_allowed && !is_duplicate) return;
   report_.verdict = Verdict::invalid;
   Finding finding;
@@ -287,10 +345,10 @@ void GroupExaminer::report_overlap(const Pair& pair, const SolidRelation& relati
                                   : kBuildingPartsOverlap;
   finding.place = place(pair.first, is_duplicate ? kNone : relation.facet);
   finding.other = place(pair.second, is_duplicate ? kNone : relation.other_facet);
-  if (extent.witness) finding.witness = grid_->world(*extent.witness);
+  if (extent.witness) finding.witness = compared.grid->grid.world(*extent.witness);
   if (!is_duplicate) {
     finding.measured = extent.depth;
-    finding.limit = allowed;
+    finding.limit = options_.overlap_metres;
     finding.unit = std::string("m");
   }
   finding.detail = overlap_detail(pair, relation);
@@ -303,16 +361,42 @@ bool GroupExaminer::compare(const Pair& pair) {
     give_up("the comparison was cancelled");
     return false;
   }
-  const SolidSurface* first = surface(pair.first);
-  const SolidSurface* second = surface(pair.second);
-  if (first == nullptr || second == nullptr) {
+  if (!grid_) return compare_apart(pair);
+  return compare(ComparedPair{pair.first, pair.second, &*grid_, kept_surface(pair.first),
+                              kept_surface(pair.second)});
+}
+
+/// On a grid of the two.
+bool GroupExaminer::compare_apart(const Pair& pair) {
+  const std::vector<StandingSolid> both{standing(pair.first), standing(pair.second)};
+  auto found = SharedGrid::of_one_frame(both);
+  if (!found) found = SharedGrid::in_world(both);
+  if (!found) return compare(ComparedPair{pair.first, pair.second});
+  const GroupGrid grid = group_grid(*std::move(found));
+  const auto first = surface(pair.first, grid.grid, 0);
+  const auto second = surface(pair.second, grid.grid, 1);
+  double rounding = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!grid.grid.rounded_axes(0)[axis] && !grid.grid.rounded_axes(1)[axis]) continue;
+    rounding = std::max(rounding, kRoundedSteps * grid.step_metres[axis][axis]);
+  }
+  return compare(ComparedPair{pair.first, pair.second, &grid, first.get(), second.get(), rounding});
+}
+
+bool GroupExaminer::compare(const ComparedPair& pair) {
+  if (pair.first_surface == nullptr || pair.second_surface == nullptr) {
     give_up("the coordinates of the solids have no exact grid in common");
     return false;
   }
-  const SolidRelation relation = relate(*first, *second, options_.cancel);
+  SolidRelation relation = relate(*pair.first_surface, *pair.second_surface, options_.cancel);
   if (relation.is_cancelled) {
     give_up("the comparison was cancelled");
     return false;
+  }
+  if (relation.do_overlap && pair.rounding > 0 && !relation.are_equal) {
+    relation.do_overlap =
+        is_overlap_certain(pair.first_surface->boundary(), pair.second_surface->boundary(),
+                           pair.grid->step_metres, pair.rounding);
   }
   if (relation.do_overlap) report_overlap(pair, relation);
   if (relation.do_overlap || relation.share_area) connected_.join(pair.first, pair.second);

@@ -18,8 +18,8 @@ namespace watertight {
 enum class GroupKind : std::uint8_t { composite_solid, building_parts };
 
 struct GroupOptions {
-  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact), but where members
-  /// had to be rounded, those within the rounding (check_group). An overlap reaches no deeper if
+  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact). An overlap reaches
+  /// no deeper if
   /// each part of it that hangs together fits between two parallel planes that far apart. Looked at
   /// are planes across the axes and along the facets that meet the part, so the depth is never too
   /// small, and of a slab between two facets it is the thickness.
@@ -53,10 +53,11 @@ struct GroupReport {
 /// areas that two have in common; one finding for each part beside that of the first member; not
 /// looked at when members overlap or are the same, as by val3dity.
 ///
-/// Members that share one placement, or have none, are compared exactly on their own coordinates;
-/// others on a SharedGrid of the world. Where that had to round a member, an overlap with it no
-/// deeper than 16 steps of the grid, some 1e-15 of the extent of all members, is the rounding's: it
-/// is allowed, and stands as limit in findings.
+/// Members that share one placement, or have none, are compared exactly on their own coordinates.
+/// Two others are compared on a SharedGrid of the world, which never rounds two without placements.
+/// Where that had to round one of them, they overlap if they do so wherever their vertices lie
+/// within 16 steps of that grid, which are some 1e-14 of their extent: a contact may be an overlap
+/// or a gap by the digits of a matrix.
 ///
 /// Members with the same entry in `unit_of` are not compared with each other; empty: all are.
 /// Never fails. Deterministic, independent of threads. Cost: pairs of overlapping boxes, then near

@@ -28,6 +28,13 @@ using Metres = std::array<double, 3>;
 
 double dot(const Metres& a, const Metres& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/// The vector times a power of two, so that no product of its parts leaves the doubles.
+Metres near_one(const Metres& a) {
+  int exponent = 0;
+  std::frexp(std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}), &exponent);
+  return {std::ldexp(a[0], -exponent), std::ldexp(a[1], -exponent), std::ldexp(a[2], -exponent)};
+}
+
 Metres unit_normal(const Metres& a, const Metres& b, const Metres& c) {
   Metres u{};
   Metres v{};
@@ -35,7 +42,10 @@ Metres unit_normal(const Metres& a, const Metres& b, const Metres& c) {
     u[axis] = b[axis] - a[axis];
     v[axis] = c[axis] - a[axis];
   }
-  Metres normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  u = near_one(u);
+  v = near_one(v);
+  Metres normal =
+      near_one({u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]});
   const double length = std::sqrt(dot(normal, normal));
   for (double& part : normal) part = length > 0 ? part / length : 0;
   return normal;
@@ -265,7 +275,144 @@ double OverlapMeasurer::largest_depth(OverlapExtent& extent) {
   return largest;
 }
 
+Metres difference(const Metres& a, const Metres& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Metres moved(const Metres& a, const Metres& direction, double factor) {
+  return {a[0] + factor * direction[0], a[1] + factor * direction[1], a[2] + factor * direction[2]};
+}
+
+double distance_to_segment(const Metres& p, const Metres& a, const Metres& b) {
+  const Metres along = difference(b, a);
+  const double squared = dot(along, along);
+  const double share =
+      squared > 0 ? std::clamp(dot(difference(p, a), along) / squared, 0.0, 1.0) : 0;
+  const Metres offset = difference(p, moved(a, along, share));
+  return std::sqrt(dot(offset, offset));
+}
+
+double distance_to_triangle(const Metres& p, const std::array<Metres, 3>& t) {
+  const Metres normal = unit_normal(t[0], t[1], t[2]);
+  double distance = std::numeric_limits<double>::infinity();
+  bool is_above = true;  // the foot of the perpendicular lies in the triangle
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Metres& a = t[i];
+    const Metres& b = t[(i + 1) % 3];
+    distance = std::min(distance, distance_to_segment(p, a, b));
+    const Metres along = difference(b, a);
+    const Metres inward{normal[1] * along[2] - normal[2] * along[1],
+                        normal[2] * along[0] - normal[0] * along[2],
+                        normal[0] * along[1] - normal[1] * along[0]};
+    is_above = is_above && dot(inward, difference(p, a)) >= 0;
+  }
+  return is_above ? std::abs(dot(normal, difference(p, t[0]))) : distance;
+}
+
+/// Looks for a point of one boundary that lies further inside the other solid than rounding
+/// reaches, or, where boundaries lie on each other, for a point that far inside both. Where two
+/// solids overlap, an edge of one enters the other, or both boundaries lie on each other.
+class OverlapProver {
+ public:
+  OverlapProver(const RegionSurface& first, const RegionSurface& second,
+                const StepMetres& step_metres, double rounding)
+      : surfaces_{&first, &second}, step_metres_(step_metres), rounding_(rounding) {
+    for (int axis = 0; axis < 3; ++axis) {
+      common_.min[axis] = std::max(first.box().min[axis], second.box().min[axis]);
+      common_.max[axis] = std::min(first.box().max[axis], second.box().max[axis]);
+    }
+  }
+
+  bool run() const { return finds_point(0) || finds_point(1); }
+
+ private:
+  Metres metres(const Point& p) const {
+    return {(p.x - common_.min.x) * step_metres_[0][0], (p.y - common_.min.y) * step_metres_[1][1],
+            (p.z - common_.min.z) * step_metres_[2][2]};
+  }
+
+  bool finds_point(std::size_t side) const {
+    const std::vector<Index> triangles = surfaces_[side]->triangles_in(common_);
+    return std::any_of(triangles.begin(), triangles.end(), [&](Index triangle) {
+      const std::array<Point, 3> t = surfaces_[side]->corners(triangle);
+      if (is_behind_inside(t)) return true;
+      for (std::size_t edge = 0; edge < 3; ++edge) {
+        if (enters(t[edge], t[(edge + 1) % 3], *surfaces_[1 - side])) return true;
+      }
+      return is_deep(centroid(t), *surfaces_[1 - side], 2 * rounding_);
+    });
+  }
+
+  static Point centroid(const std::array<Point, 3>& t) {
+    Point result;
+    for (const Point& p : t) {
+      for (int axis = 0; axis < 3; ++axis) result[axis] += p[axis] / 3;
+    }
+    return result;
+  }
+
+  /// True if the point behind the middle of a triangle is inside both solids.
+  bool is_behind_inside(const std::array<Point, 3>& t) const {
+    const Metres normal = unit_normal(metres(t[0]), metres(t[1]), metres(t[2]));
+    Point p = centroid(t);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<std::size_t>(axis);
+      p[axis] -= 8 * rounding_ * normal[at] / step_metres_[at][at];
+    }
+    return is_deep(p, *surfaces_[0], rounding_) && is_deep(p, *surfaces_[1], rounding_);
+  }
+
+  /// True if the middle of a piece of the segment, between crossings with the surface, is deep
+  /// inside.
+  bool enters(const Point& p, const Point& q, const RegionSurface& other) const {
+    Box box;
+    box.include(p);
+    box.include(q);
+    if (!box.overlaps(common_)) return false;
+    std::vector<double> shares{0, 1};
+    const Metres along = difference(metres(q), metres(p));
+    for (const Index found : other.triangles_in(box)) {
+      const auto point = crossing(p, q, other.corners(found));
+      if (!point) continue;
+      shares.push_back(dot(difference(metres(*point), metres(p)), along) / dot(along, along));
+    }
+    std::sort(shares.begin(), shares.end());
+    for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
+      const double share = shares[i] / 2 + shares[i + 1] / 2;
+      const Point middle{p.x + share * (q.x - p.x), p.y + share * (q.y - p.y),
+                         p.z + share * (q.z - p.z)};
+      if (is_deep(middle, other, 2 * rounding_)) return true;
+    }
+    return is_deep(p, other, 2 * rounding_);
+  }
+
+  bool is_deep(const Point& p, const RegionSurface& surface, double distance) const {
+    if (!common_.overlaps(Box{p, p}) || surface.locate(p) != Location::inside) return false;
+    Box near{p, p};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<std::size_t>(axis);
+      near.min[axis] -= distance / step_metres_[at][at];
+      near.max[axis] += distance / step_metres_[at][at];
+    }
+    const std::vector<Index> triangles = surface.triangles_in(near);
+    return std::all_of(triangles.begin(), triangles.end(), [&](Index triangle) {
+      const std::array<Point, 3> t = surface.corners(triangle);
+      return distance_to_triangle(metres(p), {metres(t[0]), metres(t[1]), metres(t[2])}) > distance;
+    });
+  }
+
+  std::array<const RegionSurface*, 2> surfaces_;
+  StepMetres step_metres_;
+  double rounding_;
+  Box common_;
+};
+
 }  // namespace
+
+bool is_overlap_certain(const RegionSurface& first, const RegionSurface& second,
+                        const StepMetres& step_metres, double rounding) {
+  return OverlapProver(first, second, step_metres, rounding).run();
+}
 
 OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
                               const StepMetres& step_metres) {

@@ -63,4 +63,10 @@ struct OverlapExtent {
 OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
                               const StepMetres& step_metres);
 
+/// For boundaries of solids that overlap, on a grid of the world (a diagonal `step_metres`) to
+/// which vertices were rounded: true if the solids overlap wherever the vertices are, no further
+/// from their places than `rounding` metres. Distances are computed in doubles.
+bool is_overlap_certain(const RegionSurface& first, const RegionSurface& second,
+                        const StepMetres& step_metres, double rounding);
+
 }  // namespace watertight

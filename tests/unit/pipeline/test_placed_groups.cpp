@@ -240,6 +240,29 @@ TEST_CASE("walls that touch but for the digits of a rotation do not overlap") {
   CHECK(said(shifted("0.7071067", "0.7071067")) == Codes{601});              // 0.1 micrometres
 }
 
+TEST_CASE("the depth of an overlap is that in place, whichever instance comes first") {
+  // Under a turn about the diagonal the overlap of two cubes is longer along the world's axes.
+  const std::string tilt = "0.6,-0.8,0,0,0.8,0.6,0,0,0,0,1,0,0,0,0,1";
+  const std::string form = composite({cube(0), cube(1)});
+  GroupOptions options;
+  options.overlap_metres = 0.5;
+  const auto said = [&](const std::vector<std::string>& matrices) {
+    std::string objects;
+    for (std::size_t i = 0; i < matrices.size(); ++i) {
+      if (i > 0) objects += ",";
+      objects += object(std::to_string(i), "Bench", instance(matrices[i]));
+    }
+    std::vector<Codes> all;
+    for (const InspectedFeature& feature : stream(city(form, objects), options)) {
+      all.push_back(codes(feature));
+    }
+    return all;
+  };
+  CHECK(said({kSame, kDouble}) == std::vector<Codes>{{}, {501}, {}});
+  CHECK(said({kDouble, kSame}) == std::vector<Codes>{{501}, {}, {}});
+  CHECK(said({kSame, tilt}).at(1) == said({tilt, kSame}).at(0));
+}
+
 TEST_CASE("features with instances that do not fit are refused") {
   const auto refused = encode_document(
       read(city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kSame)))),

@@ -246,13 +246,15 @@ TEST_CASE("solids of different lattices are brought onto one grid exactly") {
   CHECK(std::abs(*report.findings[0].measured - 0.001) < 1e-12);
 }
 
-TEST_CASE("solids without an exact common grid are undecided, never rounded") {
+TEST_CASE("solids of two kinds of grids are compared exactly, or undecided, never rounded") {
   Lattice binary;
   binary.kind = LatticeKind::binary;
-  const GroupReport report =
-      Group(Group().add(cube(4))).add({cube(4)}, binary).check(GroupKind::building_parts);
-  CHECK(report.verdict == Verdict::undecided);
-  REQUIRE(report.not_run.size() == 1);
+  const auto overlapping = Group(Group().add(cube(4))).add({cube(4)}, binary);
+  CHECK(overlapping.check(GroupKind::building_parts).findings.at(0).code == 601);
+  binary.origin[0] = {1, 2};
+  const auto touching = Group(Group().add(cube(4))).add({cube(4)}, binary);
+  CHECK(touching.check(GroupKind::building_parts).verdict == Verdict::valid);
+  CHECK(touching.check(GroupKind::composite_solid).verdict == Verdict::undecided);
   Lattice far;
   for (auto& step : far.step) step = {1, -30};
   CHECK(Group(Group().add(cube(4))).add({cube(4)}, far).check(GroupKind::building_parts).verdict ==

@@ -380,6 +380,8 @@ bool GroupExaminer::compare_apart(const Pair& pair) {
     if (!grid.grid.rounded_axes(0)[axis] && !grid.grid.rounded_axes(1)[axis]) continue;
     rounding = std::max(rounding, kRoundedSteps * grid.step_metres[axis][axis]);
   }
+  const bool may_round = both[0].placement != nullptr || both[1].placement != nullptr;
+  if (rounding > 0 && !may_round) return compare(ComparedPair{pair.first, pair.second});
   return compare(ComparedPair{pair.first, pair.second, &grid, first.get(), second.get(), rounding});
 }
 

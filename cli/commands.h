@@ -10,7 +10,7 @@
 
 #include "cli/summary.h"
 
-namespace watertight {
+namespace watertight::cli {
 
 struct ValidateCommand {
   std::vector<std::string> files;
@@ -98,8 +98,9 @@ Exit run(const ExportCommand& command);
 void complain(const std::string& file, const Error& error);
 
 /// The findings of a feature's solids and groups, as lines on standard output.
-void print_findings(const std::string& file, const InspectedFeature& feature);
+void print_findings(const std::string& file, const pipeline::InspectedFeature& feature);
 /// The same of all features of a document.
-void print_findings(const std::string& file, const IngestOutcome& outcome, std::FILE* out = stdout);
+void print_findings(const std::string& file, const pipeline::IngestOutcome& outcome,
+                    std::FILE* out = stdout);
 
-}  // namespace watertight
+}  // namespace watertight::cli

@@ -19,7 +19,7 @@
 #include "pipeline/container.h"
 #include "validate/finding_kinds.h"
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -43,11 +43,11 @@ Exit refuse_to_replace(const std::string& input, const std::string& output) {
 }
 
 /// What is stored is not what the source says, so that even a valid solid must not pass in silence.
-void tell_rounded(const std::string& file, const IngestOutcome& outcome) {
-  for (const FeatureOutcome& feature : outcome.features) {
-    for (const SolidOutcome& solid : feature.solids) {
+void tell_rounded(const std::string& file, const pipeline::IngestOutcome& outcome) {
+  for (const pipeline::FeatureOutcome& feature : outcome.features) {
+    for (const pipeline::SolidOutcome& solid : feature.solids) {
       for (const Finding& finding : solid.report.findings) {
-        if (finding.code != kCoordinatesRounded) continue;
+        if (finding.code != validate::kCoordinatesRounded) continue;
         const std::string& place = solid.source.pointer;
         const std::string text =
             "warning 805: " + finding.detail + (place.empty() ? "" : " at " + place);
@@ -59,7 +59,7 @@ void tell_rounded(const std::string& file, const IngestOutcome& outcome) {
 }
 
 Result<Input> load(const std::string& path, bool keep_text = false) {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.split_features = false;
   options.keep_text = keep_text;
   const auto bytes = read_file(path, options.limits);
@@ -70,16 +70,16 @@ Result<Input> load(const std::string& path, bool keep_text = false) {
 Mode mode_named(const std::string& name) {
   for (const Mode mode :
        {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
-    if (name == to_string(mode)) return mode;
+    if (name == codec::to_string(mode)) return mode;
   }
   return Mode::automatic;
 }
 
-Result<Bytes> pack(const EncodeCommand& command, const StoredDocument& document) {
+Result<Bytes> pack(const EncodeCommand& command, const pipeline::StoredDocument& document) {
   if (!command.is_bare) {
     EncodeOptions pages;
     pages.mode = mode_named(command.mode);
-    return write_container(document, pages);
+    return pipeline::write_container(document, pages);
   }
   std::size_t solids = 0;
   const Bytes* blob = nullptr;
@@ -96,7 +96,7 @@ Result<Bytes> pack(const EncodeCommand& command, const StoredDocument& document)
 Result<std::vector<Document>> load_encoded(const std::string& path) {
   const auto bytes = read_file(path, {});
   if (!bytes) return bytes.error();
-  if (kind_of_input(*bytes) == InputKind::container) return decode_container(*bytes);
+  if (kind_of_input(*bytes) == InputKind::container) return pipeline::decode_container(*bytes);
   auto input = load_input(path, *bytes, {});
   if (!input) return std::move(input).error();
   if (input->kind == InputKind::document) {
@@ -131,7 +131,7 @@ Exit save(std::span<const Document> documents, const std::string& input,
     if (replaces(name, input)) return refuse_to_replace(input, name);
     const auto format = name == "-" ? Result<Format>(document.format) : format_of_name(name);
     if (!format) return fail_to_write(name, format.error());
-    const auto bytes = convert_document(document, *format);
+    const auto bytes = pipeline::convert_document(document, *format);
     if (!bytes) return fail(input, bytes.error());
     auto file = FileWriter::open(name);
     if (!file) return fail_to_write(name, file.error());
@@ -146,10 +146,10 @@ Exit save(std::span<const Document> documents, const std::string& input,
   return Exit::valid;
 }
 
-Json json_of(const BlobInfo& info) {
+Json json_of(const codec::BlobInfo& info) {
   Json json{{"formatVersion", info.version},
             {"models", info.models},
-            {"mode", to_string(info.mode)},
+            {"mode", codec::to_string(info.mode)},
             {"srid", info.srid},
             {"vertices", info.vertices},
             {"steinerVertices", info.steiner_vertices},
@@ -166,7 +166,7 @@ Json json_of(const BlobInfo& info) {
             {"planarityDegrees", info.acceptance.tolerances.planarity_degrees},
             {"checksum", info.checksum}};
   json["parts"] = Json::object();
-  for (const BlobInfo::Part& part : info.parts) json["parts"][part.name] = part.bytes;
+  for (const codec::BlobInfo::Part& part : info.parts) json["parts"][part.name] = part.bytes;
   return json;
 }
 
@@ -189,13 +189,13 @@ std::string names_of(std::span<const Format> formats) {
   for (const Format format : formats) {
     if (!named.insert(format).second) continue;
     if (!names.empty()) names += ", ";
-    names += to_string(format);
+    names += formats::to_string(format);
   }
   return names;
 }
 
 Result<Json> info_of_container(ByteView bytes) {
-  const auto info = describe_container(bytes);
+  const auto info = pipeline::describe_container(bytes);
   if (!info) return info.error();
   Json json{{"file", "Watertight file"}, {"bytes", bytes.size()}};
   json["documents"] = info->formats.size();
@@ -214,7 +214,7 @@ Result<Json> info_of(ByteView bytes) {
   const InputKind kind = kind_of_input(bytes);
   if (kind == InputKind::container) return info_of_container(bytes);
   if (kind == InputKind::page_file) return page_file_error();
-  const auto info = describe(bytes);
+  const auto info = codec::describe(bytes);
   if (!info) return info.error();
   return json_of(*info);
 }
@@ -230,20 +230,20 @@ Status explain_features(const std::vector<StoredFeature>& features, std::FILE* o
   std::map<Mode, ModeTotal> totals;
   for (const StoredFeature& feature : features) {
     for (const StoredSolid& solid : feature.solids) {
-      const auto sizes = explain(solid.blob);
+      const auto sizes = codec::explain(solid.blob);
       if (!sizes) return sizes.error();
-      for (const ModeSize& size : *sizes) {
+      for (const codec::ModeSize& size : *sizes) {
         ModeTotal& total = totals[size.mode];
         if (size.bytes == 0) continue;
         ++total.solids;
         total.bytes += size.bytes;
-        for (const BlobInfo::Part& part : size.parts) total.parts[part.name] += part.bytes;
+        for (const codec::BlobInfo::Part& part : size.parts) total.parts[part.name] += part.bytes;
       }
     }
   }
   std::fprintf(out, "%-14s %8s %10s  %s\n", "mode", "solids", "bytes", "bytes of parts");
   for (const auto& [mode, total] : totals) {
-    std::fprintf(out, "%-14s %8llu %10llu ", std::string(to_string(mode)).c_str(),
+    std::fprintf(out, "%-14s %8llu %10llu ", std::string(codec::to_string(mode)).c_str(),
                  static_cast<unsigned long long>(total.solids),
                  static_cast<unsigned long long>(total.bytes));
     for (const auto& [part, bytes] : total.parts)
@@ -256,24 +256,25 @@ Status explain_features(const std::vector<StoredFeature>& features, std::FILE* o
 }  // namespace
 
 Exit run(const EncodeCommand& command) {
-  const auto contract = contract_named(command.contract);
+  const auto contract = formats::contract_named(command.contract);
   if (!contract) return fail("--contract", contract.error());
   if (replaces(command.output, command.input))
     return refuse_to_replace(command.input, command.output);
-  auto input = load(command.input, *contract == Contract::exact);
+  auto input = load(command.input, *contract == formats::Contract::exact);
   if (!input) return fail(command.input, input.error());
-  EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
-  IngestOptions options;
+  delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
+  pipeline::IngestOptions options;
   options.threads = command.jobs;
   options.contract = *contract;
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
-  options.steiner = command.keeps_steiner ? SteinerVertices::keep : SteinerVertices::leave_out;
+  options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
+                                          : pipeline::SteinerVertices::leave_out;
   auto encoded = [&] {
     ProgressBar bar(command.input);
     options.progress = [&bar](std::size_t done, std::size_t total) {
       bar.show(done, static_cast<double>(done) / static_cast<double>(total));
     };
-    return encode_document(std::move(input->document), &workers, options);
+    return pipeline::encode_document(std::move(input->document), &workers, options);
   }();
   if (!encoded) return fail(command.input, encoded.error());
   const Exit exit = exit_of(encoded->outcome.verdict);
@@ -325,4 +326,4 @@ Exit run(const InfoCommand& command) {
   return Exit::valid;
 }
 
-}  // namespace watertight
+}  // namespace watertight::cli

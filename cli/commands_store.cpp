@@ -17,12 +17,12 @@
 #include "server/serve.h"
 #include "store/private_cluster.h"
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 /// A connection string, with the private cluster behind it if there is one.
 struct OpenedStore {
-  std::unique_ptr<PrivateCluster> cluster;
+  std::unique_ptr<store::PrivateCluster> cluster;
   std::string connection;
 };
 
@@ -34,11 +34,11 @@ Result<OpenedStore> open_store(const StoreChoice& choice) {
   }
   std::error_code error;
   const std::string directory = std::filesystem::absolute(choice.data_directory, error).string();
-  const Status status = drop_root_privileges(directory);
+  const Status status = store::drop_root_privileges(directory);
   if (!status) return status.error();
-  ClusterOptions options;
+  store::ClusterOptions options;
   options.data_directory = directory;
-  auto cluster = PrivateCluster::start(options);
+  auto cluster = store::PrivateCluster::start(options);
   if (!cluster) return std::move(cluster).error();
   opened.connection = (*cluster)->connection();
   opened.cluster = *std::move(cluster);
@@ -46,7 +46,7 @@ Result<OpenedStore> open_store(const StoreChoice& choice) {
 }
 
 /// "127.0.0.1:8080", "[::1]:8080" or ":8080".
-Status read_listen(const std::string& text, ServerOptions& options) {
+Status read_listen(const std::string& text, server::ServerOptions& options) {
   const Error wrong{ErrorCode::invalid_argument,
                     "'" + text + "' is not ADDRESS:PORT (example: 127.0.0.1:8080)"};
   const std::size_t colon = text.rfind(':');
@@ -81,8 +81,9 @@ Status name_features(Document& document, const std::string& file, const FilesOfF
 }
 
 /// Remembers what was stored, and tells what it replaced of this run.
-void tell_replaced(const IngestOutcome& outcome, const std::string& file, FilesOfFeatures& files) {
-  for (const FeatureOutcome& feature : outcome.features) {
+void tell_replaced(const pipeline::IngestOutcome& outcome, const std::string& file,
+                   FilesOfFeatures& files) {
+  for (const pipeline::FeatureOutcome& feature : outcome.features) {
     if (!feature.is_stored) continue;
     const auto [known, is_new] = files.try_emplace(feature.id, file);
     if (is_new) continue;
@@ -93,27 +94,28 @@ void tell_replaced(const IngestOutcome& outcome, const std::string& file, FilesO
   }
 }
 
-Result<IngestOutcome> ingest_file(const IngestCommand& command, const std::string& file,
-                                  const Bytes& bytes, SolidStore& store, EngineWorkers& workers,
-                                  const FilesOfFeatures& files) {
-  const auto contract = contract_named(command.contract);
+Result<pipeline::IngestOutcome> ingest_file(const IngestCommand& command, const std::string& file,
+                                            const Bytes& bytes, SolidStore& store,
+                                            delaunay::EngineWorkers& workers,
+                                            const FilesOfFeatures& files) {
+  const auto contract = formats::contract_named(command.contract);
   if (!contract) return contract.error();
-  ReadOptions read_options;
-  read_options.keep_text = *contract == Contract::exact;
+  formats::ReadOptions read_options;
+  read_options.keep_text = *contract == formats::Contract::exact;
   auto input = load_input(file, bytes, read_options);
   if (!input) return std::move(input).error();
   if (Status named = name_features(input->document, file, files); !named) return named.error();
-  IngestOptions options;
+  pipeline::IngestOptions options;
   options.collection = command.collection;
   options.threads = command.jobs;
   options.contract = *contract;
-  options.invalid_features =
-      command.invalid == "skip" ? InvalidFeatures::skip : InvalidFeatures::refuse_document;
+  options.invalid_features = command.invalid == "skip" ? pipeline::InvalidFeatures::skip
+                                                       : pipeline::InvalidFeatures::refuse_document;
   ProgressBar bar(file);
   options.progress = [&bar](std::size_t done, std::size_t total) {
     bar.show(done, static_cast<double>(done) / static_cast<double>(total));
   };
-  return ingest(std::move(input->document), store, &workers, options);
+  return pipeline::ingest(std::move(input->document), store, &workers, options);
 }
 
 Result<Bytes> read_and_close(Result<OpenedFile> file) {
@@ -124,20 +126,20 @@ Result<Bytes> read_and_close(Result<OpenedFile> file) {
 }  // namespace
 
 Exit run(const ServeCommand& command) {
-  ServeOptions options;
+  server::ServeOptions options;
   const Status status = read_listen(command.listen, options.server);
   if (!status) {
     complain("--listen", status.error());
     return Exit::error;
   }
-  hold_stop_signals();
+  server::hold_stop_signals();
   auto opened = open_store(command.store);
   if (!opened) {
     complain("store", opened.error());
     return Exit::error;
   }
   options.connection = opened->connection;
-  const Status served = serve(options);
+  const Status served = server::serve(options);
   if (served) return Exit::valid;
   complain("serve", served.error());
   return Exit::error;
@@ -148,13 +150,13 @@ Exit run(const IngestCommand& command) {
   // Before the store: as root, opening that gives up the right to open other users' files.
   auto opened_files = open_files(command.files);
   auto opened = open_store(command.store);
-  auto store = opened ? open_postgres_store(opened->connection)
+  auto store = opened ? store::open_postgres_store(opened->connection)
                       : Result<std::unique_ptr<SolidStore>>(opened.error());
   if (!store) {
     complain("store", store.error());
     return Exit::error;
   }
-  EngineWorkers workers(EngineWorkers::Options{{}, {}, command.jobs});
+  delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
   Summary summary;
   FilesOfFeatures files;
   Exit exit = Exit::valid;
@@ -162,7 +164,7 @@ Exit run(const IngestCommand& command) {
     const std::string& file = command.files[i];
     const auto bytes = read_and_close(std::move(opened_files[i]));
     const auto outcome = bytes ? ingest_file(command, file, *bytes, **store, workers, files)
-                               : Result<IngestOutcome>(bytes.error());
+                               : Result<pipeline::IngestOutcome>(bytes.error());
     if (!outcome) {
       complain(file, outcome.error());
       exit = Exit::error;
@@ -199,11 +201,12 @@ Exit run(const ExportCommand& command) {
     }
   }
   auto opened = open_store(command.store);
-  auto store = opened ? open_postgres_store(opened->connection)
+  auto store = opened ? store::open_postgres_store(opened->connection)
                       : Result<std::unique_ptr<SolidStore>>(opened.error());
   if (!store) return fail("store", store.error());
-  auto exporting = CollectionExport::start(
-      **store, command.collection, is_container ? ExportFormat::container : ExportFormat::sequence);
+  auto exporting = pipeline::CollectionExport::start(
+      **store, command.collection,
+      is_container ? pipeline::ExportFormat::container : pipeline::ExportFormat::sequence);
   if (!exporting) return fail(command.collection, exporting.error());
   const std::string output = command.output == "-" ? "standard output" : command.output;
   auto writer = FileWriter::open(command.output);
@@ -223,4 +226,4 @@ Exit run(const ExportCommand& command) {
   return Exit::valid;
 }
 
-}  // namespace watertight
+}  // namespace watertight::cli

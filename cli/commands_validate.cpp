@@ -16,16 +16,16 @@
 #include "report/feature_report.h"
 #include "validate/report_json.h"
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
-Engine engine_of(const std::string& name) {
-  if (name == "cgal") return Engine::cgal;
-  return name == "tetgen" ? Engine::tetgen : Engine::automatic;
+delaunay::Engine engine_of(const std::string& name) {
+  if (name == "cgal") return delaunay::Engine::cgal;
+  return name == "tetgen" ? delaunay::Engine::tetgen : delaunay::Engine::automatic;
 }
 
-StreamOptions options_of(const ValidateCommand& command) {
-  StreamOptions options;
+pipeline::StreamOptions options_of(const ValidateCommand& command) {
+  pipeline::StreamOptions options;
   options.threads = command.jobs;
   options.groups.overlap_metres = command.overlap_metres;
   options.certify.tolerances.planarity_metres = command.planarity_metres;
@@ -47,11 +47,11 @@ std::string time_now() {
   return std::string(text.data(), size);
 }
 
-ReportHead head_of(const ValidateCommand& command, const StreamOptions& options) {
-  ReportHead head;
+report::ReportHead head_of(const ValidateCommand& command, const pipeline::StreamOptions& options) {
+  report::ReportHead head;
   head.program_version = command.program_version;
   if (!command.leaves_times_out) head.time = time_now();
-  head.acceptance = {options.certify.tolerances, options.certify.proof, kRuleSet};
+  head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
   head.is_strict = command.is_strict;
   head.overlap_metres = command.overlap_metres;
   head.also_tolerant = command.also_tolerant;
@@ -71,18 +71,19 @@ void print_solid(const std::string& file, const SolidSource& source, const Repor
                  std::FILE* out) {
   if (report.verdict == Verdict::valid && report.findings.empty()) return;
   print(printable(file + ": " + place_of(source)) + "\n", out);
-  for (const std::string& line : report_text(report)) print("  " + printable(line) + "\n", out);
+  for (const std::string& line : validate::report_text(report))
+    print("  " + printable(line) + "\n", out);
 }
 
 /// `source_of(i)` is where the feature's solid i stands.
 template <class SourceOf>
-void print_groups(const std::string& file, const std::vector<InspectedGroup>& groups,
+void print_groups(const std::string& file, const std::vector<pipeline::InspectedGroup>& groups,
                   const SourceOf& source_of, std::FILE* out) {
-  for (const InspectedGroup& group : groups) {
+  for (const pipeline::InspectedGroup& group : groups) {
     for (const Finding& finding : group.report.findings) {
       std::string line = file + ": " + group.object_id;
       if (!group.lod.empty()) line += " (LoD " + group.lod + ")";
-      line = printable(line) + "\n  " + printable(finding_text(finding));
+      line = printable(line) + "\n  " + printable(validate::finding_text(finding));
       for (const auto& place : {std::optional(finding.place), finding.other}) {
         if (!place || place->solid >= group.members.size()) continue;
         line += "\n    " + printable(place_of(source_of(group.members[place->solid])));
@@ -97,14 +98,15 @@ std::string output_name(const std::string& path) { return path == "-" ? "standar
 /// One of the files that a run writes beside its output.
 struct OpenReport {
   std::unique_ptr<FileWriter> file;
-  std::unique_ptr<FeatureReport> report;
+  std::unique_ptr<report::FeatureReport> report;
   std::string path;
 };
 
-using ReportMaker = std::unique_ptr<FeatureReport> (*)(TextSink, ReportHead);
+using ReportMaker = std::unique_ptr<report::FeatureReport> (*)(report::TextSink,
+                                                               report::ReportHead);
 
-std::unique_ptr<FeatureReport> page_report(TextSink sink, ReportHead head) {
-  return html_report(std::move(sink), std::move(head), {});
+std::unique_ptr<report::FeatureReport> page_report(report::TextSink sink, report::ReportHead head) {
+  return report::html_report(std::move(sink), std::move(head), {});
 }
 
 /// A run of `watertight validate`: all files, one after the other.
@@ -113,7 +115,7 @@ class Validation {
   explicit Validation(const ValidateCommand& command)
       : command_(command),
         options_(options_of(command)),
-        workers_(EngineWorkers::Options{{}, {}, command.jobs}),
+        workers_(delaunay::EngineWorkers::Options{{}, {}, command.jobs}),
         is_output_taken_(command.report == "-" || command.geojson == "-" || command.html == "-"),
         is_quiet_(command.is_quiet || is_output_taken_) {}
 
@@ -124,8 +126,8 @@ class Validation {
   bool is_in_use(const std::string& path) const;
   void validate_file(const std::string& file);
   Result<OpenedInput> open_file(const std::string& file);
-  Result<FeatureReader> with_cavities(const std::string& file);
-  Result<StreamOutcome> stream(const std::string& file, OpenedInput& input);
+  Result<formats::FeatureReader> with_cavities(const std::string& file);
+  Result<pipeline::StreamOutcome> stream(const std::string& file, OpenedInput& input);
   template <class Call>
   Status tell_reports(const Call& call);
   void fail(const std::string& file, const Error& error) {
@@ -134,8 +136,8 @@ class Validation {
   }
 
   const ValidateCommand& command_;
-  StreamOptions options_;
-  EngineWorkers workers_;
+  pipeline::StreamOptions options_;
+  delaunay::EngineWorkers workers_;
   bool is_output_taken_ = false;  // by a report
   bool is_quiet_ = false;
   std::vector<OpenReport> reports_;
@@ -156,8 +158,8 @@ bool Validation::is_in_use(const std::string& path) const {
 
 bool Validation::open_reports() {
   const std::array<std::pair<const std::string*, ReportMaker>, 3> wanted{
-      {{&command_.report, json_report},
-       {&command_.geojson, geojson_report},
+      {{&command_.report, report::json_report},
+       {&command_.geojson, report::geojson_report},
        {&command_.html, page_report}}};
   for (const auto& [path, make] : wanted) {
     if (path->empty()) continue;
@@ -192,7 +194,7 @@ Status Validation::tell_reports(const Call& call) {
   return Done{};
 }
 
-Result<FeatureReader> Validation::with_cavities(const std::string& file) {
+Result<formats::FeatureReader> Validation::with_cavities(const std::string& file) {
   const auto one_solid = [&](const std::string& path) -> Result<Document> {
     auto bytes = read_file(path, options_.certify.limits);
     auto input = bytes ? load_input(path, *bytes, {}) : Result<Input>(bytes.error());
@@ -214,10 +216,10 @@ Result<FeatureReader> Validation::with_cavities(const std::string& file) {
     cavities.push_back(std::move(cavity->features[0].solids[0]));
   }
   SubmittedSolid& exterior = document->features[0].solids[0];
-  auto solid = with_interior_shells(exterior, cavities, options_.certify.limits);
+  auto solid = formats::with_interior_shells(exterior, cavities, options_.certify.limits);
   if (!solid) return std::move(solid).error();
   exterior = *std::move(solid);
-  return FeatureReader::of(*std::move(document));
+  return formats::FeatureReader::of(*std::move(document));
 }
 
 Result<OpenedInput> Validation::open_file(const std::string& file) {
@@ -227,7 +229,7 @@ Result<OpenedInput> Validation::open_file(const std::string& file) {
   return OpenedInput{*std::move(reader), std::nullopt};
 }
 
-Result<StreamOutcome> Validation::stream(const std::string& file, OpenedInput& input) {
+Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, OpenedInput& input) {
   ProgressBar bar(file);
   const auto count = input.reader.feature_count();
   options_.progress = [&](std::uint64_t features, std::uint64_t bytes) {
@@ -239,17 +241,17 @@ Result<StreamOutcome> Validation::stream(const std::string& file, OpenedInput& i
     }
     bar.show(features, share);
   };
-  return validate_stream(
+  return pipeline::validate_stream(
       input.reader, &workers_, options_,
-      [&](ValidatedFeature&& feature) -> Status {
+      [&](pipeline::ValidatedFeature&& feature) -> Status {
         if (!is_quiet_) print_findings(file, feature.inspected);
         summary_.add(feature.inspected);
-        return tell_reports([&](FeatureReport& report) { return report.add(feature); });
+        return tell_reports([&](report::FeatureReport& report) { return report.add(feature); });
       },
       [&](const Error& error) -> Status {
         summary_.add_unreadable();
         fail(file, error);
-        return tell_reports([&](FeatureReport& report) { return report.add_error(error); });
+        return tell_reports([&](report::FeatureReport& report) { return report.add_error(error); });
       });
 }
 
@@ -257,10 +259,11 @@ void Validation::validate_file(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t solids_before = summary_.solids();
   auto input = open_file(file);
-  DocumentHead head{file, {}};
+  report::DocumentHead head{file, {}};
   if (input) head.format = input->reader.document().format;
-  Status status = tell_reports([&](FeatureReport& report) { return report.begin_document(head); });
-  DocumentEnd end;
+  Status status =
+      tell_reports([&](report::FeatureReport& report) { return report.begin_document(head); });
+  report::DocumentEnd end;
   if (status && input) {
     const auto outcome = stream(file, *input);
     if (outcome) {
@@ -277,11 +280,12 @@ void Validation::validate_file(const std::string& file) {
     summary_.add_file_bytes(input->reader.bytes_read());
   } else if (status) {
     fail(file, input.error());
-    status = tell_reports([&](FeatureReport& report) { return report.add_error(input.error()); });
+    status = tell_reports(
+        [&](report::FeatureReport& report) { return report.add_error(input.error()); });
   }
   end.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (status) {
-    status = tell_reports([&](FeatureReport& report) { return report.end_document(end); });
+    status = tell_reports([&](report::FeatureReport& report) { return report.end_document(end); });
   }
   if (!status) {
     fail(file, status.error());
@@ -312,17 +316,18 @@ void complain(const std::string& file, const Error& error) {
   std::fprintf(stderr, "watertight: %s: %s\n", name.c_str(), text.c_str());
 }
 
-void print_findings(const std::string& file, const InspectedFeature& feature) {
-  for (const InspectedSolid& solid : feature.solids) {
+void print_findings(const std::string& file, const pipeline::InspectedFeature& feature) {
+  for (const pipeline::InspectedSolid& solid : feature.solids) {
     print_solid(file, solid.source, solid.inspection.report, stdout);
   }
   const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
   print_groups(file, feature.groups, source_of, stdout);
 }
 
-void print_findings(const std::string& file, const IngestOutcome& outcome, std::FILE* out) {
-  for (const FeatureOutcome& feature : outcome.features) {
-    for (const SolidOutcome& solid : feature.solids) {
+void print_findings(const std::string& file, const pipeline::IngestOutcome& outcome,
+                    std::FILE* out) {
+  for (const pipeline::FeatureOutcome& feature : outcome.features) {
+    for (const pipeline::SolidOutcome& solid : feature.solids) {
       print_solid(file, solid.source, solid.report, out);
     }
     const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
@@ -332,4 +337,4 @@ void print_findings(const std::string& file, const IngestOutcome& outcome, std::
 
 Exit run(const ValidateCommand& command) { return Validation(command).run(); }
 
-}  // namespace watertight
+}  // namespace watertight::cli

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <filesystem>
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 16;
@@ -153,7 +153,7 @@ std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths) {
   return files;
 }
 
-Result<Bytes> read_all(const ByteSource& source, const Limits& limits) {
+Result<Bytes> read_all(const formats::ByteSource& source, const Limits& limits) {
   Bytes bytes;
   for (;;) {
     if (bytes.size() > limits.bytes) {
@@ -259,4 +259,4 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return place(a) == place(b);
 }
 
-}  // namespace watertight
+}  // namespace watertight::cli

@@ -17,11 +17,11 @@
 #include "base/result.h"
 #include "formats/feature_reader.h"
 
-namespace watertight {
+namespace watertight::cli {
 
 /// A file or standard input, read piece by piece.
 struct OpenedFile {
-  ByteSource source;
+  formats::ByteSource source;
   std::optional<std::uint64_t> bytes;  // when it has a size
 };
 
@@ -32,7 +32,7 @@ Result<OpenedFile> open_file(const std::string& path);
 std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths);
 
 /// Errors: those of the source; limit_exceeded.
-Result<Bytes> read_all(const ByteSource& source, const Limits& limits);
+Result<Bytes> read_all(const formats::ByteSource& source, const Limits& limits);
 
 /// Errors: those of open_file() and read_all().
 Result<Bytes> read_file(const std::string& path, const Limits& limits);
@@ -63,4 +63,4 @@ class FileWriter {
 /// Whether writing the one would destroy the other. Devices and pipes can be written many times.
 bool is_same_file(const std::string& a, const std::string& b);
 
-}  // namespace watertight
+}  // namespace watertight::cli

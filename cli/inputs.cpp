@@ -9,14 +9,14 @@
 #include "codec/page_file.h"
 #include "pipeline/container.h"
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 /// Enough to tell the kind.
 constexpr std::size_t kFirstBytes = 8;
 
 Result<Input> input_of_container(ByteView bytes, const Limits& limits) {
-  auto documents = decode_container(bytes, limits);
+  auto documents = pipeline::decode_container(bytes, limits);
   if (!documents) return std::move(documents).error();
   if (documents->size() != 1) {
     return Error{ErrorCode::unsupported, "features of " + std::to_string(documents->size()) +
@@ -39,7 +39,7 @@ Result<Input> input_of_blob(const std::string& path, ByteView bytes, const Limit
 }
 
 /// The bytes of `first`, then those of `rest`.
-ByteSource source_of(Bytes first, ByteSource rest) {
+formats::ByteSource source_of(Bytes first, formats::ByteSource rest) {
   return [first = std::move(first), rest = std::move(rest),
           given = std::size_t{0}](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
     if (given == first.size()) return rest(bytes);
@@ -51,7 +51,7 @@ ByteSource source_of(Bytes first, ByteSource rest) {
 }
 
 /// Fewer than kFirstBytes only where the source ends.
-Result<Bytes> first_bytes(const ByteSource& source) {
+Result<Bytes> first_bytes(const formats::ByteSource& source) {
   Bytes first(kFirstBytes);
   std::size_t count = 0;
   while (count < first.size()) {
@@ -68,8 +68,8 @@ Result<Bytes> first_bytes(const ByteSource& source) {
 
 InputKind kind_of_input(ByteView bytes) {
   constexpr std::uint8_t kLeastText = 9;  // a tabulator
-  if (is_container(bytes)) return InputKind::container;
-  if (is_page_file(bytes)) return InputKind::page_file;
+  if (pipeline::is_container(bytes)) return InputKind::container;
+  if (codec::is_page_file(bytes)) return InputKind::page_file;
   // Magic and a version byte, which no text has.
   const bool is_blob =
       bytes.size() > 2 && bytes[0] == 'W' && bytes[1] == 'T' && (bytes[2] & 0x7FU) < kLeastText;
@@ -80,7 +80,8 @@ Error page_file_error() {
   return {ErrorCode::unsupported, "a page file; the commands take Watertight files and blobs"};
 }
 
-Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options) {
+Result<Input> load_input(const std::string& path, ByteView bytes,
+                         const formats::ReadOptions& options) {
   switch (kind_of_input(bytes)) {
     case InputKind::container:
       return input_of_container(bytes, options.limits);
@@ -91,22 +92,22 @@ Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOpti
     case InputKind::document:
       break;
   }
-  const auto format = detect_format(path == "-" ? "" : path, bytes);
+  const auto format = formats::detect_format(path == "-" ? "" : path, bytes);
   if (!format) return format.error();
-  auto document = read_document(bytes, *format, options);
+  auto document = formats::read_document(bytes, *format, options);
   if (!document) return std::move(document).error();
   return Input{InputKind::document, *std::move(document)};
 }
 
-Result<OpenedInput> open_input(const std::string& path, const ReadOptions& options) {
+Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptions& options) {
   auto file = open_file(path);
   if (!file) return std::move(file).error();
   auto first = first_bytes(file->source);
   if (!first) return std::move(first).error();
   const InputKind kind = kind_of_input(*first);
-  ByteSource source = source_of(*std::move(first), std::move(file->source));
+  formats::ByteSource source = source_of(*std::move(first), std::move(file->source));
   if (kind == InputKind::document) {
-    auto reader = FeatureReader::open(std::move(source), path == "-" ? "" : path, options);
+    auto reader = formats::FeatureReader::open(std::move(source), path == "-" ? "" : path, options);
     if (!reader) return std::move(reader).error();
     return OpenedInput{*std::move(reader), file->bytes};
   }
@@ -114,11 +115,11 @@ Result<OpenedInput> open_input(const std::string& path, const ReadOptions& optio
   if (!bytes) return bytes.error();
   auto input = load_input(path, *bytes, options);
   if (!input) return std::move(input).error();
-  return OpenedInput{FeatureReader::of(std::move(input->document)), file->bytes};
+  return OpenedInput{formats::FeatureReader::of(std::move(input->document)), file->bytes};
 }
 
 Result<Format> format_of_name(const std::string& path) {
-  const auto format = detect_format(path, {});
+  const auto format = formats::detect_format(path, {});
   if (format) return format;
   return Error{ErrorCode::unsupported,
                "the ending of '" + path +
@@ -126,4 +127,4 @@ Result<Format> format_of_name(const std::string& path) {
                    ".wkb .ewkb"};
 }
 
-}  // namespace watertight
+}  // namespace watertight::cli

@@ -11,7 +11,7 @@
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::cli {
 
 enum class InputKind : std::uint8_t {
   document,
@@ -29,21 +29,22 @@ struct Input {
 };
 
 /// Errors: those of the readers; unsupported for page files.
-Result<Input> load_input(const std::string& path, ByteView bytes, const ReadOptions& options);
+Result<Input> load_input(const std::string& path, ByteView bytes,
+                         const formats::ReadOptions& options);
 
 /// What to say to a page file.
 Error page_file_error();
 
 /// A document that is read feature by feature; Watertight files and blobs are read whole.
 struct OpenedInput {
-  FeatureReader reader;
+  formats::FeatureReader reader;
   std::optional<std::uint64_t> bytes;  // of the file, when it has a size
 };
 
 /// Errors: unavailable with the reason; those of the readers.
-Result<OpenedInput> open_input(const std::string& path, const ReadOptions& options);
+Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptions& options);
 
 /// The format that an output file's name asks for. Errors: unsupported naming the known endings.
 Result<Format> format_of_name(const std::string& path);
 
-}  // namespace watertight
+}  // namespace watertight::cli

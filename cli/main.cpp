@@ -11,7 +11,7 @@
 
 #include "cli/commands.h"
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 /// The command that was chosen; set by CLI11's callbacks.
@@ -233,15 +233,15 @@ int run_command_line(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::cli
 
 int main(int argc, char** argv) {
   try {
-    return watertight::run_command_line(argc, argv);
+    return watertight::cli::run_command_line(argc, argv);
   } catch (const std::bad_alloc&) {
     std::fputs("watertight: not enough memory\n", stderr);
   } catch (const std::exception& failure) {
     std::fprintf(stderr, "watertight: unexpected failure: %s\n", failure.what());
   }
-  return static_cast<int>(watertight::Exit::error);
+  return static_cast<int>(watertight::cli::Exit::error);
 }

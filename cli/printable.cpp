@@ -3,7 +3,7 @@
 
 #include "base/json_text.h"
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 /// Bytes of what is replaced at the front of UTF-8 text, 0 if the terminal may have it.
@@ -40,4 +40,4 @@ std::string printable(std::string_view text) {
   return clean;
 }
 
-}  // namespace watertight
+}  // namespace watertight::cli

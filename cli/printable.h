@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace watertight {
+namespace watertight::cli {
 
 /// One line of UTF-8 that a terminal shows and does not obey: control characters (C0 with line ends
 /// and tabs, DEL, C1), line separators, marks that turn the direction of writing, and bytes that
@@ -14,4 +14,4 @@ namespace watertight {
 /// written. Cost: linear.
 std::string printable(std::string_view text);
 
-}  // namespace watertight
+}  // namespace watertight::cli

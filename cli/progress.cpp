@@ -10,7 +10,7 @@
 
 #include "cli/printable.h"
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 constexpr double kWidthOfBar = 30;
@@ -65,4 +65,4 @@ std::string progress_line(const std::string& label, std::uint64_t features,
   return line;
 }
 
-}  // namespace watertight
+}  // namespace watertight::cli

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace watertight {
+namespace watertight::cli {
 
 class ProgressBar {
  public:
@@ -33,4 +33,4 @@ class ProgressBar {
 std::string progress_line(const std::string& label, std::uint64_t features,
                           std::optional<double> share, double seconds);
 
-}  // namespace watertight
+}  // namespace watertight::cli

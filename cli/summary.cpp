@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-namespace watertight {
+namespace watertight::cli {
 namespace {
 
 std::string row(const std::string& name, const std::string& value) {
@@ -49,12 +49,12 @@ Exit exit_of(Verdict verdict) {
   return verdict == Verdict::invalid ? Exit::invalid : Exit::undecided;
 }
 
-void Summary::add(const IngestOutcome& outcome, std::uint64_t file_bytes) {
+void Summary::add(const pipeline::IngestOutcome& outcome, std::uint64_t file_bytes) {
   file_bytes_ += file_bytes;
   features_ += outcome.features.size();
   stored_ += outcome.stored;
-  for (const FeatureOutcome& feature : outcome.features) {
-    for (const SolidOutcome& solid : feature.solids) {
+  for (const pipeline::FeatureOutcome& feature : outcome.features) {
+    for (const pipeline::SolidOutcome& solid : feature.solids) {
       add(solid.report);
       if (solid.blob_bytes == 0) continue;
       plain_bytes_ += solid.source_bytes;
@@ -64,9 +64,9 @@ void Summary::add(const IngestOutcome& outcome, std::uint64_t file_bytes) {
   }
 }
 
-void Summary::add(const InspectedFeature& feature) {
+void Summary::add(const pipeline::InspectedFeature& feature) {
   ++features_;
-  for (const InspectedSolid& solid : feature.solids) add(solid.inspection.report);
+  for (const pipeline::InspectedSolid& solid : feature.solids) add(solid.inspection.report);
   add(feature.groups);
 }
 
@@ -83,8 +83,8 @@ void Summary::add(const Report& report) {
   }
 }
 
-void Summary::add(const std::vector<InspectedGroup>& groups) {
-  for (const InspectedGroup& group : groups) {
+void Summary::add(const std::vector<pipeline::InspectedGroup>& groups) {
+  for (const pipeline::InspectedGroup& group : groups) {
     for (const int code : error_codes(group.report.findings)) ++groups_by_code_[code];
   }
 }
@@ -92,17 +92,19 @@ void Summary::add(const std::vector<InspectedGroup>& groups) {
 std::string Summary::table(double seconds) const {
   std::string text = row("features", features_);
   for (const auto& [code, count] : groups_by_code_) {
-    text += row("  with " + std::to_string(code) + " " + std::string(finding_name(code)), count);
+    text += row("  with " + std::to_string(code) + " " + std::string(validate::finding_name(code)),
+                count);
   }
   if (unreadable_ > 0) text += row("  that could not be read", unreadable_);
   text += row("solids", solids()) + row("  valid", valid_);
   if (with_warnings_ > 0) text += row("    with warnings", with_warnings_);
   for (const auto& [rung, count] : by_rung_) {
-    text += row("    proven by " + std::string(to_string(rung)), count);
+    text += row("    proven by " + std::string(delaunay::to_string(rung)), count);
   }
   text += row("  invalid", invalid_);
   for (const auto& [code, count] : by_code_) {
-    text += row("    " + std::to_string(code) + " " + std::string(finding_name(code)), count);
+    text +=
+        row("    " + std::to_string(code) + " " + std::string(validate::finding_name(code)), count);
   }
   text += row("  undecided", undecided_);
   if (stored_ > 0) text += row("features stored", stored_);
@@ -131,10 +133,10 @@ std::string Summary::json(double seconds) const {
   }
   json["validByRung"] = nlohmann::ordered_json::object();
   for (const auto& [rung, count] : by_rung_) {
-    json["validByRung"][std::string(to_string(rung))] = count;
+    json["validByRung"][std::string(delaunay::to_string(rung))] = count;
   }
   json["seconds"] = seconds;
   return json.dump();
 }
 
-}  // namespace watertight
+}  // namespace watertight::cli

@@ -9,7 +9,7 @@
 
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::cli {
 
 /// Exit statuses of the program (docs/cli.md).
 enum class Exit : int { valid = 0, invalid = 1, error = 2, undecided = 3 };
@@ -21,8 +21,8 @@ Exit exit_of(Verdict verdict);
 /// Counts over all files of a run.
 class Summary {
  public:
-  void add(const IngestOutcome& outcome, std::uint64_t file_bytes);
-  void add(const InspectedFeature& feature);
+  void add(const pipeline::IngestOutcome& outcome, std::uint64_t file_bytes);
+  void add(const pipeline::InspectedFeature& feature);
   void add_file_bytes(std::uint64_t bytes) { file_bytes_ += bytes; }
   void add_unreadable() { ++unreadable_; }
 
@@ -34,7 +34,7 @@ class Summary {
 
  private:
   void add(const Report& report);
-  void add(const std::vector<InspectedGroup>& groups);
+  void add(const std::vector<pipeline::InspectedGroup>& groups);
 
   std::uint64_t valid_ = 0;
   std::uint64_t with_warnings_ = 0;  // of the valid ones
@@ -48,7 +48,7 @@ class Summary {
   std::uint64_t blob_bytes_ = 0;
   std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; one solid, several codes
   std::map<int, std::uint64_t> groups_by_code_;  // the same of composite solids and buildings
-  std::map<Rung, std::uint64_t> by_rung_;
+  std::map<delaunay::Rung, std::uint64_t> by_rung_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::cli

@@ -13,7 +13,7 @@
 #include "delaunay/certificate.h"
 #include "geometry/valid_solid.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 inline constexpr std::uint8_t kFormatVersion = 1;
 
@@ -35,7 +35,7 @@ struct EncodeOptions {
   bool keep_order = true;              // decode returns the source order
   std::uint8_t models = kModelNumber;  // the set of priors (codec/page/model_sets.h)
   /// With a certificate and mode bitmap: store its Steiner vertices (the paper's setting).
-  const Certificate* certificate = nullptr;
+  const delaunay::Certificate* certificate = nullptr;
 };
 
 /// Encodes, decodes, compares, and only then returns (verify-after-write).
@@ -79,5 +79,15 @@ Result<Decoded> decode(ByteView blob, const Limits& limits = {});
 
 /// Header and part sizes. Same errors.
 Result<BlobInfo> describe(ByteView blob, const Limits& limits = {});
+
+}  // namespace watertight::codec
+
+namespace watertight {
+
+using codec::decode;
+using codec::Decoded;
+using codec::encode;
+using codec::EncodeOptions;
+using codec::Mode;
 
 }  // namespace watertight

@@ -5,7 +5,7 @@
 #include "codec/page/container.h"
 #include "codec/version_0/version_0.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 constexpr std::size_t kVersionAt = 2;
@@ -39,4 +39,4 @@ Result<std::vector<Decoded>> decode_page(ByteView page, const Limits& limits) {
   return solids;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -7,7 +7,7 @@
 #include "codec/page.h"
 #include "codec/page/container.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 /// What is to be encoded, and how.
@@ -166,4 +166,4 @@ Result<Bytes> encode_page(std::span<const ValidSolid* const> solids, const Encod
   return encode_boundaries(boundaries, acceptance, options);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

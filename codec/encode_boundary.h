@@ -8,7 +8,7 @@
 
 #include "codec/blob.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// Encodes, decodes, compares, and only then returns. In source order with `keep_order`, else the
 /// canonical form. Errors: not_encodable.
@@ -19,4 +19,4 @@ Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance
 Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundaries,
                                 const Acceptance& acceptance, const EncodeOptions& options = {});
 
-}  // namespace watertight
+}  // namespace watertight::codec

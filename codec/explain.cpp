@@ -5,7 +5,7 @@
 
 #include "codec/encode_boundary.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 Result<std::vector<ModeSize>> explain(ByteView blob, const Limits& limits) {
   const auto decoded = decode(blob, limits);
@@ -29,4 +29,4 @@ Result<std::vector<ModeSize>> explain(ByteView blob, const Limits& limits) {
   return sizes;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -7,7 +7,7 @@
 
 #include "codec/blob.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 struct ModeSize {
   Mode mode = Mode::raw;
@@ -18,4 +18,4 @@ struct ModeSize {
 /// Encodes what `blob` holds anew in every mode. Errors: as decode(). Cost: that of all modes.
 Result<std::vector<ModeSize>> explain(ByteView blob, const Limits& limits = {});
 
-}  // namespace watertight
+}  // namespace watertight::codec

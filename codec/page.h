@@ -10,7 +10,7 @@
 
 #include "codec/blob.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 inline constexpr std::size_t kMaxPageSolids = 256;
 
@@ -29,4 +29,4 @@ Result<Bytes> encode_page(std::span<const ValidSolid* const> solids,
 /// limit_exceeded.
 Result<std::vector<Decoded>> decode_page(ByteView page, const Limits& limits = {});
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -12,7 +12,7 @@
 #include "codec/encode_boundary.h"
 #include "codec/page/container.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 constexpr std::uint8_t kMagic[4] = {'W', 'T', 'P', 'F'};
@@ -188,4 +188,4 @@ Result<Decoded> PageFileReader::solid(std::uint64_t number) const {
   return std::move((*solids)[place.slot].decoded);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

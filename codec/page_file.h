@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/page/solid_coder.h"
 #include "codec/page.h"
+#include "codec/page/solid_coder.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// Collects solids and writes a page whenever one is full. Memory: the open pages, at most
 /// `page_solids` solids for each grid, reference system and acceptance that occurs.
@@ -84,4 +84,4 @@ class PageFileReader {
 /// True for what PageFileWriter writes.
 bool is_page_file(ByteView bytes);
 
-}  // namespace watertight
+}  // namespace watertight::codec

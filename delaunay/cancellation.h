@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// Keeps a reference to `is_cancelled`, which may be empty. One per loop; not thread-safe.
 class Cancellation {
@@ -28,4 +28,4 @@ class Cancellation {
   std::size_t steps_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

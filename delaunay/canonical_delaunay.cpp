@@ -4,7 +4,7 @@
 #include "delaunay/cgal_delaunay.h"
 #include "delaunay/small_delaunay.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
                                              std::uint64_t max_tetrahedra,
@@ -13,4 +13,4 @@ Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
   return cgal_delaunay(points, max_tetrahedra, is_cancelled);
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

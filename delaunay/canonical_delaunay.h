@@ -18,11 +18,11 @@
 #include "base/result.h"
 #include "delaunay/tetrahedralization.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 struct CanonicalDelaunay {
   /// Positively oriented (orient3d > 0), smallest index first; the list sorted lexicographically.
-  std::vector<Tetrahedron> tetrahedra;
+  std::vector<geometry::Tetrahedron> tetrahedra;
   /// All faces as sorted vertex triples, in lexicographic order: the order of the bitmap.
   std::vector<Triangle> faces;
   /// Per face, the fourth vertices of its tetrahedra: first on its positive side (orient3d(face,
@@ -40,4 +40,4 @@ Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
                                              std::uint64_t max_tetrahedra = 64'000'000,
                                              const std::function<bool()>& is_cancelled = {});
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

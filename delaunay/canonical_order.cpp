@@ -6,12 +6,12 @@
 
 #include "delaunay/sort_by_vertices.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// The same orientation with the smallest index first and the second smallest second: an even
 /// permutation, which exists and is unique.
-Tetrahedron canonical_tetrahedron(Tetrahedron t) {
+geometry::Tetrahedron canonical_tetrahedron(geometry::Tetrahedron t) {
   const auto smallest = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
   if (smallest != 0) {
     // Two disjoint swaps keep the orientation.
@@ -24,7 +24,8 @@ Tetrahedron canonical_tetrahedron(Tetrahedron t) {
 
 }  // namespace
 
-ListedFace face_opposite(const Tetrahedron& tetrahedron, std::size_t corner, Index beyond) {
+ListedFace face_opposite(const geometry::Tetrahedron& tetrahedron, std::size_t corner,
+                         Index beyond) {
   // A cycle of four is an odd permutation: the apex is on the positive side for odd corners.
   Index a = tetrahedron[(corner + 1) % 4];
   Index b = tetrahedron[(corner + 2) % 4];
@@ -44,14 +45,14 @@ ListedFace face_opposite(const Tetrahedron& tetrahedron, std::size_t corner, Ind
   return face;
 }
 
-CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra,
+CanonicalDelaunay list_canonically(std::vector<geometry::Tetrahedron> tetrahedra,
                                    std::vector<ListedFace> faces, Index vertex_count) {
   CanonicalDelaunay result;
   result.tetrahedra = std::move(tetrahedra);
-  for (Tetrahedron& t : result.tetrahedra) t = canonical_tetrahedron(t);
+  for (geometry::Tetrahedron& t : result.tetrahedra) t = canonical_tetrahedron(t);
   // Faces are told apart by their three vertices, tetrahedra by their first three: two with the
   // same would lie on the same side of a face.
-  sort_by_vertices(result.tetrahedra, vertex_count, [](const Tetrahedron& t) {
+  sort_by_vertices(result.tetrahedra, vertex_count, [](const geometry::Tetrahedron& t) {
     return Triangle{t[0], t[1], t[2]};
   });
   sort_by_vertices(faces, vertex_count, [](const ListedFace& face) { return face.vertices; });
@@ -64,4 +65,4 @@ CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra,
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

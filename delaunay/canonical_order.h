@@ -9,7 +9,7 @@
 
 #include "delaunay/canonical_delaunay.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// A face with its vertices in increasing order, and the apexes as CanonicalDelaunay has them.
 struct ListedFace {
@@ -19,12 +19,13 @@ struct ListedFace {
 
 /// The face of a positively oriented tetrahedron that lies opposite to `corner`; `beyond` is the
 /// apex on its other side, kNone on the hull.
-ListedFace face_opposite(const Tetrahedron& tetrahedron, std::size_t corner, Index beyond);
+ListedFace face_opposite(const geometry::Tetrahedron& tetrahedron, std::size_t corner,
+                         Index beyond);
 
 /// Lists positively oriented tetrahedra and all their faces, each once, canonically: whatever their
 /// order and from whichever of its vertices a tetrahedron starts. Vertices are below
 /// `vertex_count`. Cost: O(n log n), linear if no vertex is the smallest of very many.
-CanonicalDelaunay list_canonically(std::vector<Tetrahedron> tetrahedra,
+CanonicalDelaunay list_canonically(std::vector<geometry::Tetrahedron> tetrahedra,
                                    std::vector<ListedFace> faces, Index vertex_count);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

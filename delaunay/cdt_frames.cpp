@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// Seconds; an engine that claims more is lying.
@@ -117,7 +117,7 @@ Bytes write_answer(const CdtAnswer& answer) {
   write_points(writer, result.points.data() + result.input_count,
                result.points.data() + result.points.size());
   writer.u32(static_cast<std::uint32_t>(result.tetrahedra.size()));
-  for (const Tetrahedron& tetrahedron : result.tetrahedra) {
+  for (const geometry::Tetrahedron& tetrahedron : result.tetrahedra) {
     for (const Index vertex : tetrahedron) writer.u32(vertex);
   }
   writer.u32(static_cast<std::uint32_t>(result.constrained.size()));
@@ -167,4 +167,4 @@ Result<CdtAnswer> read_answer(ByteView bytes, const std::vector<Point>& vertices
   return answer;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

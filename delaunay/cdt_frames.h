@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "delaunay/tetrahedralization.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// What the constraints are.
 enum class Constraints : std::uint8_t {
@@ -44,4 +44,4 @@ Bytes write_answer(const CdtAnswer& answer);
 Result<CdtAnswer> read_answer(ByteView bytes, const std::vector<Point>& vertices,
                               Index facet_count);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "delaunay/cdt_statistics.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 void CdtStatistics::add(std::span<const RungAttempt> attempts_of_solid) {
   if (attempts_of_solid.empty()) return;
@@ -53,4 +53,4 @@ bool is_property_of_solid(CertificateRefusal refusal) {
          refusal == CertificateRefusal::wrong_orientation;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -10,7 +10,7 @@
 
 #include "delaunay/ladder.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 inline constexpr std::size_t kRungs = 5;  // Rung::delaunay to Rung::tetgen
 
@@ -36,4 +36,4 @@ struct CdtStatistics {
 /// wrong_orientation), whatever the engine: the solid is invalid.
 bool is_property_of_solid(CertificateRefusal refusal);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

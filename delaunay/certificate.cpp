@@ -22,7 +22,7 @@
 #include "geometry/predicates.h"
 #include "tessellate/flatness.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// Relative rounding of one term of the sums of volumes: at most 32 operations.
@@ -55,8 +55,8 @@ struct FaceEdge {
 
 class Examination {
  public:
-  Examination(const Solid& solid, const FacetTriangles& canonical, Certificate& certificate,
-              const std::function<bool()>& is_cancelled)
+  Examination(const Solid& solid, const tessellate::FacetTriangles& canonical,
+              Certificate& certificate, const std::function<bool()>& is_cancelled)
       : solid_(solid),
         canonical_(canonical),
         certificate_(certificate),
@@ -99,7 +99,7 @@ class Examination {
         canonical_.first.size() != std::size_t{solid_.facet_count()} + 1) {
       return refuse(CertificateRefusal::vertex_missing, "the number of input vertices differs");
     }
-    for (const Tetrahedron& t : data_.tetrahedra) {
+    for (const geometry::Tetrahedron& t : data_.tetrahedra) {
       for (const Index v : t) {
         if (v >= points) {
           return refuse(CertificateRefusal::not_a_complex, "a tetrahedron names no vertex");
@@ -127,7 +127,7 @@ class Examination {
       }
     }
     std::vector<char> is_used(data_.points.size(), 0);
-    for (const Tetrahedron& t : data_.tetrahedra) {
+    for (const geometry::Tetrahedron& t : data_.tetrahedra) {
       for (const Index v : t) is_used[v] = 1;
     }
     for (Index v = 0; v < is_used.size(); ++v) {
@@ -194,7 +194,7 @@ class Examination {
     certificate_.largest_deviation =
         std::max(certificate_.largest_deviation, surface.largest_deviation);
     volume_slack_ += surface.volume_slack;
-    if (!surface.follows_canonical && !is_flat(solid_, facet)) {
+    if (!surface.follows_canonical && !tessellate::is_flat(solid_, facet)) {
       certificate_.refilled_facets.push_back(facet);
     }
     return std::nullopt;
@@ -223,7 +223,7 @@ class Examination {
 
   /// Requires edges sorted by their ends, then by shell.
   Checked check_fans(std::span<const FaceEdge> edges, std::size_t vertices) {
-    DisjointSets corners(edges.size());
+    geometry::DisjointSets corners(edges.size());
     for (std::size_t i = 0; i < edges.size(); i += 2) {
       const bool is_pair = i + 1 < edges.size() && edges[i + 1].is_same_edge(edges[i]) &&
                            (i + 2 == edges.size() || !edges[i + 2].is_same_edge(edges[i]));
@@ -253,7 +253,7 @@ class Examination {
   /// must separate an odd region from an even one.
   Checked check_regions() {
     const auto outside = static_cast<Index>(data_.tetrahedra.size());
-    DisjointSets sets(data_.tetrahedra.size() + 1);
+    geometry::DisjointSets sets(data_.tetrahedra.size() + 1);
     for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
       if (constraint_of_[f] != kNone) continue;
       const ComplexFace& face = complex_.faces[f];
@@ -388,7 +388,7 @@ class Examination {
     double terms = 0;
     for (Index i = 0; i < data_.tetrahedra.size(); ++i) {
       if (!certificate_.is_interior[i]) continue;
-      const Tetrahedron& t = data_.tetrahedra[i];
+      const geometry::Tetrahedron& t = data_.tetrahedra[i];
       std::array<std::array<double, 3>, 3> m{};
       for (std::size_t row = 0; row < 3; ++row) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -417,13 +417,14 @@ class Examination {
   double expected_volume(std::span<const Point> scaled) const {
     // Doubles of any size could overflow; integers cannot, and are quicker as they are.
     if (solid_.lattice().kind == LatticeKind::float64) {
-      return six_volume(scaled.first(data_.input_count), canonical_.triangles);
+      return geometry::six_volume(scaled.first(data_.input_count), canonical_.triangles);
     }
-    return six_volume(solid_.vertices(), canonical_.triangles) / unit_[0] / unit_[1] / unit_[2];
+    return geometry::six_volume(solid_.vertices(), canonical_.triangles) / unit_[0] / unit_[1] /
+           unit_[2];
   }
 
   const Solid& solid_;
-  const FacetTriangles& canonical_;
+  const tessellate::FacetTriangles& canonical_;
   Certificate& certificate_;
   const Tetrahedralization& data_;
   std::array<double, 3> unit_{1, 1, 1};
@@ -489,7 +490,7 @@ std::string_view to_string(CertificateRefusal refusal) {
   return "";
 }
 
-CertificateResult check_certificate(const Solid& solid, const FacetTriangles& facets,
+CertificateResult check_certificate(const Solid& solid, const tessellate::FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,
                                     const std::function<bool()>& is_cancelled) {
   CertificateResult result;
@@ -506,4 +507,4 @@ CertificateResult check_certificate(const Solid& solid, const FacetTriangles& fa
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

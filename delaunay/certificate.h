@@ -13,7 +13,7 @@
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// Which rung of the ladder produced the tetrahedralization.
 enum class Rung : std::uint8_t {
@@ -68,8 +68,8 @@ struct CertificateResult {
 /// Requires merged vertices, rings that are divided as the triangles are (divided_solid), `facets`
 /// = triangulate_facets(solid), and a solid that passed the exact tests. `is_cancelled` is asked
 /// every few thousand steps. Cost: O(n log n) in tetrahedra.
-CertificateResult check_certificate(const Solid& solid, const FacetTriangles& facets,
+CertificateResult check_certificate(const Solid& solid, const tessellate::FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,
                                     const std::function<bool()>& is_cancelled = {});
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

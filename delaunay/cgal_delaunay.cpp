@@ -25,7 +25,7 @@
 #include "delaunay/cancellation.h"
 #include "delaunay/canonical_order.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -81,7 +81,7 @@ Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
   return Done{};
 }
 
-Tetrahedron vertices_of(Delaunay::Cell_handle cell) {
+geometry::Tetrahedron vertices_of(Delaunay::Cell_handle cell) {
   return {cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(),
           cell->vertex(3)->info()};
 }
@@ -99,7 +99,7 @@ Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint
     return std::move(inserted).error();
   }
   if (delaunay.dimension() < 3) return CanonicalDelaunay{};
-  std::vector<Tetrahedron> tetrahedra;
+  std::vector<geometry::Tetrahedron> tetrahedra;
   for (auto cell = delaunay.finite_cells_begin(); cell != delaunay.finite_cells_end(); ++cell) {
     tetrahedra.push_back(vertices_of(cell));
   }
@@ -119,4 +119,4 @@ Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint
                           static_cast<Index>(points.size()));
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

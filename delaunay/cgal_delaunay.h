@@ -11,11 +11,11 @@
 #include "base/result.h"
 #include "delaunay/canonical_delaunay.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// As canonical_delaunay(), for any finite points.
 Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points,
                                         std::uint64_t max_tetrahedra = 64'000'000,
                                         const std::function<bool()>& is_cancelled = {});
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

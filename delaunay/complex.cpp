@@ -9,7 +9,7 @@
 #include "delaunay/sort_by_vertices.h"
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// Hull faces tried as targets of the ray before giving up on degenerate hits.
@@ -42,14 +42,14 @@ bool sort_counting(Triangle& t) {
 
 /// The four faces of a positive tetrahedron (a, b, c, d): d is above (a, b, c), c above (a, d, b),
 /// b above (a, c, d), a above (b, d, c).
-std::array<Side, 4> sides_of(const Tetrahedron& t, Index number) {
+std::array<Side, 4> sides_of(const geometry::Tetrahedron& t, Index number) {
   std::array<Side, 4> sides{Side{{t[0], t[1], t[2]}, number}, Side{{t[0], t[3], t[1]}, number},
                             Side{{t[0], t[2], t[3]}, number}, Side{{t[1], t[3], t[2]}, number}};
   for (Side& side : sides) side.is_above = sort_counting(side.vertices);
   return sides;
 }
 
-bool has_repeated_vertex(const Tetrahedron& t) {
+bool has_repeated_vertex(const geometry::Tetrahedron& t) {
   return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] ||
          t[2] == t[3];
 }
@@ -86,7 +86,7 @@ Point mean(std::span<const Point> points, std::span<const Index> which) {
 }
 
 /// Roughly six times the volume; only ever compared.
-double rough_volume(std::span<const Point> points, const Tetrahedron& t) {
+double rough_volume(std::span<const Point> points, const geometry::Tetrahedron& t) {
   std::array<std::array<double, 3>, 3> m{};
   for (std::size_t row = 0; row < 3; ++row) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -100,15 +100,15 @@ double rough_volume(std::span<const Point> points, const Tetrahedron& t) {
 
 bool is_inside_all(std::span<const Point> points, std::span<const Triangle> hull, const Point& o) {
   return std::all_of(hull.begin(), hull.end(), [&](const Triangle& t) {
-    return orient3d(points[t[0]], points[t[1]], points[t[2]], o) < 0;
+    return geometry::orient3d(points[t[0]], points[t[1]], points[t[2]], o) < 0;
   });
 }
 
 /// A point strictly inside every hull face, or nothing.
 std::optional<Point> inner_point(const Tetrahedralization& data, std::span<const Triangle> hull) {
-  const Tetrahedron* largest = &data.tetrahedra.front();
+  const geometry::Tetrahedron* largest = &data.tetrahedra.front();
   double volume = -1;
-  for (const Tetrahedron& t : data.tetrahedra) {
+  for (const geometry::Tetrahedron& t : data.tetrahedra) {
     const double own = rough_volume(data.points, t);
     if (own > volume) {
       volume = own;
@@ -125,11 +125,11 @@ std::optional<std::size_t> faces_met(std::span<const Point> points, std::span<co
                                      const Point& o, const Point& q) {
   std::size_t met = 0;
   for (const auto& [a, b, c] : hull) {
-    const int first = orient3d(o, points[a], points[b], q);
+    const int first = geometry::orient3d(o, points[a], points[b], q);
     if (first < 0) continue;
-    const int second = orient3d(o, points[b], points[c], q);
+    const int second = geometry::orient3d(o, points[b], points[c], q);
     if (second < 0) continue;
-    const int third = orient3d(o, points[c], points[a], q);
+    const int third = geometry::orient3d(o, points[c], points[a], q);
     if (third < 0) continue;
     if (first == 0 || second == 0 || third == 0) return std::nullopt;
     ++met;
@@ -177,7 +177,7 @@ std::optional<ComplexFault> check_edges(std::span<const Point> points,
     const Triangle& t = hull[edges[i].face];
     const Index other = edges[i + 1].opposite;
     if (std::find(t.begin(), t.end(), other) != t.end() ||
-        orient3d(points[t[0]], points[t[1]], points[t[2]], points[other]) > 0) {
+        geometry::orient3d(points[t[0]], points[t[1]], points[t[2]], points[other]) > 0) {
       return fault(Kind::not_convex, "the outer surface is not convex at face " + name(t));
     }
   }
@@ -201,9 +201,9 @@ std::optional<ComplexFault> build_complex(const Tetrahedralization& data, Comple
   std::vector<Side> sides;
   sides.reserve(4 * data.tetrahedra.size());
   for (Index number = 0; number < data.tetrahedra.size(); ++number) {
-    const Tetrahedron& t = data.tetrahedra[number];
-    if (has_repeated_vertex(t) ||
-        orient3d(data.points[t[0]], data.points[t[1]], data.points[t[2]], data.points[t[3]]) <= 0) {
+    const geometry::Tetrahedron& t = data.tetrahedra[number];
+    if (has_repeated_vertex(t) || geometry::orient3d(data.points[t[0]], data.points[t[1]],
+                                                     data.points[t[2]], data.points[t[3]]) <= 0) {
       return fault(Kind::not_a_complex,
                    "tetrahedron " + std::to_string(number) + " is not positively oriented");
     }
@@ -237,4 +237,4 @@ std::optional<ComplexFault> check_convex(const Tetrahedralization& data, const C
   return check_edges(data.points, hull);
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

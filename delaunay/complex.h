@@ -11,7 +11,7 @@
 
 #include "delaunay/tetrahedralization.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// Vertices sorted. `above` is the tetrahedron on the side to which the normal (b-a) x (c-a) of the
 /// sorted triple (a, b, c) points, `below` the other; kNone outside the hull.
@@ -51,4 +51,4 @@ std::optional<ComplexFault> build_complex(const Tetrahedralization& tetrahedrali
 std::optional<ComplexFault> check_convex(const Tetrahedralization& tetrahedralization,
                                          const Complex& complex);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -21,7 +21,7 @@
 #include "delaunay/shell_contacts.h"
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// Rounding of the double arithmetic below, in relative terms: at most 32 operations each.
@@ -247,7 +247,7 @@ class FacetSurfaces::Mesh {
   std::size_t edge_count_ = 0;
 };
 
-FacetSurfaces::FacetSurfaces(const Solid& solid, const FacetTriangles& canonical,
+FacetSurfaces::FacetSurfaces(const Solid& solid, const tessellate::FacetTriangles& canonical,
                              const Tetrahedralization& tetrahedralization,
                              const std::array<double, 3>& unit)
     : solid_(solid),
@@ -370,7 +370,7 @@ bool FacetSurfaces::is_near_segment(Index vertex, Index from, Index to, double& 
 
 /// True for an input vertex that lies exactly on the facet: on one of its canonical triangles.
 bool FacetSurfaces::is_contact(Index facet, Index vertex) const {
-  const int axis = facet_projection(solid_, facet).axis;
+  const int axis = tessellate::facet_projection(solid_, facet).axis;
   const std::span<const Triangle> canonical = canonical_of(facet);
   return std::any_of(canonical.begin(), canonical.end(), [&](const Triangle& t) {
     return is_on_triangle(data_.points, t, data_.points[vertex], axis);
@@ -383,7 +383,7 @@ bool FacetSurfaces::may_pass(Index facet, Index vertex, Index from, Index to, do
   if (!is_steiner(vertex)) {
     if (facet_stamp_[vertex] == facet) return false;
     const auto& p = data_.points;
-    if (!is_on_segment(p[from], p[to], p[vertex])) return false;
+    if (!geometry::is_on_segment(p[from], p[to], p[vertex])) return false;
   }
   return is_near_segment(vertex, from, to, place);
 }
@@ -448,7 +448,7 @@ std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& m
 
 std::optional<std::string> FacetSurfaces::check_area(Index facet,
                                                      const FacetSurface& surface) const {
-  const auto axis = static_cast<std::size_t>(facet_projection(solid_, facet).axis);
+  const auto axis = static_cast<std::size_t>(tessellate::facet_projection(solid_, facet).axis);
   const std::size_t u = (axis + 1) % 3;
   const std::size_t v = (axis + 2) % 3;
   const std::array<double, 2> moved{rounding_[u] / unit_[u], rounding_[v] / unit_[v]};
@@ -523,4 +523,4 @@ std::optional<std::string> FacetSurfaces::check(Index facet, std::span<const Con
   return std::nullopt;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

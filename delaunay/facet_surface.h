@@ -16,7 +16,7 @@
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// Engines round Steiner points to doubles. Each is constructed from points of the input or from
 /// earlier Steiner points, and each construction adds a few units in the last place of the largest
@@ -41,7 +41,7 @@ struct FacetSurface {
 class FacetSurfaces {
  public:
   /// Keeps references to all four; `unit` is a power of two per axis near the solid's size.
-  FacetSurfaces(const Solid& solid, const FacetTriangles& canonical,
+  FacetSurfaces(const Solid& solid, const tessellate::FacetTriangles& canonical,
                 const Tetrahedralization& tetrahedralization, const std::array<double, 3>& unit);
 
   /// `faces` are all faces of `facet`. Returns what is wrong, or nothing. Cost: O(k log k).
@@ -67,11 +67,11 @@ class FacetSurfaces {
   std::span<const Triangle> canonical_of(Index facet) const;
 
   const Solid& solid_;
-  const FacetTriangles& canonical_;
+  const tessellate::FacetTriangles& canonical_;
   const Tetrahedralization& data_;
   std::array<double, 3> unit_;
   std::array<double, 3> rounding_;
   std::vector<Index> facet_stamp_;  // vertex -> last facet whose ring holds it
 };
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -23,7 +23,7 @@
 #include "delaunay/sort_by_vertices.h"
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// Rings with more vertices are not given to the cubic dynamic programme.
@@ -80,14 +80,14 @@ struct LocalFacet {
   std::vector<Edge> boundary;  // directed: the ring edges, divided where other shells touch them
   std::vector<Triangle> canonical;
   std::span<const Point> points;
-  Projection projection;
+  tessellate::Projection projection;
   std::size_t triangle_count = 0;
 
   Triangle to_global(const Triangle& t) const { return {global[t[0]], global[t[1]], global[t[2]]}; }
   /// True if the projected triangle turns as the facet does, and has area.
   bool is_positive(Index a, Index b, Index c) const {
-    const int turn =
-        orient2d(points[global[a]], points[global[b]], points[global[c]], projection.axis);
+    const int turn = geometry::orient2d(points[global[a]], points[global[b]], points[global[c]],
+                                        projection.axis);
     return projection.is_mirrored ? turn < 0 : turn > 0;
   }
 };
@@ -111,7 +111,7 @@ LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> c
                     std::vector<Index>& local_of) {
   LocalFacet local;
   local.points = solid.vertices();
-  local.projection = facet_projection(solid, facet);
+  local.projection = tessellate::facet_projection(solid, facet);
   local.triangle_count = canonical.size();
   const IndexRange rings = solid.rings_of(facet);
   local.global.reserve(3 * canonical.size());
@@ -326,7 +326,8 @@ std::vector<Triangle> follow_facet(const Solid& merged, Index facet,
 
 }  // namespace
 
-Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+Result<FollowingTriangles> follow_delaunay(const Solid& merged,
+                                           const tessellate::FacetTriangles& canonical,
                                            const CanonicalDelaunay& delaunay,
                                            const std::vector<bool>& is_kept,
                                            const std::function<bool()>& is_cancelled) {
@@ -363,11 +364,11 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTrian
   return result;
 }
 
-FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+FollowingTriangles follow_delaunay(const Solid& merged, const tessellate::FacetTriangles& canonical,
                                    const CanonicalDelaunay& delaunay) {
   Result<FollowingTriangles> result = follow_delaunay(merged, canonical, delaunay, {}, {});
   WATERTIGHT_ASSERT(result.has_value());  // nobody cancels
   return *std::move(result);
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -15,7 +15,7 @@
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// Triangles grouped by facet, with the facet's orientation; each starts with its smallest index,
 /// and those of one facet are sorted.
@@ -42,14 +42,15 @@ struct FollowingTriangles {
 /// facets that are unions, O(k^3) for one ring of k <= 60 vertices, else the canonical triangles
 /// improved by at most 3 k edge flips. Source: research of this project; Verbree & Si 2008, section
 /// 5, leave the choice of the facets' triangulation open.
-FollowingTriangles follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+FollowingTriangles follow_delaunay(const Solid& merged, const tessellate::FacetTriangles& canonical,
                                    const CanonicalDelaunay& delaunay);
 
 /// The same, asking every few thousand triangles whether to go on, and taking the triangles of
 /// facets that `is_kept` names (by facet; empty: none) as they are. Errors: cancelled.
-Result<FollowingTriangles> follow_delaunay(const Solid& merged, const FacetTriangles& canonical,
+Result<FollowingTriangles> follow_delaunay(const Solid& merged,
+                                           const tessellate::FacetTriangles& canonical,
                                            const CanonicalDelaunay& delaunay,
                                            const std::vector<bool>& is_kept,
                                            const std::function<bool()>& is_cancelled);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

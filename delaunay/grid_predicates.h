@@ -20,7 +20,7 @@
 #include "base/assert.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 class GridPredicates {
  public:
@@ -171,4 +171,4 @@ class GridPredicates {
   double sphere_error_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

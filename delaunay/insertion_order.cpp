@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// Cells of the curve's grid along an axis, as a power of two: three axes and a round fit into the
@@ -78,4 +78,4 @@ std::vector<Index> insertion_order(std::span<const Point> points) {
   return order;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -8,7 +8,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// All indices of `points`, whose coordinates are integers in [0, 2^30): in rounds, each eight
 /// times as large as the one before, and in each round along a Hilbert curve, so that each point
@@ -18,4 +18,4 @@ namespace watertight {
 /// a hash of the index instead of at random.
 std::vector<Index> insertion_order(std::span<const Point> points);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -23,7 +23,7 @@
 #include "delaunay/follow_delaunay.h"
 #include "tessellate/flatness.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -46,22 +46,22 @@ double thread_seconds() {
   return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
 }
 
-RungOutcome outcome_of(JobOutcome outcome) {
+RungOutcome outcome_of(workers::JobOutcome outcome) {
   switch (outcome) {
-    case JobOutcome::failed:
+    case workers::JobOutcome::failed:
       return RungOutcome::engine_error;
-    case JobOutcome::crashed:
+    case workers::JobOutcome::crashed:
       return RungOutcome::crashed;
-    case JobOutcome::timed_out:
+    case workers::JobOutcome::timed_out:
       return RungOutcome::timed_out;
-    case JobOutcome::out_of_memory:
+    case workers::JobOutcome::out_of_memory:
       return RungOutcome::memory_limit;
-    case JobOutcome::cancelled:
+    case workers::JobOutcome::cancelled:
       return RungOutcome::cancelled;
-    case JobOutcome::not_started:
+    case workers::JobOutcome::not_started:
       return RungOutcome::not_started;
-    case JobOutcome::garbage:
-    case JobOutcome::ok:
+    case workers::JobOutcome::garbage:
+    case workers::JobOutcome::ok:
       break;
   }
   return RungOutcome::garbage;
@@ -83,7 +83,7 @@ std::vector<Index> sorted_vertices(std::span<const Point> vertices) {
 }
 
 /// Some facets are given triangle by triangle, not as patches.
-EngineInput engine_input(const Solid& solid, const FacetTriangles& canonical,
+EngineInput engine_input(const Solid& solid, const tessellate::FacetTriangles& canonical,
                          const std::vector<bool>& is_taken_apart) {
   EngineInput input;
   input.vertex_at = sorted_vertices(solid.vertices());
@@ -118,7 +118,7 @@ EngineInput engine_input(const Solid& solid, const FacetTriangles& canonical,
 
 /// Powers of two that bring the extent of each axis into [0.5, 1); 1 where that is not exact.
 std::array<double, 3> unit_scale(std::span<const Point> vertices) {
-  const Box box = box_of(vertices);
+  const Box box = geometry::box_of(vertices);
   std::array<double, 3> scale{1, 1, 1};
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = box.max[axis] - box.min[axis];
@@ -151,7 +151,7 @@ Tetrahedralization restore(Tetrahedralization answer, const EngineInput& input,
     answer.points[i] =
         i < answer.input_count ? solid.vertices()[i] : unscaled(answer.points[i], scale);
   }
-  for (Tetrahedron& t : answer.tetrahedra) {
+  for (geometry::Tetrahedron& t : answer.tetrahedra) {
     for (Index& vertex : t) vertex = number[vertex];
   }
   for (ConstrainedFace& face : answer.constrained) {
@@ -174,7 +174,7 @@ std::array<Rung, 5> order_of_rungs(Engine engine) {
 
 class Climb {
  public:
-  Climb(const Solid& solid, const FacetTriangles& canonical, EngineWorkers* workers,
+  Climb(const Solid& solid, const tessellate::FacetTriangles& canonical, EngineWorkers* workers,
         const LadderOptions& options)
       : solid_(solid), canonical_(canonical), workers_(workers), options_(options) {}
 
@@ -213,7 +213,7 @@ class Climb {
 
  private:
   /// What the constraints are made of.
-  const FacetTriangles& triangles() const {
+  const tessellate::FacetTriangles& triangles() const {
     return contacts_.has_contacts() ? contacts_.triangles : canonical_;
   }
 
@@ -224,7 +224,7 @@ class Climb {
     is_kept_.resize(solid_.facet_count());
     for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
       const bool is_one_triangle = canonical_.first[facet + 1] - canonical_.first[facet] == 1;
-      is_kept_[facet] = !is_one_triangle && !is_flat(solid_, facet);
+      is_kept_[facet] = !is_one_triangle && !tessellate::is_flat(solid_, facet);
     }
     input_ = EngineInput{};
     // The attempt under way had the constraints before.
@@ -343,12 +343,12 @@ class Climb {
   }
 
   void try_engine(Rung rung) {
-    WorkerPool* pool = nullptr;
+    workers::WorkerPool* pool = nullptr;
     if (workers_ != nullptr) pool = rung == Rung::tetgen ? workers_->tetgen() : workers_->cgal();
     if (pool == nullptr) {
       return conclude(RungOutcome::not_started, "not-started: no engine executable");
     }
-    const WorkerLimits limits = this->limits(rung);
+    const workers::WorkerLimits limits = this->limits(rung);
     if (!(limits.cpu_seconds > 0)) {
       return conclude(RungOutcome::not_started, "not-started: the rungs before took all the time");
     }
@@ -358,12 +358,12 @@ class Climb {
     job.constraints = constraints_of(rung);
     job.complex = input_.complex;
     for (Point& p : job.complex.vertices) p = scaled(p, scale);
-    const JobResult reply = pool->run(write_job(job), limits, options_.cancel);
+    const workers::JobResult reply = pool->run(write_job(job), limits, options_.cancel);
     attempt_.worker_seconds = reply.cpu_seconds;
     engines_seconds_ += reply.cpu_seconds;
-    if (reply.outcome != JobOutcome::ok) {
+    if (reply.outcome != workers::JobOutcome::ok) {
       return conclude(outcome_of(reply.outcome),
-                      std::string(to_string(reply.outcome)) + ": " + reply.detail);
+                      std::string(workers::to_string(reply.outcome)) + ": " + reply.detail);
     }
     Result<CdtAnswer> answer =
         read_answer(reply.reply, job.complex.vertices, static_cast<Index>(input_.facet_at.size()));
@@ -380,7 +380,7 @@ class Climb {
   /// An engine takes about 0.1 ms a triangle on ordinary solids and up to 10 ms on nasty ones.
   /// CPU time decides, so that a busy machine does not change a verdict; the wall clock only ends
   /// what sleeps.
-  WorkerLimits limits(Rung rung) const {
+  workers::WorkerLimits limits(Rung rung) const {
     const double triangles = static_cast<double>(canonical_.triangles.size());
     double seconds = rung == Rung::patch ? 2 : 6;
     seconds += triangles * (rung == Rung::tetgen ? 1e-3 : 0.5e-3);
@@ -389,7 +389,7 @@ class Climb {
                               ? options_.seconds_in_all
                               : default_ladder_seconds(canonical_.triangles.size());
     seconds = std::min(seconds, in_all - engines_seconds_);
-    WorkerLimits limits;
+    workers::WorkerLimits limits;
     limits.cpu_seconds = seconds;
     limits.wall_seconds = options_.seconds_per_rung > 0 ? seconds : 20 * seconds + 10;
     limits.memory_bytes = (std::uint64_t{512} << 20) + canonical_.triangles.size() * (16U << 10);
@@ -430,7 +430,7 @@ class Climb {
   }
 
   const Solid& solid_;
-  const FacetTriangles& canonical_;
+  const tessellate::FacetTriangles& canonical_;
   EngineWorkers* workers_;
   const LadderOptions& options_;
   ContactTriangles contacts_;
@@ -442,18 +442,19 @@ class Climb {
   LadderResult result_;
 };
 
-std::unique_ptr<WorkerPool> make_pool(const std::string& executable, const std::string& name,
-                                      std::size_t processes, std::size_t jobs_per_process) {
-  WorkerPool::Options options;
+std::unique_ptr<workers::WorkerPool> make_pool(const std::string& executable,
+                                               const std::string& name, std::size_t processes,
+                                               std::size_t jobs_per_process) {
+  workers::WorkerPool::Options options;
   options.executable = executable;
   if (executable.empty()) {
-    const Result<std::string> found = find_helper(name);
+    const Result<std::string> found = workers::find_helper(name);
     if (!found) return nullptr;
     options.executable = *found;
   }
   options.size = processes;
   options.jobs_per_process = jobs_per_process;
-  return std::make_unique<WorkerPool>(std::move(options));
+  return std::make_unique<workers::WorkerPool>(std::move(options));
 }
 
 }  // namespace
@@ -495,13 +496,13 @@ EngineWorkers::EngineWorkers(const Options& options)
 
 EngineWorkers::EngineWorkers() : EngineWorkers(Options{}) {}
 
-WorkerPool* EngineWorkers::cgal() { return cgal_.get(); }
+workers::WorkerPool* EngineWorkers::cgal() { return cgal_.get(); }
 
-WorkerPool* EngineWorkers::tetgen() { return tetgen_.get(); }
+workers::WorkerPool* EngineWorkers::tetgen() { return tetgen_.get(); }
 
-LadderResult climb_ladder(const Solid& solid, const FacetTriangles& facets, EngineWorkers* workers,
-                          const LadderOptions& options) {
+LadderResult climb_ladder(const Solid& solid, const tessellate::FacetTriangles& facets,
+                          EngineWorkers* workers, const LadderOptions& options) {
   return Climb(solid, facets, workers, options).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

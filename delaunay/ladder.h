@@ -12,7 +12,7 @@
 #include "delaunay/shell_contacts.h"
 #include "workers/worker_pool.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// The engine that is asked first; automatic: none before the canonical DT.
 enum class Engine : std::uint8_t { automatic, cgal, tetgen };
@@ -27,12 +27,12 @@ class EngineWorkers {
   };
   explicit EngineWorkers(const Options& options);
   EngineWorkers();
-  WorkerPool* cgal();    // null when the executable does not exist
-  WorkerPool* tetgen();  // null when the executable does not exist
+  workers::WorkerPool* cgal();    // null when the executable does not exist
+  workers::WorkerPool* tetgen();  // null when the executable does not exist
 
  private:
-  std::unique_ptr<WorkerPool> cgal_;
-  std::unique_ptr<WorkerPool> tetgen_;
+  std::unique_ptr<workers::WorkerPool> cgal_;
+  std::unique_ptr<workers::WorkerPool> tetgen_;
 };
 
 struct LadderOptions {
@@ -44,7 +44,7 @@ struct LadderOptions {
   /// CPU time of all engines on one solid together; 0: by size (20 s and more, see
   /// default_ladder_seconds()). A rung gets what those before it left.
   double seconds_in_all = 0;
-  CancelPoll cancel = {};
+  workers::CancelPoll cancel = {};
   /// divide_at_contacts() of the solid, where the caller has it; null: the ladder divides.
   const ContactTriangles* contacts = nullptr;
   /// The exact tests have shown one interior: a refusal that calls the solid wrong is no end, and
@@ -104,7 +104,7 @@ struct LadderResult {
 /// Requires a solid that passed the exact tests, with rings that are divided as the triangles are
 /// (FacetTriangles::divided_solid). Neither result set = undecided.
 /// `workers` may be null: rung 0 only.
-LadderResult climb_ladder(const Solid& solid, const FacetTriangles& facets, EngineWorkers* workers,
-                          const LadderOptions& options);
+LadderResult climb_ladder(const Solid& solid, const tessellate::FacetTriangles& facets,
+                          EngineWorkers* workers, const LadderOptions& options);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -18,7 +18,7 @@
 #include "geometry/box_partition.h"
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 using Edge = std::pair<Index, Index>;
@@ -30,10 +30,10 @@ Edge sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 /// The signs of the turns of a point around a triangle in projection, +1 inside.
 std::array<int, 3> sides(std::span<const Point> points, const Triangle& t, const Point& p,
                          int axis) {
-  const int turn = orient2d(points[t[0]], points[t[1]], points[t[2]], axis);
+  const int turn = geometry::orient2d(points[t[0]], points[t[1]], points[t[2]], axis);
   std::array<int, 3> result{};
   for (std::size_t k = 0; k < 3; ++k) {
-    result[k] = turn * orient2d(points[t[k]], points[t[(k + 1) % 3]], p, axis);
+    result[k] = turn * geometry::orient2d(points[t[k]], points[t[(k + 1) % 3]], p, axis);
   }
   return result;
 }
@@ -43,13 +43,13 @@ bool do_cross(std::span<const Point> points, const Edge& first, const Edge& seco
   const auto [a, b] = first;
   const auto [c, d] = second;
   if (a == c || a == d || b == c || b == d) return false;
-  if (orient3d(points[a], points[b], points[c], points[d]) != 0) return false;
+  if (geometry::orient3d(points[a], points[b], points[c], points[d]) != 0) return false;
   // Along an axis in which the common plane is not seen edge-on, all four turns count.
   for (int axis = 0; axis < 3; ++axis) {
-    const int c_side = orient2d(points[a], points[b], points[c], axis);
-    const int d_side = orient2d(points[a], points[b], points[d], axis);
-    const int a_side = orient2d(points[c], points[d], points[a], axis);
-    const int b_side = orient2d(points[c], points[d], points[b], axis);
+    const int c_side = geometry::orient2d(points[a], points[b], points[c], axis);
+    const int d_side = geometry::orient2d(points[a], points[b], points[d], axis);
+    const int a_side = geometry::orient2d(points[c], points[d], points[a], axis);
+    const int b_side = geometry::orient2d(points[c], points[d], points[b], axis);
     if (c_side * d_side < 0 && a_side * b_side < 0) return true;
   }
   return false;
@@ -61,7 +61,7 @@ class FacetMesh {
   FacetMesh(std::span<const Point> points, std::span<const Triangle> triangles, int axis)
       : points_(points), triangles_(triangles.begin(), triangles.end()), axis_(axis) {
     const Triangle& t = triangles_.front();
-    turn_ = orient2d(points[t[0]], points[t[1]], points[t[2]], axis);
+    turn_ = geometry::orient2d(points[t[0]], points[t[1]], points[t[2]], axis);
   }
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -129,7 +129,7 @@ class FacetMesh {
     }
   }
   bool is_positive(Index a, Index b, Index c) const {
-    return turn_ * orient2d(points_[a], points_[b], points_[c], axis_) > 0;
+    return turn_ * geometry::orient2d(points_[a], points_[b], points_[c], axis_) > 0;
   }
   Index opposite(const Edge& edge) const {
     for (const Index v : triangles_[left_of_.at(edge)]) {
@@ -197,21 +197,21 @@ class FacetMesh {
 
 class ContactDivision {
  public:
-  ContactDivision(const Solid& solid, const FacetTriangles& canonical)
+  ContactDivision(const Solid& solid, const tessellate::FacetTriangles& canonical)
       : solid_(solid), canonical_(canonical), points_(solid.vertices()) {}
 
   Result<ContactTriangles> run(const std::function<bool()>& is_cancelled) {
-    IntersectionOptions options;
+    geometry::IntersectionOptions options;
     options.limit = kMostPairs;
     options.cancel = is_cancelled;
     options.group_of = canonical_.facet_of;
-    const auto pairs = intersecting_pairs(points_, canonical_.triangles, options);
+    const auto pairs = geometry::intersecting_pairs(points_, canonical_.triangles, options);
     if (!pairs) return pairs.error();
     if (pairs->size() >= kMostPairs) {
       return Error{ErrorCode::limit_exceeded, "the shells touch in too many places"};
     }
     collect_ring_edges();
-    for (const IntersectingPair& pair : *pairs) note(pair);
+    for (const geometry::IntersectingPair& pair : *pairs) note(pair);
     note_common_diagonals();
     if (touched_.empty() && result_.obstacle.empty()) return std::move(result_);
     result_.is_touched.assign(solid_.facet_count(), false);
@@ -240,7 +240,7 @@ class ContactDivision {
     return std::binary_search(ring_edges_.begin(), ring_edges_.end(), edge);
   }
 
-  void note(const IntersectingPair& pair) {
+  void note(const geometry::IntersectingPair& pair) {
     if (shell_of(pair.first) == shell_of(pair.second)) return;
     note_vertices(pair.first, pair.second);
     note_vertices(pair.second, pair.first);
@@ -248,7 +248,7 @@ class ContactDivision {
     const Index second = canonical_.facet_of[pair.second];
     meeting_.insert({first, second});
     meeting_.insert({second, first});
-    if (pair.contact >= ContactClass::edge_edge) note_crossing(pair);
+    if (pair.contact >= geometry::ContactClass::edge_edge) note_crossing(pair);
   }
 
   void note_vertices(Index triangle, Index other) {
@@ -256,14 +256,15 @@ class ContactDivision {
     const Index facet = canonical_.facet_of[triangle];
     for (const Index v : canonical_.triangles[other]) {
       if (std::find(t.begin(), t.end(), v) != t.end()) continue;
-      if (!is_on_triangle(points_, t, points_[v], facet_projection(solid_, facet).axis)) continue;
+      if (!is_on_triangle(points_, t, points_[v], tessellate::facet_projection(solid_, facet).axis))
+        continue;
       inside_[facet].insert(v);
       touched_.insert(facet);
     }
   }
 
   /// Edges of both shells that cross, and edges that run over a facet.
-  void note_crossing(const IntersectingPair& pair) {
+  void note_crossing(const geometry::IntersectingPair& pair) {
     const Triangle& first = canonical_.triangles[pair.first];
     const Triangle& second = canonical_.triangles[pair.second];
     for (std::size_t i = 0; i < 3; ++i) {
@@ -290,8 +291,8 @@ class ContactDivision {
         if (sorted(t[k], t[(k + 1) % 3]) == edge) apexes.push_back(t[(k + 2) % 3]);
       }
     }
-    return apexes.size() == 2 && orient3d(points_[edge.first], points_[edge.second],
-                                          points_[apexes[0]], points_[apexes[1]]) != 0;
+    return apexes.size() == 2 && geometry::orient3d(points_[edge.first], points_[edge.second],
+                                                    points_[apexes[0]], points_[apexes[1]]) != 0;
   }
 
   void report(Index facet, Index other) {
@@ -331,7 +332,8 @@ class ContactDivision {
     const auto own = std::span(canonical_.triangles)
                          .subspan(canonical_.first[facet],
                                   canonical_.first[facet + 1] - canonical_.first[facet]);
-    return meshes_.emplace(facet, FacetMesh(points_, own, facet_projection(solid_, facet).axis))
+    return meshes_
+        .emplace(facet, FacetMesh(points_, own, tessellate::facet_projection(solid_, facet).axis))
         .first->second;
   }
 
@@ -373,7 +375,7 @@ class ContactDivision {
   }
 
   const Solid& solid_;
-  const FacetTriangles& canonical_;
+  const tessellate::FacetTriangles& canonical_;
   std::span<const Point> points_;
   std::vector<Edge> ring_edges_;
   std::set<Index> touched_;
@@ -393,15 +395,16 @@ bool is_on_triangle(std::span<const Point> points, const Triangle& triangle, con
     const double high = std::max({points[a][k], points[b][k], points[c][k]});
     if (point[k] < low || point[k] > high) return false;
   }
-  if (orient3d(points[a], points[b], points[c], point) != 0) return false;
+  if (geometry::orient3d(points[a], points[b], points[c], point) != 0) return false;
   const std::array<int, 3> side = sides(points, triangle, point, axis);
   return std::all_of(side.begin(), side.end(), [](int sign) { return sign >= 0; });
 }
 
-Result<ContactTriangles> divide_at_contacts(const Solid& solid, const FacetTriangles& canonical,
+Result<ContactTriangles> divide_at_contacts(const Solid& solid,
+                                            const tessellate::FacetTriangles& canonical,
                                             const std::function<bool()>& is_cancelled) {
   if (solid.shell_count() < 2) return ContactTriangles{};
   return ContactDivision(solid, canonical).run(is_cancelled);
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

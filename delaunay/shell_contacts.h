@@ -12,12 +12,12 @@
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 struct ContactTriangles {
   /// The canonical triangles divided at vertices and edges of other shells that lie exactly on
   /// them. Grouped by facet and turned alike, as the canonical ones. Empty without contacts.
-  FacetTriangles triangles;
+  tessellate::FacetTriangles triangles;
   std::vector<bool> is_touched;  // facet -> holds a vertex or an edge of another shell
   /// Not empty: two edges of different shells (or folds of facets that are not planar) cross in a
   /// point that is no vertex of the solid, so that no triangulation by its vertices exists. For
@@ -30,7 +30,8 @@ struct ContactTriangles {
 /// exact tests. A solid of one shell has no contacts and costs nothing.
 /// Errors: cancelled; limit_exceeded for more than 20 million contacts. Cost: that of
 /// intersecting_pairs(), and for each facet its triangles times its contacts.
-Result<ContactTriangles> divide_at_contacts(const Solid& solid, const FacetTriangles& canonical,
+Result<ContactTriangles> divide_at_contacts(const Solid& solid,
+                                            const tessellate::FacetTriangles& canonical,
                                             const std::function<bool()>& is_cancelled = {});
 
 /// True if the point lies in the closed triangle, exactly. `axis` is one along which the triangle
@@ -38,4 +39,4 @@ Result<ContactTriangles> divide_at_contacts(const Solid& solid, const FacetTrian
 bool is_on_triangle(std::span<const Point> points, const Triangle& triangle, const Point& point,
                     int axis);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -23,7 +23,7 @@
 #include "delaunay/grid_predicates.h"
 #include "delaunay/insertion_order.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 constexpr double kSide = 1 << 30;
@@ -46,7 +46,7 @@ constexpr std::size_t kRimVertices = 64;
 constexpr std::size_t kSmallRim = 2 * (kRimVertices - 2);
 
 struct Cell {
-  Tetrahedron vertices{kNone, kNone, kNone, kNone};
+  geometry::Tetrahedron vertices{kNone, kNone, kNone, kNone};
   /// Across each face, the same face as the neighbour has it.
   std::array<Side, 4> neighbors{kNone, kNone, kNone, kNone};
 };
@@ -65,7 +65,7 @@ class SmallDelaunay {
   }
 
   /// Starts with four points of positive orientation.
-  void start(const Tetrahedron& corners);
+  void start(const geometry::Tetrahedron& corners);
 
   /// Returns false if the point equals one that is there. `steps` counts the work.
   bool insert(Index vertex, std::size_t& steps);
@@ -88,7 +88,7 @@ class SmallDelaunay {
     for (std::size_t i = 0; i < 4; ++i) t[i] = i == corner ? &p : &points_[cell.vertices[i]];
     return signs_.orientation(*t[0], *t[1], *t[2], *t[3]);
   }
-  Index new_cell(const Tetrahedron& vertices);
+  Index new_cell(const geometry::Tetrahedron& vertices);
   Index locate(const Point& p, std::size_t& steps) const;
   bool is_in_conflict(Index cell, const Point& p) const;
   void find_conflicts(Index first, const Point& p);
@@ -111,7 +111,7 @@ class SmallDelaunay {
   std::vector<Index> labels_;  // of vertices, while a rim is linked; else kNone
 };
 
-void SmallDelaunay::start(const Tetrahedron& corners) {
+void SmallDelaunay::start(const geometry::Tetrahedron& corners) {
   // Cell i lacks the i-th of the four corners and the infinite vertex; each two are neighbours.
   const auto& [a, b, c, d] = corners;
   const std::array<std::array<std::size_t, 4>, 5> labels{
@@ -131,7 +131,7 @@ void SmallDelaunay::start(const Tetrahedron& corners) {
   }
 }
 
-Index SmallDelaunay::new_cell(const Tetrahedron& vertices) {
+Index SmallDelaunay::new_cell(const geometry::Tetrahedron& vertices) {
   if (free_.empty()) {
     cells_.push_back({vertices});
     marks_.push_back(0);
@@ -196,7 +196,7 @@ void SmallDelaunay::find_conflicts(Index first, const Point& p) {
 void SmallDelaunay::fill_cavity(Index vertex) {
   for (Side& side : rim_) {
     const std::size_t corner = corner_of(side);
-    Tetrahedron vertices = cells_[cell_of(side)].vertices;
+    geometry::Tetrahedron vertices = cells_[cell_of(side)].vertices;
     vertices[corner] = vertex;
     const Side outside = cells_[cell_of(side)].neighbors[corner];
     last_ = new_cell(vertices);
@@ -285,7 +285,7 @@ bool SmallDelaunay::insert(Index vertex, std::size_t& steps) {
 }
 
 CanonicalDelaunay SmallDelaunay::list() {
-  std::vector<Tetrahedron> tetrahedra;
+  std::vector<geometry::Tetrahedron> tetrahedra;
   std::vector<ListedFace> faces;
   tetrahedra.reserve(cell_count());
   faces.reserve(2 * cell_count());
@@ -364,7 +364,7 @@ bool is_small_grid(std::span<const Point> points) {
       if (static_cast<double>(static_cast<std::int64_t>(p[axis])) != p[axis]) return false;
     }
   }
-  const Box box = box_of(points);
+  const Box box = geometry::box_of(points);
   return box.is_empty() || (box.max.x - box.min.x < kSide && box.max.y - box.min.y < kSide &&
                             box.max.z - box.min.z < kSide);
 }
@@ -376,7 +376,7 @@ Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
     return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
   }
   max_tetrahedra = std::min<std::uint64_t>(max_tetrahedra, kMostCells / 4);
-  const Box box = box_of(points);
+  const Box box = geometry::box_of(points);
   std::vector<Point> relative;
   relative.reserve(points.size());
   for (const Point& p : points) {
@@ -408,4 +408,4 @@ Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -14,7 +14,7 @@
 #include "base/result.h"
 #include "delaunay/canonical_delaunay.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// True if small_delaunay takes these points: integers up to 2^53 in magnitude, in a box whose
 /// sides are below 2^30.
@@ -26,4 +26,4 @@ Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
                                          std::uint64_t max_tetrahedra = 64'000'000,
                                          const std::function<bool()>& is_cancelled = {});
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

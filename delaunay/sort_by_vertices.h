@@ -9,7 +9,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// Sorts by key_of(record), a Triangle: by counting as to its first vertex, then the few records
 /// that share it. Requires first vertices below `vertex_count`. Records of equal keys come in any
@@ -34,4 +34,4 @@ void sort_by_vertices(std::vector<Record>& records, std::size_t vertex_count, co
   records.swap(sorted);
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -8,7 +8,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// A face of a tetrahedralization that belongs to an input facet.
 struct ConstrainedFace {
@@ -22,7 +22,7 @@ struct ConstrainedFace {
 struct Tetrahedralization {
   std::vector<Point> points;
   Index input_count = 0;
-  std::vector<Tetrahedron> tetrahedra;  // positively oriented: orient3d(0,1,2,3) > 0
+  std::vector<geometry::Tetrahedron> tetrahedra;  // positively oriented: orient3d(0,1,2,3) > 0
   std::vector<ConstrainedFace> constrained;
 };
 
@@ -33,4 +33,4 @@ struct PiecewiseLinearComplex {
   std::vector<Index> facet_of;  // triangle -> facet
 };
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

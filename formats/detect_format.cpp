@@ -8,7 +8,7 @@
 #include "formats/document.h"
 #include "formats/mesh/mesh_text.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -159,4 +159,4 @@ Result<Format> detect_format(std::string_view file_name, ByteView bytes) {
   return format_of_text(as_text(bytes));
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

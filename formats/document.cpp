@@ -11,7 +11,7 @@
 #include "formats/json_fg.h"
 #include "formats/mesh/mesh_text.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 Bytes bytes_of(const std::string& text) { return Bytes(text.begin(), text.end()); }
@@ -200,4 +200,4 @@ Result<Bytes> write_document(const Document& document, Format format) {
   return bytes_of(*text);
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -19,7 +19,7 @@
 #include "geometry/placement.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// U+FEFF in UTF-8, which some programs write before a text.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -67,7 +67,7 @@ struct SubmittedSolid {
   /// gml:id of each facet's polygon, "" for those without one; empty when none has one.
   std::vector<std::string> facet_ids = {};
   /// Of a file whose vertices are for this solid alone.
-  UnusedVertices unused = {};
+  geometry::UnusedVertices unused = {};
   bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
 };
 
@@ -76,7 +76,7 @@ struct SubmittedSolid {
 struct TemplateInstance {
   SolidSource source;  // `pointer` leads to the geometry that is the instance; no LoD of its own
   std::uint64_t template_number = 0;  // SolidSource::geometry of its solids in Document::templates
-  Placement placement;
+  geometry::Placement placement;
 };
 
 /// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one
@@ -144,7 +144,8 @@ struct ReadOptions {
 struct CityHeader {
   std::string text;  // as Document::header
   std::string version;
-  std::optional<Transform> transform;  // absent: vertices are coordinates (an error in a sequence)
+  std::optional<geometry::Transform>
+      transform;  // absent: vertices are coordinates (an error in a sequence)
   std::uint32_t srid = 0;
   std::uint64_t template_count = 0;  // geometry templates that features may refer to
 };
@@ -179,5 +180,15 @@ Result<std::string> write_feature(const Document& document, const Feature& featu
 /// Errors: unsupported when a format cannot hold what is asked (OFF: several solids; OBJ, OFF:
 /// rings with holes are triangulated only by `convert`, never silently here).
 Result<Bytes> write_document(const Document& document, Format format);
+
+}  // namespace watertight::formats
+
+namespace watertight {
+
+using formats::Document;
+using formats::Feature;
+using formats::Format;
+using formats::SolidSource;
+using formats::SubmittedSolid;
 
 }  // namespace watertight

@@ -12,7 +12,7 @@
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 constexpr std::uint32_t kHasZ = 0x80000000;
@@ -46,7 +46,7 @@ class EwkbReader {
     }
     auto status = *type == kSolid ? shells() : shell();
     if (!status) return status.error();
-    auto points = lattice_of_doubles(positions_);
+    auto points = geometry::lattice_of_doubles(positions_);
     if (!points) return std::move(points).error();
     const char* name = *type == kSolid ? "SOLID Z"
                        : *type == kTin ? "TIN Z"
@@ -253,4 +253,4 @@ Bytes write_ewkb(const Solid& solid) {
   return std::move(out).bytes();
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

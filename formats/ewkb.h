@@ -9,7 +9,7 @@
 #include "base/limits.h"
 #include "formats/document.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 Result<SubmittedSolid> read_ewkb(ByteView bytes, const Limits& limits = {});
 Result<SubmittedSolid> read_wkt(std::string_view text, const Limits& limits = {});
@@ -17,4 +17,4 @@ Result<SubmittedSolid> read_wkt(std::string_view text, const Limits& limits = {}
 Bytes write_ewkb(const Solid& solid);
 std::string write_wkt(const Solid& solid);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 18U;
@@ -183,4 +183,4 @@ Result<Feature> FeatureReader::read(FeatureText text) const {
   return feature;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -13,7 +13,7 @@
 #include "formats/document.h"
 #include "formats/text/text_layout.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// Fills the span from the input and returns how many bytes; 0 at the end of the input.
 using ByteSource = std::function<Result<std::size_t>(std::span<std::uint8_t>)>;
@@ -84,4 +84,4 @@ class FeatureReader {
   bool is_at_end_ = false;  // of the source
 };
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "formats/surface.h"
 #include "formats/text/json.h"
 #include "formats/text/numbers.h"
-#include "formats/surface.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 Error wrong(std::string message, std::string pointer) {
@@ -41,12 +41,12 @@ class PlaceReader {
   }
 
   Result<std::vector<SubmittedSolid>> finish() {
-    auto points = lattice_of_decimals(positions_);
+    auto points = geometry::lattice_of_decimals(positions_);
     if (!points) return std::move(points).error();
     for (const Index position : points->rounded) is_rounded_[position] = true;
     std::vector<SubmittedSolid> solids;
     for (Part& part : parts_) {
-      LatticePoints own{points->lattice, {}, {}};
+      geometry::LatticePoints own{points->lattice, {}, {}};
       for (std::size_t i = part.begin; i < part.end; ++i) {
         if (is_rounded_[i]) own.rounded.push_back(static_cast<Index>(i - part.begin));
         own.points.push_back(points->points[i]);
@@ -287,4 +287,4 @@ Result<Document> read_json_fg(std::string_view text, const ReadOptions& options)
   return JsonFgReader(options.limits).read(*root);
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

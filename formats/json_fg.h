@@ -8,11 +8,11 @@
 
 #include "formats/document.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// Features with a `place` of type Polyhedron or MultiPolyhedron become solids; `geometry` is not
 /// read. Errors: malformed with byte offset or JSON Pointer; unsupported for documents in which no
 /// feature has such a place, for prisms, and for collections of other types; limit_exceeded.
 Result<Document> read_json_fg(std::string_view text, const ReadOptions& options);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -5,11 +5,11 @@
 #include <numeric>
 #include <utility>
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 Result<SubmittedSolid> submitted(SolidArrays arrays, std::span<const Index> vertex_of,
-                                 const LatticePoints& points, SolidSource source,
+                                 const geometry::LatticePoints& points, SolidSource source,
                                  std::uint32_t srid, const Limits& limits) {
   arrays.vertices.reserve(vertex_of.size());
   for (const Index vertex : vertex_of) arrays.vertices.push_back(points.points[vertex]);
@@ -19,15 +19,15 @@ Result<SubmittedSolid> submitted(SolidArrays arrays, std::span<const Index> vert
 }
 
 /// What of `all` is not in `used`.
-UnusedVertices unused_vertices(const std::vector<std::array<GridNumber, 3>>& all,
-                               const std::vector<Index>& used) {
-  UnusedVertices unused{all.size() - used.size(), 0, {}};
+geometry::UnusedVertices unused_vertices(const std::vector<std::array<GridNumber, 3>>& all,
+                                         const std::vector<Index>& used) {
+  geometry::UnusedVertices unused{all.size() - used.size(), 0, {}};
   if (unused.count == 0) return unused;
   std::vector<bool> is_used(all.size(), false);
   for (const Index vertex : used) is_used[vertex] = true;
   const auto first = std::find(is_used.begin(), is_used.end(), false) - is_used.begin();
   unused.first = static_cast<std::uint64_t>(first);
-  const auto point = lattice_of_decimals(std::span(&all[unused.first], 1));
+  const auto point = geometry::lattice_of_decimals(std::span(&all[unused.first], 1));
   if (point) unused.place = point->lattice.world(point->points.front());
   return unused;
 }
@@ -54,7 +54,7 @@ Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertic
   std::vector<std::array<GridNumber, 3>> positions;
   positions.reserve(used.size());
   for (const Index vertex : used) positions.push_back(vertices.positions[vertex]);
-  auto points = lattice_of_decimals(positions);
+  auto points = geometry::lattice_of_decimals(positions);
   if (!points) return std::move(points).error();
 
   std::vector<bool> is_rounded(used.size(), false);
@@ -84,7 +84,7 @@ Result<Document> one_shell_document(Document document, Format format, std::strin
   return document;
 }
 
-Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const LatticePoints& points,
+Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const geometry::LatticePoints& points,
                                        SolidSource source, std::uint32_t srid,
                                        const Limits& limits) {
   std::vector<Index> by_point(points.points.size());
@@ -113,4 +113,4 @@ Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const LatticePoints& 
   return solid;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -13,7 +13,7 @@
 #include "formats/document.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// Renumbers the ring vertices in order of first use; returns what each new one was. `number_of`
 /// has an entry per vertex of the file and is kNone everywhere, before and after.
@@ -39,8 +39,8 @@ Result<Document> one_shell_document(Document document, Format format, std::strin
 
 /// A solid whose ring vertices are positions in `points`, one per vertex of a ring. Formats of this
 /// kind say that two vertices are the same only by equal coordinates: equal points become one.
-Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const LatticePoints& points,
+Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const geometry::LatticePoints& points,
                                        SolidSource source, std::uint32_t srid,
                                        const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::formats

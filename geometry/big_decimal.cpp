@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace watertight {
+namespace watertight::geometry {
 
 BigInteger big_power(unsigned base, std::int64_t exponent) {
   BigInteger power;
@@ -43,4 +43,4 @@ BigInteger big_mantissa_at(const BigDecimal& decimal, std::int64_t exponent) {
   return decimal.mantissa * big_power(10, decimal.exponent - exponent);
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -10,7 +10,7 @@
 
 #include "geometry/lattice.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 using BigInteger = mpz_class;
 
@@ -41,4 +41,4 @@ BigDecimal big_sum(const BigDecimal& a, const BigDecimal& b);
 /// The decimal's mantissa at a lower exponent. Requires exponent <= decimal.exponent.
 BigInteger big_mantissa_at(const BigDecimal& decimal, std::int64_t exponent);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -12,7 +12,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 inline constexpr float kFloatStep = std::numeric_limits<float>::epsilon();
 
@@ -69,4 +69,4 @@ struct PartBounds {
   }
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

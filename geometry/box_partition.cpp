@@ -11,7 +11,7 @@
 #include "geometry/pair_search.h"
 #include "geometry/parallel.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 /// Space is divided into pieces of at most so many triangles where that is possible; pieces are
@@ -210,4 +210,4 @@ Result<std::vector<IntersectingPair>> intersecting_pairs(std::span<const Point> 
   return Search(points, triangles, options).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

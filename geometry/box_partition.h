@@ -13,7 +13,7 @@
 #include "geometry/point.h"
 #include "geometry/triangle_triangle.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Two triangles that intersect, first < second.
 struct IntersectingPair {
@@ -52,4 +52,4 @@ Result<std::vector<IntersectingPair>> intersecting_pairs(std::span<const Point> 
                                                          std::span<const Triangle> triangles,
                                                          const IntersectionOptions& options = {});
 
-}  // namespace watertight
+}  // namespace watertight::geometry

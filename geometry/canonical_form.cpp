@@ -9,7 +9,7 @@
 #include "base/bytes.h"
 #include "base/checksum.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 constexpr Limits kNoLimits{.vertices = kNone, .facets = kNone, .rings = kNone, .shells = kNone};
@@ -336,4 +336,4 @@ std::uint64_t solid_hash(const OrientedBoundary& boundary) {
   return content_hash(writer.bytes());
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -10,7 +10,7 @@
 
 #include "geometry/valid_solid.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Where everything of the canonical solid stood in the source. All are permutations.
 struct SourceOrder {
@@ -39,4 +39,4 @@ Result<Solid> restore_order(const Solid& canonical, const SourceOrder& order);
 /// 64-bit hash of the canonical form, lattice and SRID. Equal solids have equal hashes.
 std::uint64_t solid_hash(const OrientedBoundary& boundary);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 constexpr double kEnd = 9007199254740992.0;  // 2^53
@@ -123,4 +123,4 @@ std::optional<Point> CommonLattice::moved(const Point& p, const Lattice& from) c
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -9,7 +9,7 @@
 
 #include "geometry/lattice.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// The coarsest grid of integers that holds the points of several lattices of one kind.
 class CommonLattice {
@@ -26,4 +26,4 @@ class CommonLattice {
   Lattice lattice_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

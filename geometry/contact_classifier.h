@@ -19,7 +19,7 @@
 #include "geometry/point.h"
 #include "geometry/triangle_triangle.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Predicates gives orient3d(a, b, c, d) and orient2d(a, b, c, axis) on Points, as
 /// geometry/predicates.h defines them.
@@ -240,4 +240,4 @@ class ContactClassifier {
   const Point* points_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -7,7 +7,7 @@
 
 #include "geometry/crs_table.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 constexpr double kFoot = 0.3048;
@@ -150,4 +150,4 @@ double pole_of_first_axis(std::uint32_t srid) {
   return *unit == CrsUnit::grad ? 100 : 90;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

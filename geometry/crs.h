@@ -11,7 +11,7 @@
 #include "geometry/lattice.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 struct AxisUnits {
   std::array<double, 3> metres_per_unit{1, 1, 1};
@@ -35,4 +35,4 @@ double largest_angle(std::uint32_t srid);
 /// "(lon-lat)", and for unknown codes. Cost: logarithmic.
 double pole_of_first_axis(std::uint32_t srid);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

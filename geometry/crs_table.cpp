@@ -4,7 +4,7 @@
 // (epsg.org, terms of use: epsg.org/terms-of-use.html). Not edited by hand.
 #include "geometry/crs_table.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 constexpr CrsUnit bc = CrsUnit::benoit_chain;
@@ -409,4 +409,4 @@ constexpr CrsRun kRuns[] = {
 
 std::span<const CrsRun> crs_runs() { return kRuns; }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

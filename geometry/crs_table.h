@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// The unit of the horizontal axes; of the vertical one too unless named after it (degrees and
 /// grads have heights in metres).
@@ -43,4 +43,4 @@ struct CrsRun {
 /// Sorted, without overlap.
 std::span<const CrsRun> crs_runs();
 
-}  // namespace watertight
+}  // namespace watertight::geometry

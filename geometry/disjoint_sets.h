@@ -7,7 +7,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Union-find with path halving; the smallest member is the root.
 class DisjointSets {
@@ -30,4 +30,4 @@ class DisjointSets {
   std::vector<Index> parent_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -8,7 +8,7 @@
 
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 /// Pairs of an edge and a vertex looked at for one solid: two seconds of work. Only long oblique
@@ -156,4 +156,4 @@ DividedRings divide_rings(const Solid& solid, std::span<const RingTouch> touches
   return {std::move(divided).value(), std::move(corner_of)};
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -11,7 +11,7 @@
 
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// A vertex of another ring of the facet inside an edge.
 struct RingTouch {
@@ -41,4 +41,4 @@ struct DividedRings {
 /// order of ring_touches(). Cost: linear.
 DividedRings divide_rings(const Solid& solid, std::span<const RingTouch> touches);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

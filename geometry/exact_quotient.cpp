@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace watertight {
+namespace watertight::geometry {
 
 double nearest_quotient(mpz_class numerator, const mpz_class& denominator, std::int64_t exponent) {
   if (numerator == 0) return 0.0;
@@ -44,4 +44,4 @@ double nearest_quotient(mpz_class numerator, const mpz_class& denominator, std::
   return is_negative ? -magnitude : magnitude;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -7,10 +7,10 @@
 
 #include <cstdint>
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// numerator / denominator * 2^exponent as the nearest double (ties to even), infinity beyond the
 /// range. Requires denominator > 0 and |exponent| below 2^40.
 double nearest_quotient(mpz_class numerator, const mpz_class& denominator, std::int64_t exponent);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

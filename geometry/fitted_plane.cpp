@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -199,4 +199,4 @@ PlaneDistance distance_to_fitted_plane(std::span<const Triple> points, double li
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-namespace watertight {
+namespace watertight::geometry {
 
 struct PlaneDistance {
   double distance = 0;    // the largest distance of a point from the plane
@@ -26,4 +26,4 @@ struct PlaneDistance {
 /// doubles do not suffice.
 PlaneDistance distance_to_fitted_plane(std::span<const std::array<double, 3>> points, double limit);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

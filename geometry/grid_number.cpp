@@ -8,7 +8,7 @@
 
 #include "base/assert.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 constexpr Wide kWideMax = static_cast<Wide>(~UnsignedWide{0} >> 1U);
@@ -216,4 +216,4 @@ GridNumber shortest_decimal(double value) {
   return parsed ? *parsed : GridNumber{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -10,7 +10,7 @@
 
 #include "geometry/lattice.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 __extension__ typedef __int128 Wide;
 __extension__ typedef unsigned __int128 UnsignedWide;
@@ -58,4 +58,4 @@ std::string plain_decimal(std::string digits, std::int64_t exponent);
 /// The digits of a 128-bit integer.
 std::string digits_of(Wide value);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -19,7 +19,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 struct InlinePredicates {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -136,4 +136,4 @@ struct InlinePredicates {
   }
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -11,7 +11,7 @@
 #include "base/assert.h"
 #include "geometry/grid_number.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 constexpr std::int32_t kDecimal = 10;
@@ -431,4 +431,4 @@ Result<LatticePoints> lattice_of_doubles(std::span<const std::array<double, 3>> 
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

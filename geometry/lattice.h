@@ -30,7 +30,7 @@
 #include "base/result.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// mantissa * radix^exponent, radix 10 (decimal lattices) or 2 (binary ones). Normalized: the
 /// mantissa is not divisible by the radix, and zero is {0, 0}.
@@ -125,5 +125,13 @@ Result<LatticePoints> lattice_of_doubles(std::span<const std::array<double, 3>> 
 Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& lattice,
                                                                 std::span<const Point> points,
                                                                 const Transform& transform);
+
+}  // namespace watertight::geometry
+
+namespace watertight {
+
+using geometry::GridNumber;
+using geometry::Lattice;
+using geometry::LatticeKind;
 
 }  // namespace watertight

@@ -11,7 +11,7 @@
 #include "geometry/grid_number.h"
 #include "geometry/lattice.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 constexpr double kExactEnd = 9007199254740992.0;  // 2^53
@@ -206,7 +206,7 @@ bool Lattice::is_sane() const {
     return false;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!watertight::is_sane(step[axis]) || !watertight::is_sane(origin[axis])) return false;
+    if (!geometry::is_sane(step[axis]) || !geometry::is_sane(origin[axis])) return false;
     if (step[axis].mantissa <= 0) return false;
   }
   if (kind != LatticeKind::float64) return true;
@@ -276,4 +276,4 @@ Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& l
   return integers;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -12,7 +12,7 @@
 
 #include "geometry/slab_partition.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Bounds of boxes, one array for each direction and side, padded to whole blocks of four with
 /// boxes that overlap nothing.
@@ -84,4 +84,4 @@ class BoxColumns {
   std::array<std::vector<float>, D> high_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

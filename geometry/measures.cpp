@@ -16,7 +16,7 @@
 #include "geometry/exact_quotient.h"
 #include "geometry/grid_number.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 /// numerator / denominator * 2^exponent.
@@ -238,4 +238,4 @@ Measures measure(const Solid& solid, std::span<const Triangle> triangles) {
   return measures;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -10,7 +10,7 @@
 
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 struct Measures {
   double volume = 0;  // world units cubed; the exact value rounded once
@@ -35,4 +35,4 @@ double six_volume(std::span<const Point> vertices, std::span<const Triangle> tri
 /// Requires vertices merged; genus is meaningful for closed 2-manifold shells.
 Measures measure(const Solid& solid, std::span<const Triangle> triangles);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -225,4 +225,4 @@ BoxMember<6> Frame::box(std::span<const Point> points, const Triangle& triangle,
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

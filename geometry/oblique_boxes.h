@@ -11,7 +11,7 @@
 
 #include "geometry/box_member.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Adds to a triangle's box the bounds of the directions, as unit vectors, from the vertex `apex`
 /// to its points. A triangle with this vertex and another one, with or without it, that have more
@@ -38,4 +38,4 @@ class Frame {
   std::array<Vector, 3> axes_{};
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

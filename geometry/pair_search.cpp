@@ -6,7 +6,7 @@
 
 #include "geometry/oblique_boxes.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 /// Parts with more pairs, of 256 triangles, are looked at in other directions.
@@ -189,4 +189,4 @@ bool PairSearch::goes_on(std::size_t comparisons) {
   return pairs_.size() < context_.limit;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

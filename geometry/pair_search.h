@@ -15,7 +15,7 @@
 #include "geometry/pair_tester.h"
 #include "geometry/slab_partition.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// What all pieces of one search read, and how it is ended.
 struct SearchContext {
@@ -82,4 +82,4 @@ class PairSearch {
   std::uint64_t comparisons_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -13,7 +13,7 @@
 #include "geometry/contact_classifier.h"
 #include "geometry/inline_predicates.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// A triangle with its plane: the sign of normal . (x - corner[0]) is that of orient3d(corners, x)
 /// where it exceeds error * (largest component of x - corner[0]).
@@ -215,4 +215,4 @@ class PairTester {
   ContactClassifier<InlinePredicates> classifier_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 class Crew {
@@ -102,4 +102,4 @@ void for_each_piece(std::size_t count, unsigned threads,
   crew.end();
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

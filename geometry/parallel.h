@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Calls work(i, is_caller) for all i < count, each once, on at most `threads` threads: the
 /// caller's (is_caller is true there) and others. Pieces are begun in ascending order. While the
@@ -17,4 +17,4 @@ void for_each_piece(std::size_t count, unsigned threads,
                     const std::function<void(std::size_t, bool)>& work,
                     const std::function<void()>& wait = {});
 
-}  // namespace watertight
+}  // namespace watertight::geometry

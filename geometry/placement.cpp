@@ -8,7 +8,7 @@
 #include "geometry/big_decimal.h"
 #include "geometry/grid_number.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 using Matrix = std::array<std::array<BigInteger, 3>, 3>;
@@ -118,4 +118,4 @@ Solid turned_over(const Solid& solid) {
   return *std::move(result);
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

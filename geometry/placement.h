@@ -10,7 +10,7 @@
 #include "geometry/lattice.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// world = linear * template + offset + anchor, in the exact decimals of the document.
 struct Placement {
@@ -49,4 +49,4 @@ Result<Solid> placed(const Solid& solid, const Placement& placement);
 /// with positive determinant makes of it turned over.
 Solid turned_over(const Solid& solid);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -9,7 +9,7 @@
 #include <limits>
 #include <span>
 
-namespace watertight {
+namespace watertight::geometry {
 
 using Index = std::uint32_t;
 inline constexpr Index kNone = std::numeric_limits<Index>::max();
@@ -56,5 +56,15 @@ inline Box box_of(std::span<const Point> points) {
   for (const Point& p : points) box.include(p);
   return box;
 }
+
+}  // namespace watertight::geometry
+
+namespace watertight {
+
+using geometry::Box;
+using geometry::Index;
+using geometry::kNone;
+using geometry::Point;
+using geometry::Triangle;
 
 }  // namespace watertight

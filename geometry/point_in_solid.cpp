@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 using Rational = mpq_class;
@@ -127,4 +127,4 @@ int locate_exactly(const TrianglePoint& point, std::span<const Point> vertices,
   return is_inside ? 1 : -1;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -11,7 +11,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// The point (w0 a + w1 b + w2 c) / 2^exponent of a triangle. Requires positive weights that sum to
 /// 2^exponent, exponent <= 52.
@@ -38,4 +38,4 @@ std::optional<Point> exact_doubles(const TrianglePoint& point);
 int locate_exactly(const TrianglePoint& point, std::span<const Point> vertices,
                    std::span<const Triangle> triangles);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

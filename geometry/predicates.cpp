@@ -3,7 +3,7 @@
 
 #include "geometry/inline_predicates.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 int orient3d(const Point& a, const Point& b, const Point& c, const Point& d) {
   return InlinePredicates::orient3d(a, b, c, d);
@@ -29,4 +29,4 @@ bool is_on_segment(const Point& a, const Point& b, const Point& q) {
   return are_collinear(a, b, q);
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

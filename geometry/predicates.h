@@ -7,7 +7,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Sign of det(b-a, c-a, d-a), six times the signed volume of tetrahedron abcd: +1 when a, b, c
 /// turn counter-clockwise as seen from d, -1 when clockwise, 0 when the points are coplanar. For an
@@ -24,4 +24,4 @@ bool are_collinear(const Point& a, const Point& b, const Point& c);
 /// True if q lies on the closed segment ab, exactly.
 bool is_on_segment(const Point& a, const Point& b, const Point& q);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -8,7 +8,7 @@
 #include "geometry/big_decimal.h"
 #include "geometry/grid_number.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 /// Coordinates on the grid differ by less; one bit is left for the rounding of its origin.
@@ -289,4 +289,4 @@ std::optional<std::vector<Point>> SharedGrid::vertices(std::size_t index) const 
   return points;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -12,7 +12,7 @@
 #include "geometry/placement.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// A solid, or the solid of a geometry template and where an instance puts it. Kept by the caller.
 struct StandingSolid {
@@ -62,4 +62,4 @@ class SharedGrid {
   std::vector<std::array<bool, 3>> rounded_axes_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -13,7 +13,7 @@
 
 #include "geometry/box_member.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// What one part holds. Pairs are either all within `first`, when `is_within`, or those of one
 /// member of `first` and one of `second`.
@@ -308,4 +308,4 @@ class SlabPartition {
   std::vector<Part> parts_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::geometry

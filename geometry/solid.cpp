@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 bool are_offsets(const std::vector<Index>& offsets, std::size_t size) {
@@ -105,4 +105,4 @@ MergedSolid merge_equal_vertices(const Solid& solid) {
   return {std::move(merged).value(), std::move(vertex_of)};
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

@@ -14,7 +14,7 @@
 #include "geometry/lattice.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// Half-open range of indices into the next lower array: rings of a facet, facets of a shell.
 struct IndexRange {
@@ -103,5 +103,13 @@ struct MergedSolid {
   std::vector<Index> vertex_of;
 };
 MergedSolid merge_equal_vertices(const Solid& solid);
+
+}  // namespace watertight::geometry
+
+namespace watertight {
+
+using geometry::IndexRange;
+using geometry::Solid;
+using geometry::SolidArrays;
 
 }  // namespace watertight

@@ -12,7 +12,7 @@
 #include "geometry/exact_quotient.h"
 #include "geometry/inline_predicates.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 using Rational = mpq_class;
@@ -103,4 +103,4 @@ Point contact_witness(std::span<const Point> points, const Triangle& first,
   return witness;
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

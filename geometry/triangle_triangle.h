@@ -10,7 +10,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::geometry {
 
 /// What two triangles have in common. The first three are how the triangles of a boundary may
 /// meet; each of the others is an intersection in the sense of the paper, section 3.2: the common
@@ -50,4 +50,4 @@ ContactClass classify_contact(std::span<const Point> points, const Triangle& fir
 /// Requires two triangles that are not degenerate and not disjoint. Cost: some 50 microseconds.
 Point contact_witness(std::span<const Point> points, const Triangle& first, const Triangle& second);
 
-}  // namespace watertight
+}  // namespace watertight::geometry

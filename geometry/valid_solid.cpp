@@ -8,7 +8,7 @@
 
 #include "geometry/divided_rings.h"
 
-namespace watertight {
+namespace watertight::geometry {
 namespace {
 
 Error not_encodable(std::string message) { return {ErrorCode::not_encodable, std::move(message)}; }
@@ -126,4 +126,4 @@ Result<OrientedBoundary> OrientedBoundary::make(Solid solid) {
   return OrientedBoundary(std::move(solid));
 }
 
-}  // namespace watertight
+}  // namespace watertight::geometry

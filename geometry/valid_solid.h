@@ -9,7 +9,11 @@
 
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::validate {
+class Certifier;
+}  // namespace watertight::validate
+
+namespace watertight::geometry {
 
 /// Tolerances a solid was certified under. All in world units of its CRS axis unit unless named.
 /// They measure (planarity); no decision about side, order or crossing uses them.
@@ -62,11 +66,21 @@ class ValidSolid {
   const Acceptance& acceptance() const { return acceptance_; }
 
  private:
-  friend class Certifier;  // validate/: the one maker
+  friend class validate::Certifier;  // the one maker
   ValidSolid(OrientedBoundary boundary, Acceptance acceptance)
       : boundary_(std::move(boundary)), acceptance_(acceptance) {}
   OrientedBoundary boundary_;
   Acceptance acceptance_;
 };
+
+}  // namespace watertight::geometry
+
+namespace watertight {
+
+using geometry::Acceptance;
+using geometry::OrientedBoundary;
+using geometry::Proof;
+using geometry::Tolerances;
+using geometry::ValidSolid;
 
 }  // namespace watertight

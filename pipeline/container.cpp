@@ -15,7 +15,7 @@
 #include "formats/text/packed_text.h"
 #include "pipeline/container_reader.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 constexpr std::size_t kPartFeatures = 4096;
@@ -37,10 +37,10 @@ struct Paged {
 };
 
 Result<Paged> make_pages(const std::vector<const Bytes*>& blobs, const EncodeOptions& options) {
-  PageFileWriter writer(kMaxPageSolids, options);
+  codec::PageFileWriter writer(codec::kMaxPageSolids, options);
   Paged paged;
   for (const Bytes* blob : blobs) {
-    const auto info = describe(*blob);
+    const auto info = codec::describe(*blob);
     if (!info) return info.error();
     paged.is_in_file.push_back(info->steiner_vertices == 0);
     if (!paged.is_in_file.back()) continue;
@@ -149,7 +149,7 @@ Status ContainerWriter::close_part() {
     if (!status) return status;
     solids += feature.solids.size();
   }
-  const auto packed = pack_text(as_text(texts.bytes()));
+  const auto packed = formats::pack_text(as_text(texts.bytes()));
   if (!packed) return packed.error();
   ByteWriter part;
   write_text(part, ByteView(*packed));
@@ -200,7 +200,7 @@ Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& lim
     if (!part) return std::move(part).error();
     if (!*part) return documents;
     for (ContainerDocument& added : (*part)->new_documents) {
-      const auto format = format_named(added.format);
+      const auto format = formats::format_named(added.format);
       if (!format) return format.error();
       Document& document = documents.emplace_back();
       document.format = *format;
@@ -209,7 +209,7 @@ Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& lim
     }
     for (ContainerFeature& feature : (*part)->features) {
       Document& document = documents[feature.document];
-      auto whole = restored(feature, std::string(to_string(document.format)), limits);
+      auto whole = restored(feature, std::string(formats::to_string(document.format)), limits);
       if (!whole) return std::move(whole).error();
       document.features.push_back(*std::move(whole));
     }
@@ -225,7 +225,7 @@ Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
     if (!part) return std::move(part).error();
     if (!*part) return info;
     for (ContainerDocument& added : (*part)->new_documents) {
-      const auto format = format_named(added.format);
+      const auto format = formats::format_named(added.format);
       if (!format) return format.error();
       info.formats.push_back(*format);
     }
@@ -235,7 +235,7 @@ Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
     for (const ContainerFeature& feature : (*part)->features) {
       info.solids += feature.solids.size();
       for (const Decoded& decoded : feature.solids) {
-        for (const BlobInfo::Part& bytes_of : decoded.info.parts) {
+        for (const codec::BlobInfo::Part& bytes_of : decoded.info.parts) {
           info.parts[bytes_of.name] += bytes_of.bytes;
         }
       }
@@ -243,4 +243,4 @@ Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -10,7 +10,7 @@
 
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 /// True if the bytes start like a Watertight file (of any version).
 bool is_container(ByteView bytes);
@@ -68,4 +68,4 @@ struct ContainerInfo {
 /// Decodes all solids. Errors: as decode_container().
 Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits = {});
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -9,7 +9,7 @@
 #include "codec/page_file.h"
 #include "formats/text/packed_text.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 constexpr std::size_t kHeadBytes = sizeof(kContainerMagic) + 1;
@@ -88,7 +88,7 @@ bool read_texts(ByteView bytes, std::uint64_t documents, std::uint64_t& items_le
 /// The solids of a page file in order.
 Result<std::vector<Decoded>> decode_pages(ByteView file, const Limits& limits,
                                           std::uint64_t& pages) {
-  const auto reader = PageFileReader::open(file, limits);
+  const auto reader = codec::PageFileReader::open(file, limits);
   if (!reader) return reader.error();
   pages = reader->page_count();
   std::vector<std::optional<Decoded>> found(reader->size());
@@ -146,7 +146,7 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
     if (parts_.remaining() > 0) return malformed("bytes after the last part");
     return std::optional<ContainerPart>();
   }
-  const auto text = unpack_text(packed, texts_left_);
+  const auto text = formats::unpack_text(packed, texts_left_);
   if (!text) return text.error();
   texts_left_ -= text->size();
   Texts texts;
@@ -185,4 +185,4 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
   return std::optional<ContainerPart>(std::move(part));
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

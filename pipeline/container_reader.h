@@ -11,7 +11,7 @@
 #include "codec/blob.h"
 #include "store/solid_store.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 /// As PNG's: a byte above 127, and line ends that a text-mode transfer would change.
 inline constexpr std::uint8_t kContainerMagic[8] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n'};
@@ -65,4 +65,4 @@ class ContainerReader {
   std::uint64_t documents_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -4,7 +4,7 @@
 #include "pipeline/pipeline.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 bool has_holes(const Solid& solid) {
@@ -21,8 +21,8 @@ void append_ring(SolidArrays& arrays, std::span<const Index> ring) {
 
 /// The solid with each facet that has holes replaced by its triangles.
 Result<Solid> without_holes(const Solid& source) {
-  const Solid solid = merge_equal_vertices(source).solid;
-  const FacetTriangles triangles = triangulate_facets(solid);
+  const Solid solid = geometry::merge_equal_vertices(source).solid;
+  const tessellate::FacetTriangles triangles = tessellate::triangulate_facets(solid);
   SolidArrays arrays;
   arrays.vertices.assign(solid.vertices().begin(), solid.vertices().end());
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
@@ -36,7 +36,7 @@ Result<Solid> without_holes(const Solid& source) {
         arrays.end_facet();
         continue;
       }
-      if (triangles.state[facet] != FacetState::triangulated) {
+      if (triangles.state[facet] != tessellate::FacetState::triangulated) {
         return Error{ErrorCode::not_encodable,
                      "facet " + std::to_string(facet) +
                          " has holes that cannot be triangulated (its rings are not simple)"};
@@ -55,7 +55,7 @@ Result<Solid> without_holes(const Solid& source) {
 
 Result<Bytes> convert_document(const Document& document, Format format) {
   const bool keeps_holes = format != Format::obj && format != Format::off;
-  if (keeps_holes || document.format == format) return write_document(document, format);
+  if (keeps_holes || document.format == format) return formats::write_document(document, format);
   Document converted = document;
   for (Feature& feature : converted.features) {
     for (SubmittedSolid& submitted : feature.solids) {
@@ -69,7 +69,7 @@ Result<Bytes> convert_document(const Document& document, Format format) {
       submitted.solid = *std::move(solid);
     }
   }
-  return write_document(converted, format);
+  return formats::write_document(converted, format);
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

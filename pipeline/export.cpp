@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 constexpr std::uint64_t kBatch = 500;
@@ -15,7 +15,8 @@ Error about(const StoredFeature& feature, Error error) {
 }
 
 bool is_city_model(const std::string& format) {
-  return format == to_string(Format::city_json) || format == to_string(Format::city_json_seq);
+  return format == formats::to_string(Format::city_json) ||
+         format == formats::to_string(Format::city_json_seq);
 }
 
 constexpr const char* kOtherDocument =
@@ -28,7 +29,7 @@ Result<std::string> sequence_header(SolidStore& store, const std::string& collec
   if (!documents) return documents.error();
   const std::string name = "collection '" + collection + "' ";
   if (documents->empty()) return Error{ErrorCode::not_found, name + "has no features"};
-  for (const StoredHeader& document : *documents) {
+  for (const store::StoredHeader& document : *documents) {
     if (is_city_model(document.format)) continue;
     return Error{ErrorCode::unsupported,
                  name + "has features of format " + document.format + ", not of a city model"};
@@ -58,7 +59,8 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
   if (!header) return std::move(header).error();
   started.header_ = *std::move(header);
   // It was checked when it came in.
-  auto city_header = read_city_json_header(started.header_, Limits{.bytes = ~0ULL, .nesting = 256});
+  auto city_header =
+      formats::read_city_json_header(started.header_, Limits{.bytes = ~0ULL, .nesting = 256});
   if (!city_header) return std::move(city_header).error();
   started.city_header_ = *std::move(city_header);
   return started;
@@ -103,10 +105,10 @@ Status CollectionExport::add_line(const StoredFeature& feature, Bytes& bytes) {
   }
   const auto document = from_stored(feature);
   if (!document) return about(feature, document.error());
-  auto line = write_city_json_feature(*city_header_, document->features.front());
+  auto line = formats::write_city_json_feature(*city_header_, document->features.front());
   if (!line) return about(feature, line.error());
   append(bytes, as_bytes(*line + '\n'));
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

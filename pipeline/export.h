@@ -15,7 +15,7 @@
 #include "pipeline/container.h"
 #include "store/solid_store.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 enum class ExportFormat : std::uint8_t {
   container,  // a Watertight file: solids in pages, any number of documents
@@ -54,13 +54,13 @@ class CollectionExport {
 
   SolidStore* store_;
   std::string collection_;
-  std::optional<ContainerWriter> container_;  // none for a sequence
-  std::string header_;                        // of a sequence
-  std::optional<CityHeader> city_header_;     // the same, read
-  std::string after_;                         // of the next batch
+  std::optional<ContainerWriter> container_;        // none for a sequence
+  std::string header_;                              // of a sequence
+  std::optional<formats::CityHeader> city_header_;  // the same, read
+  std::string after_;                               // of the next batch
   bool is_first_ = true;
   bool is_last_ = false;
   Exported exported_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 using Candidates = std::span<const GroupCandidate>;
@@ -52,12 +52,12 @@ std::vector<DraftGroup> draft_groups(Candidates candidates) {
     const SolidSource& source = *candidates[begin].source;
     if (source.geometry_type == "CompositeSolid") {
       DraftGroup& draft = drafts.emplace_back();
-      draft.group = {GroupKind::composite_solid, source.object_id, source.lod, {}, {}};
+      draft.group = {validate::GroupKind::composite_solid, source.object_id, source.lod, {}, {}};
       for (std::size_t i = begin; i < end; ++i) draft.group.members.push_back(i);
     }
     if (source.building_id.empty()) continue;
     DraftGroup& building = buildings[{source.building_id, source.lod}];
-    building.group.kind = GroupKind::building_parts;
+    building.group.kind = validate::GroupKind::building_parts;
     building.group.object_id = source.building_id;
     building.group.lod = source.lod;
     add(building, begin, end, geometry);
@@ -85,18 +85,18 @@ std::vector<GroupCandidate> group_candidates(const InspectedFeature& feature) {
 }
 
 std::vector<InspectedGroup> inspect_groups(std::span<const GroupCandidate> candidates,
-                                           const GroupOptions& options) {
+                                           const validate::GroupOptions& options) {
   std::vector<InspectedGroup> groups;
   if (candidates.size() < 2) return groups;
   for (DraftGroup& draft : draft_groups(candidates)) {
-    std::vector<GroupMember> members;
+    std::vector<validate::GroupMember> members;
     for (const std::size_t member : draft.group.members) {
       members.push_back(candidates[member].member);
     }
-    draft.group.report = check_group(members, draft.group.kind, options, draft.unit_of);
+    draft.group.report = validate::check_group(members, draft.group.kind, options, draft.unit_of);
     groups.push_back(std::move(draft.group));
   }
   return groups;
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -8,12 +8,12 @@
 
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 /// A solid that groups are made of. Kept by the caller.
 struct GroupCandidate {
   const SolidSource* source = nullptr;
-  GroupMember member;
+  validate::GroupMember member;
 };
 
 /// The solids of a feature, in order.
@@ -25,6 +25,6 @@ std::vector<GroupCandidate> group_candidates(const InspectedFeature& feature);
 /// which are indices into `candidates`. Solids that are not valid are members that are not
 /// compared. Never fails. Cost: check_group().
 std::vector<InspectedGroup> inspect_groups(std::span<const GroupCandidate> candidates,
-                                           const GroupOptions& options);
+                                           const validate::GroupOptions& options);
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -11,7 +11,7 @@
 #include "pipeline/pipeline.h"
 #include "validate/report_json.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 constexpr std::size_t kVertexBytes = 24;  // three doubles
@@ -36,7 +36,7 @@ struct Processed {
   std::optional<Error> error;
 };
 
-Processed process(Feature feature, const Document& document, EngineWorkers* workers,
+Processed process(Feature feature, const Document& document, delaunay::EngineWorkers* workers,
                   const IngestOptions& options, TemplateInspector& templates) {
   Processed processed;
   InspectedFeature inspected =
@@ -56,10 +56,11 @@ Processed process(Feature feature, const Document& document, EngineWorkers* work
     SolidOutcome outcome;
     outcome.source = std::move(inspected.solids[i].source);
     outcome.report = std::move(inspected.solids[i].inspection.report);
-    ReportJsonOptions json;
+    validate::ReportJsonOptions json;
     json.pointer_prefix = outcome.source.pointer;
     json.include_times = false;
-    outcome.report_json = report_json(outcome.report, inspected.feature.solids[i].solid, json);
+    outcome.report_json =
+        validate::report_json(outcome.report, inspected.feature.solids[i].solid, json);
     outcome.source_bytes = plain_bytes(inspected.feature.solids[i].solid);
     if (processed.stored) outcome.blob_bytes = processed.stored->solids[i].blob.size();
     processed.outcome.solids.push_back(std::move(outcome));
@@ -68,7 +69,7 @@ Processed process(Feature feature, const Document& document, EngineWorkers* work
   return processed;
 }
 
-Result<std::vector<Processed>> process_all(Document& document, EngineWorkers* workers,
+Result<std::vector<Processed>> process_all(Document& document, delaunay::EngineWorkers* workers,
                                            const IngestOptions& options) {
   std::vector<Feature> features = std::move(document.features);
   std::vector<Processed> processed(features.size());
@@ -76,13 +77,14 @@ Result<std::vector<Processed>> process_all(Document& document, EngineWorkers* wo
                               group_options(options.groups, options.certify));
   std::size_t done = 0;
   std::mutex mutex;
-  for_each_piece(features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
-    if (is_cancelled(options)) return;
-    processed[i] = process(std::move(features[i]), document, workers, options, templates);
-    const std::lock_guard lock(mutex);
-    ++done;
-    if (options.progress) options.progress(done, features.size());
-  });
+  geometry::for_each_piece(
+      features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
+        if (is_cancelled(options)) return;
+        processed[i] = process(std::move(features[i]), document, workers, options, templates);
+        const std::lock_guard lock(mutex);
+        ++done;
+        if (options.progress) options.progress(done, features.size());
+      });
   if (done < features.size()) return cancelled();
   return processed;
 }
@@ -123,11 +125,11 @@ Status check_crs(const Document& document, SolidStore& store, const std::string&
 }
 
 /// Leaves what the contract promises of what the features share.
-Status reduce_to(Contract contract, Document& document) {
-  if (contract == Contract::exact) return Done{};
+Status reduce_to(formats::Contract contract, Document& document) {
+  if (contract == formats::Contract::exact) return Done{};
   document.framing.clear();
-  if (contract == Contract::lattice || document.header.empty()) return Done{};
-  auto header = boundary_header(document.header);
+  if (contract == formats::Contract::lattice || document.header.empty()) return Done{};
+  auto header = formats::boundary_header(document.header);
   if (!header) return std::move(header).error();
   document.header = *std::move(header);
   return Done{};
@@ -141,7 +143,7 @@ Status store_all(std::vector<Processed>& processed, SolidStore& store, IngestOut
     if (!processed[i].stored) continue;
     features.push_back(*std::move(processed[i].stored));
     places.push_back(i);
-    auto packed = pack_text(features.back().skeleton);
+    auto packed = formats::pack_text(features.back().skeleton);
     if (!packed) return std::move(packed).error();
     features.back().skeleton = as_text(*packed);
   }
@@ -173,8 +175,9 @@ Verdict InspectedFeature::verdict() const {
   return verdict;
 }
 
-InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,
-                         const GroupOptions& groups, TemplateInspector* templates) {
+InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
+                         const CertifyOptions& options, const validate::GroupOptions& groups,
+                         TemplateInspector* templates) {
   InspectedFeature inspected;
   inspected.solids.reserve(feature.solids.size());
   for (const SubmittedSolid& submitted : feature.solids) {
@@ -191,8 +194,9 @@ InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyO
   return inspected;
 }
 
-GroupOptions group_options(const GroupOptions& groups, const CertifyOptions& options) {
-  GroupOptions own = groups;
+validate::GroupOptions group_options(const validate::GroupOptions& groups,
+                                     const CertifyOptions& options) {
+  validate::GroupOptions own = groups;
   own.limits.findings = std::min(own.limits.findings, options.limits.findings);
   if (!own.cancel) own.cancel = options.ladder.cancel;
   return own;
@@ -207,14 +211,14 @@ CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions
   return own;
 }
 
-Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,
+Result<EncodedDocument> encode_document(Document document, delaunay::EngineWorkers* workers,
                                         const IngestOptions& options) {
   Status status = reduce_to(options.contract, document);
   if (!status) return std::move(status).error();
   auto processed = process_all(document, workers, options);
   if (!processed) return std::move(processed).error();
   EncodedDocument encoded;
-  encoded.document.format = std::string(to_string(document.format));
+  encoded.document.format = std::string(formats::to_string(document.format));
   encoded.document.header = std::move(document.header);
   encoded.document.framing = std::move(document.framing);
   for (Processed& feature : *processed) {
@@ -226,7 +230,7 @@ Result<EncodedDocument> encode_document(Document document, EngineWorkers* worker
   return encoded;
 }
 
-Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers* workers,
+Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options) {
   Status status = check_ids(document);
   if (status) status = check_crs(document, store, options.collection);
@@ -249,4 +253,4 @@ Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers
   return outcome;
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -8,7 +8,7 @@
 #include "geometry/crs.h"
 #include "pipeline/groups.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 /// Effects remembered for each template: bounds the memory of a document with many instances.
@@ -60,7 +60,7 @@ struct ByTemplate {
   }
 };
 
-std::string name_of(const TemplateInstance& instance) {
+std::string name_of(const formats::TemplateInstance& instance) {
   return instance.source.pointer.empty() ? "'" + instance.source.object_id + "'"
                                          : instance.source.pointer;
 }
@@ -68,17 +68,19 @@ std::string name_of(const TemplateInstance& instance) {
 }  // namespace
 
 TemplateInspector::TemplateInspector(std::span<const SubmittedSolid> templates,
-                                     EngineWorkers* workers, const CertifyOptions& options,
-                                     const GroupOptions& groups)
+                                     delaunay::EngineWorkers* workers,
+                                     const CertifyOptions& options,
+                                     const validate::GroupOptions& groups)
     : templates_(templates),
       workers_(workers),
       options_(options),
       group_options_(groups),
       uses_(templates.size()) {}
 
-InspectedInstances TemplateInspector::inspect(std::span<const TemplateInstance> instances) {
+InspectedInstances TemplateInspector::inspect(
+    std::span<const formats::TemplateInstance> instances) {
   InspectedInstances inspected;
-  for (const TemplateInstance& instance : instances) {
+  for (const formats::TemplateInstance& instance : instances) {
     const auto [begin, end] = std::equal_range(templates_.begin(), templates_.end(),
                                                instance.template_number, ByTemplate{});
     const Effect effect = effect_of(instance.placement);
@@ -94,7 +96,8 @@ InspectedInstances TemplateInspector::inspect(std::span<const TemplateInstance> 
   return inspected;
 }
 
-InstanceSolid TemplateInspector::inspect_solid(std::size_t solid, const TemplateInstance& instance,
+InstanceSolid TemplateInspector::inspect_solid(std::size_t solid,
+                                               const formats::TemplateInstance& instance,
                                                const Effect& effect) {
   InstanceSolid result{instance.source, &instance, solid, nullptr, std::nullopt};
   result.source.lod = templates_[solid].source.lod;
@@ -117,7 +120,7 @@ InstanceSolid TemplateInspector::inspect_solid(std::size_t solid, const Template
   const std::lock_guard lock(mutex_);
   // An instance that relied on another's proof finds the solid here: both are set together.
   if (!uses.solid) uses.solid = std::move(inspection.unplaced);
-  uses.is_proven = uses.is_proven || determinant_sign(instance.placement) > 0;
+  uses.is_proven = uses.is_proven || geometry::determinant_sign(instance.placement) > 0;
   WATERTIGHT_ASSERT(uses.solid);
   note_valid(solid, instance, effect);
   result.valid = &*uses.solid;
@@ -128,7 +131,7 @@ InstanceSolid TemplateInspector::inspect_solid(std::size_t solid, const Template
 /// with an inverse changes nothing but the depth of overlaps.
 void TemplateInspector::compare_members(std::size_t first, InspectedInstances& instances) {
   const std::span<const InstanceSolid> solids = std::span(instances.solids).subspan(first);
-  const Placement& placement = solids.front().instance->placement;
+  const geometry::Placement& placement = solids.front().instance->placement;
   const Effect effect =
       group_options_.overlap_metres > 0 ? full_effect_of(placement) : std::nullopt;
   Uses& uses = uses_[solids.front().template_solid];
@@ -158,23 +161,24 @@ void TemplateInspector::compare_members(std::size_t first, InspectedInstances& i
 }
 
 /// Nothing of a placement that is congruent in metres: then the template stands for the instance.
-TemplateInspector::Effect TemplateInspector::effect_of(const Placement& placement) {
+TemplateInspector::Effect TemplateInspector::effect_of(const geometry::Placement& placement) {
   Effect effect = full_effect_of(placement);
   const bool is_in_metres = effect->second == std::array<double, 3>{1, 1, 1};
-  if (is_in_metres && is_rotation(placement)) effect.reset();
+  if (is_in_metres && geometry::is_rotation(placement)) effect.reset();
   return effect;
 }
 
-TemplateInspector::Effect TemplateInspector::full_effect_of(const Placement& placement) {
-  return std::pair(placement.linear,
-                   axis_units(placement.srid, shift_of(placement)).metres_per_unit);
+TemplateInspector::Effect TemplateInspector::full_effect_of(const geometry::Placement& placement) {
+  return std::pair(
+      placement.linear,
+      geometry::axis_units(placement.srid, geometry::shift_of(placement)).metres_per_unit);
 }
 
-Inspection TemplateInspector::judge(std::size_t solid, const TemplateInstance& instance) {
+Inspection TemplateInspector::judge(std::size_t solid, const formats::TemplateInstance& instance) {
   CertifyOptions own = options_for(templates_[solid], options_);
   own.placement = &instance.placement;
-  const bool is_mirrored = determinant_sign(instance.placement) < 0;
-  EngineWorkers* workers = workers_;
+  const bool is_mirrored = geometry::determinant_sign(instance.placement) < 0;
+  delaunay::EngineWorkers* workers = workers_;
   {
     const std::lock_guard lock(mutex_);
     own.is_proven = !is_mirrored && uses_[solid].is_proven;
@@ -189,7 +193,7 @@ Inspection TemplateInspector::judge(std::size_t solid, const TemplateInstance& i
 }
 
 /// Requires the lock.
-void TemplateInspector::note_valid(std::size_t solid, const TemplateInstance& instance,
+void TemplateInspector::note_valid(std::size_t solid, const formats::TemplateInstance& instance,
                                    const Effect& effect) {
   Uses& uses = uses_[solid];
   if (uses.valid.size() < kMostEffects) uses.valid.insert(effect);
@@ -204,7 +208,7 @@ void TemplateInspector::note_valid(std::size_t solid, const TemplateInstance& in
 
 std::size_t TemplateInspector::show(InstanceSolid solid, InspectedFeature& feature) const {
   const SubmittedSolid& source = templates_[solid.template_solid];
-  const Placement& placement = solid.instance->placement;
+  const geometry::Placement& placement = solid.instance->placement;
   if (!solid.inspection) {  // valid: only its report is missing
     CertifyOptions own = options_for(source, options_);
     own.placement = &placement;
@@ -212,9 +216,9 @@ std::size_t TemplateInspector::show(InstanceSolid solid, InspectedFeature& featu
     solid.inspection = certify(source.solid, nullptr, own);
   }
   // A place beyond the doubles cannot be shown: the template is.
-  auto in_place = placed(source.solid, placement);
+  auto in_place = geometry::placed(source.solid, placement);
   SubmittedSolid submitted{in_place ? *std::move(in_place) : source.solid, std::move(solid.source)};
-  const int sign = determinant_sign(placement);
+  const int sign = geometry::determinant_sign(placement);
   const std::string& pointer = solid.instance->source.pointer;
   submitted.source.pointer =
       sign == 0 && !pointer.empty() ? pointer + "/transformationMatrix" : source.source.pointer;
@@ -230,7 +234,7 @@ std::size_t TemplateInspector::show(InstanceSolid solid, InspectedFeature& featu
 }
 
 std::optional<InspectedFeature> TemplateInspector::inspect_templates(
-    std::vector<TemplateInstance> others) {
+    std::vector<formats::TemplateInstance> others) {
   InspectedFeature inspected;
   inspected.feature.id = "geometry-templates";
   inspected.feature.type = "GeometryTemplates";
@@ -261,7 +265,7 @@ std::optional<InspectedFeature> TemplateInspector::inspect_templates(
 }
 
 void add_groups(InspectedInstances instances, const TemplateInspector& templates,
-                const GroupOptions& options, InspectedFeature& feature) {
+                const validate::GroupOptions& options, InspectedFeature& feature) {
   std::vector<GroupCandidate> candidates = group_candidates(feature);
   const std::size_t own = candidates.size();
   for (const InstanceSolid& solid : instances.solids) {
@@ -292,4 +296,4 @@ void add_groups(InspectedInstances instances, const TemplateInspector& templates
   std::stable_sort(feature.groups.begin(), feature.groups.end(), by_first_member);
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -17,12 +17,12 @@
 
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 /// One solid of an instance. Its placement is that of the feature's instance.
 struct InstanceSolid {
   SolidSource source;  // the instance's, with LoD and ordinal of the template's solid
-  const TemplateInstance* instance = nullptr;
+  const formats::TemplateInstance* instance = nullptr;
   std::size_t template_solid = 0;
   const ValidSolid* valid = nullptr;     // as the template has it; null if not valid
   std::optional<Inspection> inspection;  // absent if valid
@@ -38,13 +38,13 @@ struct InspectedInstances {
 /// Thread-safe. Keeps references to the templates of one document.
 class TemplateInspector {
  public:
-  TemplateInspector(std::span<const SubmittedSolid> templates, EngineWorkers* workers,
-                    const CertifyOptions& options, const GroupOptions& groups);
+  TemplateInspector(std::span<const SubmittedSolid> templates, delaunay::EngineWorkers* workers,
+                    const CertifyOptions& options, const validate::GroupOptions& groups);
 
   /// Judges instances of the templates, and the members of composite ones with each other.
   /// Instances that do the same to one template share the work. The result refers to `instances`
   /// and to this. Cost: the exact tests for each different matrix, a proof for each template.
-  InspectedInstances inspect(std::span<const TemplateInstance> instances);
+  InspectedInstances inspect(std::span<const formats::TemplateInstance> instances);
 
   /// Makes an instance's solid one of the feature's, whose index is returned.
   std::size_t show(InstanceSolid solid, InspectedFeature& feature) const;
@@ -54,37 +54,40 @@ class TemplateInspector {
   /// that is shifted or turned only, else the least placement, whatever the order of features).
   /// With those of `others`, instances that no feature has, that are not valid. Nothing when none
   /// is left.
-  std::optional<InspectedFeature> inspect_templates(std::vector<TemplateInstance> others = {});
+  std::optional<InspectedFeature> inspect_templates(
+      std::vector<formats::TemplateInstance> others = {});
 
  private:
   /// How an instance changes the size and shape of its template. Nothing when it is turned and
   /// shifted only, exactly, in metres.
-  using Effect = std::optional<std::pair<decltype(Placement::linear), std::array<double, 3>>>;
+  using Effect =
+      std::optional<std::pair<decltype(geometry::Placement::linear), std::array<double, 3>>>;
 
   struct Uses {
     bool has_instances = false;
-    bool has_congruent = false;       // a valid one without effect
-    std::optional<Placement> least;   // of the other valid ones
-    std::string least_name;           // of that instance
-    bool is_proven = false;           // by an instance that is not mirrored
-    bool is_unproven = false;         // no engine found a proof: none is asked again
-    std::set<Effect> valid;           // some of the effects of valid instances
+    bool has_congruent = false;                // a valid one without effect
+    std::optional<geometry::Placement> least;  // of the other valid ones
+    std::string least_name;                    // of that instance
+    bool is_proven = false;                    // by an instance that is not mirrored
+    bool is_unproven = false;                  // no engine found a proof: none is asked again
+    std::set<Effect> valid;                    // some of the effects of valid instances
     std::set<Effect> fitting;         // likewise, where the members of a composite solid fit
     std::optional<ValidSolid> solid;  // as valid instances have it; all have the same
   };
 
-  static Effect effect_of(const Placement& placement);
-  static Effect full_effect_of(const Placement& placement);
-  Inspection judge(std::size_t solid, const TemplateInstance& instance);
-  void note_valid(std::size_t solid, const TemplateInstance& instance, const Effect& effect);
-  InstanceSolid inspect_solid(std::size_t solid, const TemplateInstance& instance,
+  static Effect effect_of(const geometry::Placement& placement);
+  static Effect full_effect_of(const geometry::Placement& placement);
+  Inspection judge(std::size_t solid, const formats::TemplateInstance& instance);
+  void note_valid(std::size_t solid, const formats::TemplateInstance& instance,
+                  const Effect& effect);
+  InstanceSolid inspect_solid(std::size_t solid, const formats::TemplateInstance& instance,
                               const Effect& effect);
   void compare_members(std::size_t first, InspectedInstances& instances);
 
   std::span<const SubmittedSolid> templates_;
-  EngineWorkers* workers_;
+  delaunay::EngineWorkers* workers_;
   CertifyOptions options_;
-  GroupOptions group_options_;
+  validate::GroupOptions group_options_;
   std::mutex mutex_;        // guards uses_
   std::vector<Uses> uses_;  // one per solid of templates_
 };
@@ -92,6 +95,6 @@ class TemplateInspector {
 /// Compares the feature's solids and instances in groups, and makes solids of the feature of the
 /// instances that are not valid or in whose groups something was found.
 void add_groups(InspectedInstances instances, const TemplateInspector& templates,
-                const GroupOptions& options, InspectedFeature& feature);
+                const validate::GroupOptions& options, InspectedFeature& feature);
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

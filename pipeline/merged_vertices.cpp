@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 Error malformed(std::string what) {
@@ -92,7 +92,7 @@ Result<SourceVertices> read_vertices(const Solid& merged, std::string_view& line
 
 Result<std::string> describe_merge(const Solid& source, const Solid& merged) {
   if (source == merged) return std::string();
-  const MergedSolid merge = merge_equal_vertices(source);
+  const geometry::MergedSolid merge = geometry::merge_equal_vertices(source);
   if (!(merge.solid == merged)) {
     return Error{ErrorCode::not_encodable,
                  "the certified solid is not the submitted one with its vertices merged"};
@@ -148,4 +148,4 @@ Result<Solid> unmerge(const Solid& merged, std::string_view line, const Limits& 
   return Solid::make(std::move(arrays), merged.lattice(), merged.srid(), limits);
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

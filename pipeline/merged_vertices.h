@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 /// One line of text that unmerge() turns `merged` back into `source` with; "" when the two are
 /// equal. Errors: not_encodable if `merged` is not merge_equal_vertices(source).
@@ -19,4 +19,4 @@ Result<std::string> describe_merge(const Solid& source, const Solid& merged);
 /// Errors: malformed if the line does not fit the solid; limit_exceeded.
 Result<Solid> unmerge(const Solid& merged, std::string_view line, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

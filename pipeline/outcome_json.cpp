@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 void write_solid(JsonText& json, const SolidOutcome& solid) {
@@ -28,8 +28,8 @@ void write_place(JsonText& json, const InspectedGroup& group, const Place& place
 
 void write_finding(JsonText& json, const InspectedGroup& group, const Finding& finding) {
   json.open('{').key("code").value(std::int64_t{finding.code});
-  json.key("name").value(finding_name(finding.code));
-  json.key("severity").value(to_string(finding.severity)).key("place");
+  json.key("name").value(validate::finding_name(finding.code));
+  json.key("severity").value(validate::to_string(finding.severity)).key("place");
   write_place(json, group, finding.place);
   if (finding.other) {
     json.key("other");
@@ -43,18 +43,18 @@ void write_finding(JsonText& json, const InspectedGroup& group, const Finding& f
 }
 
 void write_group(JsonText& json, const InspectedGroup& group) {
-  const bool is_composite = group.kind == GroupKind::composite_solid;
+  const bool is_composite = group.kind == validate::GroupKind::composite_solid;
   json.open('{').key("kind").value(is_composite ? "composite_solid" : "building_parts");
   json.key("object").value(group.object_id);
   if (!group.lod.empty()) json.key("lod").value(group.lod);
   json.key("solids").open('[');
   for (const std::size_t member : group.members) json.value(std::uint64_t{member});
-  json.close(']').key("verdict").value(to_string(group.report.verdict));
+  json.close(']').key("verdict").value(validate::to_string(group.report.verdict));
   json.key("findings").open('[');
   for (const Finding& finding : group.report.findings) write_finding(json, group, finding);
   json.close(']').key("findingsOmitted").value(group.report.findings_omitted);
   json.key("notRun").open('[');
-  for (const SkippedRule& rule : group.report.not_run) {
+  for (const validate::SkippedRule& rule : group.report.not_run) {
     json.open('{').key("codes").open('[');
     for (const int code : rule.codes) json.value(std::int64_t{code});
     json.close(']').key("reason").value(rule.reason).close('}');
@@ -64,7 +64,7 @@ void write_group(JsonText& json, const InspectedGroup& group) {
 
 }  // namespace
 
-std::string measures_json(const Measures& measures) {
+std::string measures_json(const geometry::Measures& measures) {
   JsonText json;
   json.open('{').key("volume").value(measures.volume).key("area").value(measures.area);
   json.key("boxMin").value(measures.box_min).key("boxMax").value(measures.box_max);
@@ -76,12 +76,12 @@ std::string measures_json(const Measures& measures) {
 
 std::string outcome_json(const IngestOutcome& outcome) {
   JsonText json;
-  json.open('{').key("verdict").value(to_string(outcome.verdict));
+  json.open('{').key("verdict").value(validate::to_string(outcome.verdict));
   json.key("stored").value(std::uint64_t{outcome.stored});
   json.key("features").open('[');
   for (const FeatureOutcome& feature : outcome.features) {
     json.open('{').key("id").value(feature.id);
-    json.key("verdict").value(to_string(feature.verdict));
+    json.key("verdict").value(validate::to_string(feature.verdict));
     json.key("stored").value(feature.is_stored).key("solids").open('[');
     for (const SolidOutcome& solid : feature.solids) write_solid(json, solid);
     json.close(']');
@@ -96,4 +96,4 @@ std::string outcome_json(const IngestOutcome& outcome) {
   return json.take();
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -9,10 +9,10 @@
 #include "base/json_text.h"
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 /// {"volume", "area", "boxMin", "boxMax", "genus", "vertices", "facets", "rings", "shells"}
-std::string measures_json(const Measures& measures);
+std::string measures_json(const geometry::Measures& measures);
 
 /// {"verdict", "stored", "features": [{"id", "verdict", "stored", "solids": [{"object",
 /// "geometryType", "lod", "geometry", "ordinal", "pointer", "blobBytes", "report"}], "groups":
@@ -20,4 +20,4 @@ std::string measures_json(const Measures& measures);
 /// "groups" only where there are any; "solid" in their findings is a position in "solids".
 std::string outcome_json(const IngestOutcome& outcome);
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

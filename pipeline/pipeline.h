@@ -18,7 +18,7 @@
 #include "validate/certify.h"
 #include "validate/groups.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 struct InspectedSolid {
   SolidSource source;
@@ -28,11 +28,11 @@ struct InspectedSolid {
 /// Solids of a feature that are compared with each other: the members of one CompositeSolid, or the
 /// solids of one building and its parts in one level of detail.
 struct InspectedGroup {
-  GroupKind kind = GroupKind::composite_solid;
+  validate::GroupKind kind = validate::GroupKind::composite_solid;
   std::string object_id;             // the composite's object, or the building
   std::string lod;                   // as written, "" when absent
   std::vector<std::size_t> members;  // indices into the feature's solids, ascending
-  GroupReport report;                // Place::solid is an index into `members`
+  validate::GroupReport report;      // Place::solid is an index into `members`
 };
 
 struct InspectedFeature {
@@ -54,14 +54,16 @@ Verdict worse(Verdict a, Verdict b);
 class TemplateInspector;
 
 /// The options with the certification's limit of findings, and its poll if they have none.
-GroupOptions group_options(const GroupOptions& groups, const CertifyOptions& options);
+validate::GroupOptions group_options(const validate::GroupOptions& groups,
+                                     const CertifyOptions& options);
 
 /// Validates every solid of a feature, its instances of the geometry templates that `templates`
 /// knows (null: of none), and the groups of both. Guarantees one InspectedSolid per solid. A
 /// solid with vertices that the reader rounded, or rings that the source left open, gets the
 /// findings for them. Groups keep no more findings than solids, and are cancelled like them.
-InspectedFeature inspect(Feature feature, EngineWorkers* workers, const CertifyOptions& options,
-                         const GroupOptions& groups = {}, TemplateInspector* templates = nullptr);
+InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
+                         const CertifyOptions& options, const validate::GroupOptions& groups = {},
+                         TemplateInspector* templates = nullptr);
 
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };
@@ -80,7 +82,7 @@ struct StoredDocument {
 Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
                                 const std::string& collection, const EncodeOptions& options = {},
                                 SteinerVertices steiner = SteinerVertices::leave_out,
-                                Contract contract = Contract::exact);
+                                formats::Contract contract = formats::Contract::exact);
 
 /// The skeleton as to_stored() made it; stores keep it compressed. Errors: those of unpack_text().
 Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits& limits = {});
@@ -120,10 +122,10 @@ using Progress = std::function<void(std::size_t, std::size_t)>;
 struct IngestOptions {
   std::string collection;
   CertifyOptions certify;
-  GroupOptions groups;
+  validate::GroupOptions groups;
   EncodeOptions encode;
   SteinerVertices steiner = SteinerVertices::leave_out;
-  Contract contract = Contract::exact;
+  formats::Contract contract = formats::Contract::exact;
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
   std::size_t threads = 1;
   std::function<bool()> is_cancelled = {};
@@ -143,14 +145,14 @@ struct EncodedDocument {
 };
 
 /// Validates and encodes. Errors: cancelled; those of encode().
-Result<EncodedDocument> encode_document(Document document, EngineWorkers* workers,
+Result<EncodedDocument> encode_document(Document document, delaunay::EngineWorkers* workers,
                                         const IngestOptions& options);
 
 /// Validates, encodes and stores a document in one transaction: all features if all are valid,
 /// else none (refuse_document) or the valid ones (skip). Nothing is stored when it fails.
 /// Errors: malformed (two features of one id, an empty id); conflict (another CRS than the
 /// collection's); cancelled; those of SolidStore::put() and encode().
-Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers* workers,
+Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options);
 
 /// The same document in another format; facets with holes become triangles where the format has no
@@ -158,4 +160,4 @@ Result<IngestOutcome> ingest(Document document, SolidStore& store, EngineWorkers
 /// triangulation.
 Result<Bytes> convert_document(const Document& document, Format format);
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

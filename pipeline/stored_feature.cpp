@@ -14,17 +14,17 @@
 #include "pipeline/pipeline.h"
 #include "validate/report_json.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 constexpr std::string_view kMergedLine = "merged ";
 
-void include(std::optional<StoredBox>& box, const Solid& solid) {
+void include(std::optional<store::StoredBox>& box, const Solid& solid) {
   const Box lattice_box = solid.box();
   if (lattice_box.is_empty()) return;
   const std::array<double, 3> low = solid.lattice().world(lattice_box.min);
   const std::array<double, 3> high = solid.lattice().world(lattice_box.max);
-  if (!box) box = StoredBox{low, high};
+  if (!box) box = store::StoredBox{low, high};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box->min[axis] = std::min(box->min[axis], low[axis]);
     box->max[axis] = std::max(box->max[axis], high[axis]);
@@ -49,10 +49,10 @@ Result<StoredSolid> store_solid(const InspectedSolid& solid, const Solid& submit
   stored.lod = solid.source.lod;
   stored.blob = *std::move(blob);
   if (inspection.report.measures) stored.measures = measures_json(*inspection.report.measures);
-  ReportJsonOptions json;
+  validate::ReportJsonOptions json;
   json.pointer_prefix = solid.source.pointer;
   json.include_times = false;
-  stored.report = report_json(inspection.report, submitted, json);
+  stored.report = validate::report_json(inspection.report, submitted, json);
   return stored;
 }
 
@@ -79,16 +79,16 @@ Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleto
 
 Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
                                 const std::string& collection, const EncodeOptions& options,
-                                SteinerVertices steiner, Contract contract) {
+                                SteinerVertices steiner, formats::Contract contract) {
   StoredFeature stored;
   stored.collection = collection;
   stored.id = feature.feature.id;
   stored.type = feature.feature.type;
   stored.srid = feature.feature.srid;
-  stored.format = std::string(to_string(document.format));
+  stored.format = std::string(formats::to_string(document.format));
   stored.header = document.header;
   EncodeOptions encode_options = options;
-  if (contract != Contract::exact) encode_options.keep_order = false;
+  if (contract != formats::Contract::exact) encode_options.keep_order = false;
   for (std::size_t i = 0; i < feature.solids.size(); ++i) {
     const InspectedSolid& inspected = feature.solids[i];
     auto solid = store_solid(inspected, feature.feature.solids[i].solid, encode_options, steiner);
@@ -102,12 +102,12 @@ Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document&
     include(stored.box, certified);
     auto merge = describe_merge(feature.feature.solids[i].solid, certified);
     if (!merge) return std::move(merge).error();
-    if (contract != Contract::exact || merge->empty()) continue;
+    if (contract != formats::Contract::exact || merge->empty()) continue;
     stored.skeleton += std::string(kMergedLine) + std::to_string(i) + ' ' + *merge + '\n';
   }
-  if (contract != Contract::exact) {
+  if (contract != formats::Contract::exact) {
     if (feature.feature.skeleton.empty()) return stored;
-    auto skeleton = canonical_skeleton(feature.feature, contract);
+    auto skeleton = formats::canonical_skeleton(feature.feature, contract);
     if (!skeleton) return std::move(skeleton).error();
     stored.skeleton = *std::move(skeleton);
     return stored;
@@ -121,8 +121,8 @@ Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document&
 }
 
 Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits& limits) {
-  if (!is_packed_text(as_bytes(stored.skeleton))) return stored.skeleton;
-  return unpack_text(as_bytes(stored.skeleton), limits.bytes);
+  if (!formats::is_packed_text(as_bytes(stored.skeleton))) return stored.skeleton;
+  return formats::unpack_text(as_bytes(stored.skeleton), limits.bytes);
 }
 
 Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) {
@@ -140,7 +140,7 @@ Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> sol
   if (solids.size() != stored.solids.size()) {
     return Error{ErrorCode::malformed, "a stored feature of another number of solids"};
   }
-  auto format = format_named(stored.format);
+  auto format = formats::format_named(stored.format);
   if (!format) return std::move(format).error();
   auto unpacked = unpacked_skeleton(stored, limits);
   if (!unpacked) return std::move(unpacked).error();
@@ -175,4 +175,4 @@ Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> sol
   return document;
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -11,7 +11,7 @@
 #include "geometry/parallel.h"
 #include "pipeline/instances.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 namespace {
 
 /// Features between reading and handing on, per thread: enough that a slow one does not hold up
@@ -28,7 +28,7 @@ struct Passage {
 };
 
 /// Threads that no other feature can use work on the one there is.
-CertifyOptions certify_options(const FeatureReader& reader, const StreamOptions& options) {
+CertifyOptions certify_options(const formats::FeatureReader& reader, const StreamOptions& options) {
   CertifyOptions certify = options.certify;
   if (reader.feature_count() == std::size_t{1}) {
     certify.threads = static_cast<unsigned>(std::clamp<std::size_t>(options.threads, 1, 256));
@@ -38,8 +38,8 @@ CertifyOptions certify_options(const FeatureReader& reader, const StreamOptions&
 
 class Stream {
  public:
-  Stream(FeatureReader& reader, EngineWorkers* workers, const StreamOptions& options,
-         const FeatureSink& on_feature, const ErrorSink& on_error)
+  Stream(formats::FeatureReader& reader, delaunay::EngineWorkers* workers,
+         const StreamOptions& options, const FeatureSink& on_feature, const ErrorSink& on_error)
       : reader_(reader),
         workers_(workers),
         options_(options),
@@ -52,7 +52,8 @@ class Stream {
   Result<StreamOutcome> run() {
     const std::size_t threads = std::max<std::size_t>(options_.threads, 1);
     most_in_flight_ = kFeaturesInFlight * threads;
-    for_each_piece(threads, static_cast<unsigned>(threads), [this](std::size_t, bool) { work(); });
+    geometry::for_each_piece(threads, static_cast<unsigned>(threads),
+                             [this](std::size_t, bool) { work(); });
     if (!failure_) add_templates();
     if (failure_) return *std::move(failure_);
     return outcome_;
@@ -61,7 +62,7 @@ class Stream {
  private:
   struct Found {
     std::uint64_t number = 0;
-    FeatureText text;
+    formats::FeatureText text;
   };
 
   /// What every thread does until the document ends.
@@ -87,8 +88,8 @@ class Stream {
     return passages_.empty() || (taken_ - handed_on_ < most_in_flight_ && bytes_ < kBytesInFlight);
   }
 
-  FeatureReader& reader_;
-  EngineWorkers* workers_;
+  formats::FeatureReader& reader_;
+  delaunay::EngineWorkers* workers_;
   const StreamOptions& options_;
   const CertifyOptions certify_;
   const FeatureSink& on_feature_;
@@ -208,10 +209,11 @@ void Stream::stop(Error error) {
 
 }  // namespace
 
-Result<StreamOutcome> validate_stream(FeatureReader& reader, EngineWorkers* workers,
+Result<StreamOutcome> validate_stream(formats::FeatureReader& reader,
+                                      delaunay::EngineWorkers* workers,
                                       const StreamOptions& options, const FeatureSink& on_feature,
                                       const ErrorSink& on_error) {
   return Stream(reader, workers, options, on_feature, on_error).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

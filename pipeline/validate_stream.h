@@ -10,7 +10,7 @@
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::pipeline {
 
 /// A feature with everything that is known of it.
 struct ValidatedFeature {
@@ -25,7 +25,7 @@ using ErrorSink = std::function<Status(const Error&)>;
 
 struct StreamOptions {
   CertifyOptions certify;
-  GroupOptions groups;
+  validate::GroupOptions groups;
   std::size_t threads = 1;  // features at once; a document of one feature has them for itself
   std::function<bool()> is_cancelled = {};
   /// Called with features done and bytes read; from one thread at a time.
@@ -42,8 +42,9 @@ struct StreamOutcome {
 /// does not depend on `threads`. At most a few features per thread are in memory at once.
 /// Errors: cancelled; those of the sinks. An error of the reader is passed to `on_error`, and the
 /// run goes on with the next feature.
-Result<StreamOutcome> validate_stream(FeatureReader& reader, EngineWorkers* workers,
+Result<StreamOutcome> validate_stream(formats::FeatureReader& reader,
+                                      delaunay::EngineWorkers* workers,
                                       const StreamOptions& options, const FeatureSink& on_feature,
                                       const ErrorSink& on_error);
 
-}  // namespace watertight
+}  // namespace watertight::pipeline

@@ -15,7 +15,7 @@
 
 #include "pipeline/validate_stream.h"
 
-namespace watertight {
+namespace watertight::report {
 
 /// Takes the next piece of text. An error ends the report and is handed to its caller.
 using TextSink = std::function<Status(std::string_view)>;
@@ -51,7 +51,7 @@ class FeatureReport {
  public:
   virtual ~FeatureReport() = default;
   virtual Status begin_document(const DocumentHead& head) = 0;
-  virtual Status add(const ValidatedFeature& feature) = 0;
+  virtual Status add(const pipeline::ValidatedFeature& feature) = 0;
   /// Something that could not be read: a feature, or the rest of the document.
   virtual Status add_error(const Error& error) = 0;
   virtual Status end_document(const DocumentEnd& end) = 0;
@@ -78,4 +78,4 @@ struct HtmlOptions {
 std::unique_ptr<FeatureReport> html_report(TextSink sink, ReportHead head,
                                            const HtmlOptions& options = {});
 
-}  // namespace watertight
+}  // namespace watertight::report

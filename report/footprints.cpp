@@ -7,7 +7,7 @@
 #include "geometry/crs.h"
 #include "report/html_page.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 constexpr std::size_t kMostDots = 20'000;
@@ -18,7 +18,7 @@ constexpr double kMargin = 8;
 
 }  // namespace
 
-void Footprints::add(const InspectedFeature& feature) {
+void Footprints::add(const pipeline::InspectedFeature& feature) {
   if (dots_.size() >= kMostDots || feature.feature.solids.empty()) return;
   const Solid& solid = feature.feature.solids.front().solid;
   if (solid.vertex_count() == 0) return;
@@ -39,7 +39,7 @@ std::string Footprints::svg() const {
     low = std::min(low, dot.y);
     high = std::max(high, dot.y);
   }
-  const auto metres = axis_units(srid_, {left, low, 0}).metres_per_unit;
+  const auto metres = geometry::axis_units(srid_, {left, low, 0}).metres_per_unit;
   const double width = (right - left) * metres[0];
   const double height = (high - low) * metres[1];
   const double scale = std::min((kWidth - 2 * kMargin) / std::max(width, 1e-9),
@@ -63,10 +63,10 @@ std::string Footprints::svg() const {
     }
     if (path.empty()) continue;
     html += "<path class=\"";
-    html += to_string(verdict);
+    html += validate::to_string(verdict);
     append(html, {"\" d=\"", path, "\"/>"});
   }
   return html + "</svg>";
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

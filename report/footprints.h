@@ -9,12 +9,12 @@
 
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::report {
 
 class Footprints {
  public:
   /// Remembers where a feature is; the first 20,000 only, and those of the first reference system.
-  void add(const InspectedFeature& feature);
+  void add(const pipeline::InspectedFeature& feature);
   /// "" when there are too few features for a map.
   std::string svg() const;
 
@@ -28,4 +28,4 @@ class Footprints {
   std::uint32_t srid_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -5,7 +5,7 @@
 #include "report/tally.h"
 #include "validate/finding_kinds.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 class GeoJsonReport final : public FeatureReport {
@@ -17,7 +17,7 @@ class GeoJsonReport final : public FeatureReport {
     return Done{};
   }
 
-  Status add(const ValidatedFeature& feature) override {
+  Status add(const pipeline::ValidatedFeature& feature) override {
     const Feature& source = feature.inspected.feature;
     const std::uint32_t srid =
         source.srid != 0 || source.solids.empty() ? source.srid : source.solids[0].solid.srid();
@@ -67,8 +67,8 @@ class GeoJsonReport final : public FeatureReport {
     return json.take() + "\n";
   }
 
-  std::string finding_feature(const InspectedFeature& feature, const PlacedFinding& placed,
-                              std::uint32_t srid) const {
+  std::string finding_feature(const pipeline::InspectedFeature& feature,
+                              const PlacedFinding& placed, std::uint32_t srid) const {
     const auto point = point_of(feature, placed);
     JsonText json;
     json.open('{').key("type").value("Feature").key("geometry");
@@ -85,13 +85,13 @@ class GeoJsonReport final : public FeatureReport {
     return json.close('}').close('}').take();
   }
 
-  void write_properties(JsonText& json, const InspectedFeature& feature,
+  void write_properties(JsonText& json, const pipeline::InspectedFeature& feature,
                         const PlacedFinding& placed) const {
     const Finding& finding = *placed.finding;
-    const FindingKind* kind = find_kind(finding.code);
+    const validate::FindingKind* kind = validate::find_kind(finding.code);
     json.key("file").value(file_).key("feature").value(feature.feature.id);
-    json.key("code").value(finding.code).key("name").value(finding_name(finding.code));
-    json.key("severity").value(to_string(finding.severity));
+    json.key("code").value(finding.code).key("name").value(validate::finding_name(finding.code));
+    json.key("severity").value(validate::to_string(finding.severity));
     write_solid(json, feature, placed);
     json.key("detail").value(finding.detail);
     write_number(json, "measured", finding.measured);
@@ -106,7 +106,7 @@ class GeoJsonReport final : public FeatureReport {
     json.value(has_other ? pointer_of(feature, placed.other_solid, *finding.other) : "");
   }
 
-  static void write_solid(JsonText& json, const InspectedFeature& feature,
+  static void write_solid(JsonText& json, const pipeline::InspectedFeature& feature,
                           const PlacedFinding& placed) {
     const bool has_solid = placed.solid < feature.solids.size();
     const SolidSource none;
@@ -139,4 +139,4 @@ std::unique_ptr<FeatureReport> geojson_report(TextSink sink, ReportHead head) {
   return std::make_unique<GeoJsonReport>(std::move(sink), std::move(head));
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

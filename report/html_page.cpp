@@ -3,7 +3,7 @@
 
 #include "base/json_text.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 constexpr char kStyle[] = R"css(
@@ -225,4 +225,4 @@ void append(std::string& html, std::initializer_list<std::string_view> parts) {
 std::string_view page_style() { return kStyle; }
 std::string_view page_script() { return kScript; }
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace watertight {
+namespace watertight::report {
 
 /// Text for elements and quoted attributes: markup characters become entities, control characters
 /// and bytes that are no UTF-8 become U+FFFD.
@@ -21,4 +21,4 @@ void append(std::string& html, std::initializer_list<std::string_view> parts);
 std::string_view page_style();
 std::string_view page_script();
 
-}  // namespace watertight
+}  // namespace watertight::report

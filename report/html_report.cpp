@@ -12,7 +12,7 @@
 #include "report/tally.h"
 #include "validate/finding_kinds.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 /// Documents that the page lists by name; more are counted only.
@@ -102,7 +102,7 @@ class HtmlReport final : public FeatureReport {
     return Done{};
   }
 
-  Status add(const ValidatedFeature& feature) override {
+  Status add(const pipeline::ValidatedFeature& feature) override {
     tally_.add(feature.inspected);
     footprints_.add(feature.inspected);
     for (const PlacedFinding& placed : findings_of(feature.inspected)) {
@@ -140,9 +140,10 @@ class HtmlReport final : public FeatureReport {
   }
 
  private:
-  std::string row(const InspectedFeature& feature, const PlacedFinding& placed);
-  std::string picture_cell(const InspectedFeature& feature, const PlacedFinding& placed);
-  std::string place_cell(const InspectedFeature& feature, const PlacedFinding& placed) const;
+  std::string row(const pipeline::InspectedFeature& feature, const PlacedFinding& placed);
+  std::string picture_cell(const pipeline::InspectedFeature& feature, const PlacedFinding& placed);
+  std::string place_cell(const pipeline::InspectedFeature& feature,
+                         const PlacedFinding& placed) const;
   std::string error_row(const Error& error) const;
   std::string top() const;
   std::string banner() const;
@@ -171,7 +172,8 @@ class HtmlReport final : public FeatureReport {
   double seconds_ = 0;
 };
 
-std::string HtmlReport::picture_cell(const InspectedFeature& feature, const PlacedFinding& placed) {
+std::string HtmlReport::picture_cell(const pipeline::InspectedFeature& feature,
+                                     const PlacedFinding& placed) {
   const std::string none = "<td class=\"pic\"><div class=\"none\">";
   const int code = placed.finding->code;
   std::size_t& of_code = pictures_of_[code];
@@ -197,7 +199,7 @@ std::string HtmlReport::picture_cell(const InspectedFeature& feature, const Plac
   return cell + "</figure></td>";
 }
 
-std::string HtmlReport::place_cell(const InspectedFeature& feature,
+std::string HtmlReport::place_cell(const pipeline::InspectedFeature& feature,
                                    const PlacedFinding& placed) const {
   const Finding& finding = *placed.finding;
   std::string cell = "<td><p><b>";
@@ -234,14 +236,15 @@ std::string HtmlReport::place_cell(const InspectedFeature& feature,
   return cell + "</dl></details></td>";
 }
 
-std::string HtmlReport::row(const InspectedFeature& feature, const PlacedFinding& placed) {
+std::string HtmlReport::row(const pipeline::InspectedFeature& feature,
+                            const PlacedFinding& placed) {
   const Finding& finding = *placed.finding;
-  const FindingKind* kind = find_kind(finding.code);
+  const validate::FindingKind* kind = validate::find_kind(finding.code);
   const std::string code = std::to_string(finding.code);
   std::string html = "<tr class=\"";
-  html += to_string(finding.severity);
+  html += validate::to_string(finding.severity);
   append(html, {"\" data-code=\"", code, "\" data-severity=\""});
-  html += to_string(finding.severity);
+  html += validate::to_string(finding.severity);
   html += "\" data-object=\"";
   if (placed.solid < feature.solids.size()) {
     html += html_text(feature.solids[placed.solid].source.object_id);
@@ -253,7 +256,7 @@ std::string HtmlReport::row(const InspectedFeature& feature, const PlacedFinding
   append(html, {"<td><p><span class=\"code\">", code, "</span> <b>"});
   html += html_text(kind == nullptr ? std::string_view("unknown") : kind->summary);
   html += "</b></p><p class=\"soft\"><code>";
-  html += html_text(finding_name(finding.code));
+  html += html_text(validate::finding_name(finding.code));
   html += "</code></p><p>";
   html += html_text(finding.detail);
   html += "</p>";
@@ -300,7 +303,7 @@ std::string HtmlReport::banner() const {
   const VerdictCount features = tally_.all_features();
   const Verdict verdict = tally_.verdict();
   std::string html = "<div class=\"banner ";
-  html += to_string(verdict);
+  html += validate::to_string(verdict);
   html += "\"><svg viewBox=\"0 0 24 24\" fill=\"none\" stroke=\"#fff\" stroke-width=\"2.4\" ";
   html += "stroke-linecap=\"round\" aria-hidden=\"true\"><circle cx=\"12\" cy=\"12\" r=\"10\"/>";
   html += verdict == Verdict::valid     ? "<path d=\"M7.5 12.5l3 3 6-6.5\"/>"
@@ -375,7 +378,7 @@ std::string HtmlReport::codes_card() const {
   for (const auto& [code, count] : tally_.findings()) most = std::max(most, count);
   html += "<table class=\"codes\">";
   for (const auto& [code, count] : tally_.findings()) {
-    const FindingKind* kind = find_kind(code);
+    const validate::FindingKind* kind = validate::find_kind(code);
     const std::string number = std::to_string(code);
     html += tally_.errors().contains(code) ? "<tr class=\"error\">" : "<tr class=\"warning\">";
     append(html, {"<td><button data-code=\"", number, "\">", number, "</button></td>"});
@@ -488,4 +491,4 @@ std::unique_ptr<FeatureReport> html_report(TextSink sink, ReportHead head,
   return std::make_unique<HtmlReport>(std::move(sink), std::move(head), options);
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -4,7 +4,7 @@
 #include "report/place.h"
 #include "report/tally.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 /// Errors of reading that are listed; more are counted only.
@@ -17,9 +17,9 @@ void write_codes(JsonText& json, std::string_view name, const Codes& codes) {
   json.close(']');
 }
 
-void write_not_run(JsonText& json, const std::vector<SkippedRule>& rules) {
+void write_not_run(JsonText& json, const std::vector<validate::SkippedRule>& rules) {
   json.key("not_run").open('[');
-  for (const SkippedRule& rule : rules) {
+  for (const validate::SkippedRule& rule : rules) {
     json.open('{');
     write_codes(json, "codes", rule.codes);
     json.key("reason").value(rule.reason).close('}');
@@ -45,15 +45,15 @@ void write_overview(JsonText& json, std::string_view name,
 }
 
 void write_ladder(JsonText& json, const Report& report, bool has_times) {
-  json.key("rung").value(to_string(report.rung));
+  json.key("rung").value(delaunay::to_string(report.rung));
   if (!report.refilled_facets.empty()) {
     json.key("refilled_facets").open('[');
     for (const Index facet : report.refilled_facets) json.value(facet);
     json.close(']');
   }
   json.key("attempts").open('[');
-  for (const RungAttempt& attempt : report.attempts) {
-    json.open('{').key("rung").value(to_string(attempt.rung));
+  for (const delaunay::RungAttempt& attempt : report.attempts) {
+    json.open('{').key("rung").value(delaunay::to_string(attempt.rung));
     json.key("outcome").value(attempt.outcome);
     if (has_times) json.key("seconds").value(attempt.seconds);
     json.close('}');
@@ -61,7 +61,7 @@ void write_ladder(JsonText& json, const Report& report, bool has_times) {
   json.close(']');
 }
 
-void write_primitive(JsonText& json, const InspectedSolid& solid, bool has_times) {
+void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool has_times) {
   const Report& report = solid.inspection.report;
   json.open('{').key("id").value(solid_id(solid.source));
   json.key("type").value(solid.source.geometry_type);
@@ -69,13 +69,16 @@ void write_primitive(JsonText& json, const InspectedSolid& solid, bool has_times
   if (!solid.source.lod.empty()) json.key("lod").value(solid.source.lod);
   if (!solid.source.pointer.empty()) json.key("pointer").value(solid.source.pointer);
   json.key("validity").value(report.verdict == Verdict::valid);
-  json.key("verdict").value(to_string(report.verdict));
+  json.key("verdict").value(validate::to_string(report.verdict));
   if (!report.undecided_reason.empty()) {
     json.key("undecided_reason").value(report.undecided_reason);
   }
   write_codes(json, "first_level", report.first_level);
   if (report.tolerant) {
-    json.key("tolerant").open('{').key("verdict").value(to_string(report.tolerant->verdict));
+    json.key("tolerant")
+        .open('{')
+        .key("verdict")
+        .value(validate::to_string(report.tolerant->verdict));
     write_codes(json, "first_level", report.tolerant->first_level);
     json.close('}');
   }
@@ -83,13 +86,13 @@ void write_primitive(JsonText& json, const InspectedSolid& solid, bool has_times
   write_not_run(json, report.not_run);
   write_strings(json, "notes", report.notes);
   write_ladder(json, report, has_times);
-  if (report.measures) json.key("measures").raw(report_measures_json(*report.measures));
+  if (report.measures) json.key("measures").raw(validate::report_measures_json(*report.measures));
   if (has_times) json.key("seconds").value(report.seconds);
   json.close('}');
 }
 
-void write_group(JsonText& json, const InspectedGroup& group) {
-  const bool is_composite = group.kind == GroupKind::composite_solid;
+void write_group(JsonText& json, const pipeline::InspectedGroup& group) {
+  const bool is_composite = group.kind == validate::GroupKind::composite_solid;
   json.open('{').key("kind").value(is_composite ? "composite_solid" : "building_parts");
   json.key("object").value(group.object_id);
   if (!group.lod.empty()) json.key("lod").value(group.lod);
@@ -97,46 +100,47 @@ void write_group(JsonText& json, const InspectedGroup& group) {
   for (const std::size_t member : group.members) json.value(std::uint64_t{member});
   json.close(']');
   json.key("validity").value(group.report.verdict == Verdict::valid);
-  json.key("verdict").value(to_string(group.report.verdict));
+  json.key("verdict").value(validate::to_string(group.report.verdict));
   json.key("findings_omitted").value(group.report.findings_omitted);
   write_not_run(json, group.report.not_run);
   json.close('}');
 }
 
 /// Writes the findings of one severity. `options` has one entry per solid.
-void write_findings(JsonText& json, const InspectedFeature& feature, Severity severity,
-                    const std::vector<ReportJsonOptions>& options) {
+void write_findings(JsonText& json, const pipeline::InspectedFeature& feature, Severity severity,
+                    const std::vector<validate::ReportJsonOptions>& options) {
   for (const PlacedFinding& placed : findings_of(feature)) {
     if (placed.finding->severity != severity) continue;
     const Solid* here = submitted_solid(feature, placed.solid);
     const Solid* there = submitted_solid(feature, placed.other_solid);
     if (here == nullptr) continue;
-    const PlacedSolid first{here, &options[placed.solid]};
+    const validate::PlacedSolid first{here, &options[placed.solid]};
     const bool has_other = there != nullptr;
-    const PlacedSolid second{has_other ? there : here,
-                             &options[has_other ? placed.other_solid : placed.solid]};
-    json.raw(finding_json(*placed.finding, first, second));
+    const validate::PlacedSolid second{has_other ? there : here,
+                                       &options[has_other ? placed.other_solid : placed.solid]};
+    json.raw(validate::finding_json(*placed.finding, first, second));
   }
 }
 
-std::string feature_json(const InspectedFeature& feature, bool has_times) {
-  std::vector<ReportJsonOptions> options;
-  for (const InspectedSolid& solid : feature.solids) {
+std::string feature_json(const pipeline::InspectedFeature& feature, bool has_times) {
+  std::vector<validate::ReportJsonOptions> options;
+  for (const pipeline::InspectedSolid& solid : feature.solids) {
     options.push_back(json_options_of(solid.source, static_cast<Index>(options.size())));
   }
   const Verdict verdict = feature.verdict();
   JsonText json;
   json.open('{').key("id").value(feature.feature.id).key("type").value(feature.feature.type);
   json.key("validity").value(verdict == Verdict::valid);
-  json.key("verdict").value(to_string(verdict));
+  json.key("verdict").value(validate::to_string(verdict));
   json.key("errors").open('[');
   write_findings(json, feature, Severity::error, options);
   json.close(']').key("warnings").open('[');
   write_findings(json, feature, Severity::warning, options);
   json.close(']').key("primitives").open('[');
-  for (const InspectedSolid& solid : feature.solids) write_primitive(json, solid, has_times);
+  for (const pipeline::InspectedSolid& solid : feature.solids)
+    write_primitive(json, solid, has_times);
   json.close(']').key("groups").open('[');
-  for (const InspectedGroup& group : feature.groups) write_group(json, group);
+  for (const pipeline::InspectedGroup& group : feature.groups) write_group(json, group);
   json.close(']').close('}');
   return json.take();
 }
@@ -150,7 +154,11 @@ class JsonReport final : public FeatureReport {
     errors_.clear();
     is_first_ = true;
     JsonText json;
-    json.open('{').key("type").value("val3dity_report").key("schema").value(kReportSchema);
+    json.open('{')
+        .key("type")
+        .value("val3dity_report")
+        .key("schema")
+        .value(validate::kReportSchema);
     json.key("program").open('{').key("name").value("watertight");
     json.key("version").value(head_.program_version).close('}');
     json.key("val3dity_version").value("watertight " + head_.program_version);
@@ -162,7 +170,7 @@ class JsonReport final : public FeatureReport {
     return sink_(json.take());
   }
 
-  Status add(const ValidatedFeature& feature) override {
+  Status add(const pipeline::ValidatedFeature& feature) override {
     tally_.add(feature.inspected);
     std::string text = is_first_ ? "" : ",";
     is_first_ = false;
@@ -216,7 +224,7 @@ class JsonReport final : public FeatureReport {
     write_strings(json, "notes", end.notes);
     if (!head_.time.empty()) json.key("seconds").value(end.seconds);
     json.key("validity").value(tally_.is_valid());
-    json.key("verdict").value(to_string(tally_.verdict()));
+    json.key("verdict").value(validate::to_string(tally_.verdict()));
     std::string text = json.take();
     text.front() = ',';
     return text;
@@ -245,4 +253,4 @@ std::unique_ptr<FeatureReport> json_report(TextSink sink, ReportHead head) {
   return std::make_unique<JsonReport>(std::move(sink), std::move(head));
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

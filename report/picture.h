@@ -10,7 +10,7 @@
 
 #include "report/place.h"
 
-namespace watertight {
+namespace watertight::report {
 
 struct Picture {
   std::string svg;    // one <svg> element; classes are those of the page's style
@@ -24,7 +24,7 @@ struct PictureOptions {
 
 /// Nothing when the finding has no place to show. Coordinates are rounded to a thousandth of the
 /// picture. Cost: linear in the facets of the solids concerned.
-std::optional<Picture> picture_of(const InspectedFeature& feature, const PlacedFinding& placed,
-                                  const PictureOptions& options);
+std::optional<Picture> picture_of(const pipeline::InspectedFeature& feature,
+                                  const PlacedFinding& placed, const PictureOptions& options);
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/place.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
-Index member_of(const InspectedFeature& feature, const InspectedGroup& group, const Place& place) {
+Index member_of(const pipeline::InspectedFeature& feature, const pipeline::InspectedGroup& group,
+                const Place& place) {
   if (group.members.empty()) return kNone;
   const std::size_t solid = group.members[place.solid < group.members.size() ? place.solid : 0];
   return solid < feature.solids.size() ? static_cast<Index>(solid) : kNone;
@@ -25,18 +26,18 @@ std::optional<std::array<double, 3>> middle_of_ring(const Solid& solid, Index ri
 
 }  // namespace
 
-const Solid* submitted_solid(const InspectedFeature& feature, Index solid) {
+const Solid* submitted_solid(const pipeline::InspectedFeature& feature, Index solid) {
   return solid < feature.feature.solids.size() ? &feature.feature.solids[solid].solid : nullptr;
 }
 
-std::vector<PlacedFinding> findings_of(const InspectedFeature& feature) {
+std::vector<PlacedFinding> findings_of(const pipeline::InspectedFeature& feature) {
   std::vector<PlacedFinding> all;
   for (Index i = 0; i < feature.solids.size(); ++i) {
     for (const Finding& finding : feature.solids[i].inspection.report.findings) {
       all.push_back({&finding, i, finding.other ? i : kNone, nullptr});
     }
   }
-  for (const InspectedGroup& group : feature.groups) {
+  for (const pipeline::InspectedGroup& group : feature.groups) {
     for (const Finding& finding : group.report.findings) {
       all.push_back({&finding, member_of(feature, group, finding.place),
                      finding.other ? member_of(feature, group, *finding.other) : kNone, &group});
@@ -45,7 +46,7 @@ std::vector<PlacedFinding> findings_of(const InspectedFeature& feature) {
   return all;
 }
 
-std::optional<std::array<double, 3>> point_of(const InspectedFeature& feature,
+std::optional<std::array<double, 3>> point_of(const pipeline::InspectedFeature& feature,
                                               const PlacedFinding& placed) {
   const Finding& finding = *placed.finding;
   if (finding.witness) return finding.witness;
@@ -68,19 +69,19 @@ std::string solid_id(const SolidSource& source) {
   return id;
 }
 
-ReportJsonOptions json_options_of(const SolidSource& source, Index solid) {
-  ReportJsonOptions options;
+validate::ReportJsonOptions json_options_of(const SolidSource& source, Index solid) {
+  validate::ReportJsonOptions options;
   options.pointer_prefix = source.pointer;
   options.id_prefix = solid_id(source) + "|";
   options.solid_number = solid;
   return options;
 }
 
-std::string pointer_of(const InspectedFeature& feature, Index solid, const Place& place) {
+std::string pointer_of(const pipeline::InspectedFeature& feature, Index solid, const Place& place) {
   const Solid* submitted = submitted_solid(feature, solid);
   if (submitted == nullptr) return "";
-  return place_pointer(place, *submitted,
-                       json_options_of(feature.feature.solids[solid].source, solid));
+  return validate::place_pointer(place, *submitted,
+                                 json_options_of(feature.feature.solids[solid].source, solid));
 }
 
 std::string_view format_name(Format format) {
@@ -115,4 +116,4 @@ std::string crs_name(std::uint32_t srid) {
   return srid == 0 ? "" : "urn:ogc:def:crs:EPSG::" + std::to_string(srid);
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

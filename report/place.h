@@ -12,35 +12,35 @@
 #include "pipeline/pipeline.h"
 #include "validate/report_json.h"
 
-namespace watertight {
+namespace watertight::report {
 
 /// A finding with the solids that its places are in.
 struct PlacedFinding {
   const Finding* finding = nullptr;
-  Index solid = kNone;                    // of Finding::place, among InspectedFeature::solids
-  Index other_solid = kNone;              // of Finding::other
-  const InspectedGroup* group = nullptr;  // null: a finding about one solid
+  Index solid = kNone;        // of Finding::place, among InspectedFeature::solids
+  Index other_solid = kNone;  // of Finding::other
+  const pipeline::InspectedGroup* group = nullptr;  // null: a finding about one solid
 };
 
 /// In order of solids, then groups. A finding about a whole group is placed in its first member.
-std::vector<PlacedFinding> findings_of(const InspectedFeature& feature);
+std::vector<PlacedFinding> findings_of(const pipeline::InspectedFeature& feature);
 
 /// The solid that was submitted, or null for kNone.
-const Solid* submitted_solid(const InspectedFeature& feature, Index solid);
+const Solid* submitted_solid(const pipeline::InspectedFeature& feature, Index solid);
 
 /// Where to look: the witness, else the vertex, else the middle of the facet's exterior ring, else
 /// nothing. World coordinates.
-std::optional<std::array<double, 3>> point_of(const InspectedFeature& feature,
+std::optional<std::array<double, 3>> point_of(const pipeline::InspectedFeature& feature,
                                               const PlacedFinding& placed);
 
 /// val3dity's path of a solid: "coid=b|geom=0|solid=1".
 std::string solid_id(const SolidSource& source);
 
 /// How places in a solid of a feature are written.
-ReportJsonOptions json_options_of(const SolidSource& source, Index solid);
+validate::ReportJsonOptions json_options_of(const SolidSource& source, Index solid);
 
 /// JSON Pointer into the document, "" when there is none.
-std::string pointer_of(const InspectedFeature& feature, Index solid, const Place& place);
+std::string pointer_of(const pipeline::InspectedFeature& feature, Index solid, const Place& place);
 
 /// The document's name for the reference system, "urn:ogc:def:crs:EPSG::7415"; "" for 0.
 std::string crs_name(std::uint32_t srid);
@@ -48,4 +48,4 @@ std::string crs_name(std::uint32_t srid);
 /// What val3dity calls a format: "CityJSON", "OBJ", ...
 std::string_view format_name(Format format);
 
-}  // namespace watertight
+}  // namespace watertight::report

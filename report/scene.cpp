@@ -9,7 +9,7 @@
 #include "geometry/divided_rings.h"
 #include "validate/finding_kinds.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 constexpr double kRadius = 1000;  // of a scene, from its centre
@@ -21,7 +21,7 @@ constexpr std::size_t kMostCornersForEdges = 1'000'000;
 class Frame {
  public:
   Frame(const Solid& solid, const Triple& centre)
-      : centre_(centre), metres_(axis_units(solid.srid(), centre).metres_per_unit) {}
+      : centre_(centre), metres_(geometry::axis_units(solid.srid(), centre).metres_per_unit) {}
   Triple operator()(const Triple& world) const {
     Triple local{};
     for (std::size_t i = 0; i < 3; ++i) local[i] = (world[i] - centre_[i]) * metres_[i];
@@ -153,8 +153,8 @@ SceneFacet facet_of(const Candidate& candidate, const Frame& frame, std::size_t 
 /// vertex of another ring of its facet splits counts as its parts.
 void add_bad_edges(const Solid& solid, const Frame& frame, std::size_t most, Scene& scene) {
   if (solid.arrays().ring_vertices.size() > kMostCornersForEdges) return;
-  const Solid merged = merge_equal_vertices(solid).solid;
-  const Solid divided = divide_rings(merged, ring_touches(merged)).solid;
+  const Solid merged = geometry::merge_equal_vertices(solid).solid;
+  const Solid divided = geometry::divide_rings(merged, geometry::ring_touches(merged)).solid;
   std::vector<std::array<Index, 2>> edges;
   for (Index ring = 0; ring < divided.ring_count(); ++ring) {
     const std::span<const Index> vertices = divided.ring(ring);
@@ -243,7 +243,7 @@ bool fit(Scene& scene, double reach) {
   return true;
 }
 
-Role role_in(const PlacedFinding& placed, const InspectedFeature& feature,
+Role role_in(const PlacedFinding& placed, const pipeline::InspectedFeature& feature,
              const Candidate& candidate) {
   const Finding& finding = *placed.finding;
   const bool is_here = submitted_solid(feature, placed.solid) == candidate.solid;
@@ -256,8 +256,8 @@ Role role_in(const PlacedFinding& placed, const InspectedFeature& feature,
 
 }  // namespace
 
-std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFinding& placed,
-                              const PictureOptions& options) {
+std::optional<Scene> scene_of(const pipeline::InspectedFeature& feature,
+                              const PlacedFinding& placed, const PictureOptions& options) {
   const Solid* here = submitted_solid(feature, placed.solid);
   const Solid* there = submitted_solid(feature, placed.other_solid);
   if (here == nullptr || here->facet_count() == 0) return std::nullopt;
@@ -289,11 +289,13 @@ std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFindi
     corners += corner_count(scene.facets.back());
   }
   const int code = placed.finding->code;
-  if (code == kShellNotClosed || code == kNonManifold) {
+  if (code == validate::kShellNotClosed || code == validate::kNonManifold) {
     add_bad_edges(*here, frame, options.most_facets, scene);
   }
-  const bool is_about_rings = code < kNonPlanarDistance || finding_level(code) == 2;
-  const bool is_about_planes = code == kNonPlanarDistance || code == kNonPlanarNormals;
+  const bool is_about_rings =
+      code < validate::kNonPlanarDistance || validate::finding_level(code) == 2;
+  const bool is_about_planes =
+      code == validate::kNonPlanarDistance || code == validate::kNonPlanarNormals;
   if (is_about_rings && !is_about_planes) {
     add_ring_line(here, placed.finding->place, frame, options.most_corners, scene);
     if (placed.finding->other) {
@@ -306,12 +308,12 @@ std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFindi
   return scene;
 }
 
-std::optional<Picture> picture_of(const InspectedFeature& feature, const PlacedFinding& placed,
-                                  const PictureOptions& options) {
+std::optional<Picture> picture_of(const pipeline::InspectedFeature& feature,
+                                  const PlacedFinding& placed, const PictureOptions& options) {
   const auto scene = scene_of(feature, placed, options);
   if (!scene) return std::nullopt;
   const View view = best_view(*scene);
   return Picture{svg_of(*scene, view), json_of(*scene, view)};
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -11,7 +11,7 @@
 
 #include "report/picture.h"
 
-namespace watertight {
+namespace watertight::report {
 
 using Triple = std::array<double, 3>;
 
@@ -30,8 +30,8 @@ struct Scene {
 };
 
 /// Nothing when there is no facet to show.
-std::optional<Scene> scene_of(const InspectedFeature& feature, const PlacedFinding& placed,
-                              const PictureOptions& options);
+std::optional<Scene> scene_of(const pipeline::InspectedFeature& feature,
+                              const PlacedFinding& placed, const PictureOptions& options);
 
 /// Where a picture is seen from, degrees: azimuth from east, elevation above the horizon.
 struct View {
@@ -49,4 +49,4 @@ std::string svg_of(const Scene& scene, const View& view);
 /// rings as flat arrays of whole numbers.
 std::string json_of(const Scene& scene, const View& view);
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -6,7 +6,7 @@
 #include "base/json_text.h"
 #include "report/scene.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 constexpr double kWidth = 640;
@@ -229,4 +229,4 @@ std::string json_of(const Scene& scene, const View& view) {
   return json.close('}').take();
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -3,7 +3,7 @@
 
 #include "validate/finding_kinds.h"
 
-namespace watertight {
+namespace watertight::report {
 namespace {
 
 constexpr int kUnknownError = 999;
@@ -46,18 +46,18 @@ void Tally::add_finding(const Finding& finding) {
   (finding.severity == Severity::error ? errors_ : warnings_).insert(finding.code);
 }
 
-void Tally::add(const InspectedFeature& feature) {
+void Tally::add(const pipeline::InspectedFeature& feature) {
   const Verdict verdict = feature.verdict();
-  verdict_ = worse(verdict_, verdict);
+  verdict_ = pipeline::worse(verdict_, verdict);
   count(features_, feature.feature.type, verdict);
-  for (const InspectedSolid& solid : feature.solids) {
+  for (const pipeline::InspectedSolid& solid : feature.solids) {
     const Report& report = solid.inspection.report;
     count(solids_, solid.source.geometry_type, report.verdict);
     omitted_ += report.findings_omitted;
     first_level_.insert(report.first_level.begin(), report.first_level.end());
     for (const Finding& finding : report.findings) add_finding(finding);
   }
-  for (const InspectedGroup& group : feature.groups) {
+  for (const pipeline::InspectedGroup& group : feature.groups) {
     omitted_ += group.report.findings_omitted;
     for (const Finding& finding : group.report.findings) {
       add_finding(finding);
@@ -76,7 +76,7 @@ VerdictCount Tally::all_features() const { return sum(features_); }
 VerdictCount Tally::all_solids() const { return sum(solids_); }
 
 Verdict Tally::verdict() const {
-  return unreadable_ > 0 ? worse(verdict_, Verdict::undecided) : verdict_;
+  return unreadable_ > 0 ? pipeline::worse(verdict_, Verdict::undecided) : verdict_;
 }
 
 int code_of(const Error& error) {
@@ -84,11 +84,11 @@ int code_of(const Error& error) {
     case ErrorCode::malformed:
     case ErrorCode::limit_exceeded:
     case ErrorCode::not_encodable:
-      return kInvalidInputFile;
+      return validate::kInvalidInputFile;
     case ErrorCode::unsupported:
-      return kFormatNotSupported;
+      return validate::kFormatNotSupported;
     case ErrorCode::invalid_argument:
-      return kWrongInputParameters;
+      return validate::kWrongInputParameters;
     case ErrorCode::cancelled:
     case ErrorCode::not_found:
     case ErrorCode::conflict:
@@ -99,7 +99,7 @@ int code_of(const Error& error) {
 }
 
 std::string_view name_of(int code) {
-  return code == kUnknownError ? "UNKNOWN_ERROR" : finding_name(code);
+  return code == kUnknownError ? "UNKNOWN_ERROR" : validate::finding_name(code);
 }
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -11,7 +11,7 @@
 
 #include "pipeline/pipeline.h"
 
-namespace watertight {
+namespace watertight::report {
 
 struct VerdictCount {
   std::uint64_t valid = 0;
@@ -23,7 +23,7 @@ struct VerdictCount {
 
 class Tally {
  public:
-  void add(const InspectedFeature& feature);
+  void add(const pipeline::InspectedFeature& feature);
   void add_error(int code);
 
   const std::map<std::string, VerdictCount>& features() const { return features_; }
@@ -62,4 +62,4 @@ int code_of(const Error& error);
 /// The name of a finding's code or of 999.
 std::string_view name_of(int code);
 
-}  // namespace watertight
+}  // namespace watertight::report

@@ -10,7 +10,7 @@
 #include "server/problem.h"
 #include "server/routes.h"
 
-namespace watertight {
+namespace watertight::server {
 
 inline constexpr std::string_view kJson = "application/json";
 inline constexpr std::string_view kCityJson = "application/city+json";
@@ -68,4 +68,4 @@ std::string item_path(std::string_view collection, std::string_view item);
 /// The OpenAPI 3 document as JSON text.
 std::string openapi_text();
 
-}  // namespace watertight
+}  // namespace watertight::server

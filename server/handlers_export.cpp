@@ -7,19 +7,19 @@
 #include "pipeline/export.h"
 #include "server/handlers.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 struct FileFormat {
   std::string_view parameter;  // value of f=
   std::string_view type;
   std::string_view ending;
-  ExportFormat format;
+  pipeline::ExportFormat format;
 };
 
 constexpr std::array<FileFormat, 2> kFiles{
-    {{"wt", kContainer, ".wt", ExportFormat::container},
-     {"cityjsonseq", kCityJsonSeq, ".city.jsonl", ExportFormat::sequence}}};
+    {{"wt", kContainer, ".wt", pipeline::ExportFormat::container},
+     {"cityjsonseq", kCityJsonSeq, ".city.jsonl", pipeline::ExportFormat::sequence}}};
 
 const FileFormat* chosen_file(const RoutedRequest& request) {
   if (const std::string* wanted = request.target.parameter("f")) {
@@ -57,9 +57,9 @@ Response get_export(const RoutedRequest& request) {
   const std::string& id = request.target.segments[1];
   const auto collection = request.service.store->collection(id);
   if (!collection) return to_response(to_problem(collection.error()));
-  auto started = CollectionExport::start(*request.service.store, id, file->format);
+  auto started = pipeline::CollectionExport::start(*request.service.store, id, file->format);
   if (!started) return refuse_export(started.error());
-  const auto exporting = std::make_shared<CollectionExport>(*std::move(started));
+  const auto exporting = std::make_shared<pipeline::CollectionExport>(*std::move(started));
   // The first part before the status goes out: most of what can be wrong shows there.
   auto first = exporting->next();
   if (!first) return refuse_export(first.error());
@@ -78,4 +78,4 @@ Response get_export(const RoutedRequest& request) {
   return response;
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -9,7 +9,7 @@
 #include "pipeline/container.h"
 #include "server/handlers.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 struct ItemFormat {
@@ -92,9 +92,9 @@ Result<Bytes> represent(const StoredFeature& feature, const ItemFormat& format,
                         const RoutedRequest& request) {
   if (format.parameter == "blob") return blob_of(feature, request.target);
   if (format.parameter == "wt") {
-    return write_container({feature.format, feature.header, {}, {feature}});
+    return pipeline::write_container({feature.format, feature.header, {}, {feature}});
   }
-  auto document = from_stored(feature, request.service.options.limits);
+  auto document = pipeline::from_stored(feature, request.service.options.limits);
   if (!document) {
     return Error{ErrorCode::unavailable,
                  "the stored feature cannot be decoded: " + to_string(document.error())};
@@ -102,7 +102,7 @@ Result<Bytes> represent(const StoredFeature& feature, const ItemFormat& format,
   Format target = Format::city_json;
   if (format.parameter == "obj") target = Format::obj;
   if (format.parameter == "cityjsonseq") target = Format::city_json_seq;
-  return convert_document(*document, target);
+  return pipeline::convert_document(*document, target);
 }
 
 }  // namespace
@@ -144,4 +144,4 @@ Response delete_item(const RoutedRequest& request) {
   return Response{204, "", "", {}};
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

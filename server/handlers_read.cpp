@@ -9,7 +9,7 @@
 
 #include "server/handlers.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -67,11 +67,11 @@ std::optional<std::string_view> landing_type(const RoutedRequest& request) {
   return *offer == 0 ? std::string_view(kJson) : kHtml;
 }
 
-Json box_json(const StoredBox& box) {
+Json box_json(const store::StoredBox& box) {
   return Json::array({box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]});
 }
 
-Json collection_json(const StoredCollection& collection) {
+Json collection_json(const store::StoredCollection& collection) {
   const std::string self = "/collections/" + percent_encode(collection.id);
   Json json{{"id", collection.id}, {"itemType", "feature"}};
   json["crs"] = Json::array({crs_uri(collection.srid)});
@@ -102,7 +102,7 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 /// A box of 4 numbers has no limit in z.
-Result<StoredBox> parse_box(std::string_view text) {
+Result<store::StoredBox> parse_box(std::string_view text) {
   const Error wrong{ErrorCode::invalid_argument,
                     "bbox takes 4 or 6 comma-separated numbers: minima, then maxima"};
   std::vector<double> numbers;
@@ -116,7 +116,7 @@ Result<StoredBox> parse_box(std::string_view text) {
   }
   if (numbers.size() != 4 && numbers.size() != 6) return wrong;
   const std::size_t axes = numbers.size() / 2;
-  StoredBox box;
+  store::StoredBox box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool is_given = axis < axes;
     box.min[axis] = is_given ? numbers[axis] : std::numeric_limits<double>::lowest();
@@ -129,22 +129,22 @@ Result<StoredBox> parse_box(std::string_view text) {
 }
 
 /// `bbox` counts in the collection's own CRS only, and the client has to say so.
-Result<std::optional<StoredBox>> box_of_request(const Target& target,
-                                                const StoredCollection& collection) {
+Result<std::optional<store::StoredBox>> box_of_request(const Target& target,
+                                                       const store::StoredCollection& collection) {
   const std::string* box = target.parameter("bbox");
   const std::string* crs = target.parameter("bbox-crs");
   const std::string storage_crs = crs_uri(collection.srid);
   if (crs != nullptr && *crs != storage_crs) {
     return Error{ErrorCode::invalid_argument, "bbox-crs can only be " + storage_crs};
   }
-  if (box == nullptr) return std::optional<StoredBox>();
+  if (box == nullptr) return std::optional<store::StoredBox>();
   if (crs == nullptr) {
     return Error{ErrorCode::invalid_argument,
                  "bbox needs bbox-crs=" + storage_crs + " (the collection's storage CRS)"};
   }
   auto parsed = parse_box(*box);
   if (!parsed) return std::move(parsed).error();
-  return std::optional<StoredBox>(*parsed);
+  return std::optional<store::StoredBox>(*parsed);
 }
 
 Result<std::uint64_t> limit_of_request(const Target& target, const RouteOptions& options) {
@@ -257,7 +257,7 @@ Response get_collections(const RoutedRequest& request) {
   Json json;
   json["links"] = Json::array({link("/collections", "self", kJson, "this list")});
   json["collections"] = Json::array();
-  for (const StoredCollection& collection : *collections) {
+  for (const store::StoredCollection& collection : *collections) {
     json["collections"].push_back(collection_json(collection));
   }
   return json_response(json);
@@ -300,4 +300,4 @@ Response get_items(const RoutedRequest& request) {
   return response;
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

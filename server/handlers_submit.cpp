@@ -13,11 +13,11 @@
 #include "server/handlers.h"
 #include "server/submission.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
-IngestOptions ingest_options(const RoutedRequest& request) {
-  IngestOptions options;
+pipeline::IngestOptions ingest_options(const RoutedRequest& request) {
+  pipeline::IngestOptions options;
   options.threads = request.service.options.threads_per_request;
   options.certify.limits = request.service.options.limits;
   options.certify.limits.findings = request.service.options.largest_findings;
@@ -27,10 +27,10 @@ IngestOptions ingest_options(const RoutedRequest& request) {
 }
 
 /// 422: what is wrong is in the report.
-Response refused_document(const IngestOutcome& outcome) {
+Response refused_document(const pipeline::IngestOutcome& outcome) {
   Problem problem;
   problem.status = 422;
-  problem.extension = "{\"report\":" + outcome_json(outcome) + "}";
+  problem.extension = "{\"report\":" + pipeline::outcome_json(outcome) + "}";
   if (outcome.verdict == Verdict::invalid) {
     problem.kind = "invalid-solids";
     problem.detail = "the document has solids that are not valid; nothing was stored";
@@ -90,21 +90,22 @@ Status read_certify_options(const Target& target, CertifyOptions& options) {
 constexpr std::string_view kGeoJson = "application/geo+json";
 constexpr std::string_view kHtml = "text/html";
 
-std::unique_ptr<FeatureReport> make_report(std::size_t kind, TextSink sink, ReportHead head) {
-  if (kind == 1) return geojson_report(std::move(sink), std::move(head));
-  if (kind == 2) return html_report(std::move(sink), std::move(head));
-  return json_report(std::move(sink), std::move(head));
+std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::TextSink sink,
+                                                   report::ReportHead head) {
+  if (kind == 1) return report::geojson_report(std::move(sink), std::move(head));
+  if (kind == 2) return report::html_report(std::move(sink), std::move(head));
+  return report::json_report(std::move(sink), std::move(head));
 }
 
 /// Validates a document and answers with its report: 0 JSON, 1 GeoJSON, 2 HTML. Equal documents
 /// get equal answers, so it says no times.
-Response report_of(Document document, const RoutedRequest& request, const IngestOptions& options,
-                   std::size_t kind) {
+Response report_of(Document document, const RoutedRequest& request,
+                   const pipeline::IngestOptions& options, std::size_t kind) {
   constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};
   Response response{200, std::string(kTypes[kind]), {}, {}};
-  ReportHead head;
+  report::ReportHead head;
   head.program_version = WATERTIGHT_VERSION;
-  head.acceptance = {options.certify.tolerances, options.certify.proof, kRuleSet};
+  head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
   head.is_strict = options.certify.ladder.strict;
   const auto report = make_report(
       kind,
@@ -113,17 +114,17 @@ Response report_of(Document document, const RoutedRequest& request, const Ingest
         return Done{};
       },
       std::move(head));
-  StreamOptions stream;
+  pipeline::StreamOptions stream;
   stream.certify = options.certify;
   stream.groups.limits = options.certify.limits;
   stream.groups.cancel = options.certify.ladder.cancel;
   stream.threads = options.threads;
   stream.is_cancelled = options.is_cancelled;
   Status status = report->begin_document({"request body", document.format});
-  FeatureReader reader = FeatureReader::of(std::move(document));
-  const auto outcome = validate_stream(
+  formats::FeatureReader reader = formats::FeatureReader::of(std::move(document));
+  const auto outcome = pipeline::validate_stream(
       reader, request.service.workers, stream,
-      [&](ValidatedFeature&& feature) { return report->add(feature); },
+      [&](pipeline::ValidatedFeature&& feature) { return report->add(feature); },
       [&](const Error& error) { return report->add_error(error); });
   if (!outcome) return to_response(to_problem(outcome.error()));
   if (status) status = report->end_document({reader.document().notes, 0});
@@ -143,26 +144,29 @@ Result<std::string> header_for(const RoutedRequest& request) {
 }  // namespace
 
 Response post_items(const RoutedRequest& request) {
-  IngestOptions options = ingest_options(request);
+  pipeline::IngestOptions options = ingest_options(request);
   options.collection = request.target.segments[1];
   const std::string* invalid = request.target.parameter("invalid");
   if (invalid != nullptr && *invalid != "skip" && *invalid != "refuse") {
     return refuse(400, "invalid-argument", "invalid is refuse (the default) or skip");
   }
-  if (invalid != nullptr && *invalid == "skip") options.invalid_features = InvalidFeatures::skip;
+  if (invalid != nullptr && *invalid == "skip")
+    options.invalid_features = pipeline::InvalidFeatures::skip;
   const auto header = header_for(request);
   if (!header) return to_response(to_problem(header.error()));
   Submission submission = read_submission(request, AcceptedFormats::city_models, *header);
   if (submission.problem) return to_response(*submission.problem);
-  auto outcome = ingest(*std::move(submission.document), *request.service.store,
-                        request.service.workers, options);
+  auto outcome = pipeline::ingest(*std::move(submission.document), *request.service.store,
+                                  request.service.workers, options);
   if (!outcome) return to_response(to_problem(outcome.error()));
   const bool is_refused = outcome->verdict != Verdict::valid &&
-                          options.invalid_features == InvalidFeatures::refuse_document;
+                          options.invalid_features == pipeline::InvalidFeatures::refuse_document;
   if (is_refused) return refused_document(*outcome);
   // Skipping: some may be stored, the report says which.
-  Response response{
-      outcome->stored > 0 ? 201U : 200U, std::string(kJson), outcome_json(*outcome) + "\n", {}};
+  Response response{outcome->stored > 0 ? 201U : 200U,
+                    std::string(kJson),
+                    pipeline::outcome_json(*outcome) + "\n",
+                    {}};
   if (outcome->features.size() == 1 && outcome->stored == 1) {
     response.headers.push_back(
         {"Location", item_path(options.collection, outcome->features.front().id)});
@@ -171,7 +175,7 @@ Response post_items(const RoutedRequest& request) {
 }
 
 Response post_validate(const RoutedRequest& request) {
-  IngestOptions options = ingest_options(request);
+  pipeline::IngestOptions options = ingest_options(request);
   const Status status = read_certify_options(request.target, options.certify);
   if (!status) return to_response(to_problem(status.error()));
   const auto kind = negotiate(request.request.header("accept"), {kJson, kGeoJson, kHtml});
@@ -184,4 +188,4 @@ Response post_validate(const RoutedRequest& request) {
   return report_of(*std::move(submission.document), request, options, *kind);
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -5,7 +5,7 @@
 #include <array>
 #include <charconv>
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -283,4 +283,4 @@ std::optional<std::size_t> negotiate(const std::string* accept,
   return best;
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

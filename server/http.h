@@ -13,7 +13,7 @@
 
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::server {
 
 struct HeaderField {
   std::string name;  // lower case in requests
@@ -79,4 +79,4 @@ std::string media_type(std::string_view content_type);
 std::optional<std::size_t> negotiate(const std::string* accept,
                                      const std::vector<std::string_view>& offers);
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -17,7 +17,7 @@
 
 #include "server/session.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 namespace asio = boost::asio;
@@ -173,4 +173,4 @@ Result<std::unique_ptr<HttpServer>> HttpServer::start(const ServerOptions& optio
   return std::unique_ptr<HttpServer>(std::move(server));
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

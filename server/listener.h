@@ -13,7 +13,7 @@
 #include "base/result.h"
 #include "server/http.h"
 
-namespace watertight {
+namespace watertight::server {
 
 /// Where a request is answered. Quick ones on the I/O thread, so that they are answered whatever
 /// the others do; those that wait for the database and those that compute each have threads of
@@ -65,4 +65,4 @@ class HttpServer {
   virtual void stop() = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -3,7 +3,7 @@
 // The OpenAPI document. A test compares it with the route table.
 #include "server/handlers.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 constexpr char kOpenApi[] = R"json({
@@ -139,4 +139,4 @@ constexpr char kOpenApi[] = R"json({
 
 std::string openapi_text() { return kOpenApi; }
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -73,4 +73,4 @@ Problem to_problem(const Error& error) {
   return problem;
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "server/http.h"
 
-namespace watertight {
+namespace watertight::server {
 
 /// Kinds of problems; the `type` member is kProblemPrefix followed by the kind.
 inline constexpr std::string_view kProblemPrefix = "urn:watertight:problem:";
@@ -35,4 +35,4 @@ Response to_response(const Problem& problem);
 /// 503) or the request itself (400).
 Problem to_problem(const Error& error);
 
-}  // namespace watertight
+}  // namespace watertight::server

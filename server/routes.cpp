@@ -5,7 +5,7 @@
 
 #include "server/handlers.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 constexpr std::size_t kLongestId = 1024;  // bytes
@@ -152,4 +152,4 @@ Application make_application(const Service& service) {
                      }};
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -12,7 +12,7 @@
 #include "server/http.h"
 #include "server/listener.h"
 
-namespace watertight {
+namespace watertight::server {
 
 struct RouteOptions {
   Limits limits;  // of a submitted document
@@ -25,7 +25,7 @@ struct RouteOptions {
 /// What routes work on. The store and workers must outlive the service and be thread-safe.
 struct Service {
   SolidStore* store = nullptr;
-  EngineWorkers* workers = nullptr;  // null: rung 0 only
+  delaunay::EngineWorkers* workers = nullptr;  // null: rung 0 only
   RouteOptions options;
 };
 
@@ -38,4 +38,4 @@ Lane lane_of(const Request& request);
 /// The two functions above as the server wants them.
 Application make_application(const Service& service);
 
-}  // namespace watertight
+}  // namespace watertight::server

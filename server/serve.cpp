@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <thread>
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 /// The signals that stop the service, to be waited for.
@@ -46,9 +46,9 @@ void hold_stop_signals() {
 Status serve(const ServeOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   hold_stop_signals();
-  auto store = open_postgres_store(options.connection, options.database_connections);
+  auto store = store::open_postgres_store(options.connection, options.database_connections);
   if (!store) return std::move(store).error();
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   Service service{store->get(), &workers, {}};
   service.options.limits = options.limits;
   const auto logger = make_logger();
@@ -69,4 +69,4 @@ Status serve(const ServeOptions& options) {
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

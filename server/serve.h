@@ -8,7 +8,7 @@
 #include "server/listener.h"
 #include "server/routes.h"
 
-namespace watertight {
+namespace watertight::server {
 
 struct ServeOptions {
   ServerOptions server;
@@ -28,4 +28,4 @@ void hold_stop_signals();
 /// Requires that no other thread takes the two signals: see hold_stop_signals().
 Status serve(const ServeOptions& options);
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -16,7 +16,7 @@
 
 #include "server/problem.h"
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 namespace asio = boost::asio;
@@ -453,4 +453,4 @@ awaitable<void> refuse_session(std::shared_ptr<Connection> connection) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -18,7 +18,7 @@
 
 #include "server/listener.h"
 
-namespace watertight {
+namespace watertight::server {
 
 /// A limited quantity that several threads take from and give back to.
 class Budget {
@@ -86,4 +86,4 @@ boost::asio::awaitable<void> run_session(std::shared_ptr<Connection> connection,
 /// Tells a connection that is one too many to come back later, and closes it.
 boost::asio::awaitable<void> refuse_session(std::shared_ptr<Connection> connection);
 
-}  // namespace watertight
+}  // namespace watertight::server

@@ -5,7 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-namespace watertight {
+namespace watertight::server {
 namespace {
 
 using Json = nlohmann::json;
@@ -102,7 +102,7 @@ std::optional<Format> stated_format(const RoutedRequest& request, AcceptedFormat
   }
   const bool says_nothing = type.empty() || type == "application/octet-stream";
   if (parameter != nullptr || !says_nothing) return std::nullopt;
-  const auto detected = detect_format("", as_bytes(request.request.body));
+  const auto detected = formats::detect_format("", as_bytes(request.request.body));
   if (!detected || !is_allowed(*detected, accepted)) return std::nullopt;
   return *detected;
 }
@@ -118,24 +118,24 @@ bool is_sequence(std::string_view body) {
 }
 
 Result<Document> read_bare_feature(std::string body, const std::string& header,
-                                   const ReadOptions& options) {
+                                   const formats::ReadOptions& options) {
   if (header.empty()) {
     return Error{ErrorCode::malformed,
                  "a CityJSONFeature needs the transform of its document, and there is no "
                  "collection with one: "
                  "send a CityJSONSeq whose first line is the CityJSON header"};
   }
-  auto city_header = read_city_json_header(header);
+  auto city_header = formats::read_city_json_header(header);
   if (!city_header) return std::move(city_header).error();
   // Line ends outside strings are white space, and inside strings JSON has none.
   std::replace(body.begin(), body.end(), '\n', ' ');
   std::replace(body.begin(), body.end(), '\r', ' ');
-  auto feature = read_city_json_feature(*city_header, body, options);
+  auto feature = formats::read_city_json_feature(*city_header, body, options);
   if (!feature) return std::move(feature).error();
   Document document;
   document.format = Format::city_json_seq;
   document.header = header;
-  auto templates = read_geometry_templates(*city_header, options.limits);
+  auto templates = formats::read_geometry_templates(*city_header, options.limits);
   if (!templates) return std::move(templates).error();
   document.templates = *std::move(templates);
   document.features.push_back(*std::move(feature));
@@ -165,13 +165,13 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   }
   const std::string& body = request.request.body;
   const RouteOptions& options = request.service.options;
-  ReadOptions read_options;
+  formats::ReadOptions read_options;
   read_options.limits = options.limits;
   read_options.keep_text = true;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
   auto document = *format == Format::city_json && is_bare_feature(request)
                       ? read_bare_feature(body, header, read_options)
-                      : read_document(as_bytes(body), *format, read_options);
+                      : formats::read_document(as_bytes(body), *format, read_options);
   if (document) {
     submission.document = *std::move(document);
   } else {
@@ -182,4 +182,4 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   return submission;
 }
 
-}  // namespace watertight
+}  // namespace watertight::server

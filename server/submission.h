@@ -8,7 +8,7 @@
 
 #include "server/handlers.h"
 
-namespace watertight {
+namespace watertight::server {
 
 /// What a JSON body says it is, by its top-level "type": "CityJSON", "CityJSONFeature" or another
 /// word; "" when there is none. Reads no further than needed.
@@ -30,4 +30,4 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
 /// True if the body is a single CityJSONFeature, which needs a header from elsewhere.
 bool is_bare_feature(const RoutedRequest& request);
 
-}  // namespace watertight
+}  // namespace watertight::server

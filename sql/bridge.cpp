@@ -19,10 +19,10 @@
 #include "validate/report_json.h"
 
 struct wt_engine {
-  watertight::EngineWorkers workers;
+  watertight::delaunay::EngineWorkers workers;
 };
 
-namespace watertight {
+namespace watertight::sql {
 namespace {
 
 // A detail names this many findings; the whole report is wt_validate's.
@@ -123,7 +123,7 @@ struct Examined {
 
 /// Reads and certifies at the default tolerances. A failure unless the verdict is valid or invalid.
 Result<Examined> examine(const wt_job& job) {
-  Result<SubmittedSolid> submitted = read_ewkb(bytes_of(job));
+  Result<SubmittedSolid> submitted = formats::read_ewkb(bytes_of(job));
   if (!submitted) return std::move(submitted).error();
   CertifyOptions options;
   options.rounded = submitted->rounded;
@@ -145,7 +145,7 @@ std::string errors_of(const Report& report) {
   for (const Finding& finding : report.findings) {
     if (finding.severity != Severity::error || ++count > kFindingsShown) continue;
     if (!lines.empty()) lines += '\n';
-    lines += finding_text(finding);
+    lines += validate::finding_text(finding);
   }
   const std::uint64_t omitted =
       report.findings_omitted + (count > kFindingsShown ? count - kFindingsShown : 0);
@@ -159,11 +159,11 @@ void validate_into(const wt_job& job, wt_reply* reply) {
   // An immutable function says nothing of how the verdict was reached: a helper can crash once.
   Report report = examined->inspection.report;
   report.attempts.clear();
-  report.rung = Rung::none;
+  report.rung = delaunay::Rung::none;
   report.refilled_facets.clear();
-  ReportJsonOptions options;
+  validate::ReportJsonOptions options;
   options.include_times = false;
-  answer(reply, as_bytes(report_json(report, examined->submitted.solid, options)));
+  answer(reply, as_bytes(validate::report_json(report, examined->submitted.solid, options)));
 }
 
 void is_valid_into(const wt_job& job, wt_reply* reply) {
@@ -187,19 +187,19 @@ void encode_into(const wt_job& job, wt_reply* reply) {
 void decode_into(const wt_job& job, wt_reply* reply) {
   const Result<Decoded> decoded = decode(bytes_of(job));
   if (!decoded) return fail(reply, decoded.error());
-  answer(reply, write_ewkb(decoded->solid));
+  answer(reply, formats::write_ewkb(decoded->solid));
 }
 
 void info_into(const wt_job& job, wt_reply* reply) {
-  const Result<BlobInfo> info = describe(bytes_of(job));
+  const Result<codec::BlobInfo> info = codec::describe(bytes_of(job));
   if (!info) return fail(reply, info.error());
   answer(reply, as_bytes(info_json(*info, job.size)));
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::sql
 
-using watertight::guarded;
+using watertight::sql::guarded;
 
 void wt_reply_clear(wt_reply* reply) noexcept {
   std::free(reply->bytes);           // NOLINT: memory that C owns
@@ -211,14 +211,15 @@ wt_engine* wt_engine_make(const char* libexec) noexcept {
   wt_reply ignored{};
   wt_engine* engine = nullptr;
   guarded(&ignored, [&] {
-    watertight::EngineWorkers::Options options;
+    watertight::delaunay::EngineWorkers::Options options;
     options.processes = 1;
     if (libexec != nullptr && *libexec != '\0') {
       options.cgal_executable = std::string(libexec) + "/watertight-worker";
       options.tetgen_executable = std::string(libexec) + "/watertight-tetgen";
     }
     // A plain pointer, because the owner is C: wt_engine_end().
-    engine = std::make_unique<wt_engine>(wt_engine{watertight::EngineWorkers(options)}).release();
+    engine = std::make_unique<wt_engine>(wt_engine{watertight::delaunay::EngineWorkers(options)})
+                 .release();
   });
   wt_reply_clear(&ignored);
   return engine;
@@ -227,23 +228,23 @@ wt_engine* wt_engine_make(const char* libexec) noexcept {
 void wt_engine_end(wt_engine* engine) noexcept { const std::unique_ptr<wt_engine> owned(engine); }
 
 void wt_bridge_validate(const wt_job* job, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::validate_into(*job, reply); });
+  guarded(reply, [=] { watertight::sql::validate_into(*job, reply); });
 }
 
 void wt_bridge_is_valid(const wt_job* job, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::is_valid_into(*job, reply); });
+  guarded(reply, [=] { watertight::sql::is_valid_into(*job, reply); });
 }
 
 void wt_bridge_encode(const wt_job* job, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::encode_into(*job, reply); });
+  guarded(reply, [=] { watertight::sql::encode_into(*job, reply); });
 }
 
 void wt_bridge_decode(const wt_job* job, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::decode_into(*job, reply); });
+  guarded(reply, [=] { watertight::sql::decode_into(*job, reply); });
 }
 
 void wt_bridge_info(const wt_job* job, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::info_into(*job, reply); });
+  guarded(reply, [=] { watertight::sql::info_into(*job, reply); });
 }
 
 const char* wt_bridge_version() noexcept { return WATERTIGHT_VERSION; }

@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-namespace watertight {
+namespace watertight::sql {
 namespace {
 
 /// Members of a JSON object in the order they are added. Names and texts are ASCII without quotes.
@@ -82,13 +82,14 @@ std::string acceptance_json(const Acceptance& acceptance) {
 
 }  // namespace
 
-std::string info_json(const BlobInfo& info, std::size_t bytes) {
+std::string info_json(const codec::BlobInfo& info, std::size_t bytes) {
   JsonObject parts;
-  for (const BlobInfo::Part& part : info.parts) parts.add(part.name.c_str(), number(part.bytes));
+  for (const codec::BlobInfo::Part& part : info.parts)
+    parts.add(part.name.c_str(), number(part.bytes));
   return JsonObject()
       .add("version", info.version)
       .add("models", info.models)
-      .add("mode", quoted(to_string(info.mode)))
+      .add("mode", quoted(codec::to_string(info.mode)))
       .add("bytes", bytes)
       .add("srid", info.srid)
       .add("acceptance", acceptance_json(info.acceptance))
@@ -107,4 +108,4 @@ std::string info_json(const BlobInfo& info, std::size_t bytes) {
       .close();
 }
 
-}  // namespace watertight
+}  // namespace watertight::sql

@@ -7,10 +7,10 @@
 
 #include "codec/blob.h"
 
-namespace watertight {
+namespace watertight::sql {
 
 /// UTF-8 JSON: format, mode, acceptance, SRID, lattice, counts, and the bytes of each part.
 /// Deterministic.
-std::string info_json(const BlobInfo& info, std::size_t bytes);
+std::string info_json(const codec::BlobInfo& info, std::size_t bytes);
 
-}  // namespace watertight
+}  // namespace watertight::sql

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <thread>
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 /// What a child needs at spawn time; freed with the object.
@@ -126,4 +126,4 @@ std::string last_lines(const std::string& path, int lines) {
   return from == std::string::npos ? text : text.substr(from + (from < text.size() ? 1 : 0));
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

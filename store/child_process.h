@@ -13,7 +13,7 @@
 
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::store {
 
 struct SpawnOptions {
   std::string folder;        // working directory of the child
@@ -36,4 +36,4 @@ Status wait_for(pid_t child, std::chrono::seconds limit, const std::string& name
 /// The last `lines` lines of a text file (at most 4 KiB); "" when it cannot be read.
 std::string last_lines(const std::string& path, int lines);
 
-}  // namespace watertight
+}  // namespace watertight::store

@@ -26,7 +26,7 @@
 #include "base/bytes.h"
 #include "base/checksum.h"
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,4 +189,4 @@ Status sync_folder(const std::string& path) {
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

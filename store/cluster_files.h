@@ -19,7 +19,7 @@
 
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::store {
 
 /// A lock on a file (flock), shared by processes and freed when its holder ends in any way.
 class FileLock {
@@ -70,4 +70,4 @@ Status sync_folder(const std::string& path);
 /// "cannot <what>: <errno's words>"
 Error system_error(const std::string& what);
 
-}  // namespace watertight
+}  // namespace watertight::store

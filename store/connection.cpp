@@ -7,7 +7,7 @@
 #include <bit>
 #include <chrono>
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 // Type numbers of pg_type.dat, fixed in every PostgreSQL.
@@ -304,4 +304,4 @@ void ConnectionPool::give_back(std::unique_ptr<DatabaseSession> session) {
   freed_.notify_one();
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

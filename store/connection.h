@@ -22,7 +22,7 @@
 struct pg_conn;
 struct pg_result;
 
-namespace watertight {
+namespace watertight::store {
 
 /// The parameters $1, $2, ... of one statement, in binary form. Arrays are for `unnest`.
 class Parameters {
@@ -145,4 +145,4 @@ class ConnectionPool {
   std::vector<std::unique_ptr<DatabaseSession>> idle_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::store

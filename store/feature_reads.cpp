@@ -7,7 +7,7 @@
 
 #include "store/feature_rows.h"
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 constexpr std::uint64_t kLargestPage = 10'000;
@@ -331,4 +331,4 @@ Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
   return found;
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

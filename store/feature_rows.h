@@ -13,7 +13,7 @@
 #include "store/connection.h"
 #include "store/solid_store.h"
 
-namespace watertight {
+namespace watertight::store {
 
 /// Ok when every feature can be kept as it is: ids present, short enough for an index and UTF-8
 /// without NUL, boxes finite, no feature or solid twice. Errors: invalid_argument, conflict.
@@ -43,4 +43,4 @@ Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit);
 
-}  // namespace watertight
+}  // namespace watertight::store

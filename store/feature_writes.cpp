@@ -11,7 +11,7 @@
 #include "store/feature_rows.h"
 #include "store/place.h"
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 // A B-tree entry of PostgreSQL holds 2704 bytes; two ids and a collection name must fit together.
@@ -372,4 +372,4 @@ Result<Done> delete_feature(DatabaseSession& connection, const std::string& coll
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

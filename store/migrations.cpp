@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 struct Migration {
@@ -182,4 +182,4 @@ Status check_schema(DatabaseSession& connection) {
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "store/connection.h"
 
-namespace watertight {
+namespace watertight::store {
 
 /// Applies the missing migrations in one transaction, under an advisory lock, so that any number of
 /// instances may start at the same time. Needs no right to create anything when none is missing.
@@ -17,4 +17,4 @@ Status migrate(DatabaseSession& connection);
 /// Ok when the schema is the one of this program. Errors: unavailable, unsupported.
 Status check_schema(DatabaseSession& connection);
 
-}  // namespace watertight
+}  // namespace watertight::store

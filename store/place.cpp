@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 constexpr double kHalf = 1073741824;               // 2^30: half of the cells of an axis
@@ -53,4 +53,4 @@ std::int64_t place_number(const std::optional<StoredBox>& box) {
                         cell_number(box->min[1], box->max[1], cells_per_unit));
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

@@ -8,7 +8,7 @@
 
 #include "store/solid_store.h"
 
-namespace watertight {
+namespace watertight::store {
 
 /// The place of a feature without a box: after all others.
 inline constexpr std::int64_t kNoPlace = INT64_MAX;
@@ -19,4 +19,4 @@ inline constexpr std::int64_t kNoPlace = INT64_MAX;
 /// Hilbert curve", 2004 (in two dimensions, as commonly written).
 std::int64_t place_number(const std::optional<StoredBox>& box);
 
-}  // namespace watertight
+}  // namespace watertight::store

@@ -16,7 +16,7 @@
 #include "store/migrations.h"
 #include "store/solid_store.h"
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -269,4 +269,4 @@ Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& conne
   return std::unique_ptr<SolidStore>(std::move(store));
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

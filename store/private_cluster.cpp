@@ -26,7 +26,7 @@
 #include "store/cluster_files.h"
 #include "store/connection.h"
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -396,4 +396,4 @@ Result<std::unique_ptr<PrivateCluster>> PrivateCluster::start(const ClusterOptio
   return std::unique_ptr<PrivateCluster>(std::move(running));
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::store {
 
 struct ClusterOptions {
   std::string data_directory;     // created with mode 0700
@@ -39,4 +39,4 @@ class PrivateCluster {
 /// invalid_argument for a directory that is someone else's or not one of ours.
 Status drop_root_privileges(const std::string& directory);
 
-}  // namespace watertight
+}  // namespace watertight::store

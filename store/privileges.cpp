@@ -13,7 +13,7 @@
 #include "store/cluster_files.h"
 #include "store/private_cluster.h"
 
-namespace watertight {
+namespace watertight::store {
 namespace {
 
 constexpr const char* kUser = "watertight";
@@ -80,4 +80,4 @@ Status drop_root_privileges(const std::string& directory) {
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::store

@@ -16,7 +16,7 @@
 #include "base/result.h"
 #include "base/shared_text.h"
 
-namespace watertight {
+namespace watertight::store {
 
 struct StoredBox {
   std::array<double, 3> min{};
@@ -116,5 +116,13 @@ class SolidStore {
 /// known not to have been committed or is idempotent. Errors: unavailable with the server's words.
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
                                                         std::size_t connections = 4);
+
+}  // namespace watertight::store
+
+namespace watertight {
+
+using store::SolidStore;
+using store::StoredFeature;
+using store::StoredSolid;
 
 }  // namespace watertight

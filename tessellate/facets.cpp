@@ -25,7 +25,7 @@
 #include "geometry/predicates.h"
 #include "tessellate/flatness.h"
 
-namespace watertight {
+namespace watertight::tessellate {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -106,7 +106,7 @@ void FacetTriangulator::append(Index a, Index b, Index c, std::vector<Triangle>&
 FacetState FacetTriangulator::triangulate_three(std::span<const Index> ring,
                                                 std::vector<Triangle>& triangles) {
   if (ring[0] == ring[1] || ring[1] == ring[2] || ring[2] == ring[0]) return FacetState::degenerate;
-  if (are_collinear(vertices_[ring[0]], vertices_[ring[1]], vertices_[ring[2]])) {
+  if (geometry::are_collinear(vertices_[ring[0]], vertices_[ring[1]], vertices_[ring[2]])) {
     return FacetState::degenerate;
   }
   append(ring[0], ring[1], ring[2], triangles);
@@ -340,9 +340,9 @@ std::vector<Index> facets_to_divide(const Solid& solid, const FacetTriangles& fa
 
 /// Removes the touches in facets that bound no region in spite of them.
 void keep_triangulated(const Solid& solid, const FacetTriangles& facets,
-                       std::vector<RingTouch>& touches) {
+                       std::vector<geometry::RingTouch>& touches) {
   Index facet = 0;
-  std::erase_if(touches, [&](const RingTouch& touch) {
+  std::erase_if(touches, [&](const geometry::RingTouch& touch) {
     const auto end_of = [&](Index f) { return solid.arrays().ring_offsets[solid.rings_of(f).end]; };
     while (touch.corner >= end_of(facet)) ++facet;
     return facets.state[facet] != FacetState::triangulated;
@@ -355,12 +355,12 @@ FacetTriangles triangulate_facets(const Solid& solid) {
   FacetTriangles whole = triangulate_each(solid);
   const std::vector<Index> facets = facets_to_divide(solid, whole);
   if (facets.empty()) return whole;
-  std::vector<RingTouch> touches = ring_touches(solid, facets);
+  std::vector<geometry::RingTouch> touches = geometry::ring_touches(solid, facets);
   if (touches.empty()) return whole;
-  FacetTriangles divided = triangulate_each(divide_rings(solid, touches).solid);
+  FacetTriangles divided = triangulate_each(geometry::divide_rings(solid, touches).solid);
   keep_triangulated(solid, divided, touches);
-  if (!touches.empty()) divided.divided = divide_rings(solid, touches);
+  if (!touches.empty()) divided.divided = geometry::divide_rings(solid, touches);
   return divided;
 }
 
-}  // namespace watertight
+}  // namespace watertight::tessellate

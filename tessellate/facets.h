@@ -12,7 +12,7 @@
 #include "geometry/divided_rings.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::tessellate {
 
 /// The exact projection of a facet: the axis dropped is the one with the largest component of the
 /// exact doubled area vector (in world scale; ties x, y, z). World scale counts the lattice step of
@@ -40,7 +40,7 @@ struct FacetTriangles {
   std::vector<FacetState> state;  // per facet
   /// The solid with the rings that the triangles have, where vertices of rings split edges of other
   /// rings (in triangulated facets only); absent where the rings are those of the solid itself.
-  std::optional<DividedRings> divided;
+  std::optional<geometry::DividedRings> divided;
 
   /// The solid whose ring edges are edges of the triangles.
   const Solid& divided_solid(const Solid& solid) const { return divided ? divided->solid : solid; }
@@ -53,4 +53,4 @@ struct FacetTriangles {
 /// the input. Cost: O(n log n) per facet; twice that for a solid with split edges.
 FacetTriangles triangulate_facets(const Solid& solid);
 
-}  // namespace watertight
+}  // namespace watertight::tessellate

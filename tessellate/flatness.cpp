@@ -6,7 +6,7 @@
 
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::tessellate {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -45,7 +45,7 @@ bool are_coplanar(const Point& a, const Point& b, const Point& c, const Point& d
   const auto u = integer_difference(a, b);
   const auto v = integer_difference(a, c);
   const auto w = integer_difference(a, d);
-  if (!u || !v || !w) return orient3d(a, b, c, d) == 0;
+  if (!u || !v || !w) return geometry::orient3d(a, b, c, d) == 0;
   const auto minor = [&](std::size_t i, std::size_t j) {
     return Wide{(*u)[i]} * (*v)[j] - Wide{(*u)[j]} * (*v)[i];
   };
@@ -59,7 +59,7 @@ bool is_flat(const Solid& solid, Index facet) {
   while (b < corners.size() && at(b) == at(0)) ++b;
   std::size_t c = b + 1;
   while (c < corners.size() &&
-         (at(c) == at(0) || at(c) == at(b) || are_collinear(at(0), at(b), at(c)))) {
+         (at(c) == at(0) || at(c) == at(b) || geometry::are_collinear(at(0), at(b), at(c)))) {
     ++c;
   }
   for (std::size_t i = c + 1; i < corners.size(); ++i) {
@@ -68,4 +68,4 @@ bool is_flat(const Solid& solid, Index facet) {
   return true;
 }
 
-}  // namespace watertight
+}  // namespace watertight::tessellate

@@ -8,7 +8,7 @@
 #include "geometry/point.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::tessellate {
 
 /// Exact for any finite doubles; much faster than orient3d() where the answer is yes and the
 /// coordinates are integers. Requires four different points.
@@ -17,4 +17,4 @@ bool are_coplanar(const Point& a, const Point& b, const Point& c, const Point& d
 /// True if all ring vertices of a facet are in one plane, exactly. Cost: linear.
 bool is_flat(const Solid& solid, Index facet);
 
-}  // namespace watertight
+}  // namespace watertight::tessellate

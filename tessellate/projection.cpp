@@ -9,7 +9,7 @@
 #include "geometry/crs.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::tessellate {
 namespace {
 
 __extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
@@ -90,7 +90,7 @@ CGAL::Exact_rational power(int radix, std::int32_t exponent) {
 /// True if the horizontal axes of a ring are angles. As for measures, coordinates beyond a full
 /// turn cannot be angles; asked of each ring, so that the answer depends on nothing but its place.
 bool is_in_angles(const Solid& solid, std::span<const Index> ring) {
-  const double largest = largest_angle(solid.srid());
+  const double largest = geometry::largest_angle(solid.srid());
   if (largest == 0) return false;
   return std::all_of(ring.begin(), ring.end(), [&](Index vertex) {
     const Point& p = solid.vertices()[vertex];
@@ -139,4 +139,4 @@ Projection facet_projection(const Solid& solid, Index facet) {
                                                  world_weights(solid.lattice(), has_angles));
 }
 
-}  // namespace watertight
+}  // namespace watertight::tessellate

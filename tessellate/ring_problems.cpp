@@ -11,7 +11,7 @@
 #include "geometry/divided_rings.h"
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::tessellate {
 namespace {
 
 /// Pairs of edges looked at per facet; beyond it the list of problems is not complete. About one
@@ -73,7 +73,7 @@ class RingExaminer {
   /// Never asks the predicate about a repeated point.
   int turn(Index a, Index b, Index c) const {
     if (is_same_in_plane(a, b) || is_same_in_plane(b, c) || is_same_in_plane(a, c)) return 0;
-    return orient2d(vertices_[a], vertices_[b], vertices_[c], axis_);
+    return geometry::orient2d(vertices_[a], vertices_[b], vertices_[c], axis_);
   }
   /// Requires q on the line of the edge.
   bool is_between(Index q, const Edge& e) const {
@@ -104,7 +104,8 @@ class RingExaminer {
 };
 
 void RingExaminer::divide(Index facet) {
-  const std::vector<RingTouch> touches = ring_touches(solid_, std::span(&facet, 1));
+  const std::vector<geometry::RingTouch> touches =
+      geometry::ring_touches(solid_, std::span(&facet, 1));
   auto touch = touches.begin();
   divided_.resize(rings_.size());
   for (Index r = 0; r < rings_.size(); ++r) {
@@ -171,7 +172,7 @@ void RingExaminer::find_collapsed() {
         std::find_if(corners.begin(), corners.end(), [&](Index vertex) { return vertex != first; });
     const bool is_line = std::all_of(second, corners.end(), [&](Index vertex) {
       return vertex == first || vertex == *second ||
-             are_collinear(vertices_[first], vertices_[*second], vertices_[vertex]);
+             geometry::are_collinear(vertices_[first], vertices_[*second], vertices_[vertex]);
     });
     if (!is_line) continue;
     is_left_out_[r] = true;
@@ -332,8 +333,9 @@ int RingExaminer::side_of_ring(const Point& p, std::span<const Index> around) co
     const bool is_level = v(from) == pv && v(to) == pv;
     if (is_level && std::min(u(from), u(to)) < pu && pu < std::max(u(from), u(to))) return 0;
     if ((v(from) > pv) != (v(to) > pv)) {
-      const int side =
-          u(from) == pu && v(from) == pv ? 0 : orient2d(vertices_[from], vertices_[to], p, axis_);
+      const int side = u(from) == pu && v(from) == pv
+                           ? 0
+                           : geometry::orient2d(vertices_[from], vertices_[to], p, axis_);
       if (side == 0) return 0;
       if ((side > 0) == (v(to) > v(from))) is_inside = !is_inside;
     }
@@ -479,8 +481,9 @@ int ring_turn(const Solid& solid, Index ring, int axis) {
     if (key(i) < key(smallest)) smallest = i;
   }
   const std::size_t count = corners.size();
-  return orient2d(vertices[corners[(smallest + count - 1) % count]], vertices[corners[smallest]],
-                  vertices[corners[(smallest + 1) % count]], axis);
+  return geometry::orient2d(vertices[corners[(smallest + count - 1) % count]],
+                            vertices[corners[smallest]], vertices[corners[(smallest + 1) % count]],
+                            axis);
 }
 
-}  // namespace watertight
+}  // namespace watertight::tessellate

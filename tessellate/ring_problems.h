@@ -11,7 +11,7 @@
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::tessellate {
 
 enum class RingProblemKind : std::uint8_t {
   collapsed,         // all points of the ring lie on one line
@@ -48,4 +48,4 @@ RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most,
 /// its smallest vertex. Requires at least 3 vertices. Exact.
 int ring_turn(const Solid& solid, Index ring, int axis);
 
-}  // namespace watertight
+}  // namespace watertight::tessellate

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 constexpr std::size_t kLeafSize = 8;
@@ -78,4 +78,4 @@ BoxTree::BoxTree(std::span<const Box> boxes) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -9,7 +9,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 class BoxTree {
  public:
@@ -59,4 +59,4 @@ inline Box box_of(const Triangle& triangle, std::span<const Point> vertices) {
   return box;
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -13,7 +13,7 @@
 #include "validate/rules/rules.h"
 #include "validate/snap.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// One run of all rules. The only maker of a ValidSolid.
 class Certifier {
@@ -23,7 +23,7 @@ class Certifier {
         examined_(solid, options.tolerances, options.limits, options.ladder.cancel,
                   options.placement) {}
 
-  Inspection run(EngineWorkers* workers) {
+  Inspection run(delaunay::EngineWorkers* workers) {
     apply_exact_rules();
     measure_solid();
     if (examined_.findings.has_errors()) {
@@ -56,20 +56,21 @@ class Certifier {
  private:
   void apply_exact_rules();
   void measure_solid();
-  void prove(EngineWorkers* workers);
+  void prove(delaunay::EngineWorkers* workers);
   bool is_sound() const;
   void examine_interior(const ShellContacts& contacts);
-  void climb(EngineWorkers* workers);
-  void report_property(const LadderResult& result);
-  void accept(std::optional<Certificate> certificate);
+  void climb(delaunay::EngineWorkers* workers);
+  void report_property(const delaunay::LadderResult& result);
+  void accept(std::optional<delaunay::Certificate> certificate);
   Inspection finish();
 
   const CertifyOptions& options_;
   ExaminedSolid examined_;
   std::vector<ShellTopology> shells_;
-  std::string incomplete_;                   // why the exact tests did not finish
-  std::optional<ContactTriangles> divided_;  // the triangles where shells touch, for several shells
-  bool is_interior_known_ = false;           // the exact tests say whether it is in parts
+  std::string incomplete_;  // why the exact tests did not finish
+  std::optional<delaunay::ContactTriangles>
+      divided_;                     // the triangles where shells touch, for several shells
+  bool is_interior_known_ = false;  // the exact tests say whether it is in parts
   TolerantVerdict exact_;
   Verdict verdict_ = Verdict::undecided;
   Inspection inspection_;
@@ -112,8 +113,8 @@ void Certifier::examine_interior(const ShellContacts& contacts) {
   divided_.emplace();
   const auto& touching = contacts.is_touching;
   if (std::find(touching.begin(), touching.end(), true) == touching.end()) return;
-  auto divided = divide_at_contacts(examined_.solid(), examined_.triangles(),
-                                    [this] { return examined_.ask_cancelled(); });
+  auto divided = delaunay::divide_at_contacts(examined_.solid(), examined_.triangles(),
+                                              [this] { return examined_.ask_cancelled(); });
   if (!divided) {
     divided_.reset();
     is_interior_known_ = false;
@@ -130,7 +131,9 @@ bool Certifier::is_sound() const {
          std::all_of(shells_.begin(), shells_.end(),
                      [](const ShellTopology& shell) { return shell.is_sound(); }) &&
          std::all_of(states.begin(), states.end(),
-                     [](FacetState state) { return state == FacetState::triangulated; }) &&
+                     [](tessellate::FacetState state) {
+                       return state == tessellate::FacetState::triangulated;
+                     }) &&
          !examined_.findings.has(kZeroVolume);
 }
 
@@ -140,22 +143,24 @@ void Certifier::measure_solid() {
       !shells_.empty() &&
       std::all_of(shells_.begin(), shells_.end(),
                   [](const ShellTopology& shell) { return shell.is_closed; }) &&
-      std::all_of(states.begin(), states.end(),
-                  [](FacetState state) { return state == FacetState::triangulated; });
+      std::all_of(states.begin(), states.end(), [](tessellate::FacetState state) {
+        return state == tessellate::FacetState::triangulated;
+      });
   if (!has_measures) return;
   const auto& triangles = examined_.triangles().triangles;
   if (options_.placement == nullptr) {
-    inspection_.report.measures = measure(examined_.solid(), triangles);
-  } else if (const auto solid = placed(examined_.solid(), *options_.placement); solid) {
+    inspection_.report.measures = geometry::measure(examined_.solid(), triangles);
+  } else if (const auto solid = geometry::placed(examined_.solid(), *options_.placement); solid) {
     std::vector<Triangle> in_place = triangles;
-    if (determinant_sign(*options_.placement) < 0) {  // the examined solid was turned over
+    if (geometry::determinant_sign(*options_.placement) <
+        0) {  // the examined solid was turned over
       for (Triangle& t : in_place) std::swap(t[1], t[2]);
     }
-    inspection_.report.measures = measure(*solid, in_place);
+    inspection_.report.measures = geometry::measure(*solid, in_place);
   }
 }
 
-void Certifier::prove(EngineWorkers* workers) {
+void Certifier::prove(delaunay::EngineWorkers* workers) {
   if (options_.proof == Proof::tetrahedralization) {
     climb(workers);
   } else if (is_interior_known_) {
@@ -174,18 +179,19 @@ void Certifier::prove(EngineWorkers* workers) {
   }
 }
 
-void Certifier::climb(EngineWorkers* workers) {
-  LadderOptions options = options_.ladder;
+void Certifier::climb(delaunay::EngineWorkers* workers) {
+  delaunay::LadderOptions options = options_.ladder;
   if (divided_) options.contacts = &*divided_;
   options.is_interior_known = is_interior_known_;
-  LadderResult result = climb_ladder(examined_.solid(), examined_.triangles(), workers, options);
+  delaunay::LadderResult result =
+      delaunay::climb_ladder(examined_.solid(), examined_.triangles(), workers, options);
   Report& report = inspection_.report;
   report.attempts = std::move(result.attempts);
   if (result.certificate) {
     report.rung = result.certificate->rung;
     report.refilled_facets = result.certificate->refilled_facets;
     accept(std::move(result.certificate));
-  } else if (result.property != CertificateRefusal::none) {
+  } else if (result.property != delaunay::CertificateRefusal::none) {
     report_property(result);
   } else {
     report.undecided_reason = "no rung of the tetrahedralization ladder finished";
@@ -198,19 +204,19 @@ void Certifier::climb(EngineWorkers* workers) {
 
 /// The certificate speaks of the canonical triangles here, as the exact tests do. Where these know
 /// the interior, one that says otherwise shows a defect of this program, not of the solid.
-void Certifier::report_property(const LadderResult& result) {
+void Certifier::report_property(const delaunay::LadderResult& result) {
   if (is_interior_known_) {
     inspection_.report.undecided_reason = "the exact tests and the tetrahedralization disagree (";
-    inspection_.report.undecided_reason += to_string(result.property);
+    inspection_.report.undecided_reason += delaunay::to_string(result.property);
     inspection_.report.undecided_reason += "); please report this solid as a defect";
     return;
   }
   Finding finding;
   switch (result.property) {
-    case CertificateRefusal::interior_disconnected:
+    case delaunay::CertificateRefusal::interior_disconnected:
       finding.code = kSolidInteriorDisconnected;
       break;
-    case CertificateRefusal::cavity_mismatch:
+    case delaunay::CertificateRefusal::cavity_mismatch:
       finding.code = kInnerShellOutside;
       break;
     default:  // every shell is turned right by itself, so two of them cross
@@ -227,13 +233,13 @@ void Certifier::report_property(const LadderResult& result) {
   verdict_ = Verdict::invalid;
 }
 
-void Certifier::accept(std::optional<Certificate> certificate) {
+void Certifier::accept(std::optional<delaunay::Certificate> certificate) {
   auto boundary = OrientedBoundary::make(examined_.merged());
   if (!boundary) {
     inspection_.report.undecided_reason = to_string(boundary.error());
     return;
   }
-  const Acceptance acceptance{options_.tolerances, options_.proof, kRuleSet};
+  const Acceptance acceptance{options_.tolerances, options_.proof, geometry::kRuleSet};
   inspection_.certified =
       Certified{ValidSolid(*std::move(boundary), acceptance), std::move(certificate)};
   verdict_ = Verdict::valid;
@@ -242,7 +248,7 @@ void Certifier::accept(std::optional<Certificate> certificate) {
 Inspection Certifier::finish() {
   Report& report = inspection_.report;
   report.verdict = verdict_;
-  report.acceptance = {options_.tolerances, options_.proof, kRuleSet};
+  report.acceptance = {options_.tolerances, options_.proof, geometry::kRuleSet};
   if (!examined_.unit_note().empty()) report.notes.push_back(examined_.unit_note());
   report.first_level = first_level_codes(examined_.findings.all());
   std::move(examined_.findings).move_to(report);
@@ -271,7 +277,8 @@ TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& optio
   return Certifier(snapped->solid, tolerant).run_exact_rules();
 }
 
-Inspection examine(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options) {
+Inspection examine(const Solid& solid, delaunay::EngineWorkers* workers,
+                   const CertifyOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Inspection inspection;
   TolerantVerdict exact;
@@ -289,7 +296,7 @@ Inspection examine(const Solid& solid, EngineWorkers* workers, const CertifyOpti
     exact = certifier.exact_verdict();
   } else {
     inspection.report.undecided_reason = to_string(snapped.error());
-    inspection.report.acceptance = {options.tolerances, options.proof, kRuleSet};
+    inspection.report.acceptance = {options.tolerances, options.proof, geometry::kRuleSet};
   }
   if (options.also_tolerant) {
     inspection.report.tolerant = tolerant_verdict(solid, options, exact);
@@ -312,7 +319,7 @@ Inspection flattened(const CertifyOptions& options) {
   Inspection inspection;
   Report& report = inspection.report;
   report.verdict = Verdict::invalid;
-  report.acceptance = {options.tolerances, options.proof, kRuleSet};
+  report.acceptance = {options.tolerances, options.proof, geometry::kRuleSet};
   report.first_level = first_level_codes(findings.all());
   if (options.also_tolerant) {
     report.tolerant = TolerantVerdict{Verdict::invalid, report.first_level};
@@ -321,25 +328,26 @@ Inspection flattened(const CertifyOptions& options) {
   return inspection;
 }
 
-Inspection examine_placed(const Solid& solid, EngineWorkers* workers,
+Inspection examine_placed(const Solid& solid, delaunay::EngineWorkers* workers,
                           const CertifyOptions& options) {
-  const int sign = determinant_sign(*options.placement);
+  const int sign = geometry::determinant_sign(*options.placement);
   if (sign == 0 && solid.facet_count() > 0) return flattened(options);
-  Inspection inspection =
-      sign < 0 ? examine(turned_over(solid), workers, options) : examine(solid, workers, options);
+  Inspection inspection = sign < 0 ? examine(geometry::turned_over(solid), workers, options)
+                                   : examine(solid, workers, options);
   if (inspection.certified) inspection.unplaced = std::move(inspection.certified->solid);
   inspection.certified.reset();
   for (Finding& finding : inspection.report.findings) {
-    if (finding.witness) finding.witness = place(*options.placement, *finding.witness);
+    if (finding.witness) finding.witness = geometry::place(*options.placement, *finding.witness);
   }
   return inspection;
 }
 
 }  // namespace
 
-Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options) {
+Inspection certify(const Solid& solid, delaunay::EngineWorkers* workers,
+                   const CertifyOptions& options) {
   return options.placement == nullptr ? examine(solid, workers, options)
                                       : examine_placed(solid, workers, options);
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -12,25 +12,25 @@
 #include "geometry/valid_solid.h"
 #include "validate/report.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 struct CertifyOptions {
   Tolerances tolerances;
   Proof proof = Proof::tetrahedralization;
   Limits limits;
-  LadderOptions ladder;
+  delaunay::LadderOptions ladder;
   /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
   std::span<const Index> rounded = {};
   /// The place of the whole was rounded, not its shape (SubmittedSolid::is_origin_rounded): 805.
   bool is_origin_rounded = false;
   /// Vertices that the reader left out (SubmittedSolid::unused): warning 802.
-  UnusedVertices unused = {};
+  geometry::UnusedVertices unused = {};
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
   std::span<const Index> unclosed_rings = {};
   /// Of a geometry template: where an instance puts it. The solid is judged as placed: orientation
   /// by the determinant's exact sign, everything measured in metres there; a determinant of zero is
   /// 306 and 806. Null for other solids. Kept by the caller.
-  const Placement* placement = nullptr;
+  const geometry::Placement* placement = nullptr;
   /// True if the same template has passed with proof under another placement with a determinant of
   /// the same sign: no proof depends on a measurement, so the exact tests suffice. `certified` is
   /// then absent.
@@ -43,7 +43,7 @@ struct CertifyOptions {
 /// A solid that passed, with what proves it.
 struct Certified {
   ValidSolid solid;
-  std::optional<Certificate> certificate;  // absent when proof is `boundary`
+  std::optional<delaunay::Certificate> certificate;  // absent when proof is `boundary`
 };
 
 struct Inspection {
@@ -57,6 +57,15 @@ struct Inspection {
 
 /// Never fails: what cannot be evaluated is said in the report. Deterministic but for `seconds`
 /// and time-outs of engines. `workers` may be null (rung 0 only). Thread-safe.
-Inspection certify(const Solid& solid, EngineWorkers* workers, const CertifyOptions& options = {});
+Inspection certify(const Solid& solid, delaunay::EngineWorkers* workers,
+                   const CertifyOptions& options = {});
+
+}  // namespace watertight::validate
+
+namespace watertight {
+
+using validate::certify;
+using validate::CertifyOptions;
+using validate::Inspection;
 
 }  // namespace watertight

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace watertight {
+namespace watertight::validate {
 
 CornerPlace place_of_corner(const Solid& solid, Index facet, Index corner) {
   const IndexRange rings = solid.rings_of(facet);
@@ -75,4 +75,4 @@ void EdgeTable::examine(Index shell) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -8,7 +8,7 @@
 
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// One passage of a ring along an edge.
 struct EdgeUse {
@@ -71,4 +71,4 @@ void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

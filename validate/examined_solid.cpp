@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace watertight {
+namespace watertight::validate {
 
 void FindingCollector::add(Finding finding) {
   const FindingKind* kind = find_kind(finding.code);
@@ -47,12 +47,13 @@ void FindingCollector::move_to(Report& report) && {
 }
 
 ExaminedSolid::ExaminedSolid(const Solid& submitted, const Tolerances& tolerances,
-                             const Limits& limits, CancelPoll cancel, const Placement* placement)
+                             const Limits& limits, workers::CancelPoll cancel,
+                             const geometry::Placement* placement)
     : findings(limits.findings),
       submitted_(submitted),
       cancel_(std::move(cancel)),
-      merged_(merge_equal_vertices(submitted)),
-      triangles_(triangulate_facets(merged_.solid)),
+      merged_(geometry::merge_equal_vertices(submitted)),
+      triangles_(tessellate::triangulate_facets(merged_.solid)),
       tolerances_(tolerances),
       limits_(limits),
       metric_map_(merged_.solid, placement),
@@ -166,9 +167,11 @@ bool ExaminedSolid::is_junction(Index without, Index with) const {
   });
 }
 
-bool ExaminedSolid::is_junction_contact(ContactClass contact, Index a, Index b) const {
-  if (contact != ContactClass::vertex_edge && contact != ContactClass::edge_overlap) return false;
+bool ExaminedSolid::is_junction_contact(geometry::ContactClass contact, Index a, Index b) const {
+  if (contact != geometry::ContactClass::vertex_edge &&
+      contact != geometry::ContactClass::edge_overlap)
+    return false;
   return is_junction(a, b) || is_junction(b, a);
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -15,7 +15,7 @@
 #include "validate/metric_map.h"
 #include "validate/report.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// Gathers findings in the order in which rules make them; keeps at most a given number per code.
 class FindingCollector {
@@ -50,7 +50,7 @@ class ExaminedSolid {
  public:
   /// Keeps a reference to `submitted`. With a placement, metres are those of the placed solid.
   ExaminedSolid(const Solid& submitted, const Tolerances& tolerances, const Limits& limits,
-                CancelPoll cancel = {}, const Placement* placement = nullptr);
+                workers::CancelPoll cancel = {}, const geometry::Placement* placement = nullptr);
 
   /// For long loops: true once the caller wants an end. Asks now and then, and remembers.
   bool is_cancelled();
@@ -67,7 +67,7 @@ class ExaminedSolid {
   /// True if a corner of solid() splits an edge and is no corner of the submitted ring.
   bool is_inserted(Index corner) const;
   const std::vector<Index>& merged_of() const { return merged_.vertex_of; }
-  const FacetTriangles& triangles() const { return triangles_; }
+  const tessellate::FacetTriangles& triangles() const { return triangles_; }
   const Tolerances& tolerances() const { return tolerances_; }
   const Limits& limits() const { return limits_; }
   const std::string& unit_note() const { return metric_map_.note(); }
@@ -106,7 +106,7 @@ class ExaminedSolid {
   /// To be called after the last note_junction() and before is_junction_contact().
   void index_junctions();
   /// True if facets that meet so touch at a T-junction: one defect, reported once, as 302.
-  bool is_junction_contact(ContactClass contact, Index a, Index b) const;
+  bool is_junction_contact(geometry::ContactClass contact, Index a, Index b) const;
 
   FindingCollector findings;
 
@@ -114,11 +114,11 @@ class ExaminedSolid {
   bool is_junction(Index without, Index with) const;
 
   const Solid& submitted_;
-  CancelPoll cancel_;
+  workers::CancelPoll cancel_;
   std::uint32_t polls_ = 0;
   bool was_cancelled_ = false;
-  MergedSolid merged_;
-  FacetTriangles triangles_;
+  geometry::MergedSolid merged_;
+  tessellate::FacetTriangles triangles_;
   Tolerances tolerances_;
   Limits limits_;
   MetricMap metric_map_;
@@ -130,4 +130,4 @@ class ExaminedSolid {
   std::vector<std::pair<Index, Index>> owners_;     // such a vertex and facet that has it; sorted
 };
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -10,7 +10,7 @@
 #include "geometry/predicates.h"
 #include "tessellate/flatness.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// An edge of one triangle.
@@ -24,7 +24,7 @@ struct Side {
 
 /// Requires the sides of one shell at one segment, by facet. A diagonal is a side of two triangles
 /// of its facet. Pairs the triangles of every other facet with those of the first that has one.
-void append_pairs(std::span<const Side> sides, std::vector<IntersectingPair>& pairs) {
+void append_pairs(std::span<const Side> sides, std::vector<geometry::IntersectingPair>& pairs) {
   const auto diagonal = std::adjacent_find(
       sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key == b.key; });
   if (diagonal == sides.end()) return;
@@ -32,7 +32,7 @@ void append_pairs(std::span<const Side> sides, std::vector<IntersectingPair>& pa
     if (other.key == diagonal->key) continue;
     for (const Index own : {diagonal->triangle, std::next(diagonal)->triangle}) {
       pairs.push_back({std::min(own, other.triangle), std::max(own, other.triangle),
-                       ContactClass::edge_overlap});
+                       geometry::ContactClass::edge_overlap});
     }
   }
 }
@@ -43,7 +43,7 @@ bool have_same_ends(const FacetEdge& a, const FacetEdge& b) {
 
 }  // namespace
 
-std::vector<FacetEdge> facet_edges(const FacetTriangles& facets, Index facet) {
+std::vector<FacetEdge> facet_edges(const tessellate::FacetTriangles& facets, Index facet) {
   std::vector<FacetEdge> sides;
   for (Index t = facets.first[facet]; t < facets.first[facet + 1]; ++t) {
     const Triangle& corners = facets.triangles[t];
@@ -66,8 +66,9 @@ std::vector<FacetEdge> facet_edges(const FacetTriangles& facets, Index facet) {
   return edges;
 }
 
-std::vector<IntersectingPair> diagonal_contacts(const Solid& solid, const FacetTriangles& facets) {
-  std::vector<IntersectingPair> pairs;
+std::vector<geometry::IntersectingPair> diagonal_contacts(
+    const Solid& solid, const tessellate::FacetTriangles& facets) {
+  std::vector<geometry::IntersectingPair> pairs;
   const auto& facet_of = facets.facet_of;
   if (std::adjacent_find(facet_of.begin(), facet_of.end()) == facet_of.end()) return pairs;
   std::vector<Side> sides;
@@ -78,7 +79,8 @@ std::vector<IntersectingPair> diagonal_contacts(const Solid& solid, const FacetT
       sides.push_back({{std::min(from, to), std::max(from, to), facet_of[t]}, t});
     }
   }
-  sort_by_vertices(sides, solid.vertex_count(), [](const Side& side) { return side.key; });
+  delaunay::sort_by_vertices(sides, solid.vertex_count(),
+                             [](const Side& side) { return side.key; });
   for (std::size_t begin = 0; begin < sides.size();) {
     std::size_t end = begin + 1;
     while (end < sides.size() && sides[end].is_same_segment(sides[begin])) ++end;
@@ -95,7 +97,7 @@ std::vector<IntersectingPair> diagonal_contacts(const Solid& solid, const FacetT
   return pairs;
 }
 
-std::vector<Diagonal> other_diagonals(const Solid& solid, const FacetTriangles& facets,
+std::vector<Diagonal> other_diagonals(const Solid& solid, const tessellate::FacetTriangles& facets,
                                       Index facet) {
   const auto at = [&](Index vertex) -> const Point& { return solid.vertices()[vertex]; };
   const auto corner = [&](Index triangle, Index low, Index high) {
@@ -104,7 +106,7 @@ std::vector<Diagonal> other_diagonals(const Solid& solid, const FacetTriangles& 
     while (t[k] == low || t[k] == high) ++k;
     return k;
   };
-  const int axis = facet_projection(solid, facet).axis;
+  const int axis = tessellate::facet_projection(solid, facet).axis;
   std::vector<Diagonal> result;
   for (const FacetEdge& edge : facet_edges(facets, facet)) {
     if (!edge.is_diagonal()) continue;
@@ -117,12 +119,12 @@ std::vector<Diagonal> other_diagonals(const Solid& solid, const FacetTriangles& 
                      facets.triangles[second][corner(second, edge.low, edge.high)],
                      first,
                      second};
-    const int turn = orient2d(at(d.left), at(d.right), at(d.u), axis);
-    if (turn == 0 || orient2d(at(d.left), at(d.right), at(d.v), axis) != -turn) continue;
-    if (are_coplanar(at(d.u), at(d.v), at(d.left), at(d.right))) continue;
+    const int turn = geometry::orient2d(at(d.left), at(d.right), at(d.u), axis);
+    if (turn == 0 || geometry::orient2d(at(d.left), at(d.right), at(d.v), axis) != -turn) continue;
+    if (tessellate::are_coplanar(at(d.u), at(d.v), at(d.left), at(d.right))) continue;
     result.push_back(d);
   }
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

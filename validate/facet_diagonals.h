@@ -13,7 +13,7 @@
 #include "geometry/box_partition.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// An edge of triangles of one facet.
 struct FacetEdge {
@@ -25,13 +25,14 @@ struct FacetEdge {
 };
 
 /// The edges of a facet's triangles, sorted by their vertices. Cost: O(k log k).
-std::vector<FacetEdge> facet_edges(const FacetTriangles& facets, Index facet);
+std::vector<FacetEdge> facet_edges(const tessellate::FacetTriangles& facets, Index facet);
 
 /// Pairs of triangles of different facets of one shell that have an edge in common which is a
 /// diagonal of at least one of the facets, as ContactClass::edge_overlap with first < second. Of
 /// several facets at one segment, each is paired with the first that has it as a diagonal.
 /// Cost: O(n log n) for solids with facets of more than one triangle, else linear.
-std::vector<IntersectingPair> diagonal_contacts(const Solid& solid, const FacetTriangles& facets);
+std::vector<geometry::IntersectingPair> diagonal_contacts(const Solid& solid,
+                                                          const tessellate::FacetTriangles& facets);
 
 /// A diagonal u-v of a facet between triangles (u, v, right) and (v, u, left) whose quadrilateral
 /// is strictly convex in the facet's projection and not flat.
@@ -46,7 +47,7 @@ struct Diagonal {
 };
 
 /// The diagonals of a facet that can be flipped and are folds. Exact. Cost: O(k log k).
-std::vector<Diagonal> other_diagonals(const Solid& solid, const FacetTriangles& facets,
+std::vector<Diagonal> other_diagonals(const Solid& solid, const tessellate::FacetTriangles& facets,
                                       Index facet);
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 constexpr Severity kError = Severity::error;
@@ -141,4 +141,4 @@ std::string_view to_string(Severity severity) {
   return severity == Severity::error ? "error" : "warning";
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -9,7 +9,7 @@
 
 #include "validate/report.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 enum FindingCode : int {
   kTooFewPoints = 101,
@@ -71,4 +71,4 @@ const FindingKind* find_kind(int code);
 /// 5 composite solid, 6 building, 9 warnings.
 int finding_level(int code);
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -15,7 +15,7 @@
 #include "validate/finding_kinds.h"
 #include "validate/solid_overlap.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 using Pair = std::pair<Index, Index>;
@@ -36,7 +36,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Two or all members on one grid.
 struct GroupGrid {
-  SharedGrid grid;
+  geometry::SharedGrid grid;
   StepMetres step_metres{};
 };
 
@@ -81,14 +81,14 @@ class GroupExaminer {
   void name_invalid_members();
   bool find_grid();
   void find_boxes();
-  GroupGrid group_grid(SharedGrid grid) const;
-  StandingSolid standing(Index member) const {
+  GroupGrid group_grid(geometry::SharedGrid grid) const;
+  geometry::StandingSolid standing(Index member) const {
     return {&members_[member].solid->solid(), members_[member].placement};
   }
   std::uint32_t srid(Index member) const;
   std::optional<std::vector<Pair>> pairs() const;
   bool may_meet(Index a, Index b) const;
-  std::unique_ptr<SolidSurface> surface(Index member, const SharedGrid& grid,
+  std::unique_ptr<SolidSurface> surface(Index member, const geometry::SharedGrid& grid,
                                         std::size_t number) const;
   const SolidSurface* kept_surface(Index member);
   bool compare(const Pair& pair);
@@ -109,7 +109,7 @@ class GroupExaminer {
   std::optional<GroupGrid> grid_;  // of all, if they have one frame; else each pair has its own
   std::vector<Box> boxes_;         // of all members, not too small
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
-  DisjointSets connected_;
+  geometry::DisjointSets connected_;
   std::vector<Finding> duplicates_;
   GroupReport report_;
 };
@@ -146,7 +146,7 @@ std::uint32_t GroupExaminer::srid(Index member) const {
 }
 
 bool GroupExaminer::find_grid() {
-  std::vector<StandingSolid> solids;
+  std::vector<geometry::StandingSolid> solids;
   for (const Index i : present_) {
     if (srid(i) != srid(present_.front())) {
       give_up("the solids are in different coordinate reference systems");
@@ -154,7 +154,8 @@ bool GroupExaminer::find_grid() {
     }
     solids.push_back(standing(i));
   }
-  if (auto grid = SharedGrid::of_one_frame(std::move(solids))) grid_ = group_grid(*std::move(grid));
+  if (auto grid = geometry::SharedGrid::of_one_frame(std::move(solids)))
+    grid_ = group_grid(*std::move(grid));
   if (!grid_ && is_composite()) {
     give_up("the coordinates of the solids have no exact grid in common");
     return false;
@@ -176,12 +177,12 @@ void GroupExaminer::find_boxes() {
       double size = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
       if (placement != nullptr) {
         double factor = 0;
-        for (const auto& row : linear_part(*placement)) {
+        for (const auto& row : geometry::linear_part(*placement)) {
           for (const double entry : row) factor = std::max(factor, std::abs(entry));
         }
         size *= factor;
-        for (const double part : shift_of(*placement)) size += std::abs(part);
-        p = watertight::place(*placement, p);
+        for (const double part : geometry::shift_of(*placement)) size += std::abs(part);
+        p = watertight::geometry::place(*placement, p);
       }
       const bool is_finite = std::isfinite(size) && std::isfinite(p[0] + p[1] + p[2]);
       const double margin = is_finite ? kPlaceError * size : kInfinity;
@@ -192,7 +193,7 @@ void GroupExaminer::find_boxes() {
   }
 }
 
-GroupGrid GroupExaminer::group_grid(SharedGrid grid) const {
+GroupGrid GroupExaminer::group_grid(geometry::SharedGrid grid) const {
   Box all;
   for (std::size_t i = 0; i < grid.size(); ++i) {
     all.include(grid.box(i).min);
@@ -203,10 +204,10 @@ GroupGrid GroupExaminer::group_grid(SharedGrid grid) const {
   const std::array<double, 3> high = lattice.world(all.max);
   std::array<double, 3> centre{};
   for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = low[axis] / 2 + high[axis] / 2;
-  const Placement* frame = grid.frame();
-  if (frame != nullptr) centre = shift_of(*frame);
-  const AxisUnits units = axis_units(srid(present_.front()), centre);
-  const auto linear = linear_part(frame != nullptr ? *frame : Placement{});
+  const geometry::Placement* frame = grid.frame();
+  if (frame != nullptr) centre = geometry::shift_of(*frame);
+  const geometry::AxisUnits units = geometry::axis_units(srid(present_.front()), centre);
+  const auto linear = geometry::linear_part(frame != nullptr ? *frame : geometry::Placement{});
   GroupGrid result{std::move(grid)};
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -270,12 +271,12 @@ std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
 }
 
 /// Null if the solid cannot be brought onto the grid.
-std::unique_ptr<SolidSurface> GroupExaminer::surface(Index member, const SharedGrid& grid,
+std::unique_ptr<SolidSurface> GroupExaminer::surface(Index member, const geometry::SharedGrid& grid,
                                                      std::size_t number) const {
   const Solid& solid = members_[member].solid->solid();
   const auto points = grid.vertices(number);
   if (!points) return nullptr;
-  FacetTriangles facets = triangulate_facets(solid);
+  tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   if (grid.is_turned_over(number)) {
     for (Triangle& t : facets.triangles) std::swap(t[1], t[2]);
   }
@@ -368,9 +369,9 @@ bool GroupExaminer::compare(const Pair& pair) {
 
 /// On a grid of the two.
 bool GroupExaminer::compare_apart(const Pair& pair) {
-  const std::vector<StandingSolid> both{standing(pair.first), standing(pair.second)};
-  auto found = SharedGrid::of_one_frame(both);
-  if (!found) found = SharedGrid::in_world(both);
+  const std::vector<geometry::StandingSolid> both{standing(pair.first), standing(pair.second)};
+  auto found = geometry::SharedGrid::of_one_frame(both);
+  if (!found) found = geometry::SharedGrid::in_world(both);
   if (!found) return compare(ComparedPair{pair.first, pair.second});
   const GroupGrid grid = group_grid(*std::move(found));
   const auto first = surface(pair.first, grid.grid, 0);
@@ -419,7 +420,7 @@ void GroupExaminer::check_connected() {
     const GroupMember& member = members_[first[part]];
     finding.witness = member.solid->solid().world(0);
     if (member.placement != nullptr)
-      finding.witness = watertight::place(*member.placement, *finding.witness);
+      finding.witness = watertight::geometry::place(*member.placement, *finding.witness);
     finding.measured = static_cast<double>(first.size());
     finding.limit = 1;
     finding.unit = "parts";
@@ -477,4 +478,4 @@ GroupReport check_group(std::span<const GroupMember> members, GroupKind kind,
   return GroupExaminer(members, kind, options, unit_of).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -13,7 +13,7 @@
 #include "geometry/valid_solid.h"
 #include "validate/report.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 enum class GroupKind : std::uint8_t { composite_solid, building_parts };
 
@@ -25,14 +25,14 @@ struct GroupOptions {
   /// small, and of a slab between two facets it is the thickness.
   double overlap_metres = 0;
   Limits limits;
-  CancelPoll cancel = {};
+  workers::CancelPoll cancel = {};
 };
 
 /// A member that is compared: a valid solid; with a placement, a geometry template's where an
 /// instance puts it. A member without a solid is not valid.
 struct GroupMember {
   const ValidSolid* solid = nullptr;
-  const Placement* placement = nullptr;
+  const geometry::Placement* placement = nullptr;
 };
 
 /// What a comparison of solids found. Places name a member by Place::solid, its index in `members`.
@@ -66,4 +66,4 @@ struct GroupReport {
 GroupReport check_group(std::span<const GroupMember> members, GroupKind kind,
                         const GroupOptions& options = {}, std::span<const Index> unit_of = {});
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -3,7 +3,7 @@
 
 #include "geometry/crs.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 std::array<double, 3> centre_of(const Solid& solid) {
@@ -18,9 +18,10 @@ std::array<double, 3> centre_of(const Solid& solid) {
 
 }  // namespace
 
-MetricMap::MetricMap(const Solid& solid, const Placement* placement) {
-  const AxisUnits units = placement == nullptr ? axis_units(solid.srid(), centre_of(solid))
-                                               : axis_units(placement->srid, shift_of(*placement));
+MetricMap::MetricMap(const Solid& solid, const geometry::Placement* placement) {
+  const geometry::AxisUnits units =
+      placement == nullptr ? geometry::axis_units(solid.srid(), centre_of(solid))
+                           : geometry::axis_units(placement->srid, geometry::shift_of(*placement));
   note_ = units.note;
   const Lattice& lattice = solid.lattice();
   if (placement == nullptr) {
@@ -30,7 +31,7 @@ MetricMap::MetricMap(const Solid& solid, const Placement* placement) {
     }
     return;
   }
-  matrix_ = linear_part(*placement);
+  matrix_ = geometry::linear_part(*placement);
   for (std::size_t row = 0; row < 3; ++row) {
     for (int axis = 0; axis < 3; ++axis) {
       (*matrix_)[row][static_cast<std::size_t>(axis)] *=
@@ -53,4 +54,4 @@ std::array<double, 3> MetricMap::metres(const Point& from, const Point& to) cons
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

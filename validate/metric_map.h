@@ -12,12 +12,12 @@
 #include "geometry/placement.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 class MetricMap {
  public:
   /// `placement` may be null: the solid stands where it is.
-  MetricMap(const Solid& solid, const Placement* placement);
+  MetricMap(const Solid& solid, const geometry::Placement* placement);
 
   /// The vector in metres between two points of the lattice. Rounded.
   std::array<double, 3> metres(const Point& from, const Point& to) const;
@@ -34,4 +34,4 @@ class MetricMap {
   std::string note_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -6,7 +6,7 @@
 
 #include "validate/box_tree.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 double squared_distance(const Point& a, const Point& b) {
@@ -77,4 +77,4 @@ NearPoints near_points(std::span<const Point> points, double reach,
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -11,7 +11,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 struct NearPoints {
   std::vector<Index> points;  // those with another at most `reach` away; ascending
@@ -26,4 +26,4 @@ struct NearPoints {
 NearPoints near_points(std::span<const Point> points, double reach,
                        const std::function<bool()>& cancel);
 
-}  // namespace watertight
+}  // namespace watertight::validate

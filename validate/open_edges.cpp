@@ -9,7 +9,7 @@
 #include "geometry/predicates.h"
 #include "validate/box_tree.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// Pairs of edge and vertex looked at per shell, after the tree has left out those that are apart:
@@ -108,7 +108,7 @@ bool OpenEdgeExaminer::is_inside(const EdgeUse& edge, Index vertex) const {
   for (int axis = 0; axis < 3; ++axis) {
     if (p[axis] < std::min(a[axis], b[axis]) || p[axis] > std::max(a[axis], b[axis])) return false;
   }
-  return are_collinear(a, b, p);
+  return geometry::are_collinear(a, b, p);
 }
 
 void OpenEdgeExaminer::find_junctions(const BoxTree& tree, std::size_t number) {
@@ -162,7 +162,7 @@ void OpenEdgeExaminer::collect_borders() {
       group_of.emplace(vertex, static_cast<Index>(group_of.size()));
     }
   }
-  DisjointSets sets(group_of.size());
+  geometry::DisjointSets sets(group_of.size());
   for (std::size_t e = 0; e < open_.size(); ++e) {
     if (!is_explained_[e]) sets.join(group_of[open_[e].low], group_of[open_[e].high]);
   }
@@ -183,4 +183,4 @@ OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open,
   return OpenEdgeExaminer(solid, open).examine(is_cancelled);
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -9,7 +9,7 @@
 
 #include "validate/edge_table.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// A vertex inside an edge of another facet.
 struct TJunction {
@@ -34,4 +34,4 @@ struct OpenEdges {
 OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open,
                              const std::function<bool()>& is_cancelled);
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -14,7 +14,7 @@
 #include "geometry/predicates.h"
 #include "validate/solid_overlap.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// Beyond this many corners the extent of the common box bounds the depth.
@@ -53,10 +53,10 @@ Metres unit_normal(const Metres& a, const Metres& b, const Metres& c) {
 
 /// Where the segment pq meets the triangle, if it crosses its plane.
 std::optional<Point> crossing(const Point& p, const Point& q, const std::array<Point, 3>& t) {
-  const int at_p = orient3d(t[0], t[1], t[2], p);
-  if (at_p == 0 || at_p * orient3d(t[0], t[1], t[2], q) >= 0) return std::nullopt;
+  const int at_p = geometry::orient3d(t[0], t[1], t[2], p);
+  if (at_p == 0 || at_p * geometry::orient3d(t[0], t[1], t[2], q) >= 0) return std::nullopt;
   std::array<int, 3> turns{};
-  for (std::size_t i = 0; i < 3; ++i) turns[i] = orient3d(p, q, t[i], t[(i + 1) % 3]);
+  for (std::size_t i = 0; i < 3; ++i) turns[i] = geometry::orient3d(p, q, t[i], t[(i + 1) % 3]);
   const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
   if (*least < 0 && *most > 0) return std::nullopt;
   const auto from_p = [&](const Point& r) { return Metres{r.x - p.x, r.y - p.y, r.z - p.z}; };
@@ -78,7 +78,7 @@ class OverlapMeasurer {
     for (std::size_t side = 0; side < 2; ++side) {
       triangles_[side] = surfaces_[side]->triangles_in(common_);
     }
-    parts_ = DisjointSets(triangles_[0].size() + triangles_[1].size());
+    parts_ = geometry::DisjointSets(triangles_[0].size() + triangles_[1].size());
   }
 
   OverlapExtent run() {
@@ -126,7 +126,7 @@ class OverlapMeasurer {
   StepMetres step_metres_;
   Box common_;
   std::array<std::vector<Index>, 2> triangles_;
-  DisjointSets parts_;  // of triangles, by number
+  geometry::DisjointSets parts_;  // of triangles, by number
   std::vector<Corner> corners_;
 };
 
@@ -419,4 +419,4 @@ OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& s
   return OverlapMeasurer(first, second, step_metres).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// The vector times a power of two that brings its largest component near 1, so that no product of
@@ -29,4 +29,4 @@ Vector unit_normal(const Vector& u, const Vector& v) {
   return direction_of(cross(near_one(u), near_one(v)));
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace watertight {
+namespace watertight::validate {
 
 using Vector = std::array<double, 3>;
 
@@ -22,4 +22,4 @@ Vector direction_of(const Vector& v);
 /// The direction of cross(u, v), of length 1, for vectors of any size.
 Vector unit_normal(const Vector& u, const Vector& v);
 
-}  // namespace watertight
+}  // namespace watertight::validate

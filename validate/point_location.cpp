@@ -5,7 +5,7 @@
 
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 constexpr int kDropZ = 2;
@@ -19,7 +19,7 @@ bool is_same_in_plan(const Point& a, const Point& b) { return a.x == b.x && a.y 
 int moved_turn(const Point& a, const Point& b, const Point& p) {
   if (is_same_in_plan(a, b)) return 0;
   if (!is_same_in_plan(a, p) && !is_same_in_plan(b, p)) {
-    const int turn = orient2d(a, b, p, kDropZ);
+    const int turn = geometry::orient2d(a, b, p, kDropZ);
     if (turn != 0) return turn;
   }
   const int along_x = sign(a.y - b.y);
@@ -38,13 +38,13 @@ bool is_in_closed_box(const Point& p, const Point& a, const Point& b, const Poin
 bool is_in_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
   if (p == a || p == b || p == c) return true;
   for (int axis = 0; axis < 3; ++axis) {
-    const int turn = orient2d(a, b, c, axis);
+    const int turn = geometry::orient2d(a, b, c, axis);
     if (turn == 0) continue;
     const auto side = [&](const Point& from, const Point& to) {
       const int u = (axis + 1) % 3;
       const int v = (axis + 2) % 3;
       const bool is_end = (from[u] == p[u] && from[v] == p[v]) || (to[u] == p[u] && to[v] == p[v]);
-      return is_end ? 0 : orient2d(from, to, p, axis) * turn;
+      return is_end ? 0 : geometry::orient2d(from, to, p, axis) * turn;
     };
     return side(a, b) >= 0 && side(b, c) >= 0 && side(c, a) >= 0;
   }
@@ -64,13 +64,13 @@ class RayParity {
     int height = 2;  // not known yet; else the sign of orient3d
     if (is_in_closed_box(p_, a, b, c)) {
       const bool is_corner = p_ == a || p_ == b || p_ == c;
-      height = is_corner ? 0 : orient3d(a, b, c, p_);
+      height = is_corner ? 0 : geometry::orient3d(a, b, c, p_);
       is_on_boundary_ = height == 0 && is_in_triangle(p_, a, b, c);
       if (is_on_boundary_) return;
     }
     const int turn = moved_turn(a, b, p_);
     if (turn == 0 || moved_turn(b, c, p_) != turn || moved_turn(c, a, p_) != turn) return;
-    if (height == 2) height = orient3d(a, b, c, p_);
+    if (height == 2) height = geometry::orient3d(a, b, c, p_);
     // From below, a triangle that turns left in plan turns clockwise: orient3d is positive above.
     if (height * turn < 0) is_inside_ = !is_inside_;
   }
@@ -124,4 +124,4 @@ Location locate(const Point& p, std::span<const Point> vertices,
   return parity.location();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -8,7 +8,7 @@
 #include "geometry/point.h"
 #include "validate/box_tree.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 enum class Location : signed char { outside = -1, boundary = 0, inside = 1 };
 
@@ -33,4 +33,4 @@ class PointLocator {
 Location locate(const Point& p, std::span<const Point> vertices,
                 std::span<const Triangle> triangles);
 
-}  // namespace watertight
+}  // namespace watertight::validate

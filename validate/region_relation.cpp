@@ -37,7 +37,7 @@
 #include "geometry/predicates.h"
 #include "geometry/triangle_triangle.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 constexpr std::uint64_t kCancelInterval = std::uint64_t{1} << 16U;
@@ -71,7 +71,7 @@ Sides sides_to(const std::array<Point, 3>& plane, const std::array<Point, 3>& co
   Sides sides;
   for (const Point& p : corners) {
     if (p == plane[0] || p == plane[1] || p == plane[2]) continue;
-    const int sign = orient3d(plane[0], plane[1], plane[2], p);
+    const int sign = geometry::orient3d(plane[0], plane[1], plane[2], p);
     sides.has_inner = sides.has_inner || sign < 0;
     sides.has_outer = sides.has_outer || sign > 0;
   }
@@ -81,8 +81,8 @@ Sides sides_to(const std::array<Point, 3>& plane, const std::array<Point, 3>& co
 /// Requires triangles in one plane.
 bool are_turned_alike(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
   for (int axis = 0; axis < 3; ++axis) {
-    const int turn = orient2d(a[0], a[1], a[2], axis);
-    if (turn != 0) return turn == orient2d(b[0], b[1], b[2], axis);
+    const int turn = geometry::orient2d(a[0], a[1], a[2], axis);
+    if (turn != 0) return turn == geometry::orient2d(b[0], b[1], b[2], axis);
   }
   return false;
 }
@@ -91,14 +91,14 @@ bool are_turned_alike(const std::array<Point, 3>& a, const std::array<Point, 3>&
 /// shares no area with the surface, which then meets it in segments and points only.
 Location locate_triangle(const std::array<Point, 3>& corners, const RegionSurface& surface) {
   for (int exponent = 2; exponent <= 52; exponent = exponent == 2 ? 8 : exponent + 8) {
-    for (std::uint64_t i = 1; i <= triangle_points(exponent); ++i) {
-      const TrianglePoint point = triangle_point(corners, exponent, i);
+    for (std::uint64_t i = 1; i <= geometry::triangle_points(exponent); ++i) {
+      const geometry::TrianglePoint point = geometry::triangle_point(corners, exponent, i);
       Location location = Location::boundary;
-      if (const auto exact = exact_doubles(point)) {
+      if (const auto exact = geometry::exact_doubles(point)) {
         location = surface.locate(*exact);
       } else {
         location = Location{static_cast<signed char>(
-            locate_exactly(point, surface.vertices(), surface.triangles()))};
+            geometry::locate_exactly(point, surface.vertices(), surface.triangles()))};
       }
       if (location != Location::boundary) return location;
     }
@@ -117,7 +117,7 @@ struct Side {
 class Comparison {
  public:
   Comparison(const RegionSurface& first, const RegionSurface& second,
-             const RegionQuestions& questions, const CancelPoll& cancel)
+             const RegionQuestions& questions, const workers::CancelPoll& cancel)
       : first_(side(first, second)),
         second_(side(second, first)),
         questions_(questions),
@@ -134,7 +134,7 @@ class Comparison {
   }
   void find_contacts();
   void compare(std::size_t i, std::size_t j);
-  void note(ContactClass contact, std::size_t i, std::size_t j);
+  void note(geometry::ContactClass contact, std::size_t i, std::size_t j);
   void note_overlap(Index triangle, Index other);
   bool is_done() const {
     return relation_.is_cancelled ||
@@ -146,7 +146,7 @@ class Comparison {
   Side first_;
   Side second_;
   const RegionQuestions& questions_;
-  const CancelPoll& cancel_;
+  const workers::CancelPoll& cancel_;
   std::vector<Point> points_;  // of the listed triangles, three each, the first solid's first
   std::vector<Box> boxes_;     // of the second's
   std::uint64_t comparisons_ = 0;
@@ -163,15 +163,16 @@ void Comparison::note_overlap(Index triangle, Index other) {
 }
 
 /// (1) for the regions and for each with the complement of the other.
-void Comparison::note(ContactClass contact, std::size_t i, std::size_t j) {
+void Comparison::note(geometry::ContactClass contact, std::size_t i, std::size_t j) {
   const Index t = first_.triangles[i];
   const Index u = second_.triangles[j];
   const std::array<Point, 3> a = first_.surface->corners(t);
   const std::array<Point, 3> b = second_.surface->corners(u);
-  if (contact == ContactClass::crossing) {
+  if (contact == geometry::ContactClass::crossing) {
     note_overlap(t, u);
     first_leaves_ = second_leaves_ = true;
-  } else if (contact == ContactClass::coplanar_overlap || contact == ContactClass::duplicate) {
+  } else if (contact == geometry::ContactClass::coplanar_overlap ||
+             contact == geometry::ContactClass::duplicate) {
     first_.shares_area[i] = second_.shares_area[j] = 1;
     if (are_turned_alike(a, b)) {
       note_overlap(t, u);
@@ -180,7 +181,8 @@ void Comparison::note(ContactClass contact, std::size_t i, std::size_t j) {
       relation_.touch_back_to_back = true;
       first_leaves_ = second_leaves_ = true;
     }
-  } else if (contact == ContactClass::vertex_face || contact == ContactClass::edge_face) {
+  } else if (contact == geometry::ContactClass::vertex_face ||
+             contact == geometry::ContactClass::edge_face) {
     // The one whose inside is met has corners on both sides of the other, which has not.
     const Sides of_first = sides_to(b, a);
     const bool is_second_met = !of_first.are_both();
@@ -201,9 +203,9 @@ void Comparison::compare(std::size_t i, std::size_t j) {
     const auto begin = static_cast<Index>(3 * at);
     return Triangle{begin, begin + 1, begin + 2};
   };
-  const ContactClass contact =
-      classify_contact(points_, triangle(i), triangle(first_.triangles.size() + j));
-  if (contact == ContactClass::disjoint) return;
+  const geometry::ContactClass contact =
+      geometry::classify_contact(points_, triangle(i), triangle(first_.triangles.size() + j));
+  if (contact == geometry::ContactClass::disjoint) return;
   first_.is_touched[i] = second_.is_touched[j] = 1;
   note(contact, i, j);
 }
@@ -218,7 +220,7 @@ void Comparison::find_contacts() {
   }
   const std::size_t begin = first_.triangles.size();
   const auto box = [&](std::size_t at) {
-    return watertight::box_of(std::span<const Point>(points_).subspan(3 * at, 3));
+    return watertight::geometry::box_of(std::span<const Point>(points_).subspan(3 * at, 3));
   };
   for (std::size_t j = 0; j < second_.triangles.size(); ++j) boxes_.push_back(box(begin + j));
   std::optional<BoxTree> tree;
@@ -250,7 +252,7 @@ class TriangleSides {
     }
     std::sort(free_.begin(), free_.end());
     free_.erase(std::unique(free_.begin(), free_.end()), free_.end());
-    parts_ = DisjointSets(free_.size());
+    parts_ = geometry::DisjointSets(free_.size());
     known_.resize(free_.size(), Location::boundary);
     for (std::size_t i = 0; i < side.triangles.size(); ++i) {
       if (side.is_touched[i] != 0) continue;
@@ -292,7 +294,7 @@ class TriangleSides {
   const Side& side_;
   const RegionSurface& other_;
   std::vector<Index> free_;  // vertices, ascending
-  DisjointSets parts_{0};
+  geometry::DisjointSets parts_{0};
   std::vector<Location> known_;
   std::map<Index, Location> touched_;  // corners of triangles that meet the other surface
 };
@@ -312,7 +314,7 @@ bool Comparison::meets(const Side& connected, const Side& other, bool is_complem
       return false;
     }
     if (other.shares_area[i] != 0) continue;
-    const Box box = watertight::box_of(other.surface->corners(triangle));
+    const Box box = watertight::geometry::box_of(other.surface->corners(triangle));
     if (!contains(connected.surface->box(), box) || sides(i) != Location::inside) continue;
     note_in(kNone, triangle);
     return true;
@@ -348,7 +350,7 @@ RegionSurface::RegionSurface(std::vector<Point> vertices, std::vector<Triangle> 
     : vertices_(std::move(vertices)),
       triangles_(std::move(triangles)),
       facet_of_(std::move(facet_of)),
-      box_(watertight::box_of(vertices_)),
+      box_(watertight::geometry::box_of(vertices_)),
       tree_(boxes_of(vertices_, triangles_)),
       locator_(vertices_, triangles_) {}
 
@@ -365,7 +367,7 @@ std::vector<Index> RegionSurface::triangles_in(const Box& box) const {
 }
 
 RegionSurface surface_of_shells(const Solid& solid, std::span<const Point> vertices,
-                                const FacetTriangles& facets, IndexRange shells,
+                                const tessellate::FacetTriangles& facets, IndexRange shells,
                                 bool is_turned_over) {
   const Index first = facets.first[solid.facets_of(shells.begin).begin];
   const Index last = facets.first[solid.facets_of(shells.end - 1).end];
@@ -401,9 +403,9 @@ bool contains(const Box& outer, const Box& inner) {
 }
 
 RegionRelation relate_regions(const RegionSurface& first, const RegionSurface& second,
-                              const RegionQuestions& questions, const CancelPoll& cancel) {
+                              const RegionQuestions& questions, const workers::CancelPoll& cancel) {
   if (!first.box().overlaps(second.box())) return {};
   return Comparison(first, second, questions, cancel).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -17,7 +17,7 @@
 #include "validate/box_tree.h"
 #include "validate/point_location.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// A closed surface as triangles, turned outward. Move only: the trees refer to the arrays.
 class RegionSurface {
@@ -53,7 +53,7 @@ class RegionSurface {
 /// The triangles of the shells [begin, end) of a solid, with the vertices that they use. `vertices`
 /// are the solid's, on any grid; an inner shell taken alone is turned outward by `is_turned_over`.
 RegionSurface surface_of_shells(const Solid& solid, std::span<const Point> vertices,
-                                const FacetTriangles& facets, IndexRange shells,
+                                const tessellate::FacetTriangles& facets, IndexRange shells,
                                 bool is_turned_over);
 
 /// True if no point of the inner closed box is outside the outer one.
@@ -82,6 +82,6 @@ struct RegionRelation {
 /// Deterministic. Cost: near linear in the triangles inside the overlap of the boxes; the product
 /// of their numbers when all of them meet.
 RegionRelation relate_regions(const RegionSurface& first, const RegionSurface& second,
-                              const RegionQuestions& questions, const CancelPoll& cancel);
+                              const RegionQuestions& questions, const workers::CancelPoll& cancel);
 
-}  // namespace watertight
+}  // namespace watertight::validate

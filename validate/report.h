@@ -13,7 +13,7 @@
 #include "geometry/measures.h"
 #include "geometry/valid_solid.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 enum class Verdict : std::uint8_t { valid, invalid, undecided };
 enum class Severity : std::uint8_t { error, warning };
@@ -64,17 +64,27 @@ struct Report {
   std::vector<int> first_level;             // the codes val3dity's cascade would give, sorted
   std::optional<TolerantVerdict> tolerant;  // when asked for; information, decides nothing
   Acceptance acceptance;
-  std::vector<std::string> notes;     // e.g. unit assumptions
-  std::vector<RungAttempt> attempts;  // of the CDT ladder
-  Rung rung = Rung::none;
+  std::vector<std::string> notes;               // e.g. unit assumptions
+  std::vector<delaunay::RungAttempt> attempts;  // of the CDT ladder
+  delaunay::Rung rung = delaunay::Rung::none;
   /// Facets that are not exactly planar and that the accepted tetrahedralization fills otherwise
   /// than their canonical triangles, which the exact tests judged; of solids of one shell only.
   std::vector<Index> refilled_facets;
-  std::optional<Measures> measures;  // when the boundary is closed and triangulated
-  double seconds = 0;                // wall; not part of the deterministic content
+  std::optional<geometry::Measures> measures;  // when the boundary is closed and triangulated
+  double seconds = 0;                          // wall; not part of the deterministic content
 };
 
 /// The name of a code, e.g. 302 -> "SHELL_NOT_CLOSED"; "" for an unknown one.
 std::string_view finding_name(int code);
+
+}  // namespace watertight::validate
+
+namespace watertight {
+
+using validate::Finding;
+using validate::Place;
+using validate::Report;
+using validate::Severity;
+using validate::Verdict;
 
 }  // namespace watertight

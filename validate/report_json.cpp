@@ -9,7 +9,7 @@
 
 #include "validate/finding_kinds.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -104,7 +104,7 @@ std::string dump(const Json& json, JsonStyle style = JsonStyle::compact) {
                    Json::error_handler_t::replace);
 }
 
-Json measures_json(const Measures& measures) {
+Json measures_json(const geometry::Measures& measures) {
   Json json;
   json["volume"] = measures.volume;
   json["area"] = measures.area;
@@ -135,7 +135,9 @@ std::string finding_json(const Finding& finding, const PlacedSolid& here,
   return dump(make_finding(finding, here, there));
 }
 
-std::string report_measures_json(const Measures& measures) { return dump(measures_json(measures)); }
+std::string report_measures_json(const geometry::Measures& measures) {
+  return dump(measures_json(measures));
+}
 
 std::string place_pointer(const Place& place, const Solid& submitted,
                           const ReportJsonOptions& options) {
@@ -221,11 +223,11 @@ std::string report_json(const Report& report, const Solid& submitted,
     json["not_run"].push_back({{"codes", rule.codes}, {"reason", rule.reason}});
   }
   json["notes"] = report.notes;
-  json["rung"] = to_string(report.rung);
+  json["rung"] = delaunay::to_string(report.rung);
   if (!report.refilled_facets.empty()) json["refilled_facets"] = report.refilled_facets;
   json["attempts"] = Json::array();
-  for (const RungAttempt& attempt : report.attempts) {
-    Json entry{{"rung", to_string(attempt.rung)}, {"outcome", attempt.outcome}};
+  for (const delaunay::RungAttempt& attempt : report.attempts) {
+    Json entry{{"rung", delaunay::to_string(attempt.rung)}, {"outcome", attempt.outcome}};
     if (options.include_times) entry["seconds"] = attempt.seconds;
     json["attempts"].push_back(std::move(entry));
   }
@@ -234,4 +236,4 @@ std::string report_json(const Report& report, const Solid& submitted,
   return dump(json, options.style);
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -12,7 +12,7 @@
 #include "geometry/solid.h"
 #include "validate/report.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// Number of this JSON layout; raised when a member changes its meaning or goes.
 inline constexpr int kReportSchema = 2;
@@ -51,7 +51,7 @@ struct PlacedSolid {
 std::string finding_json(const Finding& finding, const PlacedSolid& here, const PlacedSolid& there);
 
 /// {"volume", "area", "bbox", "genus", "vertices", "facets", "rings", "shells"}
-std::string report_measures_json(const Measures& measures);
+std::string report_measures_json(const geometry::Measures& measures);
 
 /// JSON Pointer of a place: prefix, then shell, facet within the shell, ring, vertex within the
 /// ring, as far as they are given. "" when the prefix is empty.
@@ -64,4 +64,4 @@ std::string finding_text(const Finding& finding);
 /// The findings as lines, after one line with the verdict.
 std::vector<std::string> report_text(const Report& report);
 
-}  // namespace watertight
+}  // namespace watertight::validate

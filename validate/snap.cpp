@@ -7,7 +7,7 @@
 #include "validate/metric_map.h"
 #include "validate/near_vertices.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
@@ -16,7 +16,7 @@ constexpr double kMostCells = 1e15;
 
 class Snapper {
  public:
-  Snapper(const Solid& solid, double metres, const Placement* placement)
+  Snapper(const Solid& solid, double metres, const geometry::Placement* placement)
       : vertices_(solid.vertices()), metres_(metres), map_(solid, placement) {
     const Box box = solid.box();
     origin_ = box.min;
@@ -92,7 +92,7 @@ class Snapper {
 
 Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
                                    const std::function<bool()>& cancel,
-                                   const Placement* placement) {
+                                   const geometry::Placement* placement) {
   if (solid.vertex_count() == 0) return SnappedSolid{solid, 0};
   Snapper snapper(solid, metres, placement);
   if (!snapper.is_possible()) {
@@ -118,4 +118,4 @@ Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
   return SnappedSolid{*std::move(snapped), moved};
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

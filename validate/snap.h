@@ -10,7 +10,7 @@
 #include "geometry/placement.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 struct SnappedSolid {
   Solid solid;      // the same arrays; a snapped vertex has the coordinates it was moved to
@@ -24,6 +24,6 @@ struct SnappedSolid {
 /// Cost: O(n log n).
 Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
                                    const std::function<bool()>& cancel = {},
-                                   const Placement* placement = nullptr);
+                                   const geometry::Placement* placement = nullptr);
 
-}  // namespace watertight
+}  // namespace watertight::validate

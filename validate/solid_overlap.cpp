@@ -21,20 +21,21 @@
 
 #include "geometry/measures.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 bool are_same(const Box& a, const Box& b) { return a.min == b.min && a.max == b.max; }
 
 /// Equal regions have equal boxes and volumes; both are quickly compared.
 bool may_be_equal(const RegionSurface& a, const RegionSurface& b) {
-  return are_same(a.box(), b.box()) &&
-         six_volume(a.vertices(), a.triangles()) == six_volume(b.vertices(), b.triangles());
+  return are_same(a.box(), b.box()) && geometry::six_volume(a.vertices(), a.triangles()) ==
+                                           geometry::six_volume(b.vertices(), b.triangles());
 }
 
 class SolidComparison {
  public:
-  SolidComparison(const SolidSurface& first, const SolidSurface& second, const CancelPoll& cancel)
+  SolidComparison(const SolidSurface& first, const SolidSurface& second,
+                  const workers::CancelPoll& cancel)
       : first_(first), second_(second), cancel_(cancel) {}
 
   SolidRelation run() {
@@ -113,14 +114,14 @@ class SolidComparison {
 
   const SolidSurface& first_;
   const SolidSurface& second_;
-  const CancelPoll& cancel_;
+  const workers::CancelPoll& cancel_;
   SolidRelation result_;
 };
 
 }  // namespace
 
 SolidSurface::SolidSurface(const Solid& solid, std::span<const Point> vertices,
-                           const FacetTriangles& facets)
+                           const tessellate::FacetTriangles& facets)
     : boundary_(surface_of_shells(solid, vertices, facets, {0, solid.shell_count()}, false)) {
   if (solid.shell_count() == 1) return;
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
@@ -129,9 +130,9 @@ SolidSurface::SolidSurface(const Solid& solid, std::span<const Point> vertices,
 }
 
 SolidRelation relate(const SolidSurface& first, const SolidSurface& second,
-                     const CancelPoll& cancel) {
+                     const workers::CancelPoll& cancel) {
   if (!first.boundary().box().overlaps(second.boundary().box())) return {};
   return SolidComparison(first, second, cancel).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

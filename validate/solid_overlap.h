@@ -11,14 +11,15 @@
 #include "tessellate/facets.h"
 #include "validate/region_relation.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// A valid solid as surfaces, on a grid that it shares with the solids it is compared with.
 class SolidSurface {
  public:
   /// `vertices` are the solid's on that grid, `facets` its canonical triangles, which turn
   /// outward there.
-  SolidSurface(const Solid& solid, std::span<const Point> vertices, const FacetTriangles& facets);
+  SolidSurface(const Solid& solid, std::span<const Point> vertices,
+               const tessellate::FacetTriangles& facets);
 
   /// The triangles of all shells.
   const RegionSurface& boundary() const { return boundary_; }
@@ -45,7 +46,7 @@ struct SolidRelation {
 /// Deterministic. Cost: as relate_regions() for the exterior shells and, where these overlap, for
 /// each cavity that can hold the other solid or equal a cavity of it.
 SolidRelation relate(const SolidSurface& first, const SolidSurface& second,
-                     const CancelPoll& cancel);
+                     const workers::CancelPoll& cancel);
 
 /// Metres along the axes of the world (rows) of one step along each axis of a grid.
 using StepMetres = std::array<std::array<double, 3>, 3>;
@@ -69,4 +70,4 @@ OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& s
 bool is_overlap_certain(const RegionSurface& first, const RegionSurface& second,
                         const StepMetres& step_metres, double rounding);
 
-}  // namespace watertight
+}  // namespace watertight::validate

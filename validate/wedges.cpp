@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// A corner with the vertices before and after it in its ring.
@@ -45,8 +45,10 @@ struct Sector {
 
 }  // namespace
 
-std::vector<Wedge> shared_wedges(const Solid& solid, const FacetTriangles& facets, Index facet) {
-  if (solid.rings_of(facet).size() < 2 || facets.state[facet] != FacetState::triangulated)
+std::vector<Wedge> shared_wedges(const Solid& solid, const tessellate::FacetTriangles& facets,
+                                 Index facet) {
+  if (solid.rings_of(facet).size() < 2 ||
+      facets.state[facet] != tessellate::FacetState::triangulated)
     return {};
   const std::vector<Passage> passages = shared_passages(solid, facet);
   if (passages.empty()) return {};
@@ -86,4 +88,4 @@ std::vector<Wedge> shared_wedges(const Solid& solid, const FacetTriangles& facet
   return wedges;
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

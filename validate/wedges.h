@@ -9,7 +9,7 @@
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// From the ring edge that leaves the vertex at corner `from` to the one that arrives at corner
 /// `to`, through the inside of the facet. Corners are indices in ring_vertices.
@@ -22,6 +22,7 @@ struct Wedge {
 /// wedge of a corner is the corner's own. None when the facet is not triangulated, or when its
 /// rings do not turn as they should. Cost: O(n log n) for facets with interior rings, else
 /// constant.
-std::vector<Wedge> shared_wedges(const Solid& solid, const FacetTriangles& facets, Index facet);
+std::vector<Wedge> shared_wedges(const Solid& solid, const tessellate::FacetTriangles& facets,
+                                 Index facet);
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -8,7 +8,7 @@
 
 #include "workers/worker_pool.h"
 
-namespace watertight {
+namespace watertight::workers {
 namespace {
 
 bool is_executable_file(const std::string& path) {
@@ -43,4 +43,4 @@ Result<std::string> find_helper(const std::string& name) {
   return Error{ErrorCode::unavailable, "helper executable " + name + " is in none of " + looked};
 }
 
-}  // namespace watertight
+}  // namespace watertight::workers

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace watertight {
+namespace watertight::workers {
 
 inline constexpr int kWorkerSocket = 3;
 inline constexpr std::size_t kRequestHeader = 8;
@@ -30,4 +30,4 @@ inline constexpr int kExitParentGone = 99;
 inline constexpr const char* kIdleVariable = "WATERTIGHT_WORKER_IDLE_MS";
 inline constexpr const char* kParentVariable = "WATERTIGHT_WORKER_PARENT";
 
-}  // namespace watertight
+}  // namespace watertight::workers

@@ -19,7 +19,7 @@
 #include "workers/frames.h"
 #include "workers/worker_pool.h"
 
-namespace watertight {
+namespace watertight::workers {
 namespace {
 
 /// Reads exactly `count` bytes. False at the end of the stream.
@@ -135,4 +135,4 @@ int serve_jobs(const std::function<Bytes(ByteView)>& handle) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::workers

@@ -22,7 +22,7 @@
 #include "workers/frames.h"
 #include "workers/worker_process.h"
 
-namespace watertight {
+namespace watertight::workers {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -335,4 +335,4 @@ JobResult WorkerPool::run(ByteView request, const WorkerLimits& limits, const Ca
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::workers

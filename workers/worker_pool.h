@@ -13,7 +13,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::workers {
 
 struct WorkerLimits {
   double wall_seconds = 20;
@@ -80,4 +80,4 @@ int serve_jobs(const std::function<Bytes(ByteView)>& handle);
 /// folder. Errors: unavailable, naming where it looked.
 Result<std::string> find_helper(const std::string& name);
 
-}  // namespace watertight
+}  // namespace watertight::workers

@@ -21,7 +21,7 @@
 
 #include "workers/frames.h"
 
-namespace watertight {
+namespace watertight::workers {
 namespace {
 
 // AddressSanitizer and ThreadSanitizer reserve terabytes of address space.
@@ -257,4 +257,4 @@ Ending WorkerProcess::end() {
   return ending;
 }
 
-}  // namespace watertight
+}  // namespace watertight::workers

@@ -11,7 +11,7 @@
 
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::workers {
 
 /// What became of a process that was killed or ended.
 struct Ending {
@@ -63,4 +63,4 @@ class WorkerProcess {
   double accounted_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::workers

@@ -36,8 +36,8 @@ struct Totals {
   std::size_t files = 0, unreadable = 0, solids = 0, valid = 0, invalid = 0;
   double seconds = 0;  // of certify(), wall
   /// Of the solids that an engine was asked about.
-  CdtStatistics with_engine;
-  CdtStatistics cdt;
+  delaunay::CdtStatistics with_engine;
+  delaunay::CdtStatistics cdt;
   std::vector<std::string> undecided;
 };
 
@@ -54,21 +54,21 @@ void add_path(const std::string& path, std::vector<std::string>& files) {
 }
 
 void print_attempts(const std::string& name, const Report& report) {
-  for (const RungAttempt& attempt : report.attempts) {
-    const bool is_usual =
-        attempt.result == RungOutcome::accepted || attempt.result == RungOutcome::not_delaunay;
+  for (const delaunay::RungAttempt& attempt : report.attempts) {
+    const bool is_usual = attempt.result == delaunay::RungOutcome::accepted ||
+                          attempt.result == delaunay::RungOutcome::not_delaunay;
     if (is_usual && attempt.cpu_seconds + attempt.worker_seconds < kSlow) continue;
     std::printf("attempt %s: %s: %s: %.2f s CPU, worker %.2f s, engine %.2f s\n", name.c_str(),
-                std::string(to_string(attempt.rung)).c_str(), attempt.outcome.c_str(),
+                std::string(delaunay::to_string(attempt.rung)).c_str(), attempt.outcome.c_str(),
                 attempt.cpu_seconds, attempt.worker_seconds, attempt.engine_seconds);
   }
 }
 
-void decide(const std::string& name, const SubmittedSolid& submitted, EngineWorkers& workers,
-            const Settings& settings, Totals& totals) {
+void decide(const std::string& name, const SubmittedSolid& submitted,
+            delaunay::EngineWorkers& workers, const Settings& settings, Totals& totals) {
   CertifyOptions options;
   options.unclosed_rings = submitted.unclosed_rings;
-  if (settings.is_engine_only) options.ladder.first_rung = Rung::patch;
+  if (settings.is_engine_only) options.ladder.first_rung = delaunay::Rung::patch;
   const Inspection inspection = certify(submitted.solid, &workers, options);
   const Report& report = inspection.report;
   ++totals.solids;
@@ -76,7 +76,7 @@ void decide(const std::string& name, const SubmittedSolid& submitted, EngineWork
   totals.cdt.add(report.attempts);
   const bool has_engine =
       std::any_of(report.attempts.begin(), report.attempts.end(),
-                  [](const RungAttempt& attempt) { return attempt.worker_seconds > 0; });
+                  [](const delaunay::RungAttempt& attempt) { return attempt.worker_seconds > 0; });
   if (has_engine) totals.with_engine.add(report.attempts);
   if (settings.prints_attempts) print_attempts(name, report);
   if (report.verdict == Verdict::valid) ++totals.valid;
@@ -86,13 +86,14 @@ void decide(const std::string& name, const SubmittedSolid& submitted, EngineWork
   }
 }
 
-void decide_file(const std::string& file, EngineWorkers& workers, const Settings& settings,
-                 Totals& totals) {
+void decide_file(const std::string& file, delaunay::EngineWorkers& workers,
+                 const Settings& settings, Totals& totals) {
   std::ifstream stream(file, std::ios::binary);
   const Bytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   ++totals.files;
-  const auto format = detect_format(file, bytes);
-  const auto document = format ? read_document(bytes, *format) : Result<Document>(format.error());
+  const auto format = formats::detect_format(file, bytes);
+  const auto document =
+      format ? formats::read_document(bytes, *format) : Result<Document>(format.error());
   if (!document) {
     ++totals.unreadable;
     std::printf("unreadable %s: %s\n", file.c_str(), to_string(document.error()).c_str());
@@ -108,7 +109,7 @@ void decide_file(const std::string& file, EngineWorkers& workers, const Settings
   }
 }
 
-void print_cost(const char* what, const CdtStatistics& cdt) {
+void print_cost(const char* what, const delaunay::CdtStatistics& cdt) {
   const double step = cdt.cpu_seconds + cdt.worker_seconds;
   std::printf(
       "CPU of the CDT step, %s: %.3f s (own %.3f s, workers %.3f s), engine's own calls "
@@ -118,7 +119,7 @@ void print_cost(const char* what, const CdtStatistics& cdt) {
 }
 
 void print_totals(const Totals& totals) {
-  const CdtStatistics& cdt = totals.cdt;
+  const delaunay::CdtStatistics& cdt = totals.cdt;
   std::printf("\n%zu files, %zu unreadable, %zu solids: %zu valid, %zu invalid, %zu undecided\n",
               totals.files, totals.unreadable, totals.solids, totals.valid, totals.invalid,
               totals.undecided.size());
@@ -126,12 +127,14 @@ void print_totals(const Totals& totals) {
       "%llu solids passed the exact tests: %llu accepted, %llu refuted, %llu undecided\n",
       static_cast<unsigned long long>(cdt.solids), static_cast<unsigned long long>(cdt.accepted),
       static_cast<unsigned long long>(cdt.refuted), static_cast<unsigned long long>(cdt.undecided));
-  for (std::size_t rung = 0; rung < kRungs; ++rung) {
-    for (std::size_t outcome = 0; outcome < kRungOutcomes; ++outcome) {
+  for (std::size_t rung = 0; rung < delaunay::kRungs; ++rung) {
+    for (std::size_t outcome = 0; outcome < delaunay::kRungOutcomes; ++outcome) {
       if (cdt.attempts[rung][outcome] == 0) continue;
-      std::printf("  %-16s %-22s %8llu\n", std::string(to_string(static_cast<Rung>(rung))).c_str(),
-                  std::string(to_string(static_cast<RungOutcome>(outcome))).c_str(),
-                  static_cast<unsigned long long>(cdt.attempts[rung][outcome]));
+      std::printf(
+          "  %-16s %-22s %8llu\n",
+          std::string(delaunay::to_string(static_cast<delaunay::Rung>(rung))).c_str(),
+          std::string(delaunay::to_string(static_cast<delaunay::RungOutcome>(outcome))).c_str(),
+          static_cast<unsigned long long>(cdt.attempts[rung][outcome]));
     }
   }
   std::printf("certify: %.2f s wall; CDT step: %.2f s wall\n", totals.seconds, cdt.seconds);
@@ -159,7 +162,7 @@ int main(int argument_count, char** arguments) {
   }
   std::sort(settings.files.begin(), settings.files.end());
   std::setvbuf(stdout, nullptr, _IOLBF, 1 << 16);
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   Totals totals;
   for (const std::string& file : settings.files) decide_file(file, workers, settings, totals);
   print_totals(totals);

@@ -36,7 +36,7 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 bool is_page(ByteView bytes) { return bytes.size() > 2 && (bytes[2] & 0x80U) != 0; }
 
 Result<std::vector<Decoded>> decode_any(ByteView bytes) {
-  if (is_page(bytes)) return decode_page(bytes);
+  if (is_page(bytes)) return codec::decode_page(bytes);
   auto one = decode(bytes);
   if (!one) return one.error();
   return std::vector<Decoded>{std::move(one).value()};
@@ -88,7 +88,8 @@ class Hunt {
   static bool encodes_again(const std::vector<Decoded>& solids) {
     for (const Decoded& decoded : solids) {
       const auto boundary = OrientedBoundary::make(decoded.solid);
-      if (!boundary || !encode_boundary(*boundary, decoded.info.acceptance, {.mode = Mode::raw})) {
+      if (!boundary ||
+          !codec::encode_boundary(*boundary, decoded.info.acceptance, {.mode = Mode::raw})) {
         return false;
       }
     }

@@ -45,7 +45,7 @@ std::vector<CorpusSolid> read_corpus(const std::string& path) {
     if (reader.failed() || !decoded) give_up(path, "is no corpus of this version");
     auto boundary = OrientedBoundary::make(decoded->solid);
     if (!boundary) give_up(path, to_string(boundary.error()));
-    CanonicalSolid canonical = canonical_form(*boundary);
+    geometry::CanonicalSolid canonical = geometry::canonical_form(*boundary);
     solids.push_back(CorpusSolid{set, decoded->info.acceptance, std::move(boundary).value(),
                                  std::move(canonical)});
   }

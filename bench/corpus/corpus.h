@@ -19,7 +19,7 @@ struct CorpusSolid {
   std::string set;  // the file it came from, without its extension
   Acceptance acceptance;
   OrientedBoundary source;
-  CanonicalSolid canonical;
+  geometry::CanonicalSolid canonical;
 };
 
 /// Writes one record.

@@ -39,9 +39,9 @@ int main(int count, char** arguments) {
     std::ifstream stream(arguments[i], std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string name = std::filesystem::path(arguments[i]).filename().string();
-    const auto format = detect_format(name, as_bytes(text));
+    const auto format = formats::detect_format(name, as_bytes(text));
     if (!format) continue;
-    const auto document = read_document(as_bytes(text), *format);
+    const auto document = formats::read_document(as_bytes(text), *format);
     if (!document) {
       std::fprintf(stderr, "%s: %s\n", arguments[i], to_string(document.error()).c_str());
       continue;

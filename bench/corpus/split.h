@@ -21,14 +21,14 @@ inline constexpr std::size_t kBlock = 64;
 struct CorpusPage {
   std::string set;
   bool is_test = false;
-  Frame frame;
+  codec::Frame frame;
   std::vector<std::size_t> solids;  // in the corpus
 };
 
 /// Pages of at most `most` solids, which are neighbours within the training or the test half.
 /// Solids without a grid are in none. `stored` are the corpus' solids as page_solid() makes them.
 std::vector<CorpusPage> split_corpus(const std::vector<CorpusSolid>& corpus,
-                                     const std::vector<PageSolid>& stored,
+                                     const std::vector<codec::PageSolid>& stored,
                                      const std::set<std::string>& excluded, std::size_t most);
 
 }  // namespace watertight

@@ -24,9 +24,9 @@
 #include "bench/corpus/corpus.h"
 #include "bench/corpus/split.h"
 #include "bench/corpus/training_meshes.h"
-#include "codec/page/solid_coder.h"
-#include "codec/page/modes.h"
 #include "codec/page/container.h"
+#include "codec/page/modes.h"
+#include "codec/page/solid_coder.h"
 
 using namespace watertight;
 
@@ -37,8 +37,8 @@ constexpr Mode kModes[] = {Mode::polygon, Mode::walk, Mode::parallelogram};
 struct Page {
   std::string set;
   bool is_test = false;
-  Frame frame;
-  std::vector<const PageSolid*> solids;
+  codec::Frame frame;
+  std::vector<const codec::PageSolid*> solids;
 };
 
 struct Options {
@@ -58,7 +58,7 @@ struct Sums {
   std::size_t refused = 0;
   double paged = 0;
   double alone = 0;
-  std::array<double, kStreamParts> parts{};
+  std::array<double, codec::kStreamParts> parts{};
   std::map<std::string, std::size_t> modes;
 
   Sums& operator+=(const Sums& other) {
@@ -67,19 +67,21 @@ struct Sums {
     refused += other.refused;
     paged += other.paged;
     alone += other.alone;
-    for (std::size_t i = 0; i < kStreamParts; ++i) parts[i] += other.parts[i];
+    for (std::size_t i = 0; i < codec::kStreamParts; ++i) parts[i] += other.parts[i];
     for (const auto& [mode, number] : other.modes) modes[mode] += number;
     return *this;
   }
 };
 using SetSums = std::map<std::string, Sums>;
 
-double bytes_of(std::uint64_t cost) { return static_cast<double>(cost) / (8.0 * (1 << kCostBits)); }
+double bytes_of(std::uint64_t cost) {
+  return static_cast<double>(cost) / (8.0 * (1 << codec::kCostBits));
+}
 
 /// Codes one solid with a set of models; false if the mode cannot hold it, which spoils the coder.
-bool learn(SolidCoder& coder, const PageSolid& solid, Mode mode,
-           std::array<std::uint64_t, kStreamParts>* costs = nullptr) {
-  PageSolid copy = solid;
+bool learn(codec::SolidCoder& coder, const codec::PageSolid& solid, Mode mode,
+           std::array<std::uint64_t, codec::kStreamParts>* costs = nullptr) {
+  codec::PageSolid copy = solid;
   copy.mode = mode;
   if (!coder.code(copy)) return false;
   if (costs != nullptr) *costs = copy.costs;
@@ -88,21 +90,22 @@ bool learn(SolidCoder& coder, const PageSolid& solid, Mode mode,
 
 /// A coder with a meter of its own.
 struct MeteredCoder {
-  EntropyStream meter = EntropyStream::meter();
-  SolidCoder coder;
-  MeteredCoder(ModelSet& models, const Frame& frame) : coder(meter, models, frame, Limits{}) {}
+  codec::EntropyStream meter = codec::EntropyStream::meter();
+  codec::SolidCoder coder;
+  MeteredCoder(codec::ModelSet& models, const codec::Frame& frame)
+      : coder(meter, models, frame, Limits{}) {}
 };
 
 /// `choose` names the mode of a solid, or Mode::automatic to leave it out.
 template <class Choose>
-void train(const std::vector<Page>& pages, ModelSet& models, const Choose& choose) {
+void train(const std::vector<Page>& pages, codec::ModelSet& models, const Choose& choose) {
   for (const Page& page : pages) {
     if (page.is_test) continue;
     MeteredCoder paged(models, page.frame);
-    for (const PageSolid* solid : page.solids) {
+    for (const codec::PageSolid* solid : page.solids) {
       MeteredCoder alone(models, page.frame);
-      Frame frame = page.frame;
-      if (!code_frame(alone.meter, models[ModelPart::frame], frame)) std::abort();
+      codec::Frame frame = page.frame;
+      if (!codec::code_frame(alone.meter, models[codec::ModelPart::frame], frame)) std::abort();
       for (MeteredCoder* coder : {&alone, &paged}) {
         const Mode mode = choose(coder->coder, *solid);
         if (mode != Mode::automatic && !learn(coder->coder, *solid, mode)) std::abort();
@@ -112,31 +115,31 @@ void train(const std::vector<Page>& pages, ModelSet& models, const Choose& choos
 }
 
 template <class Choose>
-Sums measure_page(const Page& page, const std::array<ModelBank, kModelParts>& priors,
+Sums measure_page(const Page& page, const std::array<codec::ModelBank, codec::kModelParts>& priors,
                   const Choose& choose) {
   Sums sum;
-  ModelSet models(priors);
+  codec::ModelSet models(priors);
   MeteredCoder paged(models, page.frame);
-  for (const PageSolid* solid : page.solids) {
-    ModelSet own(priors);
+  for (const codec::PageSolid* solid : page.solids) {
+    codec::ModelSet own(priors);
     MeteredCoder alone(own, page.frame);
-    Frame frame = page.frame;
-    if (!code_frame(alone.meter, own[ModelPart::frame], frame)) std::abort();
+    codec::Frame frame = page.frame;
+    if (!codec::code_frame(alone.meter, own[codec::ModelPart::frame], frame)) std::abort();
     const Mode mode = choose(alone.coder, *solid);
     if (mode == Mode::automatic) {
       ++sum.refused;
       continue;
     }
     learn(alone.coder, *solid, mode);
-    std::array<std::uint64_t, kStreamParts> costs{};
+    std::array<std::uint64_t, codec::kStreamParts> costs{};
     const Mode paged_mode = choose(paged.coder, *solid);
     learn(paged.coder, *solid, paged_mode, &costs);
     ++sum.solids;
     sum.vertices += solid->gridded.solid.vertices.size();
     sum.alone += bytes_of(alone.meter.cost());
-    for (std::size_t i = 0; i < kStreamParts; ++i) sum.parts[i] += bytes_of(costs[i]);
+    for (std::size_t i = 0; i < codec::kStreamParts; ++i) sum.parts[i] += bytes_of(costs[i]);
     for (const std::uint64_t cost : costs) sum.paged += bytes_of(cost);
-    ++sum.modes[std::string(to_string(paged_mode))];
+    ++sum.modes[std::string(codec::to_string(paged_mode))];
   }
   return sum;
 }
@@ -151,7 +154,8 @@ void print(const SetSums& sums) {
     const auto v = static_cast<double>(std::max<std::size_t>(sum.vertices, 1));
     std::printf("| %s | %zu | %.1f | %zu | %.1f | %.1f |", set.c_str(), sum.solids, v / n,
                 sum.refused, sum.paged / n, sum.alone / n);
-    for (std::size_t i = 0; i + 1 < kStreamParts; ++i) std::printf(" %.1f |", sum.parts[i] / n);
+    for (std::size_t i = 0; i + 1 < codec::kStreamParts; ++i)
+      std::printf(" %.1f |", sum.parts[i] / n);
     std::printf(" %.2f |", 8 * (sum.parts[2] + sum.parts[3]) / v);
     for (const auto& [mode, number] : sum.modes) std::printf(" %s %zu", mode.c_str(), number);
     std::printf(" |\n");
@@ -161,7 +165,7 @@ void print(const SetSums& sums) {
 
 template <class Choose>
 void measure(const char* title, const std::vector<Page>& pages,
-             const std::array<ModelBank, kModelParts>& priors, const Choose& choose) {
+             const std::array<codec::ModelBank, codec::kModelParts>& priors, const Choose& choose) {
   SetSums sums;
   for (const Page& page : pages) {
     if (!page.is_test) continue;
@@ -173,14 +177,15 @@ void measure(const char* title, const std::vector<Page>& pages,
   print(sums);
 }
 
-std::array<ModelBank, kModelParts> banks_of(ModelSet& models) {
-  std::array<ModelBank, kModelParts> banks = neutral_priors();
-  for (std::size_t i = 0; i < kModelParts; ++i) banks[i] = models[static_cast<ModelPart>(i)];
+std::array<codec::ModelBank, codec::kModelParts> banks_of(codec::ModelSet& models) {
+  std::array<codec::ModelBank, codec::kModelParts> banks = codec::neutral_priors();
+  for (std::size_t i = 0; i < codec::kModelParts; ++i)
+    banks[i] = models[static_cast<codec::ModelPart>(i)];
   return banks;
 }
 
 std::vector<Page> pages_of(const std::vector<CorpusSolid>& corpus,
-                           const std::vector<PageSolid>& stored, const Options& options) {
+                           const std::vector<codec::PageSolid>& stored, const Options& options) {
   std::vector<Page> pages;
   for (const CorpusPage& page : split_corpus(corpus, stored, options.excluded, kBlock)) {
     pages.push_back(Page{page.set, page.is_test, page.frame, {}});
@@ -210,40 +215,41 @@ Options read_options(int count, char** arguments) {
 
 /// What surfaces have in common are their decisions; how much the parts of a context say differs
 /// from mesh to mesh, so that weights adapt faster from neutral ones, and counters too.
-std::array<PriorShape, kModelParts> shapes_of(const Options& options) {
-  std::array<PriorShape, kModelParts> shapes{};
+std::array<codec::PriorShape, codec::kModelParts> shapes_of(const Options& options) {
+  std::array<codec::PriorShape, codec::kModelParts> shapes{};
   shapes.fill({.max_count = options.max_count});
-  shapes[static_cast<std::size_t>(ModelPart::parallelogram)] = {
+  shapes[static_cast<std::size_t>(codec::ModelPart::parallelogram)] = {
       .max_count = 2, .least_count = options.least_count, .has_weights = false};
   return shapes;
 }
 
-void learn_meshes(const std::vector<IntegerSolid>& meshes, ModelBank& models) {
-  for (const IntegerSolid& mesh : meshes) {
-    EntropyStream meter = EntropyStream::meter();
-    ModelBank learning = models;
-    IntegerSolid solid = mesh;
-    WriterChoice choice;
-    if (code_parallelogram(meter, learning, PageMemory{}, solid, choice, Limits{})) {
+void learn_meshes(const std::vector<codec::IntegerSolid>& meshes, codec::ModelBank& models) {
+  for (const codec::IntegerSolid& mesh : meshes) {
+    codec::EntropyStream meter = codec::EntropyStream::meter();
+    codec::ModelBank learning = models;
+    codec::IntegerSolid solid = mesh;
+    codec::WriterChoice choice;
+    if (codec::parallelogram::code_solid(meter, learning, codec::PageMemory{}, solid, choice,
+                                         Limits{})) {
       models = learning;
     }
   }
 }
 
 void train_all(const std::vector<Page>& pages, const Options& options) {
-  const std::array<ModelBank, kModelParts> neutral = neutral_priors();
-  ModelSet first(neutral);
-  const std::vector<IntegerSolid> meshes = training_meshes(options.meshes);
+  const std::array<codec::ModelBank, codec::kModelParts> neutral = codec::neutral_priors();
+  codec::ModelSet first(neutral);
+  const std::vector<codec::IntegerSolid> meshes = training_meshes(options.meshes);
   std::printf("%zu meshes\n", meshes.size());
-  learn_meshes(meshes, first[ModelPart::parallelogram]);
+  learn_meshes(meshes, first[codec::ModelPart::parallelogram]);
   for (const Mode mode : kModes) {
-    if (!options.only.empty() && options.only != to_string(mode)) continue;
+    if (!options.only.empty() && options.only != codec::to_string(mode)) continue;
     const auto start = std::chrono::steady_clock::now();
-    const auto choose = [mode](const SolidCoder& coder, PageSolid solid) {
+    const auto choose = [mode](const codec::SolidCoder& coder, codec::PageSolid solid) {
       return coder.cost(solid, mode) ? mode : Mode::automatic;
     };
     for (int pass = 0; pass < options.passes; ++pass) train(pages, first, choose);
-    const std::string title(to_string(mode));
+    const std::string title(codec::to_string(mode));
     measure(title.c_str(), pages, banks_of(first), choose);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -251,20 +257,20 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   }
   if (!options.only.empty()) return;
 
-  const std::array<ModelBank, kModelParts> chosen_by = banks_of(first);
-  const auto cheapest = [](const SolidCoder& coder, PageSolid solid) {
+  const std::array<codec::ModelBank, codec::kModelParts> chosen_by = banks_of(first);
+  const auto cheapest = [](const codec::SolidCoder& coder, codec::PageSolid solid) {
     return coder.cheapest_mode(solid);
   };
-  ModelSet second(chosen_by);
+  codec::ModelSet second(chosen_by);
   for (int pass = 0; pass < options.passes; ++pass) train(pages, second, cheapest);
-  learn_meshes(meshes, second[ModelPart::parallelogram]);
+  learn_meshes(meshes, second[codec::ModelPart::parallelogram]);
   const auto shapes = shapes_of(options);
-  const Bytes file = write_models(banks_of(second), kModelNumber, shapes);
-  const auto priors = read_models(file, kModelNumber);
+  const Bytes file = codec::write_models(banks_of(second), codec::kModelNumber, shapes);
+  const auto priors = codec::read_models(file, codec::kModelNumber);
   if (!priors) std::abort();
   measure("cheapest mode", pages, *priors, cheapest);
   std::printf("\nmodel file: %zu bytes\n", file.size());
-  for (std::size_t i = 0; i < kModelParts; ++i) {
+  for (std::size_t i = 0; i < codec::kModelParts; ++i) {
     std::printf("part %zu: %zu bytes\n", i, banks_of(second)[i].save(shapes[i]).size());
   }
   if (options.out.empty()) return;
@@ -282,9 +288,9 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::vector<CorpusSolid> corpus = read_corpus(options.corpus);
-  std::vector<PageSolid> stored;
+  std::vector<codec::PageSolid> stored;
   for (const CorpusSolid& solid : corpus) {
-    stored.push_back(page_solid(solid.source, EncodeOptions{.keep_order = false}));
+    stored.push_back(codec::page_solid(solid.source, EncodeOptions{.keep_order = false}));
   }
   std::printf("%zu solids\n", corpus.size());
   train_all(pages_of(corpus, stored, options), options);

@@ -25,13 +25,13 @@ std::vector<std::string> files_under(const std::string& folder) {
   return paths;
 }
 
-void add_meshes(const std::string& path, std::vector<IntegerSolid>& meshes) {
+void add_meshes(const std::string& path, std::vector<codec::IntegerSolid>& meshes) {
   std::ifstream stream(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const auto format =
-      detect_format(std::filesystem::path(path).filename().string(), as_bytes(text));
+      formats::detect_format(std::filesystem::path(path).filename().string(), as_bytes(text));
   if (!format) return;
-  const auto document = read_document(as_bytes(text), *format);
+  const auto document = formats::read_document(as_bytes(text), *format);
   if (!document) return;
   for (const Feature& feature : document->features) {
     for (const SubmittedSolid& submitted : feature.solids) {
@@ -46,8 +46,8 @@ void add_meshes(const std::string& path, std::vector<IntegerSolid>& meshes) {
 
 }  // namespace
 
-std::vector<IntegerSolid> training_meshes(const std::string& folder) {
-  std::vector<IntegerSolid> meshes;
+std::vector<codec::IntegerSolid> training_meshes(const std::string& folder) {
+  std::vector<codec::IntegerSolid> meshes;
   if (folder.empty()) return meshes;
   const std::vector<std::string> paths = files_under(folder);
   for (std::size_t i = 0; i < paths.size(); i += 2) add_meshes(paths[i], meshes);

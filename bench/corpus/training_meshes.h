@@ -13,6 +13,6 @@ namespace watertight {
 /// Of the files under `folder` in the order of their paths every other one, from the first: its
 /// closed meshes of at most 60,000 facets, on grids of 11, 14 and 16 bits and on their own. The
 /// other files are not seen. None if the name is empty.
-std::vector<IntegerSolid> training_meshes(const std::string& folder);
+std::vector<codec::IntegerSolid> training_meshes(const std::string& folder);
 
 }  // namespace watertight

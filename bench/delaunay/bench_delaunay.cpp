@@ -28,8 +28,8 @@ struct Tally {
 };
 
 bool is_same(const std::vector<Point>& points, Tally& tally) {
-  const auto expected = cgal_delaunay(points);
-  const auto found = small_delaunay(points);
+  const auto expected = delaunay::cgal_delaunay(points);
+  const auto found = delaunay::small_delaunay(points);
   if (!expected || !found) return false;
   ++tally.sets;
   tally.points += points.size();
@@ -44,7 +44,8 @@ int compare(std::uint64_t count, std::uint64_t first) {
   for (std::uint64_t number = first; number < first + count; ++number) {
     const std::string formula = point_sets::any_formula(number);
     const auto points = point_sets::shuffled(point_sets::make(formula), number);
-    if (is_small_grid(points) && is_same(points, tallies[formula.substr(0, formula.find(' '))])) {
+    if (delaunay::is_small_grid(points) &&
+        is_same(points, tallies[formula.substr(0, formula.find(' '))])) {
       continue;
     }
     ++differences;
@@ -105,11 +106,11 @@ int time(int repeats) {
                               "random 200000 1073741824 1",
                               "hollow 185"}) {
     const auto points = point_sets::make(formula);
-    const auto faces = small_delaunay(points);
+    const auto faces = delaunay::small_delaunay(points);
     const double cgal =
-        microseconds(points, repeats, [](const auto& p) { return cgal_delaunay(p); });
+        microseconds(points, repeats, [](const auto& p) { return delaunay::cgal_delaunay(p); });
     const double own =
-        microseconds(points, repeats, [](const auto& p) { return small_delaunay(p); });
+        microseconds(points, repeats, [](const auto& p) { return delaunay::small_delaunay(p); });
     std::cout << "| " << formula << " | " << points.size() << " | "
               << (faces ? faces->faces.size() : 0) << " | " << cgal << " | " << own << " | "
               << own / static_cast<double>(points.size()) << " | " << cgal / own << " |"

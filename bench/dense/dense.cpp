@@ -32,14 +32,15 @@ using namespace watertight;
 /// What a peer lacks: three varints of the origin and two bytes of grid.
 std::size_t placement_bytes(const OrientedBoundary& boundary) {
   ByteWriter writer;
-  for (const std::int64_t number : page_solid(boundary, {}).gridded.origin) writer.zigzag(number);
+  for (const std::int64_t number : codec::page_solid(boundary, {}).gridded.origin)
+    writer.zigzag(number);
   return writer.size() + 2;
 }
 
 std::string_view validity(const OrientedBoundary& boundary) {
   CertifyOptions options;
   options.proof = Proof::boundary;
-  return to_string(certify(boundary.solid(), nullptr, options).report.verdict);
+  return validate::to_string(certify(boundary.solid(), nullptr, options).report.verdict);
 }
 
 std::optional<MeshRow> measure(const std::string& name, const Solid& source,
@@ -74,9 +75,9 @@ void report(const std::string& grid, const std::vector<std::filesystem::path>& f
     const auto& path = files[number];
     std::ifstream stream(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const auto format = detect_format(path.filename().string(), as_bytes(text));
+    const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
     if (!format) continue;
-    const auto document = read_document(as_bytes(text), *format);
+    const auto document = formats::read_document(as_bytes(text), *format);
     if (!document) continue;
     for (const Feature& feature : document->features) {
       for (const SubmittedSolid& submitted : feature.solids) {
@@ -93,7 +94,7 @@ void report(const std::string& grid, const std::vector<std::filesystem::path>& f
 
 Mode mode_named(std::string_view name) {
   for (const Mode mode : {Mode::walk, Mode::parallelogram}) {
-    if (to_string(mode) == name) return mode;
+    if (codec::to_string(mode) == name) return mode;
   }
   std::fprintf(stderr, "--mode is walk or parallelogram\n");
   std::exit(2);

@@ -15,13 +15,13 @@
 namespace watertight {
 namespace {
 
-std::vector<std::array<std::int32_t, 3>> relative_positions(const IntegerSolid& mesh) {
-  GridPoint least = mesh.vertices.front();
-  for (const GridPoint& p : mesh.vertices) {
+std::vector<std::array<std::int32_t, 3>> relative_positions(const codec::IntegerSolid& mesh) {
+  codec::GridPoint least = mesh.vertices.front();
+  for (const codec::GridPoint& p : mesh.vertices) {
     for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], p[k]);
   }
   std::vector<std::array<std::int32_t, 3>> result;
-  for (const GridPoint& p : mesh.vertices) {
+  for (const codec::GridPoint& p : mesh.vertices) {
     std::array<std::int32_t, 3> relative{};
     for (std::size_t k = 0; k < 3; ++k) {
       if (p[k] - least[k] > std::numeric_limits<std::int32_t>::max()) return {};
@@ -32,7 +32,7 @@ std::vector<std::array<std::int32_t, 3>> relative_positions(const IntegerSolid& 
   return result;
 }
 
-std::size_t draco_size(const IntegerSolid& mesh,
+std::size_t draco_size(const codec::IntegerSolid& mesh,
                        const std::vector<std::array<std::int32_t, 3>>& positions) {
   if (positions.empty()) return 0;
   draco::Mesh draco_mesh;
@@ -67,15 +67,15 @@ std::size_t zstd_size(const std::vector<unsigned char>& bytes, std::size_t size)
 
 }  // namespace
 
-std::size_t draco_bytes(const IntegerSolid& mesh) {
+std::size_t draco_bytes(const codec::IntegerSolid& mesh) {
   return draco_size(mesh, relative_positions(mesh));
 }
 
-std::size_t draco_connectivity_bytes(const IntegerSolid& mesh) {
+std::size_t draco_connectivity_bytes(const codec::IntegerSolid& mesh) {
   return draco_size(mesh, std::vector<std::array<std::int32_t, 3>>(mesh.vertices.size()));
 }
 
-std::size_t meshopt_bytes(const IntegerSolid& mesh) {
+std::size_t meshopt_bytes(const codec::IntegerSolid& mesh) {
   const auto positions = relative_positions(mesh);
   if (positions.empty()) return 0;
   std::vector<unsigned> indices(mesh.ring_vertices.begin(), mesh.ring_vertices.end());

@@ -11,10 +11,10 @@ namespace watertight {
 
 /// Draco, compression level 10 (8 from 2^20 steps on), int32 positions from the minimum on; 0 = it
 /// refuses.
-std::size_t draco_bytes(const IntegerSolid& mesh);
+std::size_t draco_bytes(const codec::IntegerSolid& mesh);
 /// The same with all positions 0: about what its connectivity takes.
-std::size_t draco_connectivity_bytes(const IntegerSolid& mesh);
+std::size_t draco_connectivity_bytes(const codec::IntegerSolid& mesh);
 /// meshoptimizer's vertex and index codecs after its own reordering, through zstd -19.
-std::size_t meshopt_bytes(const IntegerSolid& mesh);
+std::size_t meshopt_bytes(const codec::IntegerSolid& mesh);
 
 }  // namespace watertight

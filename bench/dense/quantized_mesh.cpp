@@ -38,15 +38,15 @@ bool is_closed(const std::vector<Triangle>& triangles) {
 
 }  // namespace
 
-std::optional<IntegerSolid> quantize(const Solid& solid, std::optional<int> bits) {
+std::optional<codec::IntegerSolid> quantize(const Solid& solid, std::optional<int> bits) {
   const std::vector<Triangle> fans = fans_of(solid);
   const Box box = solid.box();
   const double extent =
       std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
   const double scale = bits ? (std::ldexp(1.0, *bits) - 1) / extent : 1;
-  std::vector<GridPoint> points;
+  std::vector<codec::GridPoint> points;
   for (const Point& p : solid.vertices()) {
-    GridPoint q{};
+    codec::GridPoint q{};
     for (int k = 0; k < 3; ++k) {
       const double value = bits ? std::floor((p[k] - box.min[k]) * scale + 0.5) : p[k];
       if (std::abs(value) >= 0x1p53 || value != std::floor(value)) return std::nullopt;
@@ -55,21 +55,21 @@ std::optional<IntegerSolid> quantize(const Solid& solid, std::optional<int> bits
     points.push_back(q);
   }
   std::set<Triangle> kept;
-  std::map<GridPoint, Index> numbers;
-  for (const GridPoint& p : points) numbers.emplace(p, Index{0});
+  std::map<codec::GridPoint, Index> numbers;
+  for (const codec::GridPoint& p : points) numbers.emplace(p, Index{0});
   for (const Triangle& fan : fans) {
-    std::array<GridPoint, 3> corner{points[fan[0]], points[fan[1]], points[fan[2]]};
+    std::array<codec::GridPoint, 3> corner{points[fan[0]], points[fan[1]], points[fan[2]]};
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
-    for (const GridPoint& p : corner) numbers[p] = 1;
+    for (const codec::GridPoint& p : corner) numbers[p] = 1;
   }
-  IntegerSolid mesh;
+  codec::IntegerSolid mesh;
   for (auto& [point, number] : numbers) {
     if (number == 0) continue;
     number = static_cast<Index>(mesh.vertices.size());
     mesh.vertices.push_back(point);
   }
   for (const Triangle& fan : fans) {
-    std::array<GridPoint, 3> corner{points[fan[0]], points[fan[1]], points[fan[2]]};
+    std::array<codec::GridPoint, 3> corner{points[fan[0]], points[fan[1]], points[fan[2]]};
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
     Triangle t{numbers[corner[0]], numbers[corner[1]], numbers[corner[2]]};
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -85,7 +85,7 @@ std::optional<IntegerSolid> quantize(const Solid& solid, std::optional<int> bits
   for (const Triangle& t : triangles) {
     for (const Index v : t) used[v] = 1;
   }
-  std::vector<GridPoint> vertices;
+  std::vector<codec::GridPoint> vertices;
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (used[v] == 0) continue;
     used[v] = static_cast<Index>(vertices.size());

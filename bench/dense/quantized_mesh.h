@@ -13,6 +13,6 @@ namespace watertight {
 /// The solid in triangles on its own grid, or quantized as Draco does: the longest side of the box
 /// to 2^bits - 1 steps. Vertices that fall together are one, triangles without area and equal ones
 /// are left out. Nothing if its edges are not used alike in both directions or the grid is none.
-std::optional<IntegerSolid> quantize(const Solid& solid, std::optional<int> bits);
+std::optional<codec::IntegerSolid> quantize(const Solid& solid, std::optional<int> bits);
 
 }  // namespace watertight

@@ -102,7 +102,7 @@ void print_row(const MeshRow& row) {
   const double facets = static_cast<double>(row.facets);
   std::printf("| %s | %zu | %zu | %s | %s | %s | %zu | %zu | %zu | %.3f |", row.name.c_str(),
               row.vertices, row.facets, row.validity.c_str(),
-              std::string(to_string(row.blob.mode)).c_str(), row.is_seen ? "yes" : "no",
+              std::string(codec::to_string(row.blob.mode)).c_str(), row.is_seen ? "yes" : "no",
               row.blob.bytes, row.draco, row.meshopt, ratio_of(row));
   std::printf(" %.2f | %.2f | %.2f | %.1f | %.1f | %.0f |\n",
               bits_per_vertex(row, static_cast<double>(row.blob.bytes)),

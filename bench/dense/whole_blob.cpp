@@ -46,8 +46,8 @@ double begin_peak() {
 
 }  // namespace
 
-Result<OrientedBoundary> boundary_of(const IntegerSolid& mesh, const Lattice* lattice) {
-  auto points = lattice_of_integers(mesh.vertices, Transform{});
+Result<OrientedBoundary> boundary_of(const codec::IntegerSolid& mesh, const Lattice* lattice) {
+  auto points = geometry::lattice_of_integers(mesh.vertices, geometry::Transform{});
   if (!points) return points.error();
   SolidArrays arrays;
   arrays.vertices = std::move(points->points);
@@ -55,7 +55,7 @@ Result<OrientedBoundary> boundary_of(const IntegerSolid& mesh, const Lattice* la
   if (lattice != nullptr) {
     on = *lattice;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      const GridPoint& p = mesh.vertices[i];
+      const codec::GridPoint& p = mesh.vertices[i];
       arrays.vertices[i] = {static_cast<double>(p[0]), static_cast<double>(p[1]),
                             static_cast<double>(p[2])};
     }
@@ -70,13 +70,13 @@ Result<OrientedBoundary> boundary_of(const IntegerSolid& mesh, const Lattice* la
 }
 
 WholeBlob whole_blob(const OrientedBoundary& boundary, Mode mode) {
-  const Solid wanted = canonical_form(boundary).boundary.solid();
+  const Solid wanted = geometry::canonical_form(boundary).boundary.solid();
   EncodeOptions options;
   options.keep_order = false;
   options.mode = mode;
   const double resident = begin_peak();
   const double start = processor_seconds();
-  const auto blob = encode_boundary(boundary, {}, options);
+  const auto blob = codec::encode_boundary(boundary, {}, options);
   const double encoded = processor_seconds();
   if (!blob) stop("encode", blob.error());
   const auto decoded = decode(*blob);
@@ -89,7 +89,7 @@ WholeBlob whole_blob(const OrientedBoundary& boundary, Mode mode) {
   WholeBlob result;
   result.bytes = blob->size();
   result.mode = decoded->info.mode;
-  for (const BlobInfo::Part& part : decoded->info.parts) {
+  for (const codec::BlobInfo::Part& part : decoded->info.parts) {
     if (part.name == "connectivity" || part.name == "facets") {
       result.connectivity_bytes += part.bytes;
     }

@@ -23,7 +23,7 @@ struct WholeBlob {
 };
 
 /// The mesh on `lattice`, or on the lattice of its integers. Errors: as OrientedBoundary::make().
-Result<OrientedBoundary> boundary_of(const IntegerSolid& mesh, const Lattice* lattice);
+Result<OrientedBoundary> boundary_of(const codec::IntegerSolid& mesh, const Lattice* lattice);
 
 /// With the shipped priors, without source order. Ends the program if another solid comes back.
 WholeBlob whole_blob(const OrientedBoundary& boundary, Mode mode);

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <string>
 
-#include "codec/version_0/order_section.h"
 #include "codec/page/source_order.h"
+#include "codec/version_0/order_section.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/container.h"
 
@@ -35,7 +35,7 @@ struct Sizes {
 };
 
 bool is_same(const Document& document, const std::string& text) {
-  const auto written = write_document(document, document.format);
+  const auto written = formats::write_document(document, document.format);
   return written && as_text(*written) == text;
 }
 
@@ -44,24 +44,24 @@ void add_texts(const Document& document, Sizes& sizes) {
   for (const Feature& feature : document.features) {
     std::string skeleton = feature.skeleton + '\n';
     skeleton += as_text(feature.layout);
-    const auto packed = pack_text(skeleton);
+    const auto packed = formats::pack_text(skeleton);
     if (packed) sizes.alone += packed->size();
     sizes.texts += skeleton.size();
     sizes.layout += feature.layout.size();
     all += skeleton;
   }
-  const auto packed = pack_text(all);
+  const auto packed = formats::pack_text(all);
   if (packed) sizes.together = packed->size();
 }
 
-void add_blobs(const StoredDocument& document, Sizes& sizes) {
+void add_blobs(const pipeline::StoredDocument& document, Sizes& sizes) {
   for (const StoredFeature& feature : document.features) {
     for (const StoredSolid& solid : feature.solids) {
       ++sizes.solids;
       sizes.blobs += solid.blob.size();
-      const auto info = describe(solid.blob);
+      const auto info = codec::describe(solid.blob);
       if (!info) continue;
-      for (const BlobInfo::Part& part : info->parts) {
+      for (const codec::BlobInfo::Part& part : info->parts) {
         if (part.name == "order") sizes.order += part.bytes;
       }
     }
@@ -71,22 +71,22 @@ void add_blobs(const StoredDocument& document, Sizes& sizes) {
 /// The order of every closed solid, in both versions of the format.
 void add_orders(const Document& document, Sizes& sizes) {
   constexpr std::size_t kPage = 128;
-  const ModelLayout layout{order_families(), {}};
-  ModelBank page(layout);
+  const codec::ModelLayout layout{codec::order_families(), {}};
+  codec::ModelBank page(layout);
   for (const Feature& feature : document.features) {
     for (const SubmittedSolid& submitted : feature.solids) {
-      auto boundary = OrientedBoundary::make(merge_equal_vertices(submitted.solid).solid);
+      auto boundary = OrientedBoundary::make(geometry::merge_equal_vertices(submitted.solid).solid);
       if (!boundary) continue;
-      CanonicalSolid canonical = canonical_form(*boundary);
+      geometry::CanonicalSolid canonical = geometry::canonical_form(*boundary);
       const Solid& solid = canonical.boundary.solid();
-      sizes.order_bytes += write_order(solid, canonical.order).size();
-      ModelBank neutral(layout);
-      EntropyStream alone = EntropyStream::meter();
-      code_order(alone, neutral, 0, solid, canonical.order);
+      sizes.order_bytes += codec::write_order(solid, canonical.order).size();
+      codec::ModelBank neutral(layout);
+      codec::EntropyStream alone = codec::EntropyStream::meter();
+      codec::code_order(alone, neutral, 0, solid, canonical.order);
       sizes.order_alone += alone.cost();
-      if (sizes.closed++ % kPage == 0) page = ModelBank(layout);
-      EntropyStream in_page = EntropyStream::meter();
-      code_order(in_page, page, 0, solid, canonical.order);
+      if (sizes.closed++ % kPage == 0) page = codec::ModelBank(layout);
+      codec::EntropyStream in_page = codec::EntropyStream::meter();
+      codec::code_order(in_page, page, 0, solid, canonical.order);
       sizes.order_in_page += in_page.cost();
     }
   }
@@ -97,18 +97,18 @@ double bytes_each(std::uint64_t cost, std::size_t count) {
 }
 
 /// "yes", "no", or why there is no Watertight file.
-std::string through_container(Document document, const std::string& text, EngineWorkers& workers,
-                              Sizes& sizes) {
-  auto encoded = encode_document(std::move(document), &workers, {});
+std::string through_container(Document document, const std::string& text,
+                              delaunay::EngineWorkers& workers, Sizes& sizes) {
+  auto encoded = pipeline::encode_document(std::move(document), &workers, {});
   if (!encoded) return "no: " + to_string(encoded.error());
   if (encoded->outcome.verdict != Verdict::valid) return "not valid";
   add_blobs(encoded->document, sizes);
-  const auto container = write_container(encoded->document);
+  const auto container = pipeline::write_container(encoded->document);
   if (!container) return "no: " + to_string(container.error());
   sizes.container = container->size();
-  const auto info = describe_container(*container);
+  const auto info = pipeline::describe_container(*container);
   if (info) sizes.paged = info->solid_bytes;
-  const auto decoded = decode_container(*container);
+  const auto decoded = pipeline::decode_container(*container);
   if (!decoded) return "no: " + to_string(decoded.error());
   return decoded->size() == 1 && is_same(decoded->front(), text) ? "yes" : "no";
 }
@@ -117,7 +117,7 @@ std::string through_container(Document document, const std::string& text, Engine
 
 int main(int argc, char** argv) {
   int failures = 0;
-  EngineWorkers workers(EngineWorkers::Options{{}, {}, 1});
+  delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, 1});
   std::printf(
       "| file | bytes | same text | same by file | layout | skeletons | alone | together | "
       "file bytes | paged | blobs | order | solids "
@@ -128,12 +128,12 @@ int main(int argc, char** argv) {
     const std::string name = argv[i];
     std::ifstream stream(name, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const auto format = detect_format(name, as_bytes(text));
-    ReadOptions options;
+    const auto format = formats::detect_format(name, as_bytes(text));
+    formats::ReadOptions options;
     options.split_features = false;
     options.keep_text = true;
-    auto document =
-        format ? read_document(as_bytes(text), *format, options) : Result<Document>(format.error());
+    auto document = format ? formats::read_document(as_bytes(text), *format, options)
+                           : Result<Document>(format.error());
     const std::string file = std::filesystem::path(name).filename().string();
     if (!document) {
       std::printf("| %s | %zu | refused: %s |\n", file.c_str(), text.size(),

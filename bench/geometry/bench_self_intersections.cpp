@@ -94,7 +94,8 @@ bool read_mesh(const std::string& file, Soup& soup) {
   for (const auto& polygon : polygons) {
     for (std::size_t i = 2; i < polygon.size(); ++i) {
       const Triangle t{merged(polygon[0]), merged(polygon[i - 1]), merged(polygon[i])};
-      if (are_collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]])) continue;
+      if (geometry::are_collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]]))
+        continue;
       soup.triangles.push_back(t);
     }
   }
@@ -123,20 +124,21 @@ struct PmpSoup {
   }
 };
 
-std::vector<IntersectingPair> own_pairs(const Soup& soup, unsigned threads) {
-  IntersectionOptions options;
+std::vector<geometry::IntersectingPair> own_pairs(const Soup& soup, unsigned threads) {
+  geometry::IntersectionOptions options;
   options.limit = std::uint64_t{1} << 40U;
   options.threads = threads;
-  auto pairs = intersecting_pairs(soup.points, soup.triangles, options);
+  auto pairs = geometry::intersecting_pairs(soup.points, soup.triangles, options);
   if (!pairs) std::abort();
   return std::move(pairs).value();
 }
 
 /// PMP leaves triangles with the same three vertices out.
-std::vector<Pair> without_duplicates(const std::vector<IntersectingPair>& pairs) {
+std::vector<Pair> without_duplicates(const std::vector<geometry::IntersectingPair>& pairs) {
   std::vector<Pair> result;
   for (const auto& pair : pairs) {
-    if (pair.contact != ContactClass::duplicate) result.emplace_back(pair.first, pair.second);
+    if (pair.contact != geometry::ContactClass::duplicate)
+      result.emplace_back(pair.first, pair.second);
   }
   return result;
 }

@@ -53,14 +53,15 @@ bool read_mesh(const std::string& file, Mesh& mesh) {
   for (const auto& polygon : polygons) {
     for (std::size_t i = 2; i < polygon.size(); ++i) {
       const Triangle t{merged(polygon[0]), merged(polygon[i - 1]), merged(polygon[i])};
-      if (are_collinear(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]])) continue;
+      if (geometry::are_collinear(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]))
+        continue;
       mesh.triangles.push_back(t);
     }
   }
   return true;
 }
 
-std::vector<Pair> names(const std::vector<IntersectingPair>& pairs) {
+std::vector<Pair> names(const std::vector<geometry::IntersectingPair>& pairs) {
   std::vector<Pair> result;
   for (const auto& pair : pairs) result.emplace_back(pair.first, pair.second);
   return result;
@@ -70,7 +71,8 @@ std::vector<Pair> by_all_pairs(const Mesh& mesh) {
   std::vector<Pair> pairs;
   for (Index i = 0; i < mesh.triangles.size(); ++i) {
     for (Index j = i + 1; j < mesh.triangles.size(); ++j) {
-      if (is_intersection(classify_contact(mesh.points, mesh.triangles[i], mesh.triangles[j]))) {
+      if (geometry::is_intersection(
+              geometry::classify_contact(mesh.points, mesh.triangles[i], mesh.triangles[j]))) {
         pairs.emplace_back(i, j);
       }
     }
@@ -97,8 +99,8 @@ std::vector<Pair> by_box_intersection(const Mesh& mesh) {
         const Index first = std::min(a.info(), b.info());
         const Index second = std::max(a.info(), b.info());
         const auto contact =
-            classify_contact(mesh.points, mesh.triangles[first], mesh.triangles[second]);
-        if (is_intersection(contact)) pairs.emplace_back(first, second);
+            geometry::classify_contact(mesh.points, mesh.triangles[first], mesh.triangles[second]);
+        if (geometry::is_intersection(contact)) pairs.emplace_back(first, second);
       },
       kCutoff);
   std::sort(pairs.begin(), pairs.end());
@@ -130,7 +132,7 @@ auto timed(Function function, double& seconds) {
   return result;
 }
 
-void print_classes(const Mesh& mesh, const std::vector<IntersectingPair>& pairs) {
+void print_classes(const Mesh& mesh, const std::vector<geometry::IntersectingPair>& pairs) {
   const auto with_common_vertex = std::count_if(pairs.begin(), pairs.end(), [&](const auto& pair) {
     const Triangle& second = mesh.triangles[pair.second];
     return std::find_first_of(second.begin(), second.end(), mesh.triangles[pair.first].begin(),
@@ -145,7 +147,7 @@ void print_classes(const Mesh& mesh, const std::vector<IntersectingPair>& pairs)
   for (const auto& pair : pairs) ++counts[static_cast<std::size_t>(pair.contact)];
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
-    const auto name = to_string(static_cast<ContactClass>(i));
+    const auto name = geometry::to_string(static_cast<geometry::ContactClass>(i));
     std::printf("    %-16.*s %zu\n", static_cast<int>(name.size()), name.data(), counts[i]);
   }
 }
@@ -160,12 +162,13 @@ bool compare(const std::string& file, int repeat) {
   double own = 1e9;
   double boxes = 1e9;
   double pmp = 1e9;
-  std::vector<IntersectingPair> pairs;
+  std::vector<geometry::IntersectingPair> pairs;
   std::vector<Pair> from_boxes;
   std::vector<Pair> from_pmp;
   for (int i = 0; i < repeat; ++i) {
     auto found = timed(
-        [&] { return intersecting_pairs(mesh.points, mesh.triangles, {.limit = ~0ULL}); }, own);
+        [&] { return geometry::intersecting_pairs(mesh.points, mesh.triangles, {.limit = ~0ULL}); },
+        own);
     if (!found) return false;
     pairs = std::move(found).value();
     from_boxes = timed([&] { return by_box_intersection(mesh); }, boxes);
@@ -175,9 +178,9 @@ bool compare(const std::string& file, int repeat) {
   const bool does_all = mesh.triangles.size() <= kAllPairs;
   const bool equals_all = !does_all || by_all_pairs(mesh) == names(pairs);
   const bool equals_boxes = from_boxes == names(pairs);
-  std::vector<IntersectingPair> for_pmp;  // which does not report equal triangles
+  std::vector<geometry::IntersectingPair> for_pmp;  // which does not report equal triangles
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(for_pmp),
-               [](const auto& pair) { return pair.contact != ContactClass::duplicate; });
+               [](const auto& pair) { return pair.contact != geometry::ContactClass::duplicate; });
   const bool equals_pmp = from_pmp == names(for_pmp);
   std::printf(
       "%s: %zu triangles, %zu pairs; all pairs %s, box_self_intersection_d %s, PMP %s (%zu)\n",

@@ -21,12 +21,13 @@ int main(int argc, char** argv) {
       std::printf("pair %llu: %s\n", static_cast<unsigned long long>(i), difference->c_str());
       return 1;
     }
-    ++counts[static_cast<std::size_t>(classify_contact(pair.points, pair.first, pair.second))];
+    ++counts[static_cast<std::size_t>(
+        geometry::classify_contact(pair.points, pair.first, pair.second))];
   }
   std::printf("%llu pairs, seed %llu: no disagreement\n", static_cast<unsigned long long>(count),
               static_cast<unsigned long long>(seed));
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    const auto name = to_string(static_cast<ContactClass>(i));
+    const auto name = geometry::to_string(static_cast<geometry::ContactClass>(i));
     std::printf("  %-16.*s %llu\n", static_cast<int>(name.size()), name.data(),
                 static_cast<unsigned long long>(counts[i]));
   }

@@ -23,7 +23,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void list_findings(const InspectedFeature& feature, const InspectedGroup& group) {
+void list_findings(const pipeline::InspectedFeature& feature,
+                   const pipeline::InspectedGroup& group) {
   for (const Finding& finding : group.report.findings) {
     const auto object = [&](const Place& place) {
       return feature.solids[group.members[place.solid]].source.object_id;
@@ -42,10 +43,10 @@ void list_findings(const InspectedFeature& feature, const InspectedGroup& group)
 void count(const std::filesystem::path& path, bool has_list) {
   std::ifstream stream(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto format = detect_format(path.filename().string(), as_bytes(text));
+  const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
   if (!format) return;
   const Clock::time_point start = Clock::now();
-  auto document = read_document(as_bytes(text), *format);
+  auto document = formats::read_document(as_bytes(text), *format);
   if (!document) {
     std::cout << path.string() << ": " << to_string(document.error()) << '\n';
     return;
@@ -59,7 +60,7 @@ void count(const std::filesystem::path& path, bool has_list) {
   const std::size_t features = document->features.size();
   CertifyOptions options;
   for (Feature& feature : document->features) {
-    InspectedFeature inspected;
+    pipeline::InspectedFeature inspected;
     for (const SubmittedSolid& submitted : feature.solids) {
       // Groups compare what the exact tests accept; the CDT is not asked where they suffice.
       options.proof =
@@ -69,11 +70,11 @@ void count(const std::filesystem::path& path, bool has_list) {
     }
     solids += inspected.solids.size();
     const Clock::time_point begin = Clock::now();
-    inspected.groups = inspect_groups(group_candidates(inspected), {});
+    inspected.groups = pipeline::inspect_groups(pipeline::group_candidates(inspected), {});
     seconds_of_groups += seconds_since(begin);
     groups += inspected.groups.size();
     std::size_t here = 0;
-    for (const InspectedGroup& group : inspected.groups) {
+    for (const pipeline::InspectedGroup& group : inspected.groups) {
       for (const Finding& finding : group.report.findings) ++findings[finding.code];
       here += group.report.findings.size();
       if (has_list) list_findings(inspected, group);

@@ -66,8 +66,10 @@ std::vector<Solid> read_solids(const Arguments& arguments) {
     const std::string text((std::istreambuf_iterator<char>(stream)),
                            std::istreambuf_iterator<char>());
     const ByteView bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    const auto format = detect_format(std::filesystem::path(file).filename().string(), bytes);
-    const auto document = format ? read_document(bytes, *format) : Result<Document>(format.error());
+    const auto format =
+        formats::detect_format(std::filesystem::path(file).filename().string(), bytes);
+    const auto document =
+        format ? formats::read_document(bytes, *format) : Result<Document>(format.error());
     if (!document) {
       std::fprintf(stderr, "%s is left out: %s\n", file.c_str(),
                    to_string(document.error()).c_str());
@@ -158,8 +160,8 @@ void print(const char* title, const std::map<std::string, std::uint64_t>& counts
 int main(int argc, char** argv) {
   const Arguments arguments = arguments_of(argc, argv);
   const std::vector<Solid> real = read_solids(arguments);
-  std::unique_ptr<EngineWorkers> workers;
-  if (arguments.ladder_every != 0) workers = std::make_unique<EngineWorkers>();
+  std::unique_ptr<delaunay::EngineWorkers> workers;
+  if (arguments.ladder_every != 0) workers = std::make_unique<delaunay::EngineWorkers>();
   const RelationOptions options{real, workers.get(), arguments.ladder_every, arguments.nef_every};
   if (arguments.show) {
     for (std::uint64_t i = 0; i < arguments.count; ++i) {

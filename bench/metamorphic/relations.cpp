@@ -39,9 +39,10 @@ bool is_exactly_planar(const Solid& solid, Index facet) {
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   std::size_t third = 2;
-  while (third < points.size() && are_collinear(points[0], points[1], points[third])) ++third;
+  while (third < points.size() && geometry::are_collinear(points[0], points[1], points[third]))
+    ++third;
   for (std::size_t i = third + 1; i < points.size(); ++i) {
-    if (orient3d(points[0], points[1], points[third], points[i]) != 0) return false;
+    if (geometry::orient3d(points[0], points[1], points[third], points[i]) != 0) return false;
   }
   return true;
 }
@@ -59,13 +60,14 @@ Solid on_coarse_grid(const Solid& solid, double grid) {
   for (Point& p : arrays.vertices) {
     for (int axis = 0; axis < 3; ++axis) p[axis] = std::floor(p[axis] / grid) * grid;
   }
-  return merge_equal_vertices(solids::solid_of(std::move(arrays), solid.lattice(), solid.srid()))
+  return geometry::merge_equal_vertices(
+             solids::solid_of(std::move(arrays), solid.lattice(), solid.srid()))
       .solid;
 }
 
 Subject real_subject(Random& random, std::span<const Solid> list) {
   const Solid& source = list[random.below(list.size())];
-  const Solid merged = merge_equal_vertices(source).solid;
+  const Solid merged = geometry::merge_equal_vertices(source).solid;
   switch (random.below(4)) {
     case 0:
       return {"real, as it is", merged, {}, {}, false, true};
@@ -203,7 +205,8 @@ class SeedExaminer {
 
   SeedResult run() {
     report_ = certify(subject_.solid, nullptr, certify_).report;
-    result_.outcome = std::string(to_string(report_.verdict)) + " " + text_of(errors_of(report_));
+    result_.outcome =
+        std::string(validate::to_string(report_.verdict)) + " " + text_of(errors_of(report_));
     check_known();
     check_order();
     check_maps();
@@ -249,7 +252,7 @@ void SeedExaminer::check_known() {
   if (subject_.needs_tetrahedra && report_.verdict == Verdict::undecided) return;
   compare("known codes", *subject_.codes, errors_of(report_));
   check("known verdict", is_invalid() == !subject_.codes->empty(), text_of(*subject_.codes),
-        std::string(to_string(report_.verdict)));
+        std::string(validate::to_string(report_.verdict)));
   if (!subject_.first_level) return;
   compare("known first level", {*subject_.first_level},
           Codes(report_.first_level.begin(), report_.first_level.end()));
@@ -260,7 +263,8 @@ void SeedExaminer::check_order() {
     const solids::Rewritten other = solids::rewritten(subject_.solid, random_);
     const Report report = certify(other.solid, nullptr, certify_).report;
     check("order: verdict", report.verdict == report_.verdict,
-          std::string(to_string(report_.verdict)), std::string(to_string(report.verdict)));
+          std::string(validate::to_string(report_.verdict)),
+          std::string(validate::to_string(report.verdict)));
     compare("order: codes", errors_of(report_), errors_of(report));
     compare("order: warnings", solids::codes_of(report_, Severity::warning),
             solids::codes_of(report, Severity::warning));
@@ -305,16 +309,18 @@ void SeedExaminer::check_proofs() {
   const Report report = certify(subject_.solid, nullptr, options).report;
   check("boundary proof and rung 0",
         (report.verdict == Verdict::valid) == !is_invalid() && report.verdict != Verdict::undecided,
-        std::string(to_string(report_.verdict)), std::string(to_string(report.verdict)));
+        std::string(validate::to_string(report_.verdict)),
+        std::string(validate::to_string(report.verdict)));
   // A certificate of a shell that meets itself or is inside out would be a lie.
   const Codes errors = errors_of(report_);
   const bool is_closed_but_wrong =
       !errors.empty() && std::all_of(errors.begin(), errors.end(),
                                      [](int code) { return code == 306 || code == 405; });
   if (!is_closed_but_wrong) return;
-  const Solid merged = merge_equal_vertices(subject_.solid).solid;
-  const FacetTriangles facets = triangulate_facets(merged);
-  const LadderResult climbed = climb_ladder(facets.divided_solid(merged), facets, nullptr, {});
+  const Solid merged = geometry::merge_equal_vertices(subject_.solid).solid;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(merged);
+  const delaunay::LadderResult climbed =
+      delaunay::climb_ladder(facets.divided_solid(merged), facets, nullptr, {});
   check("no certificate for 306, 405", !climbed.certificate.has_value(), "none", "a certificate");
 }
 
@@ -329,7 +335,8 @@ void SeedExaminer::check_ladder() {
   if (subject_.codes) compare("full ladder: known codes", *subject_.codes, errors_of(report));
   if (subject_.solid.shell_count() == 1) {
     check("full ladder and boundary proof", is_invalid() == (report.verdict == Verdict::invalid),
-          std::string(to_string(report_.verdict)), std::string(to_string(report.verdict)));
+          std::string(validate::to_string(report_.verdict)),
+          std::string(validate::to_string(report.verdict)));
   }
 }
 
@@ -386,9 +393,9 @@ void SeedExaminer::check_solid(const std::vector<ShellTriangles>& shells,
 
 void SeedExaminer::check_oracles() {
   const Solid& solid = subject_.solid;  // merged: solid_of() and merge_equal_vertices() see to it
-  const FacetTriangles facets = triangulate_facets(solid);
-  for (const FacetState state : facets.state) {
-    if (state != FacetState::triangulated) return;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
+  for (const tessellate::FacetState state : facets.state) {
+    if (state != tessellate::FacetState::triangulated) return;
   }
   // Rules about the rings of a facet: the oracles see triangles only.
   for (const int code : errors_of(report_)) {

@@ -16,10 +16,10 @@
 namespace watertight {
 
 struct RelationOptions {
-  std::span<const Solid> real_solids;  // may be empty: all solids are generated then
-  EngineWorkers* workers = nullptr;    // null: no full ladder
-  std::uint64_t ladder_every = 0;      // every so many seeds climb the full ladder; 0: none
-  std::uint64_t nef_every = 0;         // every so many seeds with cavities ask Nef; 0: none
+  std::span<const Solid> real_solids;          // may be empty: all solids are generated then
+  delaunay::EngineWorkers* workers = nullptr;  // null: no full ladder
+  std::uint64_t ladder_every = 0;              // every so many seeds climb the full ladder; 0: none
+  std::uint64_t nef_every = 0;                 // every so many seeds with cavities ask Nef; 0: none
 };
 
 struct SeedResult {

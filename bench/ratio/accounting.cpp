@@ -23,9 +23,9 @@ Triangle sorted(Triangle triangle) {
 /// Border of one facet's faces: vertex -> its neighbours along edges used by a single face.
 using Border = std::map<Index, std::vector<Index>>;
 
-std::vector<Border> facet_borders(const Tetrahedralization& cdt, Index facet_count) {
+std::vector<Border> facet_borders(const delaunay::Tetrahedralization& cdt, Index facet_count) {
   std::vector<std::map<std::pair<Index, Index>, int>> uses(facet_count);
-  for (const ConstrainedFace& face : cdt.constrained) {
+  for (const delaunay::ConstrainedFace& face : cdt.constrained) {
     for (int i = 0; i < 3; ++i) {
       const auto [low, high] = std::minmax(face.vertices[static_cast<std::size_t>(i)],
                                            face.vertices[static_cast<std::size_t>((i + 1) % 3)]);
@@ -64,8 +64,8 @@ std::vector<Index> chain_between(const Border& border, Index input_count, Index 
   return {};
 }
 
-std::set<Index> choose_points(const std::set<Index>& on_edges, const Tetrahedralization& cdt,
-                              double density) {
+std::set<Index> choose_points(const std::set<Index>& on_edges,
+                              const delaunay::Tetrahedralization& cdt, double density) {
   std::vector<Index> points(on_edges.begin(), on_edges.end());
   std::sort(points.begin(), points.end(),
             [&](Index a, Index b) { return cdt.points[a] < cdt.points[b]; });
@@ -89,20 +89,21 @@ Accounting& Accounting::operator+=(const Accounting& other) {
 }
 
 std::optional<Accounting> account_following(const Solid& solid) {
-  const auto delaunay = canonical_delaunay(solid.vertices());
+  const auto delaunay = delaunay::canonical_delaunay(solid.vertices());
   if (!delaunay || delaunay->tetrahedra.empty()) return std::nullopt;
-  const FollowingTriangles following = follow_delaunay(solid, triangulate_facets(solid), *delaunay);
+  const delaunay::FollowingTriangles following =
+      delaunay::follow_delaunay(solid, tessellate::triangulate_facets(solid), *delaunay);
   return Accounting{1, 0, following.triangles.size(), delaunay->faces.size(),
                     following.missing_total};
 }
 
-std::optional<Accounting> account_certificate(const Certificate& certificate) {
-  const Tetrahedralization& cdt = certificate.tetrahedralization;
-  const auto delaunay = canonical_delaunay(cdt.points);
+std::optional<Accounting> account_certificate(const delaunay::Certificate& certificate) {
+  const delaunay::Tetrahedralization& cdt = certificate.tetrahedralization;
+  const auto delaunay = delaunay::canonical_delaunay(cdt.points);
   if (!delaunay || delaunay->tetrahedra.empty()) return std::nullopt;
   Accounting accounting{1, cdt.points.size() - cdt.input_count, cdt.constrained.size(),
                         delaunay->faces.size(), 0};
-  for (const ConstrainedFace& face : cdt.constrained) {
+  for (const delaunay::ConstrainedFace& face : cdt.constrained) {
     accounting.unrecovered +=
         std::binary_search(delaunay->faces.begin(), delaunay->faces.end(), sorted(face.vertices))
             ? 0U
@@ -111,9 +112,10 @@ std::optional<Accounting> account_certificate(const Certificate& certificate) {
   return accounting;
 }
 
-std::optional<Accounting> account_refined(const Solid& solid, const Certificate& certificate,
+std::optional<Accounting> account_refined(const Solid& solid,
+                                          const delaunay::Certificate& certificate,
                                           double density) {
-  const Tetrahedralization& cdt = certificate.tetrahedralization;
+  const delaunay::Tetrahedralization& cdt = certificate.tetrahedralization;
   const std::vector<Border> borders = facet_borders(cdt, solid.facet_count());
   const auto each_edge = [&](const auto& visit) {
     for (Index facet = 0; facet < solid.facet_count(); ++facet) {

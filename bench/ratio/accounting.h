@@ -31,12 +31,12 @@ struct Accounting {
 std::optional<Accounting> account_following(const Solid& solid);
 
 /// All Steiner points of a CDT, its constrained faces as the boundary (the paper's setting).
-std::optional<Accounting> account_certificate(const Certificate& certificate);
+std::optional<Accounting> account_certificate(const delaunay::Certificate& certificate);
 
 /// The solid with a share of a CDT's Steiner points put into its ring edges, as further ring
 /// vertices: every k-th of those on edges, in lexicographic order. `density` in [0, 1]. Then
 /// account_following() of it plus these points.
-std::optional<Accounting> account_refined(const Solid& solid, const Certificate& certificate,
-                                          double density);
+std::optional<Accounting> account_refined(const Solid& solid,
+                                          const delaunay::Certificate& certificate, double density);
 
 }  // namespace watertight

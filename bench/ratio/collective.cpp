@@ -49,19 +49,19 @@ struct Count {
 /// Facets of several solids on one grid, each vertex once, a facet once whichever way it turns.
 class Tile {
  public:
-  void add(const IntegerSolid& solid) {
+  void add(const codec::IntegerSolid& solid) {
     for (Index facet = 0; facet < solid.facet_count(); ++facet) {
-      std::vector<std::vector<GridPoint>> rings;
-      std::set<GridPoint> key;
+      std::vector<std::vector<codec::GridPoint>> rings;
+      std::set<codec::GridPoint> key;
       for (Index ring = solid.facet_offsets[facet]; ring < solid.facet_offsets[facet + 1]; ++ring) {
-        std::vector<GridPoint> points;
+        std::vector<codec::GridPoint> points;
         for (const Index vertex : solid.ring(ring)) points.push_back(solid.vertices[vertex]);
         key.insert(points.begin(), points.end());
         rings.push_back(std::move(points));
       }
       if (!known_.insert(key).second) continue;
       for (const auto& ring : rings) {
-        for (const GridPoint& point : ring) arrays_.ring_vertices.push_back(number(point));
+        for (const codec::GridPoint& point : ring) arrays_.ring_vertices.push_back(number(point));
         arrays_.end_ring();
       }
       arrays_.end_facet();
@@ -69,8 +69,8 @@ class Tile {
   }
 
   Count count() {
-    const GridPoint corner = corner_;
-    for (const GridPoint& point : points_) {
+    const codec::GridPoint corner = corner_;
+    for (const codec::GridPoint& point : points_) {
       arrays_.vertices.push_back({static_cast<double>(point[0] - corner[0]),
                                   static_cast<double>(point[1] - corner[1]),
                                   static_cast<double>(point[2] - corner[2])});
@@ -78,9 +78,10 @@ class Tile {
     arrays_.end_shell();
     const auto solid = Solid::make(std::move(arrays_), Lattice{}, 0, Limits{});
     if (!solid) return {};
-    const auto delaunay = canonical_delaunay(solid->vertices());
+    const auto delaunay = delaunay::canonical_delaunay(solid->vertices());
     if (!delaunay || delaunay->faces.empty()) return {};
-    const auto following = follow_delaunay(*solid, triangulate_facets(*solid), *delaunay);
+    const auto following =
+        delaunay::follow_delaunay(*solid, tessellate::triangulate_facets(*solid), *delaunay);
     Count count;
     count.vertices = static_cast<double>(solid->vertex_count());
     count.facets = static_cast<double>(solid->facet_count());
@@ -91,7 +92,7 @@ class Tile {
   }
 
  private:
-  Index number(const GridPoint& point) {
+  Index number(const codec::GridPoint& point) {
     const auto [place, is_new] = numbers_.emplace(point, static_cast<Index>(points_.size()));
     if (is_new) {
       if (points_.empty()) corner_ = point;
@@ -103,10 +104,10 @@ class Tile {
   }
 
   SolidArrays arrays_;
-  std::map<GridPoint, Index> numbers_;
-  std::vector<GridPoint> points_;
-  std::set<std::set<GridPoint>> known_;
-  GridPoint corner_{};
+  std::map<codec::GridPoint, Index> numbers_;
+  std::vector<codec::GridPoint> points_;
+  std::set<std::set<codec::GridPoint>> known_;
+  codec::GridPoint corner_{};
 };
 
 void print(const std::string& set, const char* how, const Count& count, double solids) {
@@ -125,9 +126,9 @@ int main(int count, char** arguments) {
   }
   const std::size_t most = count > 2 ? static_cast<std::size_t>(std::atoi(arguments[2])) : 400;
   const std::vector<CorpusSolid> corpus = read_corpus(arguments[1]);
-  std::map<std::pair<std::string, PageGrid>, std::vector<IntegerSolid>> sets;
+  std::map<std::pair<std::string, codec::PageGrid>, std::vector<codec::IntegerSolid>> sets;
   for (const CorpusSolid& solid : corpus) {
-    const auto gridded = grid_solid(solid.canonical.boundary.solid());
+    const auto gridded = codec::grid_solid(solid.canonical.boundary.solid());
     if (gridded) sets[{solid.set, gridded->grid}].push_back(gridded->solid);
   }
   std::printf(

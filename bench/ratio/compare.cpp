@@ -58,7 +58,7 @@ std::size_t varint_bytes(std::int64_t value) {
   return writer.size();
 }
 
-std::size_t position_bytes(const GridPoint& origin, const GridPoint& before) {
+std::size_t position_bytes(const codec::GridPoint& origin, const codec::GridPoint& before) {
   std::size_t bytes = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) bytes += varint_bytes(origin[axis] - before[axis]);
   return bytes;
@@ -71,8 +71,9 @@ const Value& require(const Result<Value>& result, const char* what) {
   std::exit(1);
 }
 
-void add_peers(const Solid& solid, const GridPoint& origin, const GridPoint& before, Sums& sums) {
-  const PeerBytes peers = measure_peers(solid, triangulate_facets(solid).triangles);
+void add_peers(const Solid& solid, const codec::GridPoint& origin, const codec::GridPoint& before,
+               Sums& sums) {
+  const PeerBytes peers = measure_peers(solid, tessellate::triangulate_facets(solid).triangles);
   sums.draco_alone += static_cast<double>(peers.draco + position_bytes(origin, {}) + 2);
   sums.draco_paged += static_cast<double>(peers.draco + position_bytes(origin, before));
   sums.meshopt += static_cast<double>(peers.meshopt + position_bytes(origin, {}) + 2);
@@ -81,11 +82,11 @@ void add_peers(const Solid& solid, const GridPoint& origin, const GridPoint& bef
 }
 
 Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
-             const std::vector<PageSolid>& stored) {
+             const std::vector<codec::PageSolid>& stored) {
   Sums sums;
-  PageContents contents;
+  codec::PageContents contents;
   contents.frame = page.frame;
-  GridPoint before{};
+  codec::GridPoint before{};
   std::vector<const OrientedBoundary*> boundaries;
   for (const std::size_t number : page.solids) {
     const Solid& solid = corpus[number].canonical.boundary.solid();
@@ -99,8 +100,8 @@ Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
     sums.all.push_back(&solid);
     const EncodeOptions options{.keep_order = false};
     const double start = now();
-    const auto blob =
-        encode_boundary(corpus[number].canonical.boundary, corpus[number].acceptance, options);
+    const auto blob = codec::encode_boundary(corpus[number].canonical.boundary,
+                                             corpus[number].acceptance, options);
     const double middle = now();
     const auto again = decode(require(blob, "encode"));
     sums.encode_seconds += middle - start;
@@ -109,11 +110,11 @@ Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
     sums.alone += static_cast<double>(blob->size());
     add_peers(solid, stored[number].gridded.origin, before, sums);
     before = stored[number].gridded.origin;
-    contents.solids.push_back(page_solid(corpus[number].canonical.boundary, options));
+    contents.solids.push_back(codec::page_solid(corpus[number].canonical.boundary, options));
   }
   if (contents.solids.empty()) return sums;
-  const auto bytes = write_page_bytes(contents, PageKind::page, nullptr);
-  const auto decoded = decode_page(require(bytes, "encode page"));
+  const auto bytes = codec::write_page_bytes(contents, codec::PageKind::page, nullptr);
+  const auto decoded = codec::decode_page(require(bytes, "encode page"));
   for (std::size_t i = 0; i < sums.all.size(); ++i) {
     if (require(decoded, "decode page")[i].solid != *sums.all[i]) std::abort();
   }
@@ -179,9 +180,9 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::vector<CorpusSolid> corpus = read_corpus(options.corpus);
-  std::vector<PageSolid> stored;
+  std::vector<codec::PageSolid> stored;
   for (const CorpusSolid& solid : corpus) {
-    stored.push_back(page_solid(solid.source, EncodeOptions{.keep_order = false}));
+    stored.push_back(codec::page_solid(solid.source, EncodeOptions{.keep_order = false}));
   }
   std::map<std::string, Sums> sets;
   std::size_t wide = 0;

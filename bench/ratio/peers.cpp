@@ -39,7 +39,7 @@ std::string join(const std::vector<std::string>& items) {
   return text + "]";
 }
 
-std::string point_text(const GridPoint& c) {
+std::string point_text(const codec::GridPoint& c) {
   return join({std::to_string(c[0]), std::to_string(c[1]), std::to_string(c[2])});
 }
 
@@ -128,7 +128,7 @@ std::size_t draco_size(const Solid& solid, std::span<const Triangle> triangles) 
 
 PeerBytes measure_peers(const Solid& solid, std::span<const Triangle> triangles) {
   PeerBytes bytes;
-  const Bytes wkb = write_ewkb(solid);
+  const Bytes wkb = formats::write_ewkb(solid);
   bytes.wkb = wkb.size();
   bytes.wkb_zstd = zstd_size(wkb);
   bytes.city_json_zstd = zstd_size(as_bytes(city_json(solid)));
@@ -138,23 +138,23 @@ PeerBytes measure_peers(const Solid& solid, std::span<const Triangle> triangles)
 }
 
 std::size_t whole_city_json_zstd(std::span<const Solid* const> solids) {
-  std::vector<GriddedSolid> gridded;
-  GridPoint corner{INT64_MAX, INT64_MAX, INT64_MAX};
+  std::vector<codec::GriddedSolid> gridded;
+  codec::GridPoint corner{INT64_MAX, INT64_MAX, INT64_MAX};
   for (const Solid* solid : solids) {
-    auto on_grid = grid_solid(*solid);
+    auto on_grid = codec::grid_solid(*solid);
     if (!on_grid) continue;
-    for (const GridPoint& vertex : on_grid->solid.vertices) {
+    for (const codec::GridPoint& vertex : on_grid->solid.vertices) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         corner[axis] = std::min(corner[axis], vertex[axis]);
       }
     }
     gridded.push_back(std::move(*on_grid));
   }
-  std::map<GridPoint, std::size_t> numbers;
+  std::map<codec::GridPoint, std::size_t> numbers;
   std::vector<std::string> vertices;
   std::string objects;
   for (std::size_t i = 0; i < gridded.size(); ++i) {
-    for (const GridPoint& vertex : gridded[i].solid.vertices) {
+    for (const codec::GridPoint& vertex : gridded[i].solid.vertices) {
       if (!numbers.emplace(vertex, numbers.size()).second) continue;
       vertices.push_back(
           point_text({vertex[0] - corner[0], vertex[1] - corner[1], vertex[2] - corner[2]}));

@@ -41,18 +41,20 @@ struct FileSums {
   std::uint64_t wkb = 0, wkb_zstd = 0, city_json_zstd = 0, draco = 0, without_draco = 0;
 };
 
-std::optional<Certificate> engine_certificate(const Solid& solid, const FacetTriangles& facets,
-                                              EngineWorkers& workers, bool is_triangulated) {
-  LadderOptions options;
-  options.first_rung =
-      is_triangulated ? Rung::tetgen : Rung::patch;  // TetGen made the paper's numbers
-  options.last_rung = is_triangulated ? Rung::tetgen : Rung::patch_scaled;
-  return climb_ladder(solid, facets, &workers, options).certificate;
+std::optional<delaunay::Certificate> engine_certificate(const Solid& solid,
+                                                        const tessellate::FacetTriangles& facets,
+                                                        delaunay::EngineWorkers& workers,
+                                                        bool is_triangulated) {
+  delaunay::LadderOptions options;
+  options.first_rung = is_triangulated ? delaunay::Rung::tetgen
+                                       : delaunay::Rung::patch;  // TetGen made the paper's numbers
+  options.last_rung = is_triangulated ? delaunay::Rung::tetgen : delaunay::Rung::patch_scaled;
+  return delaunay::climb_ladder(solid, facets, &workers, options).certificate;
 }
 
 /// All settings or none, so that every row counts the same solids.
-bool add_accounting(const Solid& solid, EngineWorkers& workers, FileSums& sums) {
-  const FacetTriangles facets = triangulate_facets(solid);
+bool add_accounting(const Solid& solid, delaunay::EngineWorkers& workers, FileSums& sums) {
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   const auto polygon = engine_certificate(solid, facets, workers, false);
   const auto triangulated = engine_certificate(solid, facets, workers, true);
   if (!polygon || !triangulated) return false;
@@ -77,7 +79,7 @@ std::size_t blob_size(const ValidSolid& solid, Mode mode, bool keep_order) {
   return blob ? blob->size() : 0;
 }
 
-void add_solid(const SubmittedSolid& submitted, EngineWorkers& workers, FileSums& sums) {
+void add_solid(const SubmittedSolid& submitted, delaunay::EngineWorkers& workers, FileSums& sums) {
   const Inspection inspection = certify(submitted.solid, &workers);
   if (!inspection.certified || submitted.solid.lattice().kind == LatticeKind::float64) return;
   const ValidSolid& valid = inspection.certified->solid;
@@ -91,7 +93,8 @@ void add_solid(const SubmittedSolid& submitted, EngineWorkers& workers, FileSums
   sums.bitmap += blob_size(valid, Mode::bitmap, false);
   sums.automatic += blob_size(valid, Mode::automatic, false);
   sums.with_order += blob_size(valid, Mode::automatic, true);
-  const PeerBytes peers = measure_peers(valid.solid(), triangulate_facets(valid.solid()).triangles);
+  const PeerBytes peers =
+      measure_peers(valid.solid(), tessellate::triangulate_facets(valid.solid()).triangles);
   sums.wkb += peers.wkb;
   sums.wkb_zstd += peers.wkb_zstd;
   sums.city_json_zstd += peers.city_json_zstd;
@@ -145,17 +148,17 @@ void print_tables(const std::string& name, const FileSums& sums) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   for (int i = 1; i < argc; ++i) {
     std::ifstream stream(argv[i], std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string name = std::filesystem::path(argv[i]).filename().string();
-    const auto format = detect_format(name, as_bytes(text));
+    const auto format = formats::detect_format(name, as_bytes(text));
     if (!format) {
       std::fprintf(stderr, "%s: %s\n", argv[i], to_string(format.error()).c_str());
       return 2;
     }
-    const auto document = read_document(as_bytes(text), *format);
+    const auto document = formats::read_document(as_bytes(text), *format);
     if (!document) {
       std::fprintf(stderr, "%s: %s\n", argv[i], to_string(document.error()).c_str());
       return 2;

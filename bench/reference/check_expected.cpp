@@ -104,10 +104,10 @@ Result<Document> read_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return Error{ErrorCode::not_found, "cannot be opened"};
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto format = detect_format(path.filename().string(), as_bytes(text));
+  const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
   if (!format) return format.error();
-  ReadOptions options;
-  return read_document(as_bytes(text), *format, options);
+  formats::ReadOptions options;
+  return formats::read_document(as_bytes(text), *format, options);
 }
 
 /// val3dity's suite gives these files together with a second cavity, a file that the data set lacks
@@ -129,7 +129,7 @@ Result<Document> read_row(const std::filesystem::path& file,
     if (!twin) return twin.error();
     interior.push_back(twin->features.at(0).solids.at(0));
   }
-  auto solid = with_interior_shells(outside->features.at(0).solids.at(0), interior);
+  auto solid = formats::with_interior_shells(outside->features.at(0).solids.at(0), interior);
   if (!solid) return solid.error();
   outside->features[0].solids[0] = std::move(*solid);
   return outside;
@@ -141,7 +141,7 @@ struct Outcome {
 };
 
 Outcome outcome_of(const std::filesystem::path& file, const std::filesystem::path& exterior,
-                   EngineWorkers* workers) {
+                   delaunay::EngineWorkers* workers) {
   Outcome outcome;
   auto document = read_row(file, exterior);
   if (!document) {
@@ -160,13 +160,15 @@ Outcome outcome_of(const std::filesystem::path& file, const std::filesystem::pat
   if (!document->templates.empty()) {
     Feature feature;
     feature.solids = document->templates;
-    const InspectedFeature inspected = inspect(std::move(feature), workers, options);
-    for (const InspectedSolid& solid : inspected.solids) add(solid.inspection.report);
+    const pipeline::InspectedFeature inspected =
+        pipeline::inspect(std::move(feature), workers, options);
+    for (const pipeline::InspectedSolid& solid : inspected.solids) add(solid.inspection.report);
   }
   for (Feature& feature : document->features) {
-    const InspectedFeature inspected = inspect(std::move(feature), workers, options);
-    for (const InspectedSolid& solid : inspected.solids) add(solid.inspection.report);
-    for (const InspectedGroup& group : inspected.groups) {
+    const pipeline::InspectedFeature inspected =
+        pipeline::inspect(std::move(feature), workers, options);
+    for (const pipeline::InspectedSolid& solid : inspected.solids) add(solid.inspection.report);
+    for (const pipeline::InspectedGroup& group : inspected.groups) {
       for (const Finding& finding : group.report.findings) {
         outcome.exact.insert(finding.code);
         outcome.tolerant.insert(finding.code);
@@ -208,7 +210,7 @@ int main(int count, char** arguments) {
   const bool has_list = words.size() > 1 && words[1] != "--all";
   const std::vector<Row> rows =
       read_rows(has_list ? std::filesystem::path(words[1]) : folder / "expected.csv");
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   std::size_t compared = 0, different = 0, left_out = 0;
   for (const Row& row : rows) {
     if (row.file.find("indoorgml") != std::string::npos) {

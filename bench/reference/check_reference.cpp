@@ -100,16 +100,16 @@ void check_solid(const SolidKey& key, const ValidSolid& solid, Totals& totals) {
       continue;
     }
     ++totals.failures;
-    std::printf("FAIL %s mode %s: %s\n", key.c_str(), std::string(to_string(mode)).c_str(),
+    std::printf("FAIL %s mode %s: %s\n", key.c_str(), std::string(codec::to_string(mode)).c_str(),
                 decoded ? "another solid came back" : to_string(decoded.error()).c_str());
   }
 }
 
 /// Document -> blobs -> (store, a collection per file) -> document; empty on success, else what
 /// differs.
-std::string round_trip(const std::string& file, const InspectedFeature& feature,
+std::string round_trip(const std::string& file, const pipeline::InspectedFeature& feature,
                        const Document& document, SolidStore* store) {
-  auto stored = to_stored(feature, document, file);
+  auto stored = pipeline::to_stored(feature, document, file);
   if (!stored) return "encode: " + to_string(stored.error());
   StoredFeature returned = *stored;
   if (store != nullptr) {
@@ -118,25 +118,26 @@ std::string round_trip(const std::string& file, const InspectedFeature& feature,
     if (!got) return "get: " + to_string(got.error());
     returned = *got;
   }
-  const auto decoded = from_stored(returned);
+  const auto decoded = pipeline::from_stored(returned);
   if (!decoded) return "decode: " + to_string(decoded.error());
   if (decoded->features.size() != 1) return "decode returned no feature";
-  const auto before = write_feature(document, feature.feature);
-  const auto after = write_feature(*decoded, decoded->features[0]);
+  const auto before = formats::write_feature(document, feature.feature);
+  const auto after = formats::write_feature(*decoded, decoded->features[0]);
   if (!before || !after) return "cannot write the feature";
   return *before == *after ? "" : "the document differs";
 }
 
 struct Path {
-  EngineWorkers* workers;
+  delaunay::EngineWorkers* workers;
   SolidStore* store;
   CertifyOptions certify;
 };
 
 void check_feature(const std::string& file, Feature input, const Document& document,
                    const Reference& reference, const Path& path, Totals& totals) {
-  const InspectedFeature feature = inspect(std::move(input), path.workers, path.certify);
-  for (const InspectedSolid& solid : feature.solids) {
+  const pipeline::InspectedFeature feature =
+      pipeline::inspect(std::move(input), path.workers, path.certify);
+  for (const pipeline::InspectedSolid& solid : feature.solids) {
     const SolidKey key = file + "," + solid.source.object_id + "," +
                          std::to_string(solid.source.geometry) + "," +
                          std::to_string(solid.source.ordinal);
@@ -147,7 +148,7 @@ void check_feature(const std::string& file, Feature input, const Document& docum
     totals.clean += is_clean ? 1U : 0U;
     if (solid.inspection.certified) {
       ++totals.valid;
-      ++totals.rungs[std::string(to_string(report.rung))];
+      ++totals.rungs[std::string(delaunay::to_string(report.rung))];
       check_solid(key, solid.inspection.certified->solid, totals);
       continue;
     }
@@ -157,7 +158,7 @@ void check_feature(const std::string& file, Feature input, const Document& docum
     } else if (is_clean) {
       ++totals.failures;
       std::printf("FAIL %s is clean by the oracle and %s here\n", key.c_str(),
-                  std::string(to_string(report.verdict)).c_str());
+                  std::string(validate::to_string(report.verdict)).c_str());
     }
   }
   if (feature.verdict() != Verdict::valid || feature.solids.empty()) return;
@@ -192,9 +193,9 @@ std::optional<Totals> check_file(const std::filesystem::path& path_to_file,
   const std::string file = path_to_file.filename().string();
   std::ifstream stream(path_to_file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto format = detect_format(file, as_bytes(text));
+  const auto format = formats::detect_format(file, as_bytes(text));
   auto document =
-      format ? read_document(as_bytes(text), *format) : Result<Document>(format.error());
+      format ? formats::read_document(as_bytes(text), *format) : Result<Document>(format.error());
   if (!document) {
     std::fprintf(stderr, "%s: %s\n", file.c_str(), to_string(document.error()).c_str());
     return std::nullopt;
@@ -222,14 +223,14 @@ int main(int argc, char** argv) {
   const Reference reference = read_reference(argv[1]);
   std::unique_ptr<SolidStore> store;
   if (options.count("--database") != 0) {
-    auto opened = open_postgres_store(options["--database"]);
+    auto opened = store::open_postgres_store(options["--database"]);
     if (!opened) {
       std::fprintf(stderr, "%s\n", to_string(opened.error()).c_str());
       return 2;
     }
     store = std::move(*opened);
   }
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   Path path{&workers, store.get(), {}};
   if (options["--planarity"] == "off") {
     path.certify.tolerances.planarity_metres = 1e9;

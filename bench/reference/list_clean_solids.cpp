@@ -64,11 +64,11 @@ std::size_t count_equal_triangles(std::vector<Triangle> triangles) {
 }
 
 void list_solid(const std::string& file, const SubmittedSolid& submitted) {
-  const Solid solid = merge_equal_vertices(submitted.solid).solid;
-  const FacetTriangles facets = triangulate_facets(solid);
-  const auto untriangulated = static_cast<std::size_t>(
-      std::count_if(facets.state.begin(), facets.state.end(),
-                    [](FacetState state) { return state != FacetState::triangulated; }));
+  const Solid solid = geometry::merge_equal_vertices(submitted.solid).solid;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
+  const auto untriangulated = static_cast<std::size_t>(std::count_if(
+      facets.state.begin(), facets.state.end(),
+      [](tessellate::FacetState state) { return state != tessellate::FacetState::triangulated; }));
   const EdgeCount edges = count_edges(solid);
   const std::size_t pairs = count_pmp_intersections(solid.vertices(), facets.triangles) +
                             count_equal_triangles(facets.triangles);
@@ -90,12 +90,12 @@ int main(int argc, char** argv) {
     std::ifstream stream(argv[i], std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string name = std::filesystem::path(argv[i]).filename().string();
-    const auto format = detect_format(name, as_bytes(text));
+    const auto format = formats::detect_format(name, as_bytes(text));
     if (!format) {
       std::fprintf(stderr, "%s: %s\n", argv[i], to_string(format.error()).c_str());
       return 2;
     }
-    const auto document = read_document(as_bytes(text), *format);
+    const auto document = formats::read_document(as_bytes(text), *format);
     if (!document) {
       std::fprintf(stderr, "%s: %s\n", argv[i], to_string(document.error()).c_str());
       return 2;

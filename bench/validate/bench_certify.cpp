@@ -60,7 +60,7 @@ class Builder {
   }
   Solid solid(double step_metres) {
     Lattice lattice;
-    lattice.step.fill(shortest_decimal(step_metres));
+    lattice.step.fill(geometry::shortest_decimal(step_metres));
     Limits limits;
     limits.vertices = limits.facets = limits.rings = limits.shells = 100'000'000;
     auto made = Solid::make(std::move(arrays_), lattice, 0, limits);
@@ -256,30 +256,32 @@ class Stopwatch {
 
 void measure_case(const std::string& name, std::size_t facets) {
   const Solid solid = make(name, facets);
-  const CancelPoll never = {};
+  const workers::CancelPoll never = {};
   Stopwatch watch;
-  ExaminedSolid examined(solid, Tolerances{}, Limits{});
+  validate::ExaminedSolid examined(solid, Tolerances{}, Limits{});
   std::printf("%-9s %8u %8.3f", name.c_str(), solid.facet_count(), watch.lap());
   const auto lap = [&] { std::printf(" %8.3f", watch.lap()); };
-  check_rings(examined);
+  validate::check_rings(examined);
   lap();
-  check_facets(examined);
+  validate::check_facets(examined);
   lap();
-  const auto shells = check_shells(examined);
+  const auto shells = validate::check_shells(examined);
   lap();
-  const auto duplicates = check_duplicate_shells(examined);
-  const ShellContacts contacts = check_intersections(examined, duplicates, never, 1);
+  const auto duplicates = validate::check_duplicate_shells(examined);
+  const validate::ShellContacts contacts =
+      validate::check_intersections(examined, duplicates, never, 1);
   lap();
-  check_diagonals(examined, contacts);
+  validate::check_diagonals(examined, contacts);
   lap();
-  check_solid(examined, shells, duplicates, contacts);
+  validate::check_solid(examined, shells, duplicates, contacts);
   lap();
-  check_vertices(examined, {});
+  validate::check_vertices(examined, {});
   lap();
   CertifyOptions options;
   options.proof = Proof::boundary;
   const Report report = certify(solid, nullptr, options).report;
-  std::printf(" %8.3f %s %zu\n", watch.lap(), std::string(to_string(report.verdict)).c_str(),
+  std::printf(" %8.3f %s %zu\n", watch.lap(),
+              std::string(validate::to_string(report.verdict)).c_str(),
               report.findings.size() + report.findings_omitted);
   std::fflush(stdout);
 }

@@ -24,7 +24,7 @@ using solids::Shell;
 
 struct Sample {
   std::vector<Solid> members;  // one solid, or a group on one lattice
-  std::optional<GroupKind> group;
+  std::optional<validate::GroupKind> group;
   std::string document;        // CityJSON; then there are no members
   std::optional<Truth> truth;  // by construction; else the oracle tells
   /// Sizes beyond 1e-140 to 1e150 m, where engines may give up.

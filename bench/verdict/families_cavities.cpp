@@ -185,7 +185,8 @@ Sample make_group(Random& random) {
   for (const Shape& shape : {first, second}) {
     sample.members.push_back(placed(doubled(shape, 2), map, -3, random));
   }
-  sample.group = one_in(random, 2) ? GroupKind::composite_solid : GroupKind::building_parts;
+  sample.group = one_in(random, 2) ? validate::GroupKind::composite_solid
+                                   : validate::GroupKind::building_parts;
   return sample;
 }
 

@@ -63,7 +63,7 @@ Shape touching_shells(Random& random) {
   return one_in(random, 2) ? room_and_tetrahedra(random) : pit_and_cavity(random);
 }
 
-Solid solid_of_world(const Solid& solid, const LatticePoints& points) {
+Solid solid_of_world(const Solid& solid, const geometry::LatticePoints& points) {
   SolidArrays arrays = solid.arrays();
   arrays.vertices = points.points;
   return solids::solid_of(std::move(arrays), points.lattice);
@@ -82,11 +82,11 @@ Solid scaled_decimals(const Solid& solid, int exponent) {
     const auto number = [&](double value) {
       char text[64];
       std::snprintf(text, sizeof text, "%.0fe%d", value, exponent);
-      return parse_decimal(text).value();
+      return geometry::parse_decimal(text).value();
     };
     places.push_back({number(p.x), number(p.y), number(p.z)});
   }
-  return solid_of_world(solid, lattice_of_decimals(places).value());
+  return solid_of_world(solid, geometry::lattice_of_decimals(places).value());
 }
 
 /// Coordinates times powers of two, one for each axis, on whatever lattice the doubles get. That
@@ -103,7 +103,7 @@ Sample scaled(const Solid& solid, Random& random) {
     places.push_back(
         {std::ldexp(p.x, exponent[0]), std::ldexp(p.y, exponent[1]), std::ldexp(p.z, exponent[2])});
   }
-  Sample sample = sample_of(solid_of_world(solid, lattice_of_doubles(places).value()));
+  Sample sample = sample_of(solid_of_world(solid, geometry::lattice_of_doubles(places).value()));
   if (common > -10 && !is_planar(sample.members.front())) {
     sample.members.front() = scaled_decimals(solid, common * 3 / 10);
   }

@@ -15,21 +15,21 @@ struct Variant {
   const char* name;
   Rewriting rewriting = Rewriting::none;
   Proof proof = Proof::tetrahedralization;
-  Engine engine = Engine::automatic;
+  delaunay::Engine engine = delaunay::Engine::automatic;
   bool is_strict = false;
 };
 
 constexpr Variant kDefault{"default"};
-constexpr std::array kVariants{
-    Variant{"mirrored in x", Rewriting::mirrored_x},
-    Variant{"mirrored in y", Rewriting::mirrored_y},
-    Variant{"mirrored in z", Rewriting::mirrored_z},
-    Variant{"renumbered", Rewriting::renumbered},
-    Variant{"boundary", Rewriting::none, Proof::boundary},
-    Variant{"strict", Rewriting::none, Proof::tetrahedralization, Engine::automatic, true}};
+constexpr std::array kVariants{Variant{"mirrored in x", Rewriting::mirrored_x},
+                               Variant{"mirrored in y", Rewriting::mirrored_y},
+                               Variant{"mirrored in z", Rewriting::mirrored_z},
+                               Variant{"renumbered", Rewriting::renumbered},
+                               Variant{"boundary", Rewriting::none, Proof::boundary},
+                               Variant{"strict", Rewriting::none, Proof::tetrahedralization,
+                                       delaunay::Engine::automatic, true}};
 constexpr std::array kEngines{
-    Variant{"cgal", Rewriting::none, Proof::tetrahedralization, Engine::cgal},
-    Variant{"tetgen", Rewriting::none, Proof::tetrahedralization, Engine::tetgen}};
+    Variant{"cgal", Rewriting::none, Proof::tetrahedralization, delaunay::Engine::cgal},
+    Variant{"tetgen", Rewriting::none, Proof::tetrahedralization, delaunay::Engine::tetgen}};
 
 Solid mirrored(const Solid& solid, int axis) {
   SolidArrays arrays = solid.arrays();
@@ -59,7 +59,7 @@ Sample rewritten(const Sample& sample, Rewriting rewriting, std::uint64_t seed) 
 Truth group_truth(const Sample& sample) {
   Truth truth;
   const PairTruth pair = pair_truth_of(sample.members[0], sample.members[1]);
-  if (*sample.group == GroupKind::building_parts) {
+  if (*sample.group == validate::GroupKind::building_parts) {
     if (pair.overlap) truth.codes = {601};
   } else if (pair.are_equal) {
     truth.codes = {502};
@@ -105,30 +105,30 @@ void add_codes(const std::vector<Finding>& findings, std::set<int>& codes) {
   }
 }
 
-Said ask_document(const Sample& sample, const Variant& variant, EngineWorkers* workers) {
+Said ask_document(const Sample& sample, const Variant& variant, delaunay::EngineWorkers* workers) {
   std::size_t used = 0;
-  const ByteSource source = [&](std::span<std::uint8_t> bytes) -> Result<std::size_t> {
+  const formats::ByteSource source = [&](std::span<std::uint8_t> bytes) -> Result<std::size_t> {
     const std::size_t count = std::min(bytes.size(), sample.document.size() - used);
     std::memcpy(bytes.data(), sample.document.data() + used, count);
     used += count;
     return count;
   };
   Said said;
-  auto reader = FeatureReader::open(source, "sample.city.json");
+  auto reader = formats::FeatureReader::open(source, "sample.city.json");
   if (!reader) {
     said.reason = to_string(reader.error());
     return said;
   }
-  StreamOptions options;
+  pipeline::StreamOptions options;
   options.certify = certify_options(variant);
-  const auto outcome = validate_stream(
+  const auto outcome = pipeline::validate_stream(
       *reader, workers, options,
-      [&](ValidatedFeature&& feature) -> Status {
-        for (const InspectedSolid& solid : feature.inspected.solids) {
+      [&](pipeline::ValidatedFeature&& feature) -> Status {
+        for (const pipeline::InspectedSolid& solid : feature.inspected.solids) {
           add_codes(solid.inspection.report.findings, said.codes);
           said.reason += solid.inspection.report.undecided_reason;
         }
-        for (const InspectedGroup& group : feature.inspected.groups) {
+        for (const pipeline::InspectedGroup& group : feature.inspected.groups) {
           add_codes(group.report.findings, said.codes);
         }
         return Done{};
@@ -141,7 +141,7 @@ Said ask_document(const Sample& sample, const Variant& variant, EngineWorkers* w
   return said;
 }
 
-Said ask(const Sample& sample, const Variant& variant, EngineWorkers* workers) {
+Said ask(const Sample& sample, const Variant& variant, delaunay::EngineWorkers* workers) {
   if (!sample.document.empty()) return ask_document(sample, variant, workers);
   Said said;
   said.verdict = Verdict::valid;
@@ -151,14 +151,14 @@ Said ask(const Sample& sample, const Variant& variant, EngineWorkers* workers) {
     const Report& report = inspections.back().report;
     add_codes(report.findings, said.codes);
     said.reason += report.undecided_reason;
-    said.verdict = worse(said.verdict, report.verdict);
+    said.verdict = pipeline::worse(said.verdict, report.verdict);
   }
   if (!sample.group || said.verdict != Verdict::valid) return said;
-  std::vector<GroupMember> members;
+  std::vector<validate::GroupMember> members;
   for (const Inspection& inspection : inspections) {
     members.push_back({&inspection.certified->solid});
   }
-  const GroupReport report = check_group(members, *sample.group);
+  const validate::GroupReport report = validate::check_group(members, *sample.group);
   said.verdict = report.verdict;
   add_codes(report.findings, said.codes);
   return said;
@@ -180,7 +180,8 @@ Outcome outcome_of(const Truth& truth, const Said& said, bool may_be_undecided) 
 
 /// Asks in one variant. `base` is the truth about the sample as it is.
 void add_judgement(const Sample& sample, const Truth& base, const Variant& variant,
-                   std::uint64_t seed, EngineWorkers* workers, std::vector<Judgement>& judgements) {
+                   std::uint64_t seed, delaunay::EngineWorkers* workers,
+                   std::vector<Judgement>& judgements) {
   Judgement judgement{variant.name, Outcome::right, base, {}, {}};
   Sample asked = rewritten(sample, variant.rewriting, seed);
   if (variant.rewriting != Rewriting::none && !base.is_planar) judgement.truth = truth_about(asked);
@@ -206,7 +207,7 @@ const char* to_string(Outcome outcome) {
 }
 
 std::string to_string(const Said& said) {
-  std::string text(watertight::to_string(said.verdict));
+  std::string text(watertight::validate::to_string(said.verdict));
   for (const int code : said.codes) text += ' ' + std::to_string(code);
   if (!said.reason.empty()) text += " (" + said.reason.substr(0, 120) + ')';
   std::replace(text.begin(), text.end(), '\n', ' ');

@@ -45,9 +45,9 @@ struct Judgement {
 };
 
 struct JudgeOptions {
-  EngineWorkers* workers = nullptr;  // null: no engines
-  bool with_variants = false;        // mirrored, renumbered, strict, by exact tests alone
-  bool with_engines = false;         // by each engine alone
+  delaunay::EngineWorkers* workers = nullptr;  // null: no engines
+  bool with_variants = false;                  // mirrored, renumbered, strict, by exact tests alone
+  bool with_engines = false;                   // by each engine alone
 };
 
 /// All questions about a sample. `seed` chooses the numbering. Thread-safe.

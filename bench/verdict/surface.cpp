@@ -165,10 +165,10 @@ std::vector<ExactRing> rings_of(const Solid& solid, Index facet) {
 }  // namespace
 
 SurfaceModel model_of(const Solid& submitted) {
-  const Solid solid = merge_equal_vertices(submitted).solid;
+  const Solid solid = geometry::merge_equal_vertices(submitted).solid;
   SurfaceModel model;
   model.shell_count = solid.shell_count();
-  std::optional<FacetTriangles> triangles;
+  std::optional<tessellate::FacetTriangles> triangles;
   for (Index f = 0; f < solid.facet_count(); ++f) {
     FacetModel& facet = model.facets.emplace_back();
     facet.shell = solid.shell_of(f);
@@ -186,8 +186,8 @@ SurfaceModel model_of(const Solid& submitted) {
       if (!is_zero(normal)) check_rings(facet, normal, model.ring_codes);
       continue;
     }
-    if (!triangles) triangles = triangulate_facets(solid);
-    model.is_known = model.is_known && triangles->state[f] == FacetState::triangulated;
+    if (!triangles) triangles = tessellate::triangulate_facets(solid);
+    model.is_known = model.is_known && triangles->state[f] == tessellate::FacetState::triangulated;
     for (Index t = triangles->first[f]; t < triangles->first[f + 1]; ++t) {
       ExactRing& corners = facet.pieces.emplace_back(1).front();
       for (const Index vertex : triangles->triangles[t]) {

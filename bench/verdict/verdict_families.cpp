@@ -115,7 +115,7 @@ void add(const Arguments& arguments, const Family& family, std::uint64_t seed,
   }
 }
 
-Totals run(const Arguments& arguments, const Family& family, EngineWorkers& workers) {
+Totals run(const Arguments& arguments, const Family& family, delaunay::EngineWorkers& workers) {
   Totals totals;
   std::mutex mutex;
   std::atomic<std::uint64_t> next{arguments.first};
@@ -167,7 +167,7 @@ void include(Totals& sum, const Totals& part) {
 int main(int argc, char** argv) {
   const Arguments arguments = arguments_of(argc, argv);
   if (!arguments.keep.empty()) std::filesystem::create_directories(arguments.keep);
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   Totals sum;
   const auto seconds_since = [](std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

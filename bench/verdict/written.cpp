@@ -61,7 +61,7 @@ std::string group_text(const Sample& sample) {
   const std::string first = boundaries_text(sample.members[0]);
   const std::string second = boundaries_text(all);
   std::string objects;
-  if (*sample.group == GroupKind::composite_solid) {
+  if (*sample.group == validate::GroupKind::composite_solid) {
     objects = "\"a\": {\"type\": \"Building\", " +
               geometry("CompositeSolid",
                        std::string("[").append(first).append(", ").append(second).append("]")) +

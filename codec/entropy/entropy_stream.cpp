@@ -9,7 +9,7 @@
 
 #include "base/assert.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 constexpr std::uint32_t kHalf = 32768;
@@ -149,4 +149,4 @@ bool EntropyStream::is_finished() const {
   return std::equal(rest.begin(), rest.end(), tail.bytes.begin(), tail.bytes.begin() + tail.size);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -12,7 +12,7 @@
 
 #include "base/bytes.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// What decisions are about, for reports on sizes.
 enum class StreamPart : std::uint8_t { frame, position, connectivity, facets, coordinates, order };
@@ -74,4 +74,4 @@ class EntropyStream {
   std::size_t part_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec

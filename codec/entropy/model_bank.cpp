@@ -6,7 +6,7 @@
 
 #include "base/assert.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 // The logistic domain: x stands for ln(p / (1 - p)) = x / 256, from -2047 to 2047.
@@ -351,4 +351,4 @@ bool ModelBank::load(ByteView state) {
   return true;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -17,7 +17,7 @@
 #include "base/bytes.h"
 #include "codec/entropy/entropy_stream.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// At most this many contexts of a decision are mixed.
 inline constexpr std::size_t kMaxInputs = 24;
@@ -143,4 +143,4 @@ class BankTrial {
   std::size_t begin_;                // of few: in the changes
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -12,7 +12,7 @@
 
 #include "base/assert.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 namespace {
 
 constexpr std::uint32_t kHalf = 32768;
@@ -218,4 +218,4 @@ bool BitDecoder::is_finished() const {
   return is_last && (bytes_[position_] >> bit_position_) == 0;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

@@ -10,7 +10,7 @@
 
 #include "base/bytes.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 
 enum class BitCoding : std::uint8_t { plain = 0, arithmetic = 1 };
 
@@ -84,4 +84,4 @@ class BitDecoder {
   bool failed_ = false;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

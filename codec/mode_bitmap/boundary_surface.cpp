@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 namespace {
 
 struct EdgeUse {
@@ -261,4 +261,4 @@ SolidArrays BoundarySurface::assemble(const std::vector<std::vector<VertexRing>>
   return arrays;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 
 /// An edge at which exactly two triangles meet. Edges with more (touching shells) join nothing.
 struct Joint {
@@ -80,4 +80,4 @@ class BoundarySurface {
   std::vector<Triangle> turned_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

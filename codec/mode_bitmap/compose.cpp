@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <iterator>
 
-#include "codec/page/coordinates.h"
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/mode_bitmap/face_marks.h"
-#include "codec/page/facet_listing.h"
 #include "codec/mode_bitmap/facet_structure.h"
+#include "codec/page/coordinates.h"
+#include "codec/page/facet_listing.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 
 Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits) {
   auto vertices = read_vertices(sections.vertices, limits);
@@ -31,11 +31,12 @@ Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits) {
   return nodes;
 }
 
-Result<CanonicalDelaunay> create_delaunay(const Nodes& nodes) {
+Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes) {
   if (!has_storable_delaunay(nodes.points)) {
     return Error{ErrorCode::malformed, "coordinates outside the range of mode bitmap"};
   }
-  auto delaunay = canonical_delaunay(nodes.points, storable_tetrahedra(nodes.points.size()));
+  auto delaunay =
+      delaunay::canonical_delaunay(nodes.points, storable_tetrahedra(nodes.points.size()));
   if (!delaunay) return Error{ErrorCode::malformed, delaunay.error().message};
   if (delaunay->tetrahedra.empty()) {
     return Error{ErrorCode::malformed, "the vertices of a bitmap blob span no volume"};
@@ -44,11 +45,11 @@ Result<CanonicalDelaunay> create_delaunay(const Nodes& nodes) {
 }
 
 Result<std::vector<bool>> read_bitmap(const BitmapSections& sections,
-                                      const CanonicalDelaunay& delaunay) {
+                                      const delaunay::CanonicalDelaunay& delaunay) {
   return read_marks(sections.bitmap, sections.bitmap_coding, delaunay);
 }
 
-std::vector<Triangle> create_surface(const CanonicalDelaunay& delaunay,
+std::vector<Triangle> create_surface(const delaunay::CanonicalDelaunay& delaunay,
                                      const std::vector<bool>& marks) {
   std::vector<Triangle> surface;
   for (std::size_t i = 0; i < marks.size(); ++i) {
@@ -108,4 +109,4 @@ Result<Composition> compose(const BitmapSections& sections, const Limits& limits
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

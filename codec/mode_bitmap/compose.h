@@ -13,7 +13,7 @@
 #include "delaunay/canonical_delaunay.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 
 /// The sections of a bitmap blob; views into it.
 struct BitmapSections {
@@ -46,15 +46,15 @@ Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits);
 
 /// 2. Create the Delaunay tetrahedralization of the nodes.
 /// Errors: malformed where an encoder would not have chosen mode bitmap.
-Result<CanonicalDelaunay> create_delaunay(const Nodes& nodes);
+Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes);
 
 /// 3. Read the bitmap. Errors: malformed.
 Result<std::vector<bool>> read_bitmap(const BitmapSections& sections,
-                                      const CanonicalDelaunay& delaunay);
+                                      const delaunay::CanonicalDelaunay& delaunay);
 
 /// 4. Order the Delaunay faces (they come ordered) and set each according to the bitmap.
 /// 5. Create the polygonal surface out of the marked Delaunay faces: the marked ones, sorted.
-std::vector<Triangle> create_surface(const CanonicalDelaunay& delaunay,
+std::vector<Triangle> create_surface(const delaunay::CanonicalDelaunay& delaunay,
                                      const std::vector<bool>& marks);
 
 /// 6. Read the unrecovered faces. Errors: malformed.
@@ -71,4 +71,4 @@ Result<SolidArrays> complete_boundary(const BitmapSections& sections, const Node
 /// All steps. Errors: malformed; limit_exceeded.
 Result<Composition> compose(const BitmapSections& sections, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

@@ -11,12 +11,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "codec/page/coordinates.h"
 #include "codec/mode_bitmap/face_marks.h"
+#include "codec/page/coordinates.h"
 #include "delaunay/follow_delaunay.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 namespace {
 
 // An insphere determinant is of degree 5: inside these bounds no product leaves the exponent range.
@@ -31,7 +31,8 @@ Triangle sorted(Triangle t) {
 }
 
 /// Triangles of all facets: the following ones, or the canonical ones where told.
-void collect_triangles(const FollowingTriangles& following, const FacetTriangles& facets,
+void collect_triangles(const delaunay::FollowingTriangles& following,
+                       const tessellate::FacetTriangles& facets,
                        const std::vector<bool>& takes_canonical, BoundaryComplex& complex) {
   complex.triangles.clear();
   complex.facet_of.clear();
@@ -64,7 +65,7 @@ bool part_equal_triangles(const BoundaryComplex& complex, std::vector<bool>& tak
   return has_changed;
 }
 
-Result<BoundaryComplex> follow(const CanonicalSolid& canonical) {
+Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical) {
   const Solid& solid = canonical.boundary.solid();
   BoundaryComplex complex;
   complex.points.assign(solid.vertices().begin(), solid.vertices().end());
@@ -75,9 +76,9 @@ Result<BoundaryComplex> follow(const CanonicalSolid& canonical) {
   }
   auto delaunay = create_delaunay(complex);
   if (!delaunay) return delaunay.error();
-  const FacetTriangles facets = triangulate_facets(solid);
-  const FollowingTriangles following =
-      follow_delaunay(facets.divided_solid(solid), facets, *delaunay);
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
+  const delaunay::FollowingTriangles following =
+      delaunay::follow_delaunay(facets.divided_solid(solid), facets, *delaunay);
   for (Index facet = 0; facet < solid.facet_count(); ++facet) {
     if (following.first[facet] == following.first[facet + 1]) {
       return not_encodable("facet " + std::to_string(canonical.order.facet[facet]) +
@@ -101,9 +102,10 @@ std::vector<Index> inverse_of(const std::vector<Index>& order) {
 }
 
 /// Requires a certificate of the solid in its source order.
-Result<BoundaryComplex> conform(const CanonicalSolid& canonical, const Certificate& certificate) {
+Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
+                                const delaunay::Certificate& certificate) {
   const Solid& solid = canonical.boundary.solid();
-  const Tetrahedralization& mesh = certificate.tetrahedralization;
+  const delaunay::Tetrahedralization& mesh = certificate.tetrahedralization;
   const Error foreign = not_encodable("the certificate is not one of this solid");
   if (mesh.input_count != solid.vertex_count() || mesh.points.size() < mesh.input_count) {
     return foreign;
@@ -132,7 +134,7 @@ Result<BoundaryComplex> conform(const CanonicalSolid& canonical, const Certifica
         "mode bitmap holds coordinates that are 0 or of magnitude 2^-100 to 2^100");
   }
   const std::vector<Index> facet_place = inverse_of(canonical.order.facet);
-  for (const ConstrainedFace& face : mesh.constrained) {
+  for (const delaunay::ConstrainedFace& face : mesh.constrained) {
     if (face.facet >= facet_place.size()) return foreign;
     Triangle triangle{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -162,7 +164,8 @@ std::uint64_t storable_tetrahedra(std::size_t point_count) {
   return std::uint64_t{64} * point_count + 4096;
 }
 
-Result<BoundaryComplex> create_cdt(const CanonicalSolid& solid, const Certificate* certificate) {
+Result<BoundaryComplex> create_cdt(const geometry::CanonicalSolid& solid,
+                                   const delaunay::Certificate* certificate) {
   return certificate != nullptr ? conform(solid, *certificate) : follow(solid);
 }
 
@@ -193,16 +196,17 @@ Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex) {
   return marked;
 }
 
-Result<CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex) {
+Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex) {
   if (complex.delaunay) return *complex.delaunay;
-  auto delaunay = canonical_delaunay(complex.points, storable_tetrahedra(complex.points.size()));
+  auto delaunay =
+      delaunay::canonical_delaunay(complex.points, storable_tetrahedra(complex.points.size()));
   if (!delaunay) return not_encodable(delaunay.error().message);
   if (delaunay->tetrahedra.empty()) return not_encodable("the vertices span no volume");
   return delaunay;
 }
 
 std::vector<bool> mark_delaunay_faces(const MarkedFaces& marked,
-                                      const CanonicalDelaunay& delaunay) {
+                                      const delaunay::CanonicalDelaunay& delaunay) {
   std::vector<bool> marks(delaunay.faces.size(), false);
   std::size_t face = 0;
   for (const Triangle& triangle : marked.triangles) {
@@ -212,7 +216,7 @@ std::vector<bool> mark_delaunay_faces(const MarkedFaces& marked,
   return marks;
 }
 
-void store_bitmap(const CanonicalDelaunay& delaunay, const std::vector<bool>& marks,
+void store_bitmap(const delaunay::CanonicalDelaunay& delaunay, const std::vector<bool>& marks,
                   Decomposition& result) {
   result.bitmap = write_marks(BitCoding::plain, delaunay, marks);
   result.bitmap_coding = BitCoding::plain;
@@ -223,7 +227,7 @@ void store_bitmap(const CanonicalDelaunay& delaunay, const std::vector<bool>& ma
   }
 }
 
-void store_unrecovered_faces(const MarkedFaces& marked, const CanonicalDelaunay& delaunay,
+void store_unrecovered_faces(const MarkedFaces& marked, const delaunay::CanonicalDelaunay& delaunay,
                              Decomposition& result) {
   std::vector<Triangle> unrecovered;
   std::set_difference(marked.triangles.begin(), marked.triangles.end(), delaunay.faces.begin(),
@@ -231,7 +235,8 @@ void store_unrecovered_faces(const MarkedFaces& marked, const CanonicalDelaunay&
   if (!unrecovered.empty()) result.unrecovered = write_face_list(unrecovered);
 }
 
-Result<Decomposition> decompose(const CanonicalSolid& solid, const Certificate* certificate) {
+Result<Decomposition> decompose(const geometry::CanonicalSolid& solid,
+                                const delaunay::Certificate* certificate) {
   Decomposition result;
   auto complex = create_cdt(solid, certificate);
   if (!complex) return complex.error();
@@ -246,4 +251,4 @@ Result<Decomposition> decompose(const CanonicalSolid& solid, const Certificate* 
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

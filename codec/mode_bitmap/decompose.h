@@ -14,7 +14,7 @@
 #include "delaunay/certificate.h"
 #include "geometry/canonical_form.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 
 /// The nodes of the CDT and its faces on the boundary.
 struct BoundaryComplex {
@@ -23,7 +23,7 @@ struct BoundaryComplex {
   std::vector<Triangle> triangles;  // vertices of each increasing; in no particular order
   std::vector<Index> facet_of;      // canonical facet of each triangle
   /// Where step 1 had to make it already, for step 4.
-  std::optional<CanonicalDelaunay> delaunay;
+  std::optional<delaunay::CanonicalDelaunay> delaunay;
 };
 
 /// What the decomposition stores.
@@ -47,7 +47,8 @@ std::uint64_t storable_tetrahedra(std::size_t point_count);
 /// Steiner vertex is needed: the facets' triangulation that follows the Delaunay
 /// tetrahedralization. Errors: not_encodable if a facet has no triangulation or the certificate is
 /// not of this solid.
-Result<BoundaryComplex> create_cdt(const CanonicalSolid& solid, const Certificate* certificate);
+Result<BoundaryComplex> create_cdt(const geometry::CanonicalSolid& solid,
+                                   const delaunay::Certificate* certificate);
 
 /// 2. Store the CDT's nodes: vertices and Steiner vertices.
 void store_nodes(const BoundaryComplex& complex, Decomposition& result);
@@ -58,20 +59,22 @@ Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex);
 
 /// 4. Create the Delaunay tetrahedralization of the nodes.
 /// Errors: not_encodable if it is flat or has too many tetrahedra.
-Result<CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex);
+Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex);
 
 /// 5. Mark the Delaunay faces that are marked CDT faces.
-std::vector<bool> mark_delaunay_faces(const MarkedFaces& marked, const CanonicalDelaunay& delaunay);
+std::vector<bool> mark_delaunay_faces(const MarkedFaces& marked,
+                                      const delaunay::CanonicalDelaunay& delaunay);
 
 /// 6. Store the bitmap of marked and non-marked Delaunay faces: the shorter coding.
-void store_bitmap(const CanonicalDelaunay& delaunay, const std::vector<bool>& marks,
+void store_bitmap(const delaunay::CanonicalDelaunay& delaunay, const std::vector<bool>& marks,
                   Decomposition& result);
 
 /// 7. Store the marked CDT faces without a Delaunay face.
-void store_unrecovered_faces(const MarkedFaces& marked, const CanonicalDelaunay& delaunay,
+void store_unrecovered_faces(const MarkedFaces& marked, const delaunay::CanonicalDelaunay& delaunay,
                              Decomposition& result);
 
 /// All steps, and the facet structure. Errors: not_encodable.
-Result<Decomposition> decompose(const CanonicalSolid& solid, const Certificate* certificate);
+Result<Decomposition> decompose(const geometry::CanonicalSolid& solid,
+                                const delaunay::Certificate* certificate);
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

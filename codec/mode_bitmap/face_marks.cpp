@@ -9,14 +9,14 @@
 #include <array>
 #include <tuple>
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 namespace {
 
 /// For each face, whether it lies on the convex hull (one tetrahedron instead of two).
-std::vector<bool> find_hull(const CanonicalDelaunay& delaunay) {
+std::vector<bool> find_hull(const delaunay::CanonicalDelaunay& delaunay) {
   std::vector<Triangle> sides;
   sides.reserve(delaunay.tetrahedra.size() * 4);
-  for (Tetrahedron t : delaunay.tetrahedra) {
+  for (geometry::Tetrahedron t : delaunay.tetrahedra) {
     std::sort(t.begin(), t.end());
     sides.push_back({t[0], t[1], t[2]});
     sides.push_back({t[0], t[1], t[3]});
@@ -70,7 +70,7 @@ FaceEdges number_edges(std::span<const Triangle> faces) {
 /// The state around every edge while the marks are coded, and the models it selects.
 class MarkModels {
  public:
-  explicit MarkModels(const CanonicalDelaunay& delaunay)
+  explicit MarkModels(const delaunay::CanonicalDelaunay& delaunay)
       : edges_(number_edges(delaunay.faces)),
         is_hull_(find_hull(delaunay)),
         to_come_(edges_.edge_count, 0),
@@ -148,7 +148,7 @@ Result<std::vector<bool>> read_plain_marks(ByteView section, std::size_t count) 
 
 }  // namespace
 
-Bytes write_marks(BitCoding coding, const CanonicalDelaunay& delaunay,
+Bytes write_marks(BitCoding coding, const delaunay::CanonicalDelaunay& delaunay,
                   const std::vector<bool>& marks) {
   if (coding == BitCoding::plain) return write_plain_marks(marks);
   BitEncoder encoder(coding);
@@ -161,7 +161,7 @@ Bytes write_marks(BitCoding coding, const CanonicalDelaunay& delaunay,
 }
 
 Result<std::vector<bool>> read_marks(ByteView section, BitCoding coding,
-                                     const CanonicalDelaunay& delaunay) {
+                                     const delaunay::CanonicalDelaunay& delaunay) {
   if (coding == BitCoding::plain) return read_plain_marks(section, delaunay.faces.size());
   BitDecoder decoder(section, coding);
   MarkModels models(delaunay);
@@ -213,4 +213,4 @@ Result<std::vector<Triangle>> read_face_list(ByteView section, std::size_t verte
   return faces;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

@@ -12,15 +12,15 @@
 #include "codec/mode_bitmap/bit_coder.h"
 #include "delaunay/canonical_delaunay.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 
 /// Requires one mark per face. Cost: O(n log n).
-Bytes write_marks(BitCoding coding, const CanonicalDelaunay& delaunay,
+Bytes write_marks(BitCoding coding, const delaunay::CanonicalDelaunay& delaunay,
                   const std::vector<bool>& marks);
 
 /// Errors: malformed if the section is not exactly one mark per face.
 Result<std::vector<bool>> read_marks(ByteView section, BitCoding coding,
-                                     const CanonicalDelaunay& delaunay);
+                                     const delaunay::CanonicalDelaunay& delaunay);
 
 /// Requires strictly increasing triples of increasing vertices.
 Bytes write_face_list(std::span<const Triangle> faces);
@@ -29,4 +29,4 @@ Bytes write_face_list(std::span<const Triangle> faces);
 /// Errors: malformed. Each face takes at least three bytes of the section.
 Result<std::vector<Triangle>> read_face_list(ByteView section, std::size_t vertex_count);
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

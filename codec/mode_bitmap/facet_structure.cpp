@@ -8,7 +8,7 @@
 #include "geometry/canonical_form.h"
 #include "geometry/predicates.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 namespace {
 
 /// How two triangles meet, as far as it helps to guess whether they are one facet. The squared
@@ -38,7 +38,7 @@ int bend_class(std::span<const Point> points, const Joint& joint) {
   const auto second = cross(along, difference(q, a));
   const double product = dot(first, second);
   if (!(product < 0)) return 5;  // both on one side: a right angle or sharper
-  if (orient3d(a, b, p, q) == 0) return 0;
+  if (geometry::orient3d(a, b, p, q) == 0) return 0;
   const double cosine_squared = product * product;
   const double all = dot(first, first) * dot(second, second);
   if (cosine_squared > 0.999999 * all) return 1;  // 0.06 degrees
@@ -155,7 +155,7 @@ bool tells(SolidArrays arrays, const Solid& canonical) {
   if (!solid) return false;
   auto boundary = OrientedBoundary::make(std::move(solid).value());
   if (!boundary) return false;
-  return canonical_form(*boundary).boundary.solid() == canonical;
+  return geometry::canonical_form(*boundary).boundary.solid() == canonical;
 }
 
 }  // namespace
@@ -224,4 +224,4 @@ Result<SolidArrays> read_facet_structure(ByteView section, BitCoding coding,
   return surface.assemble(rings, exterior_component, exterior_ring);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

@@ -13,7 +13,7 @@
 #include "codec/mode_bitmap/bit_coder.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::codec::bitmap {
 
 /// A triangulated boundary: strictly increasing triangles of three increasing vertices, and the
 /// facet of the solid that each belongs to.
@@ -38,4 +38,4 @@ Result<SolidArrays> read_facet_structure(ByteView section, BitCoding coding,
                                          std::span<const Point> points,
                                          std::span<const Triangle> triangles, Index vertex_count);
 
-}  // namespace watertight
+}  // namespace watertight::codec::bitmap

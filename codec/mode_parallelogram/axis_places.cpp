@@ -10,7 +10,7 @@
 
 #include "codec/mode_parallelogram/vectors.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -271,4 +271,4 @@ AxisPlaces AxisPlaces::suggest(std::vector<std::int64_t> values) {
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

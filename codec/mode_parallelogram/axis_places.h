@@ -13,7 +13,7 @@
 #include "codec/entropy/entropy_stream.h"
 #include "codec/entropy/model_bank.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 class AxisPlaces {
  public:
@@ -60,4 +60,4 @@ class AxisPlaces {
 inline constexpr FamilyShape kPlacesFamily{1, {6}};
 inline constexpr NumberShape kPlacesNumber{2, {2 * 16, 16 * 16}};
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

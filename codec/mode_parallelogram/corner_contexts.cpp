@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 using namespace parallelogram;
 
@@ -99,4 +99,4 @@ CloseContexts corner_contexts(const CornerView& view) {
       view.answers};
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -11,7 +11,7 @@
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/vectors.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 /// A corner of the front, and what is expected around it.
 struct CornerView {
@@ -25,6 +25,6 @@ struct CornerView {
 };
 
 /// One context for each input of family Close (docs/format-parallelogram.md).
-parallelogram::CloseContexts corner_contexts(const CornerView& view);
+CloseContexts corner_contexts(const CornerView& view);
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

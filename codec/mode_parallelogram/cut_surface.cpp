@@ -4,7 +4,7 @@
 
 #include "codec/mode_parallelogram/cut_surface.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 namespace {
 
 Index next_half_edge(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -142,4 +142,4 @@ Result<CutSurface> cut_surface(const IntegerSolid& solid) {
   return surface;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -7,7 +7,7 @@
 #include "codec/mode_parallelogram/axis_places.h"
 #include "codec/page/modes.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 using namespace parallelogram;
 
@@ -21,7 +21,7 @@ constexpr FamilyShape close_family() {
 
 }  // namespace
 
-const ModelLayout& parallelogram_layout() {
+const ModelLayout& model_layout() {
   static constexpr std::array<FamilyShape, kFamilyCount> kFamilies{
       FamilyShape{1, {1}},
       FamilyShape{1, {2}},
@@ -47,4 +47,4 @@ const ModelLayout& parallelogram_layout() {
   return kLayout;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

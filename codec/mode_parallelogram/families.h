@@ -8,7 +8,7 @@
 
 #include "codec/mode_parallelogram/tip_prediction.h"
 
-namespace watertight::parallelogram {
+namespace watertight::codec::parallelogram {
 
 inline constexpr std::uint32_t kRooms = 32;
 inline constexpr std::uint32_t kDegrees = 10;
@@ -60,4 +60,4 @@ enum Family : std::uint32_t {
 };
 enum Number : std::uint32_t { kOrigin, kSeed, kResidual, kRank, kPlace, kNumberCount };
 
-}  // namespace watertight::parallelogram
+}  // namespace watertight::codec::parallelogram

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 namespace {
 
 /// Corners that wait and have changed since are thrown away when there are more.
@@ -156,4 +156,4 @@ Index SurfaceFront::next_corner() {
   return kNone;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

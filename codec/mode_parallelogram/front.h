@@ -12,7 +12,7 @@
 #include "codec/mode_parallelogram/vectors.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 /// A directed edge of a known triangle. Its corner is the one at `end`, where the next gate of the
 /// loop begins.
@@ -94,4 +94,4 @@ class SurfaceFront {
   Index open_count_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 template <std::size_t Size>
 class LeastSquares {
@@ -77,4 +77,4 @@ class LeastSquares {
   Features targets_{};
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -5,13 +5,13 @@
 #include <numeric>
 
 #include "codec/mode_parallelogram/corner_contexts.h"
-#include "codec/page/modes.h"
 #include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/vectors.h"
 #include "codec/mode_parallelogram/vertex_coder.h"
+#include "codec/page/modes.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 using namespace parallelogram;
 
@@ -409,8 +409,8 @@ Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& model
 
 }  // namespace
 
-Status code_parallelogram(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                          IntegerSolid& solid, WriterChoice& choice, const Limits& limits) {
+Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
+                  IntegerSolid& solid, WriterChoice& choice, const Limits& limits) {
   if (stream.is_reading()) {
     return SurfaceCoder(stream, models, memory, limits).code(nullptr, solid, {});
   }
@@ -425,4 +425,4 @@ Status code_parallelogram(EntropyStream& stream, ModelBank& models, const PageMe
       .code(&*surface, solid, *choice.vertex_options);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

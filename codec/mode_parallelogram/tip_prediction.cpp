@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 namespace {
 
 std::uint32_t span(double room) { return room < 1.7 ? 0U : room < 2.7 ? 1U : room < 3.8 ? 2U : 3U; }
@@ -86,4 +86,4 @@ void TipPrediction::learn(const Vector& centre, double expected) {
   shift_predictors_[tip_.bends].solve(kMemory);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/mode_parallelogram/least_squares.h"
 #include "codec/mode_parallelogram/front.h"
+#include "codec/mode_parallelogram/least_squares.h"
 #include "codec/mode_parallelogram/vectors.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 class TipPrediction {
  public:
@@ -60,4 +60,4 @@ class TipPrediction {
 /// Within the range of coordinates, also if it is no number.
 inline double tamed(double x) { return x > -9e15 ? (x < 9e15 ? x : 9e15) : -9e15; }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 using Vector = std::array<double, 3>;
 
@@ -81,4 +81,4 @@ inline std::uint32_t cosine_bucket(const Vector& a, const Vector& b) {
   return at;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -8,7 +8,7 @@
 
 #include "codec/mode_parallelogram/families.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 using namespace parallelogram;
 
@@ -258,4 +258,4 @@ bool VertexCoder::code_repeat(const SurfaceFront& front, const Gate& gate, std::
   return true;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -10,15 +10,15 @@
 
 #include "base/limits.h"
 #include "base/result.h"
-#include "codec/mode_parallelogram/axis_places.h"
 #include "codec/entropy/entropy_stream.h"
-#include "codec/page/integer_solid.h"
 #include "codec/entropy/model_bank.h"
+#include "codec/mode_parallelogram/axis_places.h"
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/tip_prediction.h"
 #include "codec/mode_parallelogram/vectors.h"
+#include "codec/page/integer_solid.h"
 
-namespace watertight {
+namespace watertight::codec::parallelogram {
 
 /// What the writer chose for a solid.
 struct VertexOptions {
@@ -85,4 +85,4 @@ class VertexCoder {
   std::uint32_t now_repeats_ = 0;           // the same of this tip so far
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::parallelogram

@@ -8,8 +8,7 @@
 
 #include "codec/mode_polygon/families.h"
 
-namespace watertight {
-namespace polygon {
+namespace watertight::codec::polygon {
 
 Result<WalkedSurface> SurfaceWalk::run() {
   for (Index shell = 0; !stopped(); ++shell) {
@@ -313,11 +312,9 @@ void SurfaceWalk::list_loop() {
   }
 }
 
-}  // namespace polygon
-
 Result<WalkedSurface> code_surface(EntropyStream& stream, ModelBank& models,
                                    const SurfaceTruth* truth, const Limits& limits) {
-  return polygon::SurfaceWalk(stream, models, truth, limits).run();
+  return SurfaceWalk(stream, models, truth, limits).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

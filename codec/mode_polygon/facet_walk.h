@@ -14,7 +14,7 @@
 
 #include "codec/mode_polygon/surface.h"
 
-namespace watertight::polygon {
+namespace watertight::codec::polygon {
 
 inline constexpr Index kLoopLimit = 64;    // steps along the front that are looked at
 inline constexpr Index kGateLimit = 256;   // open half-edges among which an interior ring begins
@@ -133,4 +133,4 @@ class SurfaceWalk {
   bool loop_reaches_start_ = false;
 };
 
-}  // namespace watertight::polygon
+}  // namespace watertight::codec::polygon

@@ -3,10 +3,10 @@
 // The vertices of a ring, and what a finished ring leaves at them.
 #include <algorithm>
 
-#include "codec/mode_polygon/families.h"
 #include "codec/mode_polygon/facet_walk.h"
+#include "codec/mode_polygon/families.h"
 
-namespace watertight::polygon {
+namespace watertight::codec::polygon {
 
 /// From the end of the ring to its start, vertex by vertex.
 void SurfaceWalk::fill() {
@@ -241,4 +241,4 @@ void SurfaceWalk::remove_chain(Index vertex, Index chain) {
   --chain_count_[vertex];
 }
 
-}  // namespace watertight::polygon
+}  // namespace watertight::codec::polygon

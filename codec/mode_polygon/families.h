@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace watertight {
+namespace watertight::codec::polygon {
 
 /// Families of decisions.
 enum PolygonFamily : std::uint32_t {
@@ -51,4 +51,4 @@ constexpr std::uint32_t capped(Number value, std::uint32_t count) {
                          std::min<std::uint64_t>(static_cast<std::uint64_t>(value), count - 1));
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

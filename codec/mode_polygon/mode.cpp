@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <utility>
 
-#include "codec/page/modes.h"
 #include "codec/mode_polygon/families.h"
 #include "codec/mode_polygon/positions.h"
 #include "codec/mode_polygon/surface.h"
+#include "codec/page/modes.h"
 
-namespace watertight {
+namespace watertight::codec::polygon {
 namespace {
 
 // In the order of PolygonFamily; the contexts are told where each is coded.
@@ -76,13 +76,13 @@ IntegerSolid assemble(const WalkedSurface& walked, const CodedPositions& positio
 
 }  // namespace
 
-const ModelLayout& polygon_layout() {
+const ModelLayout& model_layout() {
   static constexpr ModelLayout layout{kFamilies, kNumbers};
   return layout;
 }
 
-Status code_polygon(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                    IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
+Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
+                  IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
   std::optional<SurfaceTruth> truth;
   if (!stream.is_reading()) {
     auto surface = surface_of(solid, memory);
@@ -102,4 +102,4 @@ Status code_polygon(EntropyStream& stream, ModelBank& models, const PageMemory& 
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace watertight {
+namespace watertight::codec::polygon {
 namespace {
 
 std::uint64_t magnitude(std::int64_t value) {
@@ -37,4 +37,4 @@ std::vector<GridColumn> nearest_columns(std::span<const GridColumn> columns,
   return nearest;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

@@ -9,7 +9,7 @@
 
 #include "codec/mode_polygon/plane_geometry.h"
 
-namespace watertight {
+namespace watertight::codec::polygon {
 
 /// How little a column is to be expected, from its offset to a place: the sum of the absolute
 /// offsets along and `across_weight` times across the direction of `turn`.
@@ -26,4 +26,4 @@ std::vector<GridColumn> nearest_columns(std::span<const GridColumn> columns,
                                         const ColumnScore& score, std::size_t window,
                                         std::size_t keep);
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

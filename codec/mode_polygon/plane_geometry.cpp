@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace watertight {
+namespace watertight::codec::polygon {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -116,4 +116,4 @@ double FacetPlane::reach(GridColumn column) const {
   return 16 * (x * x + y * y) / (normal[2] < 0 ? -normal[2] : normal[2]);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

@@ -9,7 +9,7 @@
 
 #include "codec/page/integer_solid.h"
 
-namespace watertight {
+namespace watertight::codec::polygon {
 
 /// A vector of the xy plane in grid steps.
 struct Flat {
@@ -60,4 +60,4 @@ struct FacetPlane {
   double reach(GridColumn column) const;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

@@ -14,7 +14,7 @@
 #include "codec/mode_polygon/plane_geometry.h"
 #include "codec/mode_polygon/positions.h"
 
-namespace watertight::polygon {
+namespace watertight::codec::polygon {
 
 inline constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
 inline constexpr int kCoordinateBits = 55;
@@ -142,4 +142,4 @@ class PositionCoder {
   Index below_ = kNone;        // the neighbour in the same column
 };
 
-}  // namespace watertight::polygon
+}  // namespace watertight::codec::polygon

@@ -7,7 +7,7 @@
 #include "codec/mode_polygon/families.h"
 #include "codec/mode_polygon/position_coder.h"
 
-namespace watertight::polygon {
+namespace watertight::codec::polygon {
 
 /// The longest edge of the solid that is parallel or perpendicular to `direction`, turned to it.
 bool PositionCoder::follow_direction(Flat& direction) const {
@@ -167,4 +167,4 @@ void PositionCoder::remember_height(std::int64_t height) {
   levels_.insert(levels_.begin(), height);
 }
 
-}  // namespace watertight::polygon
+}  // namespace watertight::codec::polygon

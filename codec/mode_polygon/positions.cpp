@@ -7,12 +7,11 @@
 #include <bit>
 #include <utility>
 
-#include "codec/mode_polygon/nearest_columns.h"
 #include "codec/mode_polygon/families.h"
+#include "codec/mode_polygon/nearest_columns.h"
 #include "codec/mode_polygon/position_coder.h"
 
-namespace watertight {
-namespace polygon {
+namespace watertight::codec::polygon {
 
 void PositionCoder::find_copies() {
   same_as_.resize(surface_.vertex_count());
@@ -348,12 +347,10 @@ void PositionCoder::learn(Index vertex) {
   } while (corner != half);
 }
 
-}  // namespace polygon
-
 Result<CodedPositions> code_positions(EntropyStream& stream, ModelBank& models,
                                       const PageMemory& memory, const PolygonSurface& surface,
                                       std::span<const GridPoint> truth) {
-  return polygon::PositionCoder(stream, models, memory, surface, truth).run();
+  return PositionCoder(stream, models, memory, surface, truth).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

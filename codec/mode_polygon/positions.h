@@ -9,7 +9,7 @@
 
 #include "codec/mode_polygon/surface.h"
 
-namespace watertight {
+namespace watertight::codec::polygon {
 
 /// `same_as` of a vertex that is one more fan at the place of an earlier one is that one, of any
 /// other itself.
@@ -25,4 +25,4 @@ Result<CodedPositions> code_positions(EntropyStream& stream, ModelBank& models,
                                       const PageMemory& memory, const PolygonSurface& surface,
                                       std::span<const GridPoint> truth);
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace watertight {
+namespace watertight::codec::polygon {
 namespace {
 
 struct PairedEdge {
@@ -149,4 +149,4 @@ Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& mem
   return truth;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

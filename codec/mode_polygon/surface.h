@@ -11,10 +11,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "codec/entropy/entropy_stream.h"
-#include "codec/page/integer_solid.h"
 #include "codec/entropy/model_bank.h"
+#include "codec/page/integer_solid.h"
 
-namespace watertight {
+namespace watertight::codec::polygon {
 
 /// The half-edges of a ring are consecutive and in order. `vertex` of a half-edge is its origin.
 struct PolygonSurface {
@@ -64,4 +64,4 @@ struct WalkedSurface {
 Result<WalkedSurface> code_surface(EntropyStream& stream, ModelBank& models,
                                    const SurfaceTruth* truth, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::codec::polygon

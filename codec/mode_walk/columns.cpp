@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-namespace watertight {
+namespace watertight::codec::walk {
 namespace {
 
 using Place = std::array<std::int64_t, 2>;
@@ -391,4 +391,4 @@ Status code_columns(EntropyStream& stream, const ColumnModels& models, const Pag
   return Columns(stream, models, memory, points, limits).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -12,10 +12,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "codec/entropy/entropy_stream.h"
-#include "codec/page/integer_solid.h"
 #include "codec/entropy/model_bank.h"
+#include "codec/page/integer_solid.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 /// The families and numbers of the columns, to be put next to each other into a mode's layout.
 inline constexpr std::uint32_t kColumnFamilyCount = 3;
@@ -36,4 +36,4 @@ struct ColumnModels {
 Status code_columns(EntropyStream& stream, const ColumnModels& models, const PageMemory& memory,
                     std::vector<GridPoint>& points, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

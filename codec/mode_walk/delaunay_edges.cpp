@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <utility>
 
-namespace watertight {
+namespace watertight::codec::walk {
 
-DelaunayEdges::DelaunayEdges(const CanonicalDelaunay& delaunay, Index vertex_count) {
+DelaunayEdges::DelaunayEdges(const delaunay::CanonicalDelaunay& delaunay, Index vertex_count) {
   // Each face under the lesser vertex of each of its edges.
   std::vector<Index> first(vertex_count + std::size_t{1}, 0);
   for (const Triangle& face : delaunay.faces) {
@@ -79,4 +79,4 @@ std::span<const Index> DelaunayEdges::faces_at(Index a, Index b) const {
   return std::span(faces_).subspan(first_face_[edge], first_face_[edge + 1] - first_face_[edge]);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -10,12 +10,12 @@
 #include "delaunay/canonical_delaunay.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 class DelaunayEdges {
  public:
   /// Cost: O(n log n); about 300 bytes per vertex.
-  DelaunayEdges(const CanonicalDelaunay& delaunay, Index vertex_count);
+  DelaunayEdges(const delaunay::CanonicalDelaunay& delaunay, Index vertex_count);
 
   /// The faces at the edge between two different vertices, as places in CanonicalDelaunay::faces,
   /// ascending; none if there is no such edge. Cost: logarithmic in the degree of a vertex.
@@ -39,4 +39,4 @@ class DelaunayEdges {
   std::vector<Index> smaller_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-namespace watertight {
+namespace watertight::codec::walk {
 namespace {
 
 __extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
@@ -403,4 +403,4 @@ Status code_facets(EntropyStream& stream, ModelBank& models, std::uint32_t first
   return Facets(stream, models, first_family, points, mesh, facet_of, solid).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

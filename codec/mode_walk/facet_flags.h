@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "base/result.h"
-#include "codec/mode_walk/walk.h"
 #include "codec/entropy/entropy_stream.h"
-#include "codec/page/integer_solid.h"
 #include "codec/entropy/model_bank.h"
+#include "codec/mode_walk/walk.h"
+#include "codec/page/integer_solid.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 /// The families of the facets, to be put next to each other into the layout of a mode.
 inline constexpr std::uint32_t kFacetFamilyCount = 2;
@@ -32,4 +32,4 @@ Status code_facets(EntropyStream& stream, ModelBank& models, std::uint32_t first
                    std::span<const Point> points, const BoundaryMesh& mesh,
                    std::span<const Index> facet_of, IntegerSolid& solid);
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -9,7 +9,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 class WalkFront {
  public:
@@ -96,4 +96,4 @@ inline void WalkFront::add(const Triangle& triangle) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -6,7 +6,7 @@
 
 #include "codec/mode_walk/walk.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 bool WalkTruth::take(BoundaryMesh& mesh, Index vertex_count) {
   triangles_ = std::move(mesh.triangles);
@@ -93,4 +93,4 @@ Index WalkTruth::unused_vertex() const {
   return least;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

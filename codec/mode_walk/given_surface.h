@@ -8,7 +8,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 struct BoundaryMesh;
 
@@ -47,4 +47,4 @@ class WalkTruth {
   std::vector<bool> is_used_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "codec/mode_walk/columns.h"
-#include "codec/mode_walk/walk.h"
 #include "codec/mode_walk/facet_flags.h"
+#include "codec/mode_walk/walk.h"
 #include "codec/page/modes.h"
 #include "delaunay/follow_delaunay.h"
 #include "tessellate/facets.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 namespace {
 
 constexpr std::uint32_t kFirstWalk = 0;
@@ -56,17 +56,18 @@ Result<Solid> solid_on(const std::vector<Point>& points, const IntegerSolid& sol
 /// Writing: triangles of all facets that follow the Delaunay faces, those of a shell together.
 /// facet_of[i] is the facet of triangle i.
 Result<BoundaryMesh> triangulate(const std::vector<Point>& points, const IntegerSolid& integer,
-                                 const CanonicalDelaunay& delaunay, std::vector<Index>& facet_of) {
+                                 const delaunay::CanonicalDelaunay& delaunay,
+                                 std::vector<Index>& facet_of) {
   const Error refused{ErrorCode::not_encodable, "a facet has no triangulation"};
   const auto solid = solid_on(points, integer);
   if (!solid) return refused;
-  const FacetTriangles facets = triangulate_facets(*solid);
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(*solid);
   if (facets.divided) {
     return Error{ErrorCode::not_encodable,
                  "mode walk finds rings by the edges of triangles; a vertex of a ring lies inside "
                  "an edge of another ring of its facet"};
   }
-  FollowingTriangles following = follow_delaunay(*solid, facets, delaunay);
+  delaunay::FollowingTriangles following = delaunay::follow_delaunay(*solid, facets, delaunay);
   BoundaryMesh mesh;
   for (Index facet = 0; facet < solid->facet_count(); ++facet) {
     if (following.first[facet] == following.first[facet + 1]) return refused;
@@ -81,7 +82,7 @@ Result<BoundaryMesh> triangulate(const std::vector<Point>& points, const Integer
 
 }  // namespace
 
-const ModelLayout& walk_layout() {
+const ModelLayout& model_layout() {
   static const std::array<FamilyShape, kFamilies> families = [] {
     std::array<FamilyShape, kFamilies> all;
     std::copy(kWalkFamilies.begin(), kWalkFamilies.end(), all.begin() + kFirstWalk);
@@ -93,8 +94,8 @@ const ModelLayout& walk_layout() {
   return layout;
 }
 
-Status code_walk(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                 IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
+Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
+                  IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
   if (!stream.is_reading() && solid.vertices.size() < 4) {
     return Error{ErrorCode::not_encodable, "the vertices span no volume"};
   }
@@ -109,7 +110,7 @@ Status code_walk(EntropyStream& stream, ModelBank& models, const PageMemory& mem
       return Error{failure, "the solid is too large for its grid"};
     }
   }
-  const auto delaunay = canonical_delaunay(points, max_tetrahedra(points.size()));
+  const auto delaunay = delaunay::canonical_delaunay(points, max_tetrahedra(points.size()));
   if (!delaunay) return Error{failure, delaunay.error().message};
   if (delaunay->tetrahedra.empty()) return Error{failure, "the vertices span no volume"};
 
@@ -133,4 +134,4 @@ Status code_walk(EntropyStream& stream, ModelBank& models, const PageMemory& mem
   return code_facets(stream, models, kFirstFacets, points, mesh, facet_of, solid);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace watertight {
+namespace watertight::codec::walk {
 namespace {
 
 Vector difference(const Point& p, const Point& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
@@ -144,4 +144,4 @@ FaceShape face_shape(std::span<const Point> points, const Triangle& face,
   return shape;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -11,7 +11,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 using Vector = std::array<double, 3>;
 
@@ -59,4 +59,4 @@ constexpr FaceShape no_face(std::uint32_t edges) {
 FaceShape face_shape(std::span<const Point> points, const Triangle& face,
                      const std::array<Index, 2>& apexes);
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -8,10 +8,10 @@
 
 #include "codec/mode_walk/delaunay_edges.h"
 #include "codec/mode_walk/front.h"
-#include "codec/mode_walk/triangle_classes.h"
 #include "codec/mode_walk/given_surface.h"
+#include "codec/mode_walk/triangle_classes.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 namespace {
 
 // The families of the walk.
@@ -87,7 +87,7 @@ Error not_encodable(const char* reason) { return {ErrorCode::not_encodable, reas
 class Walk {
  public:
   Walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-       std::span<const Point> points, const CanonicalDelaunay& delaunay, WalkTruth* truth)
+       std::span<const Point> points, const delaunay::CanonicalDelaunay& delaunay, WalkTruth* truth)
       : stream_(stream),
         models_(models),
         family_(first_family),
@@ -150,7 +150,7 @@ class Walk {
   ModelBank& models_;
   std::uint32_t family_;
   std::span<const Point> points_;
-  const CanonicalDelaunay& delaunay_;
+  const delaunay::CanonicalDelaunay& delaunay_;
   DelaunayEdges edges_;
   WalkTruth* truth_;
   WalkFront front_;
@@ -531,8 +531,8 @@ const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies{
     FamilyShape{1, {4 * kSphereClasses}}, kChoiceShape};
 
 Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-                          std::span<const Point> points, const CanonicalDelaunay& delaunay,
-                          BoundaryMesh& mesh) {
+                          std::span<const Point> points,
+                          const delaunay::CanonicalDelaunay& delaunay, BoundaryMesh& mesh) {
   if (stream.is_reading()) {
     return Walk(stream, models, first_family, points, delaunay, nullptr).run(mesh);
   }
@@ -543,4 +543,4 @@ Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_
   return Walk(stream, models, first_family, points, delaunay, &truth).run(mesh);
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -19,7 +19,7 @@
 #include "delaunay/canonical_delaunay.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec::walk {
 
 /// Triangles whose edges meet in pairs, once in each direction within a component.
 /// Half-edge 3 t + k runs from corner k of triangle t to the next corner.
@@ -48,7 +48,7 @@ extern const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies;
 /// more than twice in one component; vertices of extreme degrees); reading: malformed.
 /// Cost: O(n log n), a few microseconds per triangle; bounded by 256 steps per point.
 Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-                          std::span<const Point> points, const CanonicalDelaunay& delaunay,
-                          BoundaryMesh& mesh);
+                          std::span<const Point> points,
+                          const delaunay::CanonicalDelaunay& delaunay, BoundaryMesh& mesh);
 
-}  // namespace watertight
+}  // namespace watertight::codec::walk

@@ -5,7 +5,7 @@ file(READ "${INPUT}" bytes HEX)
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
 file(WRITE "${OUTPUT}" "#include <cstdint>
 #include <span>
-namespace watertight {
+namespace watertight::codec {
 namespace {
 constexpr std::uint8_t kBytes[] = {${bytes}};
 }

@@ -9,7 +9,7 @@
 
 #include "base/checksum.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 constexpr std::uint8_t kMagic[2] = {'W', 'T'};
@@ -140,7 +140,7 @@ Result<BlobHeader> read_header(ByteReader& reader) {
 }
 
 std::uint32_t checksum_of(const Acceptance& acceptance, const Solid& canonical,
-                          const SourceOrder& order) {
+                          const geometry::SourceOrder& order) {
   const SolidArrays& arrays = canonical.arrays();
   ByteWriter writer;
   append_acceptance(writer, acceptance);
@@ -163,4 +163,4 @@ std::uint32_t checksum_of(const Acceptance& acceptance, const Solid& canonical,
   return crc32c(writer.bytes());
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

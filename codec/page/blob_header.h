@@ -10,7 +10,7 @@
 #include "codec/blob.h"
 #include "geometry/canonical_form.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// Bits of the flag byte. Bit 7 is reserved and zero.
 enum BlobFlag : std::uint8_t {
@@ -41,6 +41,6 @@ Result<BlobHeader> read_header(ByteReader& reader);
 /// CRC-32C over the canonical serialization of what a blob says: acceptance, SRID, lattice, the
 /// canonical solid, and the source order unless it is the identity.
 std::uint32_t checksum_of(const Acceptance& acceptance, const Solid& canonical,
-                          const SourceOrder& order);
+                          const geometry::SourceOrder& order);
 
-}  // namespace watertight
+}  // namespace watertight::codec

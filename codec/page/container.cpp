@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "base/checksum.h"
+#include "codec/mode_bitmap/decompose.h"
+#include "codec/page.h"
 #include "codec/page/blob_header.h"
 #include "codec/page/coordinates.h"
-#include "codec/mode_bitmap/decompose.h"
 #include "codec/page/facet_listing.h"
-#include "codec/page.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 constexpr std::uint8_t kMagic[2] = {'W', 'T'};
@@ -39,21 +39,21 @@ std::uint32_t page_checksum(const PageContents& page, PageKind kind) {
   std::uint32_t sum = 0;
   for (const PageSolid& solid : page.solids) {
     sum = checksum_of(page.frame.acceptance, solid.canonical->boundary.solid(),
-                      solid.keeps_order ? solid.canonical->order : SourceOrder{});
+                      solid.keeps_order ? solid.canonical->order : geometry::SourceOrder{});
     writer.u32(sum);
   }
   return kind == PageKind::blob ? sum & 0xFFFFFFU : crc32c(writer.bytes());
 }
 
-Result<PlainSections> plain_sections(const CanonicalSolid& canonical, Mode mode,
-                                     const Certificate* certificate) {
+Result<PlainSections> plain_sections(const geometry::CanonicalSolid& canonical, Mode mode,
+                                     const delaunay::Certificate* certificate) {
   const Solid& solid = canonical.boundary.solid();
   PlainSections plain;
   if (mode == Mode::raw) {
     plain.sections = {write_vertices(solid.vertices()), write_facet_listing(solid.arrays())};
     return plain;
   }
-  auto parts = decompose(canonical, certificate);
+  auto parts = bitmap::decompose(canonical, certificate);
   if (!parts) return parts.error();
   unsigned flags = 0;
   plain.sections.push_back(std::move(parts->vertices));
@@ -61,7 +61,7 @@ Result<PlainSections> plain_sections(const CanonicalSolid& canonical, Mode mode,
     flags |= kHasSteiner;
     plain.sections.push_back(std::move(parts->steiner));
   }
-  if (parts->bitmap_coding == BitCoding::arithmetic) flags |= kCodedBitmap;
+  if (parts->bitmap_coding == bitmap::BitCoding::arithmetic) flags |= kCodedBitmap;
   plain.sections.push_back(std::move(parts->bitmap));
   if (!parts->unrecovered.empty()) {
     flags |= kHasUnrecovered;
@@ -71,14 +71,14 @@ Result<PlainSections> plain_sections(const CanonicalSolid& canonical, Mode mode,
     flags |= kExplicitFacets;
     plain.sections.push_back(write_facet_listing(solid.arrays()));
   } else {
-    if (parts->facets->coding == BitCoding::arithmetic) flags |= kCodedFacets;
+    if (parts->facets->coding == bitmap::BitCoding::arithmetic) flags |= kCodedFacets;
     plain.sections.push_back(std::move(parts->facets->bytes));
   }
   plain.flags = static_cast<std::uint8_t>(flags);
   return plain;
 }
 
-Status make_plain(PageSolid& solid, Mode mode, const Certificate* certificate) {
+Status make_plain(PageSolid& solid, Mode mode, const delaunay::Certificate* certificate) {
   auto plain = plain_sections(*solid.canonical, mode, certificate);
   if (!plain) return plain.error();
   solid.mode = mode;
@@ -142,7 +142,7 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
 
 PageSolid page_solid(const OrientedBoundary& boundary, const EncodeOptions& options) {
   PageSolid solid;
-  solid.canonical = canonical_form(boundary);
+  solid.canonical = geometry::canonical_form(boundary);
   solid.keeps_order = options.keep_order && !solid.canonical->order.is_identity();
   const Solid& canonical = solid.canonical->boundary.solid();
   if (auto gridded = grid_solid(canonical)) {
@@ -159,7 +159,8 @@ Frame frame_of(const Solid& solid, const Acceptance& acceptance) {
   return {acceptance, solid.srid(), grid};
 }
 
-Result<Bytes> write_page_bytes(PageContents& page, PageKind kind, const Certificate* certificate) {
+Result<Bytes> write_page_bytes(PageContents& page, PageKind kind,
+                               const delaunay::Certificate* certificate) {
   auto models = ModelSet::make(page.models);
   if (!models) return models.error();
   const Limits none{.bytes = ~std::uint64_t{0},
@@ -277,9 +278,9 @@ Result<Decoded> decoded_of(const PageContents& page, std::size_t number) {
   info.checksum = page.checksum;
   info.parts = parts_of(stored, page);
   if (!stored.keeps_order) return Decoded{canonical, std::move(info)};
-  auto restored = restore_order(canonical, stored.canonical->order);
+  auto restored = geometry::restore_order(canonical, stored.canonical->order);
   if (!restored) return restored.error();
   return Decoded{std::move(restored).value(), std::move(info)};
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

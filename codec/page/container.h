@@ -9,7 +9,7 @@
 
 #include "codec/page/solid_coder.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 enum class PageKind : std::uint8_t {
   blob,  // one solid, three bytes of checksum
@@ -27,7 +27,8 @@ struct PageContents {
 
 /// The mode of a solid that is Mode::automatic becomes the one that costs least. `certificate` may
 /// be null. Errors: not_encodable; unsupported (the models).
-Result<Bytes> write_page_bytes(PageContents& page, PageKind kind, const Certificate* certificate);
+Result<Bytes> write_page_bytes(PageContents& page, PageKind kind,
+                               const delaunay::Certificate* certificate);
 
 /// What a stream of so many bytes may bring forth, whatever its caller allows (docs/format.md,
 /// "Limits").
@@ -44,4 +45,4 @@ Frame frame_of(const Solid& solid, const Acceptance& acceptance);
 /// What decode() answers for one solid of a page.
 Result<Decoded> decoded_of(const PageContents& page, std::size_t number);
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 constexpr std::int64_t kLargest = std::int64_t{1} << 53;  // doubles hold every integer up to here
@@ -185,4 +185,4 @@ Result<std::vector<Point>> read_steiner_vertices(ByteView section, const Limits&
   return points;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -11,7 +11,7 @@
 #include "base/limits.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// True if every coordinate is an integer of magnitude at most 2^53.
 bool are_integers(std::span<const Point> points);
@@ -30,4 +30,4 @@ Bytes write_steiner_vertices(std::span<const Point> points);
 /// Errors: as read_vertices.
 Result<std::vector<Point>> read_steiner_vertices(ByteView section, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::codec

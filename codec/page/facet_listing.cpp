@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 Error malformed_listing() { return {ErrorCode::malformed, "truncated or malformed facet section"}; }
@@ -114,4 +114,4 @@ Result<SolidArrays> read_facet_listing(ByteView section, Index vertex_count, con
   return ListingReader(section, vertex_count, limits).read();
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -8,7 +8,7 @@
 #include "base/limits.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// Everything of `arrays` but its vertices. Cost: linear.
 Bytes write_facet_listing(const SolidArrays& arrays);
@@ -17,4 +17,4 @@ Bytes write_facet_listing(const SolidArrays& arrays);
 /// Errors: malformed; limit_exceeded. Every ring vertex takes at least one byte of the section.
 Result<SolidArrays> read_facet_listing(ByteView section, Index vertex_count, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::codec

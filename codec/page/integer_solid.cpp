@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -181,4 +181,4 @@ void PageMemory::add(const IntegerSolid& solid) {
   columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -12,7 +12,7 @@
 
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// Lattice steps from the origin of the page. Magnitudes are below 2^53.
 using GridPoint = std::array<std::int64_t, 3>;
@@ -75,4 +75,4 @@ struct PageMemory {
   void add(const IntegerSolid& solid);
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec

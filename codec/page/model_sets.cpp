@@ -4,10 +4,10 @@
 #include <string>
 #include <utility>
 
-#include "codec/page/solid_coder.h"
 #include "codec/page/modes.h"
+#include "codec/page/solid_coder.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// The file codec/models/model-1.bin; made by codec/models/embed.cmake.
 extern const std::span<const std::uint8_t> kModel1;
@@ -37,11 +37,11 @@ const ModelLayout& layout_of(ModelPart part) {
     case ModelPart::order:
       return order_layout();
     case ModelPart::polygon:
-      return polygon_layout();
+      return polygon::model_layout();
     case ModelPart::walk:
-      return walk_layout();
+      return walk::model_layout();
     case ModelPart::parallelogram:
-      return parallelogram_layout();
+      return parallelogram::model_layout();
   }
   return frame_layout();
 }
@@ -93,4 +93,4 @@ Result<Priors> read_models(ByteView file, std::uint8_t number) {
   return priors;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

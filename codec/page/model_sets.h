@@ -13,7 +13,7 @@
 #include "base/result.h"
 #include "codec/entropy/model_bank.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// The parts of the format that have models of their own, in the order of the model files.
 enum class ModelPart : std::uint8_t { frame, order, polygon, walk, parallelogram };
@@ -48,4 +48,4 @@ Bytes write_models(const std::array<ModelBank, kModelParts>& banks, std::uint8_t
 /// Errors: malformed.
 Result<std::array<ModelBank, kModelParts>> read_models(ByteView file, std::uint8_t number);
 
-}  // namespace watertight
+}  // namespace watertight::codec

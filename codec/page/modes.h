@@ -9,16 +9,16 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "codec/entropy/entropy_stream.h"
-#include "codec/page/integer_solid.h"
 #include "codec/entropy/model_bank.h"
 #include "codec/mode_parallelogram/vertex_coder.h"
+#include "codec/page/integer_solid.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// What a mode chose for a solid when it was measured: writing takes the same instead of choosing
 /// again.
 struct WriterChoice {
-  std::optional<VertexOptions> vertex_options;  // of mode parallelogram
+  std::optional<parallelogram::VertexOptions> vertex_options;  // of mode parallelogram
 };
 
 /// What every mode takes. `memory` is only looked at; the caller extends it after each solid.
@@ -29,16 +29,22 @@ struct WriterChoice {
 using CodeSolid = Status(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
                          IntegerSolid& solid, WriterChoice& choice, const Limits& limits);
 
+}  // namespace watertight::codec
+
 /// Mode `polygon` (B): connectivity first, then coordinates by planes and right angles.
-const ModelLayout& polygon_layout();
-CodeSolid code_polygon;
+namespace watertight::codec::polygon {
+const ModelLayout& model_layout();
+CodeSolid code_solid;
+}  // namespace watertight::codec::polygon
 
 /// Mode `walk` (A): columns of coordinates, then the boundary among the Delaunay faces.
-const ModelLayout& walk_layout();
-CodeSolid code_walk;
+namespace watertight::codec::walk {
+const ModelLayout& model_layout();
+CodeSolid code_solid;
+}  // namespace watertight::codec::walk
 
 /// Mode `parallelogram`: a front over triangles, each vertex predicted from those around it.
-const ModelLayout& parallelogram_layout();
-CodeSolid code_parallelogram;
-
-}  // namespace watertight
+namespace watertight::codec::parallelogram {
+const ModelLayout& model_layout();
+CodeSolid code_solid;
+}  // namespace watertight::codec::parallelogram

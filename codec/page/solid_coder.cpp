@@ -13,7 +13,7 @@
 #include "codec/page/facet_listing.h"
 #include "codec/page/source_order.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 enum Family : std::uint32_t { kImplied, kProof, kKind, kOneStep, kPhase, kMode, kOrigin, kOrder };
@@ -109,28 +109,30 @@ std::size_t section_count(Mode mode, std::uint8_t flags) {
   return 3U + ((flags & kHasSteiner) != 0 ? 1U : 0U) + ((flags & kHasUnrecovered) != 0 ? 1U : 0U);
 }
 
-Result<Composition> compose_plain(Mode mode, const PlainSections& plain, const Limits& limits) {
+Result<bitmap::Composition> compose_plain(Mode mode, const PlainSections& plain,
+                                          const Limits& limits) {
   if (mode == Mode::raw) {
     auto vertices = read_vertices(plain.sections[0], limits);
     if (!vertices) return vertices.error();
     auto arrays =
         read_facet_listing(plain.sections[1], static_cast<Index>(vertices->size()), limits);
     if (!arrays) return arrays.error();
-    Composition result;
+    bitmap::Composition result;
     result.arrays = std::move(arrays).value();
     result.arrays.vertices = std::move(vertices).value();
     return result;
   }
   const auto has = [&](BlobFlag flag) { return (plain.flags & flag) != 0; };
-  BitmapSections parts;
+  bitmap::BitmapSections parts;
   std::size_t next = 0;
   parts.vertices = plain.sections[next++];
   if (has(kHasSteiner)) parts.steiner = plain.sections[next++];
   parts.bitmap = plain.sections[next++];
   if (has(kHasUnrecovered)) parts.unrecovered = plain.sections[next++];
   parts.facets = plain.sections[next++];
-  parts.bitmap_coding = has(kCodedBitmap) ? BitCoding::arithmetic : BitCoding::plain;
-  parts.facet_coding = has(kCodedFacets) ? BitCoding::arithmetic : BitCoding::plain;
+  parts.bitmap_coding =
+      has(kCodedBitmap) ? bitmap::BitCoding::arithmetic : bitmap::BitCoding::plain;
+  parts.facet_coding = has(kCodedFacets) ? bitmap::BitCoding::arithmetic : bitmap::BitCoding::plain;
   parts.lists_facets = has(kExplicitFacets);
   if ((has(kHasSteiner) && parts.steiner.empty()) ||
       (has(kHasUnrecovered) && parts.unrecovered.empty())) {
@@ -139,17 +141,17 @@ Result<Composition> compose_plain(Mode mode, const PlainSections& plain, const L
   if (parts.lists_facets && has(kCodedFacets)) {
     return Error{ErrorCode::malformed, "the facet section has two codings"};
   }
-  return compose(parts, limits);
+  return bitmap::compose(parts, limits);
 }
 
 /// The canonical solid of arrays in any order; nothing that is not closed.
-Result<CanonicalSolid> canonical_of(Result<Solid> solid) {
+Result<geometry::CanonicalSolid> canonical_of(Result<Solid> solid) {
   if (!solid) return solid.error();
   auto boundary = OrientedBoundary::make(std::move(solid).value());
   if (!boundary) {
     return Error{ErrorCode::malformed, "no closed boundary: " + boundary.error().message};
   }
-  CanonicalSolid canonical = canonical_form(*boundary);
+  geometry::CanonicalSolid canonical = geometry::canonical_form(*boundary);
   return canonical;
 }
 
@@ -172,11 +174,11 @@ struct ModeCoder {
 ModeCoder coder_of(Mode mode) {
   switch (mode) {
     case Mode::walk:
-      return {ModelPart::walk, code_walk};
+      return {ModelPart::walk, walk::code_solid};
     case Mode::polygon:
-      return {ModelPart::polygon, code_polygon};
+      return {ModelPart::polygon, polygon::code_solid};
     case Mode::parallelogram:
-      return {ModelPart::parallelogram, code_parallelogram};
+      return {ModelPart::parallelogram, parallelogram::code_solid};
     default:
       return {ModelPart::frame, nullptr};
   }
@@ -340,8 +342,8 @@ Status SolidCoder::code_order(PageSolid& solid) {
       models_[ModelPart::frame].code(stream_, kOrder, 0, {last_order_}, solid.keeps_order);
   last_order_ = solid.keeps_order ? 1 : 0;
   if (!solid.keeps_order) return Done{};
-  watertight::code_order(stream_, models_[ModelPart::order], 0, solid.canonical->boundary.solid(),
-                         solid.canonical->order);
+  watertight::codec::code_order(stream_, models_[ModelPart::order], 0,
+                                solid.canonical->boundary.solid(), solid.canonical->order);
   if (stream_.is_reading() && solid.canonical->order.is_identity()) {
     return Error{ErrorCode::malformed, "an order that orders nothing"};
   }
@@ -406,4 +408,4 @@ Mode SolidCoder::cheapest_mode(PageSolid& solid) const {
   return best;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -8,14 +8,14 @@
 #include <optional>
 
 #include "codec/blob.h"
-#include "codec/mode_bitmap/compose.h"
 #include "codec/entropy/entropy_stream.h"
+#include "codec/mode_bitmap/compose.h"
 #include "codec/page/integer_solid.h"
 #include "codec/page/model_sets.h"
 #include "codec/page/modes.h"
 #include "geometry/canonical_form.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// What the solids of a page share.
 struct Frame {
@@ -41,7 +41,7 @@ struct PlainSections {
 struct PageSolid {
   Mode mode = Mode::raw;
   /// Reading: made by code(). With the identity as its order unless it keeps one.
-  std::optional<CanonicalSolid> canonical;
+  std::optional<geometry::CanonicalSolid> canonical;
   bool keeps_order = false;
   GriddedSolid gridded;        // of raw and bitmap only the origin counts
   bool has_grid = false;       // writing: it may take the modes for integers
@@ -49,7 +49,7 @@ struct PageSolid {
   WriterChoice choice;         // writing: made by cost()
   PlainSections plain;
   /// What mode bitmap found, when reading.
-  Composition composition;
+  bitmap::Composition composition;
   /// What each StreamPart took, in 1/65536 bit.
   std::array<std::uint64_t, kStreamParts> costs{};
 };
@@ -92,4 +92,4 @@ class SolidCoder {
   std::uint32_t last_order_ = 0;
 };
 
-}  // namespace watertight
+}  // namespace watertight::codec

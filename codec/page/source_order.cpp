@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 enum Family : std::uint32_t { kStraight, kCandidate, kScan, kStart };
@@ -78,7 +78,7 @@ std::uint32_t sign_of(double from, double to) { return to < from ? 0U : to > fro
 class OrderCoder {
  public:
   OrderCoder(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family, const Solid& solid,
-             SourceOrder& order)
+             geometry::SourceOrder& order)
       : stream_(stream), bank_(bank), first_(first_family), solid_(solid), order_(order) {}
 
   void run() {
@@ -454,7 +454,7 @@ class OrderCoder {
   ModelBank& bank_;
   std::uint32_t first_;
   const Solid& solid_;
-  SourceOrder& order_;
+  geometry::SourceOrder& order_;
   std::vector<Index> source_facet_;   // source facet -> canonical
   std::vector<Index> source_ring_;    // source ring -> canonical
   std::vector<Index> facet_of_ring_;  // canonical
@@ -481,8 +481,8 @@ class OrderCoder {
 std::span<const FamilyShape> order_families() { return kShapes; }
 
 void code_order(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family,
-                const Solid& canonical, SourceOrder& order) {
+                const Solid& canonical, geometry::SourceOrder& order) {
   OrderCoder(stream, bank, first_family, canonical, order).run();
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

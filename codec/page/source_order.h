@@ -14,7 +14,7 @@
 #include "codec/entropy/model_bank.h"
 #include "geometry/canonical_form.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// The families of decisions, to be put into the layout of a bank (also one that lives for a whole
 /// page). They have no numbers.
@@ -25,6 +25,6 @@ std::span<const FamilyShape> order_families();
 /// canonical_form(). When the stream has failed `order` is of permutations all the same.
 /// Cost: O(n log n), and for facets that follow no habit up to 64 decisions each.
 void code_order(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family,
-                const Solid& canonical, SourceOrder& order);
+                const Solid& canonical, geometry::SourceOrder& order);
 
-}  // namespace watertight
+}  // namespace watertight::codec

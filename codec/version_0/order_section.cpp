@@ -8,7 +8,7 @@
 #include "base/assert.h"
 #include "codec/mode_bitmap/bit_coder.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 /// The elements 0 .. size-1 that are left, with rank and selection (a Fenwick tree). O(log size).
@@ -51,14 +51,14 @@ class Remaining {
 /// Models of one kind of permutation: does the next element follow the last one, given whether the
 /// last one did?
 struct PermutationModel {
-  AdaptiveBit jumps[2];
+  bitmap::AdaptiveBit jumps[2];
 };
 
 /// One pass over the order section, writing or reading: both must take the same steps.
 class Coder {
  public:
-  explicit Coder(BitEncoder& encoder) : encoder_(&encoder) {}
-  explicit Coder(BitDecoder& decoder) : decoder_(&decoder) {}
+  explicit Coder(bitmap::BitEncoder& encoder) : encoder_(&encoder) {}
+  explicit Coder(bitmap::BitDecoder& decoder) : decoder_(&decoder) {}
 
   bool failed() const { return decoder_ != nullptr && decoder_->failed(); }
 
@@ -84,7 +84,7 @@ class Coder {
     }
   }
 
-  bool flag(bool value, AdaptiveBit& model) {
+  bool flag(bool value, bitmap::AdaptiveBit& model) {
     if (decoder_ != nullptr) return decoder_->bit(model);
     encoder_->bit(value, model);
     return value;
@@ -97,8 +97,8 @@ class Coder {
   }
 
  private:
-  BitEncoder* encoder_ = nullptr;
-  BitDecoder* decoder_ = nullptr;
+  bitmap::BitEncoder* encoder_ = nullptr;
+  bitmap::BitDecoder* decoder_ = nullptr;
 };
 
 std::vector<Index> inverse_of(const std::vector<Index>& order) {
@@ -127,7 +127,7 @@ void code_members(Coder& coder, std::vector<Index>& source, IndexRange members, 
   }
 }
 
-void code_shells_and_facets(Coder& coder, const Solid& solid, SourceOrder& order) {
+void code_shells_and_facets(Coder& coder, const Solid& solid, geometry::SourceOrder& order) {
   PermutationModel shell_model;
   PermutationModel facet_model;
   PermutationModel ring_model;
@@ -149,8 +149,8 @@ void code_shells_and_facets(Coder& coder, const Solid& solid, SourceOrder& order
   }
 }
 
-void code_ring_starts(Coder& coder, const Solid& solid, SourceOrder& order) {
-  AdaptiveBit is_moved;
+void code_ring_starts(Coder& coder, const Solid& solid, geometry::SourceOrder& order) {
+  bitmap::AdaptiveBit is_moved;
   for (const Index ring : inverse_of(order.ring)) {
     const auto size = static_cast<Index>(solid.ring(ring).size());
     Index& start = order.ring_start[ring];
@@ -161,7 +161,7 @@ void code_ring_starts(Coder& coder, const Solid& solid, SourceOrder& order) {
 }
 
 /// Canonical vertices in the order in which the source's rings first use them; then unused ones.
-std::vector<Index> first_use(const Solid& solid, const SourceOrder& order) {
+std::vector<Index> first_use(const Solid& solid, const geometry::SourceOrder& order) {
   std::vector<Index> sequence;
   sequence.reserve(solid.vertex_count());
   std::vector<bool> is_seen(solid.vertex_count(), false);
@@ -179,7 +179,7 @@ std::vector<Index> first_use(const Solid& solid, const SourceOrder& order) {
   return sequence;
 }
 
-void code_vertices(Coder& coder, const Solid& solid, SourceOrder& order) {
+void code_vertices(Coder& coder, const Solid& solid, geometry::SourceOrder& order) {
   const std::vector<Index> predicted = first_use(solid, order);
   const std::vector<Index> place = inverse_of(predicted);
   std::vector<Index> sequence(order.vertex.size(), 0);  // source vertex -> place in `predicted`
@@ -194,7 +194,7 @@ void code_vertices(Coder& coder, const Solid& solid, SourceOrder& order) {
   }
 }
 
-void code_order(Coder& coder, const Solid& solid, SourceOrder& order) {
+void code_order(Coder& coder, const Solid& solid, geometry::SourceOrder& order) {
   code_shells_and_facets(coder, solid, order);
   if (!coder.failed()) code_ring_starts(coder, solid, order);
   if (!coder.failed()) code_vertices(coder, solid, order);
@@ -202,19 +202,19 @@ void code_order(Coder& coder, const Solid& solid, SourceOrder& order) {
 
 }  // namespace
 
-Bytes write_order(const Solid& canonical, const SourceOrder& order) {
-  BitEncoder encoder(BitCoding::arithmetic);
+Bytes write_order(const Solid& canonical, const geometry::SourceOrder& order) {
+  bitmap::BitEncoder encoder(bitmap::BitCoding::arithmetic);
   Coder coder(encoder);
-  SourceOrder copy = order;
+  geometry::SourceOrder copy = order;
   code_order(coder, canonical, copy);
   WATERTIGHT_ASSERT(copy == order);
   return std::move(encoder).finish();
 }
 
-Result<SourceOrder> read_order(ByteView section, const Solid& canonical) {
-  BitDecoder decoder(section, BitCoding::arithmetic);
+Result<geometry::SourceOrder> read_order(ByteView section, const Solid& canonical) {
+  bitmap::BitDecoder decoder(section, bitmap::BitCoding::arithmetic);
   Coder coder(decoder);
-  SourceOrder order;
+  geometry::SourceOrder order;
   order.vertex.assign(canonical.vertex_count(), kNone);
   order.shell.assign(canonical.shell_count(), kNone);
   order.facet.assign(canonical.facet_count(), kNone);
@@ -227,4 +227,4 @@ Result<SourceOrder> read_order(ByteView section, const Solid& canonical) {
   return order;
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -4,18 +4,18 @@
 #include <string>
 #include <utility>
 
-#include "codec/page/blob_header.h"
 #include "codec/mode_bitmap/compose.h"
+#include "codec/page/blob_header.h"
 #include "codec/page/coordinates.h"
 #include "codec/page/facet_listing.h"
 #include "codec/version_0/order_section.h"
 
-namespace watertight {
+namespace watertight::codec {
 namespace {
 
 /// The sections of a blob, found but not read.
 struct Sections {
-  BitmapSections parts;
+  bitmap::BitmapSections parts;
   ByteView order;
   std::uint32_t checksum = 0;
   std::vector<BlobInfo::Part> sizes;
@@ -46,7 +46,7 @@ Result<Sections> find_sections(ByteReader& reader, const BlobHeader& header) {
   Sections sections;
   sections.sizes.push_back({"header", static_cast<double>(reader.position())});
   SectionReader section(reader, sections);
-  BitmapSections& parts = sections.parts;
+  bitmap::BitmapSections& parts = sections.parts;
   parts.vertices = section.take("vertices");
   if (header.mode == Mode::bitmap) {
     if (header.has(kHasSteiner)) parts.steiner = section.take("steiner");
@@ -68,41 +68,43 @@ Result<Sections> find_sections(ByteReader& reader, const BlobHeader& header) {
   if (header.has(kExplicitFacets) && header.has(kCodedFacets)) {
     return Error{ErrorCode::malformed, "the facet section has two codings"};
   }
-  parts.bitmap_coding = header.has(kCodedBitmap) ? BitCoding::arithmetic : BitCoding::plain;
-  parts.facet_coding = header.has(kCodedFacets) ? BitCoding::arithmetic : BitCoding::plain;
+  parts.bitmap_coding =
+      header.has(kCodedBitmap) ? bitmap::BitCoding::arithmetic : bitmap::BitCoding::plain;
+  parts.facet_coding =
+      header.has(kCodedFacets) ? bitmap::BitCoding::arithmetic : bitmap::BitCoding::plain;
   parts.lists_facets = header.has(kExplicitFacets);
   return sections;
 }
 
-Result<Composition> read_raw(const BitmapSections& sections, const Limits& limits) {
+Result<bitmap::Composition> read_raw(const bitmap::BitmapSections& sections, const Limits& limits) {
   auto vertices = read_vertices(sections.vertices, limits);
   if (!vertices) return vertices.error();
   auto arrays = read_facet_listing(sections.facets, static_cast<Index>(vertices->size()), limits);
   if (!arrays) return arrays.error();
-  Composition result;
+  bitmap::Composition result;
   result.arrays = std::move(arrays).value();
   result.arrays.vertices = std::move(vertices).value();
   return result;
 }
 
 /// The canonical solid of what was read; listed facets must be canonical already.
-Result<CanonicalSolid> canonical_solid(SolidArrays arrays, const BlobHeader& header,
-                                       bool must_be_canonical, const Limits& limits) {
+Result<geometry::CanonicalSolid> canonical_solid(SolidArrays arrays, const BlobHeader& header,
+                                                 bool must_be_canonical, const Limits& limits) {
   auto solid = Solid::make(std::move(arrays), header.lattice, header.srid, limits);
   if (!solid) return solid.error();
   auto boundary = OrientedBoundary::make(std::move(solid).value());
   if (!boundary) {
     return Error{ErrorCode::malformed, "no closed boundary: " + boundary.error().message};
   }
-  CanonicalSolid canonical = canonical_form(*boundary);
+  geometry::CanonicalSolid canonical = geometry::canonical_form(*boundary);
   if (must_be_canonical && !canonical.order.is_identity()) {
     return Error{ErrorCode::malformed, "the listed facets are not in canonical order"};
   }
   return canonical;
 }
 
-BlobInfo info_of(const BlobHeader& header, const Composition& composition, const Solid& solid,
-                 Sections sections) {
+BlobInfo info_of(const BlobHeader& header, const bitmap::Composition& composition,
+                 const Solid& solid, Sections sections) {
   BlobInfo info;
   info.version = 0;
   info.mode = header.mode;
@@ -123,8 +125,9 @@ BlobInfo info_of(const BlobHeader& header, const Composition& composition, const
   return info;
 }
 
-Result<SourceOrder> order_of(const BlobHeader& header, ByteView section, const Solid& canonical) {
-  if (!header.has(kHasOrder)) return SourceOrder{};
+Result<geometry::SourceOrder> order_of(const BlobHeader& header, ByteView section,
+                                       const Solid& canonical) {
+  if (!header.has(kHasOrder)) return geometry::SourceOrder{};
   auto order = read_order(section, canonical);
   if (order && order->is_identity()) {
     return Error{ErrorCode::malformed, "an order section that orders nothing"};
@@ -141,7 +144,8 @@ Result<Decoded> decode_version_0(ByteView blob, const Limits& limits) {
   auto sections = find_sections(reader, *header);
   if (!sections) return sections.error();
   const bool is_raw = header->mode == Mode::raw;
-  auto composition = is_raw ? read_raw(sections->parts, limits) : compose(sections->parts, limits);
+  auto composition =
+      is_raw ? read_raw(sections->parts, limits) : bitmap::compose(sections->parts, limits);
   if (!composition) return composition.error();
   auto canonical = canonical_solid(std::move(composition->arrays), *header,
                                    is_raw || sections->parts.lists_facets, limits);
@@ -154,9 +158,9 @@ Result<Decoded> decode_version_0(ByteView blob, const Limits& limits) {
   }
   BlobInfo info = info_of(*header, *composition, solid, std::move(sections).value());
   if (!header->has(kHasOrder)) return Decoded{solid, std::move(info)};
-  auto restored = restore_order(solid, *order);
+  auto restored = geometry::restore_order(solid, *order);
   if (!restored) return restored.error();
   return Decoded{std::move(restored).value(), std::move(info)};
 }
 
-}  // namespace watertight
+}  // namespace watertight::codec

@@ -6,9 +6,9 @@
 
 #include "codec/blob.h"
 
-namespace watertight {
+namespace watertight::codec {
 
 /// Errors: as decode().
 Result<Decoded> decode_version_0(ByteView blob, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::codec

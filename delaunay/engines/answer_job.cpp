@@ -3,7 +3,7 @@
 
 #include "delaunay/engines/engine.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 /// CPU time of this thread in seconds; engines have no other. The clock of a process that has a
@@ -25,4 +25,4 @@ Bytes answer_job(ByteView request) {
   return write_answer(answer);
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -13,7 +13,7 @@
 
 #include "delaunay/engines/engine.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -101,4 +101,4 @@ CdtAnswer constrained_delaunay(const CdtJob& job) {
   return answer;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

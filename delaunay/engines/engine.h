@@ -7,7 +7,7 @@
 
 #include "delaunay/cdt_frames.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 /// Guarantees nothing: the ladder checks every answer with its certificate. May throw whatever the
 /// engine throws; the process is replaced then.
@@ -16,4 +16,4 @@ CdtAnswer constrained_delaunay(const CdtJob& job);
 /// Bytes of a job to bytes of an answer, for serve_jobs().
 Bytes answer_job(ByteView request);
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -16,7 +16,7 @@
 
 #include "delaunay/engines/engine.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 namespace {
 
 // p: constrain to the facets; c: keep the convex hull, the regions are flooded by the certificate;
@@ -66,7 +66,7 @@ Tetrahedralization collect(const tetgenio& output, const std::vector<Point>& ver
         {output.pointlist[3 * i], output.pointlist[3 * i + 1], output.pointlist[3 * i + 2]});
   }
   for (std::size_t t = 0; t < checked_count(output.numberoftetrahedra); ++t) {
-    Tetrahedron& tetrahedron = result.tetrahedra.emplace_back();
+    geometry::Tetrahedron& tetrahedron = result.tetrahedra.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) {
       tetrahedron[k] = static_cast<Index>(output.tetrahedronlist[4 * t + k]);
     }
@@ -104,4 +104,4 @@ CdtAnswer constrained_delaunay(const CdtJob& job) {
   return answer;
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

@@ -5,4 +5,4 @@
 #include "delaunay/engines/engine.h"
 #include "workers/worker_pool.h"
 
-int main() { return watertight::serve_jobs(watertight::answer_job); }
+int main() { return watertight::workers::serve_jobs(watertight::delaunay::answer_job); }

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 const Json* list_of(const Json* appearance, std::string_view name) {
@@ -136,4 +136,4 @@ Json AppearanceCollector::take(const Json* themes) {
   return appearance.empty() ? Json(nullptr) : appearance;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -10,7 +10,7 @@
 
 #include "formats/text/json.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// A growing list of distinct JSON values.
 class DistinctValues {
@@ -46,4 +46,4 @@ class AppearanceCollector {
   DistinctValues texture_vertices_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -9,7 +9,7 @@
 #include "formats/city_json/model.h"
 #include "geometry/canonical_form.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 constexpr std::array<std::string_view, 7> kRootMembers{
@@ -60,7 +60,7 @@ void keep_reference(Json& root) {
 /// A solid as it was submitted, and where its parts are in the canonical form.
 struct Arranged {
   const Solid* source = nullptr;
-  SourceOrder order;
+  geometry::SourceOrder order;
   std::vector<Index> document_vertex;  // canonical vertex -> vertex of the new document
 };
 
@@ -168,7 +168,7 @@ class Canonicalizer {
   }
 
   Status add(const Solid& source, const std::vector<Index>& document_vertices) {
-    const MergedSolid merged = merge_equal_vertices(source);
+    const geometry::MergedSolid merged = geometry::merge_equal_vertices(source);
     auto boundary = OrientedBoundary::make(merged.solid);
     if (!boundary) return std::move(boundary).error();
     std::vector<Index> number(merged.solid.vertex_count(), kNone);
@@ -177,7 +177,7 @@ class Canonicalizer {
       Index& known = number[merged.vertex_of[vertex]];
       known = std::min(known, number_of_[document_vertices[vertex]]);
     }
-    Arranged solid{&source, canonical_form(*boundary).order, {}};
+    Arranged solid{&source, geometry::canonical_form(*boundary).order, {}};
     for (const Index vertex : solid.order.vertex) {
       if (number[vertex] == kNone) number[vertex] = next_++;
       solid.document_vertex.push_back(number[vertex]);
@@ -298,4 +298,4 @@ Result<std::string> boundary_header(std::string_view header) {
   return json_text(*root);
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

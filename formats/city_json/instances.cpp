@@ -7,7 +7,7 @@
 #include "formats/city_json/model.h"
 #include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 Error wrong(std::string message, std::string pointer) {
@@ -41,16 +41,17 @@ Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const Instan
     return wrong("a geometry instance needs the vertex it stands on", pointer);
   }
   const VertexList& list = model.vertices;
-  auto points = list.are_integers ? lattice_of_integers({&list.integers[*vertex], 1},
-                                                        header.transform.value_or(Transform{}))
-                                  : lattice_of_decimals({&list.decimals[*vertex], 1});
+  auto points = list.are_integers ? geometry::lattice_of_integers(
+                                        {&list.integers[*vertex], 1},
+                                        header.transform.value_or(geometry::Transform{}))
+                                  : geometry::lattice_of_decimals({&list.decimals[*vertex], 1});
   if (!points) return wrong(points.error().message, pointer);
   // The one point is the origin of its lattice, unless it is beyond all decimal grids.
   if (points->lattice.kind == LatticeKind::decimal) return points->lattice.origin;
   std::array<GridNumber, 3> anchor;
   for (int axis = 0; axis < 3; ++axis) {
     const double place = points->lattice.world(points->points.front()[axis], axis);
-    anchor[static_cast<std::size_t>(axis)] = shortest_decimal(place);
+    anchor[static_cast<std::size_t>(axis)] = geometry::shortest_decimal(place);
   }
   return anchor;
 }
@@ -109,4 +110,4 @@ Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
   return instances;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

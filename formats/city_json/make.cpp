@@ -7,7 +7,7 @@
 #include "formats/city_json/model.h"
 #include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 // The grid that holds all solids: the finest step, no translation.
@@ -110,4 +110,4 @@ Result<Document> as_city_model(const Document& document) {
   return model;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -6,7 +6,7 @@
 #include "formats/city_json/model.h"
 #include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 Error wrong(std::string message, std::string pointer) {
@@ -33,8 +33,8 @@ Status read_axes(const Json& transform, std::string_view name, std::array<GridNu
   return Done{};
 }
 
-Result<Transform> read_transform(const Json& value) {
-  Transform transform;
+Result<geometry::Transform> read_transform(const Json& value) {
+  geometry::Transform transform;
   if (auto status = read_axes(value, "scale", transform.scale); !status) return status.error();
   if (auto status = read_axes(value, "translate", transform.translate); !status) {
     return status.error();
@@ -258,4 +258,4 @@ Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t templa
   return index;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

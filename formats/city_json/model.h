@@ -23,7 +23,7 @@
 #include "formats/document.h"
 #include "formats/text/json.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// A geometry of a city object whose boundaries were captured.
 struct GeometryRef {
@@ -151,4 +151,4 @@ Result<std::string> write_city_json_seq(const Document& document);
 /// finest decimal grid among them. Errors: unsupported for coordinates on no decimal grid.
 Result<Document> as_city_model(const Document& document);
 
-}  // namespace watertight
+}  // namespace watertight::formats

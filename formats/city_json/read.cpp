@@ -6,7 +6,7 @@
 #include "formats/feature_reader.h"
 #include "formats/text/text_layout.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 struct ReadModel {
@@ -285,4 +285,4 @@ Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& op
   return document;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -10,7 +10,7 @@
 
 #include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 enum class Role : std::uint8_t {
@@ -371,4 +371,4 @@ Result<Json> parse_json(std::string_view text, const Limits& limits) {
   return std::move(model->root);
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -18,7 +18,7 @@
 #include "geometry/lattice.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// Nested arrays of vertex indices as a flat sequence: an index, or one of these two.
 using BoundaryToken = std::uint32_t;
@@ -49,12 +49,12 @@ struct CityModel {
   }
 };
 
-/// Documents come from outside; in a skeleton (formats/city_json/model.h) `vertices` and the boundaries
-/// of solids are objects, which stay Json values.
+/// Documents come from outside; in a skeleton (formats/city_json/model.h) `vertices` and the
+/// boundaries of solids are objects, which stay Json values.
 enum class CityText : std::uint8_t { document, skeleton };
 
 /// Errors: malformed with byte offset (syntax, UTF-8) or JSON Pointer (content); limit_exceeded.
 /// Cost: linear.
 Result<CityModel> parse_city_model(std::string_view text, CityText kind, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -3,7 +3,7 @@
 
 #include "formats/city_json/model.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 void append_geometry(std::string& out, const Json& geometry, const BoundaryPrinter& print) {
@@ -133,4 +133,4 @@ std::string skeleton_vertices(const CityModel& model, std::size_t count,
   return out + "]}";
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

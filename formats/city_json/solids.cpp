@@ -5,7 +5,7 @@
 #include "formats/city_json/model.h"
 #include "formats/surface.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 // The pointer to the token at `position`, found again from the start: for errors only.
@@ -142,19 +142,19 @@ Result<std::vector<CutSolid>> cut_solids(const CityModel& model, const ModelInde
   return all;
 }
 
-Result<LatticePoints> lattice_of(const CityModel& model, std::span<const Index> used,
-                                 const CityHeader& header) {
+Result<geometry::LatticePoints> lattice_of(const CityModel& model, std::span<const Index> used,
+                                           const CityHeader& header) {
   const VertexList& list = model.vertices;
   if (!list.are_integers) {
     std::vector<std::array<GridNumber, 3>> decimals;
     decimals.reserve(used.size());
     for (const Index vertex : used) decimals.push_back(list.decimals[vertex]);
-    return lattice_of_decimals(decimals);
+    return geometry::lattice_of_decimals(decimals);
   }
   std::vector<std::array<std::int64_t, 3>> integers;
   integers.reserve(used.size());
   for (const Index vertex : used) integers.push_back(list.integers[vertex]);
-  return lattice_of_integers(integers, header.transform.value_or(Transform{}));
+  return geometry::lattice_of_integers(integers, header.transform.value_or(geometry::Transform{}));
 }
 
 // Puts the cut solids of one top-level object on their common lattice.
@@ -215,7 +215,7 @@ class FeatureLattice {
     return error;
   }
 
-  Result<CitySolid> make(CutSolid& cut, const LatticePoints& lattice,
+  Result<CitySolid> make(CutSolid& cut, const geometry::LatticePoints& lattice,
                          const std::vector<bool>& is_rounded) {
     std::vector<Index> rounded;
     cut.arrays.vertices.reserve(cut.vertex_of.size());
@@ -270,4 +270,4 @@ Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIn
   return solids;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

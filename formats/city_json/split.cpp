@@ -5,7 +5,7 @@
 #include "formats/city_json/appearance.h"
 #include "formats/city_json/model.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 // The vertices of one feature, numbered in order of first use.
@@ -194,4 +194,4 @@ Result<std::vector<Feature>> split_city_model(CityModel model, const ModelIndex&
   return Splitter(std::move(model), index, std::move(solids), header).split();
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

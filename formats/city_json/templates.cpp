@@ -5,7 +5,7 @@
 #include "formats/city_json/model.h"
 #include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 constexpr std::string_view kTemplates = "/geometry-templates/templates";
@@ -149,4 +149,4 @@ Result<std::vector<SubmittedSolid>> read_geometry_templates(const CityHeader& he
   return submitted;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

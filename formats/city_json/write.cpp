@@ -8,7 +8,7 @@
 #include "formats/text/numbers.h"
 #include "formats/text/text_layout.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 Error unfit(std::string message) {
@@ -33,14 +33,13 @@ std::string vertex_text(const std::array<std::string, 3>& axes) {
 }
 
 // The texts of the solid's vertices: grid integers, or decimals that look like decimals.
-Result<std::vector<std::string>> solid_vertex_texts(const Solid& solid,
-                                                    const std::optional<Transform>& transform,
-                                                    bool are_integers) {
+Result<std::vector<std::string>> solid_vertex_texts(
+    const Solid& solid, const std::optional<geometry::Transform>& transform, bool are_integers) {
   std::vector<std::string> texts;
   texts.reserve(solid.vertex_count());
   if (are_integers || transform) {
-    auto integers =
-        integers_under(solid.lattice(), solid.vertices(), transform.value_or(Transform{}));
+    auto integers = geometry::integers_under(solid.lattice(), solid.vertices(),
+                                             transform.value_or(geometry::Transform{}));
     if (!integers) {
       return Error{ErrorCode::unsupported,
                    integers.error().message + ": the coordinates had to be rounded"};
@@ -410,4 +409,4 @@ Result<std::string> write_city_json_seq(const Document& document) {
   return out;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 struct KnownGeometry {
@@ -119,4 +119,4 @@ char lod_of(std::string_view property) {
   return is_lod ? property[3] : '\0';
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

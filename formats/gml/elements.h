@@ -8,7 +8,7 @@
 
 #include "formats/gml/model.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 inline constexpr std::string_view kXlinkSpace = "http://www.w3.org/1999/xlink";
 
@@ -33,4 +33,4 @@ bool is_geometry_property(std::string_view name);
 /// 'n' of a property named "lodn...", '\0' without.
 char lod_of(std::string_view property);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -12,10 +12,10 @@
 
 #include "formats/gml/model.h"
 #include "formats/gml/shapes.h"
-#include "formats/text/numbers.h"
 #include "formats/surface.h"
+#include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 struct Draft {
@@ -24,7 +24,7 @@ struct Draft {
 };
 
 // "1 0 0 0 ...", row by row; the shift is that of the matrix alone.
-Result<Placement> read_placement(std::string_view text) {
+Result<geometry::Placement> read_placement(std::string_view text) {
   std::vector<GridNumber> numbers;
   for (std::size_t at = 0; at < text.size() && numbers.size() <= kMatrixSize;) {
     const std::size_t begin = text.find_first_not_of(" \t\r\n", at);
@@ -285,7 +285,7 @@ class GmlReader {
       if (*system != kNone && feature.srid == 0) unknown_systems_.insert(model_.systems[*system]);
       put_longitude_first(*system);
     }
-    auto points = lattice_of_decimals(positions_.values);
+    auto points = geometry::lattice_of_decimals(positions_.values);
     if (!points) return error_at(first.solid.place, points.error().code, points.error().message);
     std::vector<bool> is_rounded(points->points.size(), false);
     for (const Index position : points->rounded) is_rounded[position] = true;
@@ -294,7 +294,7 @@ class GmlReader {
       const std::size_t begin = drafts_[i].solid.first_position;
       const std::size_t end =
           i + 1 < drafts_.size() ? drafts_[i + 1].solid.first_position : points->points.size();
-      LatticePoints own{points->lattice, {}, {}};
+      geometry::LatticePoints own{points->lattice, {}, {}};
       own.points.assign(points->points.begin() + static_cast<std::ptrdiff_t>(begin),
                         points->points.begin() + static_cast<std::ptrdiff_t>(end));
       for (std::size_t k = begin; k < end; ++k) {
@@ -306,7 +306,7 @@ class GmlReader {
     return Done{};
   }
 
-  Status place(Draft& draft, const LatticePoints& points, Feature& feature) {
+  Status place(Draft& draft, const geometry::LatticePoints& points, Feature& feature) {
     auto solid = solid_of_points(std::move(draft.solid.arrays), points, std::move(draft.source),
                                  feature.srid, limits_);
     if (!solid) {
@@ -364,4 +364,4 @@ Result<Document> read_gml(ByteView bytes, const Limits& limits) {
   return GmlReader(*model, bytes.size(), limits).read();
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

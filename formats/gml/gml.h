@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "formats/document.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// A feature per top-level object that owns a solid, with the solids of its descendants.
 /// Errors: malformed, unsupported, limit_exceeded; with byte offset, line, and gml:id where there
@@ -30,4 +30,4 @@ std::uint32_t srid_of_srs_name(std::string_view name);
 /// it. Other forms ("EPSG:4326", ".../gml/srs/epsg.xml#4326") mean x, y.
 bool is_in_order_of_authority(std::string_view name);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -7,7 +7,7 @@
 
 #include "formats/gml/elements.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
@@ -505,4 +505,4 @@ Result<GmlModel> read_gml_model(ByteView bytes, const Limits& limits) {
   return builder.take();
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -16,7 +16,7 @@
 #include "formats/gml/xml.h"
 #include "geometry/point.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// What an element is for the solids. A collection of surfaces is any of Shell, CompositeSurface,
 /// MultiSurface, Surface, PolyhedralSurface, TriangulatedSurface and Tin.
@@ -108,4 +108,4 @@ struct GmlModel {
 /// Errors: those of read_xml(). Cost: linear; memory proportional to the document.
 Result<GmlModel> read_gml_model(ByteView bytes, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -8,7 +8,7 @@
 #include "formats/text/numbers.h"
 #include "geometry/crs.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -42,7 +42,7 @@ GmlShapes::GmlShapes(const GmlModel& model, std::uint64_t byte_count, const Limi
   for (const std::string& name : model.systems) {
     srids_.push_back(srid_of_srs_name(name));
     const bool is_ordered = is_in_order_of_authority(name);
-    poles_.push_back(is_ordered ? watertight::pole_of_first_axis(srids_.back()) : 0);
+    poles_.push_back(is_ordered ? watertight::geometry::pole_of_first_axis(srids_.back()) : 0);
   }
 }
 
@@ -284,4 +284,4 @@ Status GmlShapes::close_ring(const GmlNode& ring, std::size_t first, GmlSolid& s
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -16,7 +16,7 @@
 #include "geometry/lattice.h"
 #include "geometry/solid.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// A solid whose ring vertices are positions of their own, counted from `first_position`.
 struct GmlSolid {
@@ -93,4 +93,4 @@ class GmlShapes {
   std::vector<double> poles_;
 };
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -7,7 +7,7 @@
 
 #include "formats/gml/gml.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 struct AdvCode {
@@ -70,4 +70,4 @@ bool is_in_order_of_authority(std::string_view name) {
   return false;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

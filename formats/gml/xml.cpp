@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 // Between namespace and local name in what expat calls a name. Neither can hold it: expat refuses
@@ -149,4 +149,4 @@ Status read_xml(ByteView bytes, XmlHandler& handler, const Limits& limits) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

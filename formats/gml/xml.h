@@ -14,7 +14,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// Where an element starts.
 struct XmlPlace {
@@ -53,4 +53,4 @@ class XmlHandler {
 /// Cost: linear; memory of the depth and the longest token.
 Status read_xml(ByteView bytes, XmlHandler& handler, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -9,7 +9,7 @@
 
 #include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 // Appends the shells of a solid to the arrays, and the exact coordinates of its vertices.
@@ -76,7 +76,7 @@ Result<SubmittedSolid> with_interior_shells(const SubmittedSolid& exterior,
       return status.error();
     }
   }
-  auto points = lattice_of_decimals(positions);
+  auto points = geometry::lattice_of_decimals(positions);
   if (!points) return std::move(points).error();
   // Vertices that no common grid of all shells holds; both lists are short or empty.
   rounded.insert(rounded.end(), points->rounded.begin(), points->rounded.end());
@@ -89,4 +89,4 @@ Result<SubmittedSolid> with_interior_shells(const SubmittedSolid& exterior,
                         std::move(unclosed)};
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

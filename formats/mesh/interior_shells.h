@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "formats/document.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// `exterior` with every shell of `interior` appended as interior shells, in order, on the common
 /// lattice of all. Keeps the source and the reference system of `exterior`. Facets stay oriented as
@@ -21,4 +21,4 @@ Result<SubmittedSolid> with_interior_shells(const SubmittedSolid& exterior,
                                             std::span<const SubmittedSolid> interior,
                                             const Limits& limits = {});
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -6,10 +6,10 @@
 #include <charconv>
 #include <utility>
 
-#include "formats/text/numbers.h"
 #include "formats/surface.h"
+#include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
@@ -77,4 +77,4 @@ Status append_vertex(const TextLine& line, std::span<const std::string_view> wor
   return Done{};
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

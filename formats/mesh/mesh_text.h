@@ -12,7 +12,7 @@
 
 #include "formats/document.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 struct DecimalVertices;
 
@@ -71,4 +71,4 @@ Error error_at(const TextLine& line, std::string_view word, std::string message)
 Status append_vertex(const TextLine& line, std::span<const std::string_view> words,
                      DecimalVertices& vertices);
 
-}  // namespace watertight
+}  // namespace watertight::formats

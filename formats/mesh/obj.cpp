@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "formats/mesh/mesh_text.h"
-#include "formats/text/numbers.h"
 #include "formats/surface.h"
+#include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 // Statements of the format that say nothing about facets of polygons.
@@ -284,4 +284,4 @@ Result<std::string> write_obj(std::span<const Feature> features) {
   return out;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -7,7 +7,7 @@
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 class OffReader {
@@ -154,4 +154,4 @@ Result<std::string> write_off(std::span<const Feature> features) {
   return out;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

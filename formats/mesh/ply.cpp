@@ -11,11 +11,11 @@
 #include <utility>
 
 #include "formats/mesh/mesh_text.h"
-#include "formats/text/numbers.h"
 #include "formats/mesh/ply_header.h"
 #include "formats/surface.h"
+#include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 template <class Float>
@@ -24,7 +24,8 @@ GridNumber shortest_decimal_of(Float value) {
   const auto end =
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific)
           .ptr;
-  const auto parsed = parse_decimal({text.data(), static_cast<std::size_t>(end - text.data())});
+  const auto parsed =
+      geometry::parse_decimal({text.data(), static_cast<std::size_t>(end - text.data())});
   return parsed ? *parsed : GridNumber{};
 }
 
@@ -373,4 +374,4 @@ Result<Document> read_ply(ByteView bytes, const Limits& limits) {
   return PlyReader(*header, BinaryValues(bytes, header->data_begin, is_big_endian), limits).read();
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

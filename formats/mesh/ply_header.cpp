@@ -8,7 +8,7 @@
 
 #include "formats/mesh/mesh_text.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 struct NamedType {
@@ -161,4 +161,4 @@ std::optional<std::size_t> PlyElement::property(std::string_view name_to_find) c
 
 Result<PlyHeader> read_ply_header(ByteView bytes) { return HeaderReader(as_text(bytes)).read(); }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -12,7 +12,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
@@ -47,4 +47,4 @@ struct PlyHeader {
 /// header.
 Result<PlyHeader> read_ply_header(ByteView bytes);
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -11,7 +11,7 @@
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 class PolyReader {
@@ -173,4 +173,4 @@ Result<Document> read_poly(std::string_view text, const Limits& limits) {
   return PolyReader(text, limits).read();
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

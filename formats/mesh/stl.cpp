@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "formats/mesh/mesh_text.h"
-#include "formats/text/numbers.h"
 #include "formats/surface.h"
+#include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 constexpr std::size_t kHeader = 84;  // bytes: 80 of text and the number of triangles
@@ -64,7 +64,8 @@ using FloatKey = std::array<std::uint32_t, 3>;
 GridNumber shortest_decimal_of_float(float value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  const auto parsed = parse_decimal({text.data(), static_cast<std::size_t>(end - text.data())});
+  const auto parsed =
+      geometry::parse_decimal({text.data(), static_cast<std::size_t>(end - text.data())});
   return parsed ? *parsed : GridNumber{};
 }
 
@@ -312,4 +313,4 @@ Result<Document> read_stl(ByteView bytes, const Limits& limits) {
                std::min<std::uint64_t>(bytes.size(), kHeader + kTriangle * count)};
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <utility>
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 void append_double(std::string& out, double value) {
@@ -165,4 +165,4 @@ std::string pointer_token(std::string_view key) {
 
 std::string pointer_token(std::size_t index) { return '/' + std::to_string(index); }
 
-}  // namespace watertight
+}  // namespace watertight::formats

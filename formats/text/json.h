@@ -13,7 +13,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// A JSON value. A value of kind `binary` (which JSON text cannot hold) is the text of a number.
 using Json = nlohmann::ordered_json;
@@ -52,4 +52,4 @@ std::string pointer_token(std::size_t index);
 /// Errors: malformed with byte offset; limit_exceeded beyond limits.nesting and limits.bytes.
 Result<Json> parse_json(std::string_view text, const Limits& limits);
 
-}  // namespace watertight
+}  // namespace watertight::formats

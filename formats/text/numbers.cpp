@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
-namespace watertight {
+namespace watertight::formats {
 
 Result<ExactNumber> exact_number(std::string_view text) {
-  auto exact = parse_decimal(text);
+  auto exact = geometry::parse_decimal(text);
   if (exact) return ExactNumber{*exact, false};
   if (exact.error().code != ErrorCode::limit_exceeded) return exact.error();
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -17,11 +17,11 @@ Result<ExactNumber> exact_number(std::string_view text) {
   if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
     return exact.error();
   }
-  return ExactNumber{shortest_decimal(value), true};
+  return ExactNumber{geometry::shortest_decimal(value), true};
 }
 
-Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
-                                      const std::array<GridNumber, 3>& anchor) {
+Result<geometry::Placement> placement_of_matrix(std::span<const GridNumber> matrix,
+                                                const std::array<GridNumber, 3>& anchor) {
   constexpr std::size_t kRowSize = 4;
   if (matrix.size() != kMatrixSize) {
     return Error{ErrorCode::malformed, "a transformationMatrix needs 16 numbers"};
@@ -31,7 +31,7 @@ Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
     return Error{ErrorCode::malformed,
                  "the last row of a transformationMatrix is 0 0 0 1, rows one after the other"};
   }
-  Placement placement;
+  geometry::Placement placement;
   placement.anchor = anchor;
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 3; ++column) {
@@ -73,4 +73,4 @@ std::uint32_t epsg_code(std::string_view text) {
   return status == std::errc() && end == text.data() + text.size() ? code : 0;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

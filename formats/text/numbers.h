@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "geometry/placement.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 struct ExactNumber {
   GridNumber value;
@@ -27,8 +27,8 @@ inline constexpr std::size_t kMatrixSize = 16;
 
 /// The placement of a 4 x 4 matrix, rows one after the other, at `anchor` (world). Errors:
 /// malformed (not 16 numbers, a last row other than 0 0 0 1).
-Result<Placement> placement_of_matrix(std::span<const GridNumber> matrix,
-                                      const std::array<GridNumber, 3>& anchor);
+Result<geometry::Placement> placement_of_matrix(std::span<const GridNumber> matrix,
+                                                const std::array<GridNumber, 3>& anchor);
 
 /// A number with its digits, without exponent where that is short: "-0.125".
 std::string plain_text(const GridNumber& number);
@@ -38,4 +38,4 @@ std::string plain_text(const GridNumber& number);
 /// after "EPSG". 0 when there is none.
 std::uint32_t epsg_code(std::string_view text);
 
-}  // namespace watertight
+}  // namespace watertight::formats

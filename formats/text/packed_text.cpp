@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 constexpr int kLevel = 15;      // twice the time of 9 for 3 % less, a fifth of that of 19
@@ -69,4 +69,4 @@ Result<std::string> unpack_text(ByteView packed, std::uint64_t most_bytes) {
   return text;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

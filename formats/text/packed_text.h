@@ -10,7 +10,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// One Zstandard frame. Errors: limit_exceeded when there is no memory for it. Cost: linear.
 Result<Bytes> pack_text(std::string_view text);
@@ -23,4 +23,4 @@ bool is_packed_text(ByteView bytes);
 /// Errors: malformed; limit_exceeded as soon as more than `most_bytes` come out.
 Result<std::string> unpack_text(ByteView packed, std::uint64_t most_bytes);
 
-}  // namespace watertight
+}  // namespace watertight::formats

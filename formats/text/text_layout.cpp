@@ -9,7 +9,7 @@
 
 #include "base/checksum.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 enum class Kind : std::uint8_t { tokens = 0, whole_text = 1 };
@@ -348,4 +348,4 @@ Result<std::string> apply_layout(std::string_view plain, ByteView layout,
   return text;
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

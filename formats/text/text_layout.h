@@ -17,7 +17,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 
-namespace watertight {
+namespace watertight::formats {
 
 /// What turns `plain` into `text`, with size and hash of `text`. For two texts without the same
 /// tokens it holds all of `text`. Cost: linear.
@@ -83,4 +83,4 @@ class FramingReader {
   bool is_first_ = true;
 };
 
-}  // namespace watertight
+}  // namespace watertight::formats

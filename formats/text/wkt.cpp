@@ -5,10 +5,10 @@
 
 #include "formats/ewkb.h"
 #include "formats/mesh/mesh_text.h"
-#include "formats/text/numbers.h"
 #include "formats/surface.h"
+#include "formats/text/numbers.h"
 
-namespace watertight {
+namespace watertight::formats {
 namespace {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
@@ -44,7 +44,7 @@ class WktReader {
       auto status = type == "SOLID" ? list([this] { return shell(); }) : shell();
       if (!status) return status.error();
     }
-    auto points = lattice_of_decimals(positions_);
+    auto points = geometry::lattice_of_decimals(positions_);
     if (!points) return std::move(points).error();
     points->rounded.insert(points->rounded.end(), rounded_.begin(), rounded_.end());
     return solid_of_points(std::move(arrays_), *points, SolidSource{"", type + " Z", "", 0, 0, ""},
@@ -263,4 +263,4 @@ std::string write_wkt(const Solid& solid) {
   return out + ')';
 }
 
-}  // namespace watertight
+}  // namespace watertight::formats

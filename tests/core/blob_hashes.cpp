@@ -28,18 +28,19 @@ void print(const std::string& name, const Result<Bytes>& blob) {
 
 constexpr Mode kModes[] = {Mode::raw,     Mode::bitmap,        Mode::walk,
                            Mode::polygon, Mode::parallelogram, Mode::automatic};
-static_assert(kModelNumber <= 1);
+static_assert(codec::kModelNumber <= 1);
 constexpr std::uint8_t kModels[] = {0, 1};
 
 std::string label(const std::string& name, const EncodeOptions& options) {
-  return name + " " + std::string(to_string(options.mode)) + " " + std::to_string(options.models);
+  return name + " " + std::string(codec::to_string(options.mode)) + " " +
+         std::to_string(options.models);
 }
 
 void print_modes(const std::string& name, const OrientedBoundary& boundary) {
   for (const Mode mode : kModes) {
     for (const std::uint8_t models : kModels) {
       const EncodeOptions options{.mode = mode, .models = models};
-      print(label(name, options), encode_boundary(boundary, {}, options));
+      print(label(name, options), codec::encode_boundary(boundary, {}, options));
     }
   }
 }
@@ -51,10 +52,10 @@ void print_page(const std::string& name, const std::vector<generated::NamedBound
   std::vector<const OrientedBoundary*> page;
   for (const auto& [solid, boundary] : solids) {
     const std::vector<const OrientedBoundary*> both{first, &boundary};
-    if (!encode_boundaries(both, {}, {.mode = Mode::raw})) continue;
-    if (encode_boundary(boundary, {}, options)) page.push_back(&boundary);
+    if (!codec::encode_boundaries(both, {}, {.mode = Mode::raw})) continue;
+    if (codec::encode_boundary(boundary, {}, options)) page.push_back(&boundary);
   }
-  if (!page.empty()) print(label(name, options), encode_boundaries(page, {}, options));
+  if (!page.empty()) print(label(name, options), codec::encode_boundaries(page, {}, options));
 }
 
 void print_pages(const std::string& name, const std::vector<generated::NamedBoundary>& solids) {
@@ -83,7 +84,7 @@ bool print_golden(const std::string& version, const std::string& name) {
       decoded ? OrientedBoundary::make(decoded->solid) : Result<OrientedBoundary>(decoded.error());
   const std::string what = boundary ? std::string() : to_string(boundary.error());
   std::printf("%s decoded %s %016" PRIx64 " %s\n", version.c_str(), name.c_str(),
-              boundary ? solid_hash(*boundary) : 0, what.c_str());
+              boundary ? geometry::solid_hash(*boundary) : 0, what.c_str());
   return true;
 }
 
@@ -97,10 +98,10 @@ int main() {
     }
     print_pages(std::to_string(seed) + " page", solids);
   }
-  const Certificate certificate = generated::schoenhardt_certificate();
+  const delaunay::Certificate certificate = generated::schoenhardt_certificate();
   print("schoenhardt with Steiner vertex",
-        encode_boundary(generated::schoenhardt(), {},
-                        {.mode = Mode::bitmap, .certificate = &certificate}));
+        codec::encode_boundary(generated::schoenhardt(), {},
+                               {.mode = Mode::bitmap, .certificate = &certificate}));
   bool has_all = true;
   for (const auto& golden : generated::version_0_goldens()) {
     has_all = print_golden("version-0", golden.name) && has_all;

@@ -19,6 +19,7 @@ int main() {
     return 1;
   }
   std::printf("mode %s, %" PRIu32 " vertices, %" PRIu32 " facets\n",
-              to_string(decoded->info.mode).data(), decoded->info.vertices, decoded->info.facets);
+              codec::to_string(decoded->info.mode).data(), decoded->info.vertices,
+              decoded->info.facets);
   return 0;
 }

@@ -6,7 +6,7 @@
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/small_delaunay.h"
 
-namespace watertight {
+namespace watertight::delaunay {
 
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
                                              std::uint64_t max_tetrahedra,
@@ -15,4 +15,4 @@ Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
   return Error{ErrorCode::unsupported, "coordinates that only CGAL takes"};
 }
 
-}  // namespace watertight
+}  // namespace watertight::delaunay

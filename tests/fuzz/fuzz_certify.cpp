@@ -63,7 +63,7 @@ void check_report(const Inspection& inspection) {
   fuzz::require(report.undecided_reason.empty() == (report.verdict != Verdict::undecided));
 }
 
-void check_codec(const Certified& certified) {
+void check_codec(const validate::Certified& certified) {
   for (const Mode mode : {Mode::automatic, Mode::raw, Mode::bitmap}) {
     const auto blob = encode(certified.solid, {.mode = mode});
     if (!blob) {
@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::require(solid.has_value());
   const Inspection inspection = certify(*solid, nullptr);
   check_report(inspection);
-  fuzz::require(!report_json(inspection.report, *solid, {}).empty());
+  fuzz::require(!validate::report_json(inspection.report, *solid, {}).empty());
   CertifyOptions options;
   options.proof = Proof::boundary;
   const Inspection boundary = certify(*solid, nullptr, options);

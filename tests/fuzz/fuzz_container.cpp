@@ -29,7 +29,7 @@ Bytes around(ByteView data) {
   ByteReader reader(data);
   const std::size_t size = reader.u16();
   const ByteView texts = reader.take(std::min(size, reader.remaining()));
-  const auto packed = pack_text(as_text(texts));
+  const auto packed = formats::pack_text(as_text(texts));
   fuzz::require(packed.has_value());
   constexpr std::uint8_t kStart[] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n', 1};
   ByteWriter writer;
@@ -43,13 +43,13 @@ Bytes around(ByteView data) {
 }
 
 void check(ByteView bytes) {
-  const auto info = describe_container(bytes, fuzz::small_limits());
+  const auto info = pipeline::describe_container(bytes, fuzz::small_limits());
   if (!info) return fuzz::require(!info.error().message.empty());
-  const auto documents = decode_container(bytes, fuzz::small_limits());
+  const auto documents = pipeline::decode_container(bytes, fuzz::small_limits());
   if (!documents) return fuzz::require(!documents.error().message.empty());
   fuzz::require(documents->size() == info->formats.size());
   for (const Document& document : *documents) {
-    const auto written = write_document(document, document.format);
+    const auto written = formats::write_document(document, document.format);
     if (!written) fuzz::require(!written.error().message.empty());
   }
 }

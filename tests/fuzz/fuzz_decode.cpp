@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!decoded) return 0;
   const auto boundary = OrientedBoundary::make(decoded->solid);
   if (!boundary) std::abort();
-  if (!encode_boundary(*boundary, decoded->info.acceptance, {.mode = Mode::raw})) std::abort();
+  if (!codec::encode_boundary(*boundary, decoded->info.acceptance, {.mode = Mode::raw}))
+    std::abort();
   return 0;
 }

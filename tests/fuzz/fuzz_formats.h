@@ -37,22 +37,22 @@ inline void require_same_solids(const Document& a, const Document& b) {
 
 /// Reads, writes in the same format, reads again. Writing may be refused only as unsupported.
 inline void check_reader(ByteView bytes, Format format, bool is_split) {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits = small_limits();
   options.split_features = is_split;
-  const auto document = read_document(bytes, format, options);
+  const auto document = formats::read_document(bytes, format, options);
   if (!document) {
     require(!document.error().message.empty());
     return;
   }
-  const auto written = write_document(*document, format);
+  const auto written = formats::write_document(*document, format);
   if (!written) {
     require(written.error().code == ErrorCode::unsupported);
     return;
   }
   options.limits.bytes = 1U << 26U;  // decimals of large exponents print long
   options.limits.vertices = 1'000'000;
-  const auto again = read_document(*written, format, options);
+  const auto again = formats::read_document(*written, format, options);
   require(again.has_value());
   require_same_solids(*document, *again);
 }
@@ -60,21 +60,21 @@ inline void check_reader(ByteView bytes, Format format, bool is_split) {
 /// For formats that are read only: reading is deterministic, the document says what it is, and what
 /// WKT can hold of it comes back from there.
 inline void check_read_only(ByteView bytes, Format format) {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits = small_limits();
-  (void)detect_format("", bytes);
-  const auto document = read_document(bytes, format, options);
+  (void)formats::detect_format("", bytes);
+  const auto document = formats::read_document(bytes, format, options);
   if (!document) {
     require(!document.error().message.empty());
     return;
   }
   require(document->format == format);
-  const auto again = read_document(bytes, format, options);
+  const auto again = formats::read_document(bytes, format, options);
   require(again.has_value());
   require_same_solids(*document, *again);
-  const auto written = write_document(*document, format);
+  const auto written = formats::write_document(*document, format);
   require(!written && written.error().code == ErrorCode::unsupported);
-  const auto text = write_document(*document, Format::wkt);
+  const auto text = formats::write_document(*document, Format::wkt);
   require(text.has_value() || !text.error().message.empty());
 }
 

@@ -17,14 +17,14 @@ void check_submitted(const SubmittedSolid& submitted) {
 }
 
 void check_written(const Document& document, Format format) {
-  const auto written = write_document(document, format);
+  const auto written = formats::write_document(document, format);
   if (!written) {
     require(written.error().code == ErrorCode::unsupported);
     return;
   }
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits.bytes = 1U << 26U;  // decimals of large exponents print long
-  const auto again = read_document(*written, format, options);
+  const auto again = formats::read_document(*written, format, options);
   require(again || document.features.empty());
 }
 
@@ -32,9 +32,9 @@ void check_written(const Document& document, Format format) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace watertight;
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits = fuzz::small_limits();
-  const auto document = read_document(ByteView(data, size), Format::gml, options);
+  const auto document = formats::read_document(ByteView(data, size), Format::gml, options);
   if (!document) {
     fuzz::require(!document.error().message.empty());
     return 0;
@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const SubmittedSolid& solid : feature.solids) fuzz::check_submitted(solid);
   }
   for (const SubmittedSolid& solid : document->templates) fuzz::check_submitted(solid);
-  fuzz::require(!write_document(*document, Format::gml));
+  fuzz::require(!formats::write_document(*document, Format::gml));
   fuzz::check_written(*document, Format::ewkb);
   fuzz::check_written(*document, Format::city_json);
   return 0;

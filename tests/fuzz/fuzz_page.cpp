@@ -18,8 +18,8 @@ void check(const Decoded& decoded) {
   const auto boundary = OrientedBoundary::make(decoded.solid);
   if (!boundary) std::abort();
   const Acceptance& acceptance = decoded.info.acceptance;
-  if (!encode_boundary(*boundary, acceptance, {.mode = Mode::raw})) std::abort();
-  const auto again = encode_boundary(*boundary, acceptance, {.mode = decoded.info.mode});
+  if (!codec::encode_boundary(*boundary, acceptance, {.mode = Mode::raw})) std::abort();
+  const auto again = codec::encode_boundary(*boundary, acceptance, {.mode = decoded.info.mode});
   if (again) return;
   // A mode may decline what it has read; it may not write what it cannot read.
   if (again.error().message.find("decode") != std::string::npos) std::abort();
@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Limits limits{
       .bytes = 1U << 20U, .vertices = 5000, .facets = 5000, .rings = 5000, .shells = 1000};
   const ByteView bytes(data, size);
-  if (const auto page = decode_page(bytes, limits)) {
+  if (const auto page = codec::decode_page(bytes, limits)) {
     for (const Decoded& decoded : *page) check(decoded);
   }
   if (const auto unchecked = generated::decode_unchecked(bytes, limits)) {

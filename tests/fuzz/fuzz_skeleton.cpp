@@ -22,8 +22,8 @@ constexpr std::string_view kFeature =
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const auto header = read_city_json_header(kHeader);
-  static const auto feature = read_city_json_feature(*header, kFeature);
+  static const auto header = formats::read_city_json_header(kHeader);
+  static const auto feature = formats::read_city_json_feature(*header, kFeature);
   fuzz::require(feature.has_value());
   Feature changed = *feature;
   // A skeleton, then perhaps a line feed and a layout.
@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   changed.skeleton.assign(data, end);
   if (end != data + size) changed.layout.assign(end + 1, data + size);
   if (changed.skeleton.empty()) changed.skeleton = feature->skeleton;
-  const auto text = write_city_json_feature(*header, changed);
+  const auto text = formats::write_city_json_feature(*header, changed);
   if (!text) fuzz::require(!text.error().message.empty());
   return 0;
 }

@@ -27,21 +27,22 @@ Bytes file_bytes(const std::string& path) {
 /// The sample tile in a collection; solids that need an engine are left out. Returns its text.
 std::string ingest_tile(SolidStore& store) {
   const Bytes bytes = file_bytes(WATERTIGHT_EXAMPLES "/delft.city.jsonl");
-  ReadOptions read;
+  formats::ReadOptions read;
   read.keep_text = true;
-  auto document = read_document(bytes, Format::city_json_seq, read);
+  auto document = formats::read_document(bytes, Format::city_json_seq, read);
   REQUIRE(document);
-  IngestOptions options;
+  pipeline::IngestOptions options;
   options.collection = "delft";
-  options.invalid_features = InvalidFeatures::skip;
-  const auto outcome = ingest(*std::move(document), store, nullptr, options);
+  options.invalid_features = pipeline::InvalidFeatures::skip;
+  const auto outcome = pipeline::ingest(*std::move(document), store, nullptr, options);
   REQUIRE(outcome);
   REQUIRE(outcome->stored > 20);
   return std::string(as_text(bytes));
 }
 
-Bytes export_all(SolidStore& store, ExportFormat format, Exported* exported = nullptr) {
-  auto exporting = CollectionExport::start(store, "delft", format);
+Bytes export_all(SolidStore& store, pipeline::ExportFormat format,
+                 pipeline::Exported* exported = nullptr) {
+  auto exporting = pipeline::CollectionExport::start(store, "delft", format);
   REQUIRE(exporting);
   Bytes all;
   for (;;) {
@@ -75,13 +76,13 @@ TEST_CASE("an export holds every solid of the rows, in pages that are smaller, e
   const Database database;
   const auto store = database.store();
   ingest_tile(*store);
-  Exported exported;
-  const Bytes file = export_all(*store, ExportFormat::container, &exported);
-  const auto documents = decode_container(file);
+  pipeline::Exported exported;
+  const Bytes file = export_all(*store, pipeline::ExportFormat::container, &exported);
+  const auto documents = pipeline::decode_container(file);
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
   REQUIRE(documents->front().features.size() == exported.features);
-  const auto pages = PageFileReader::open(page_file_of(file));
+  const auto pages = codec::PageFileReader::open(page_file_of(file));
   REQUIRE(pages);
   REQUIRE(pages->size() == exported.solids);
   std::uint64_t number = 0;
@@ -93,12 +94,12 @@ TEST_CASE("an export holds every solid of the rows, in pages that are smaller, e
     for (std::size_t i = 0; i < row->solids.size(); ++i, ++number) {
       const auto decoded = decode(row->solids[i].blob);
       REQUIRE(decoded);
-      CHECK(write_ewkb(feature.solids[i].solid) == write_ewkb(decoded->solid));
+      CHECK(formats::write_ewkb(feature.solids[i].solid) == formats::write_ewkb(decoded->solid));
       blob_bytes += row->solids[i].blob.size();
       if (number % 37 != 0) continue;
       const auto alone = pages->solid(number);
       REQUIRE(alone);
-      CHECK(write_ewkb(alone->solid) == write_ewkb(decoded->solid));
+      CHECK(formats::write_ewkb(alone->solid) == formats::write_ewkb(decoded->solid));
     }
   }
   CHECK(number == exported.solids);
@@ -109,25 +110,27 @@ TEST_CASE("an export as a sequence has the very lines that came in, the same eac
   const Database database;
   const auto store = database.store();
   const std::vector<std::string> source = lines_of(ingest_tile(*store));
-  const Bytes bytes = export_all(*store, ExportFormat::sequence);
+  const Bytes bytes = export_all(*store, pipeline::ExportFormat::sequence);
   const std::vector<std::string> lines = lines_of(as_text(bytes));
   REQUIRE(lines.size() == store->collection("delft")->features + 1);
   for (const std::string& line : lines) {
     CHECK(std::find(source.begin(), source.end(), line) != source.end());
   }
-  CHECK(export_all(*store, ExportFormat::sequence) == bytes);
-  CHECK(export_all(*store, ExportFormat::container) == export_all(*store, ExportFormat::container));
+  CHECK(export_all(*store, pipeline::ExportFormat::sequence) == bytes);
+  CHECK(export_all(*store, pipeline::ExportFormat::container) ==
+        export_all(*store, pipeline::ExportFormat::container));
 }
 
 TEST_CASE("the service's file is the command line's") {
   const Database database;
   const auto store = database.store();
   ingest_tile(*store);
-  const Service service{store.get(), nullptr, {}};
+  const server::Service service{store.get(), nullptr, {}};
   for (const auto& [target, format] :
-       {std::pair{"/collections/delft/export", ExportFormat::container},
-        std::pair{"/collections/delft/export?f=cityjsonseq", ExportFormat::sequence}}) {
-    const Response response = respond(service, {"GET", target, {}, ""}, [] { return false; });
+       {std::pair{"/collections/delft/export", pipeline::ExportFormat::container},
+        std::pair{"/collections/delft/export?f=cityjsonseq", pipeline::ExportFormat::sequence}}) {
+    const server::Response response =
+        server::respond(service, {"GET", target, {}, ""}, [] { return false; });
     REQUIRE(response.status == 200);
     std::string body = response.body;
     while (response.rest) {
@@ -144,7 +147,8 @@ TEST_CASE("an export ends with an error when the database goes away, and can be 
   const Database database;
   const auto store = database.store();
   ingest_tile(*store);
-  auto exporting = CollectionExport::start(*store, "delft", ExportFormat::sequence);
+  auto exporting =
+      pipeline::CollectionExport::start(*store, "delft", pipeline::ExportFormat::sequence);
   REQUIRE(exporting);
   database.ask("ALTER TABLE watertight.solid RENAME TO hidden");
   const auto bytes = exporting->next();
@@ -152,7 +156,7 @@ TEST_CASE("an export ends with an error when the database goes away, and can be 
   CHECK_FALSE(bytes.error().message.empty());
   database.ask("ALTER TABLE watertight.hidden RENAME TO solid");
   REQUIRE(database.end_sessions());
-  CHECK_FALSE(export_all(*store, ExportFormat::sequence).empty());
+  CHECK_FALSE(export_all(*store, pipeline::ExportFormat::sequence).empty());
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ int print_meshes() {
   constexpr std::uint64_t kMeshes = 200;
   for (std::uint64_t seed = 1; seed <= kMeshes; ++seed) {
     test::Random random(seed);
-    const auto blob = encode_boundary(block(random), {}, {.mode = Mode::parallelogram});
+    const auto blob = codec::encode_boundary(block(random), {}, {.mode = Mode::parallelogram});
     const bool is_decoded = blob && decode(*blob);
     std::printf("%u %zu %08x\n", static_cast<unsigned>(seed), blob ? blob->size() : 0,
                 blob ? crc32c(*blob) : 0);
@@ -74,7 +74,7 @@ int print_meshes() {
 
 int main() {
 #ifdef WATERTIGHT_WITH_VALIDATE
-  if (watertight::unit_normal({1, 0, 0}, {0, 1, 0}) != watertight::Vector{0, 0, 1}) return 1;
+  if (watertight::validate::unit_normal({1, 0, 0}, {0, 1, 0})[2] != 1) return 1;
 #endif
   return watertight::print_meshes();
 }

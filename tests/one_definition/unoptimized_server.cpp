@@ -12,11 +12,11 @@
 
 namespace {
 
-using watertight::HttpServer;
-using watertight::IsCancelled;
-using watertight::Lane;
-using watertight::Request;
-using watertight::Response;
+using watertight::server::HttpServer;
+using watertight::server::IsCancelled;
+using watertight::server::Lane;
+using watertight::server::Request;
+using watertight::server::Response;
 
 /// The first line of the answer to GET /, "" if none came.
 std::string status_line(std::uint16_t port) {
@@ -40,10 +40,11 @@ int fail(const std::string& message) {
 
 int main() {
   // So that the linker takes the database's connections into this program.
-  if (watertight::connection_option("host", "h") != "host='h'") return fail("no libpq options");
-  watertight::ServerOptions options;
+  if (watertight::store::connection_option("host", "h") != "host='h'")
+    return fail("no libpq options");
+  watertight::server::ServerOptions options;
   options.port = 0;
-  watertight::Application application;
+  watertight::server::Application application;
   application.lane = [](const Request&) { return Lane::quick; };
   application.respond = [](const Request&, const IsCancelled&) { return Response{}; };
   auto server = HttpServer::start(options, application, [](const std::string&) {});

@@ -159,7 +159,7 @@ Shell voxels(const std::vector<bool>& is_filled, std::size_t n, double size) {
 
 Shape triangulated(const Shape& shape) {
   const Solid solid = solid_of(shape);
-  const FacetTriangles facets = triangulate_facets(solid);
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   Shape result(shape.size());
   for (std::size_t t = 0; t < facets.triangles.size(); ++t) {
     Ring ring;

@@ -24,7 +24,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 bool is_refused(const std::string& text, Format format) {
-  const auto document = read_document(as_bytes(text), format);
+  const auto document = formats::read_document(as_bytes(text), format);
   if (document) return false;
   CHECK_FALSE(document.error().message.empty());
   return true;
@@ -32,7 +32,7 @@ bool is_refused(const std::string& text, Format format) {
 
 /// The errors of the first solid; {-1} when the document is refused or holds none.
 std::set<int> codes_of(const std::string& text, Format format) {
-  const auto document = read_document(as_bytes(text), format);
+  const auto document = formats::read_document(as_bytes(text), format);
   if (!document || document->features.empty() || document->features[0].solids.empty()) return {-1};
   CertifyOptions options;
   options.proof = Proof::boundary;

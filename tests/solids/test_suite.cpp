@@ -23,8 +23,8 @@ namespace {
 const std::filesystem::path kGolden =
     std::filesystem::path(WATERTIGHT_TEST_DATA) / ".." / "golden" / "solids";
 
-EngineWorkers& engines() {
-  static EngineWorkers workers;
+delaunay::EngineWorkers& engines() {
+  static delaunay::EngineWorkers workers;
   return workers;
 }
 
@@ -49,7 +49,7 @@ std::string text_of(const std::set<int>& codes) {
 }
 
 Solid read_solid(const std::string& text, Format format) {
-  const auto document = read_document(as_bytes(text), format);
+  const auto document = formats::read_document(as_bytes(text), format);
   REQUIRE(document);
   REQUIRE(document->features.size() == 1);
   REQUIRE(document->features[0].solids.size() == 1);
@@ -97,8 +97,9 @@ TEST_CASE("the suite's files are what the builders make, and read as files they 
     const std::string text = city_json_text(truth.solid);
     const std::string file = truth.name + ".city.json";
     compare_golden(kGolden / file, text);
-    table += file + "," + std::string(to_string(truth.verdict())) + "," + text_of(truth.errors) +
-             "," + text_of(truth.warnings) + "," + std::string(proof_of(truth.ask)) + "\n";
+    table += file + "," + std::string(validate::to_string(truth.verdict())) + "," +
+             text_of(truth.errors) + "," + text_of(truth.warnings) + "," +
+             std::string(proof_of(truth.ask)) + "\n";
     const Solid solid = read_solid(text, Format::city_json);
     // What the engines decide is decided above; here only that the file says the same.
     const bool is_decided = truth.ask == Ask::engines;

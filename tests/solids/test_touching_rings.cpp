@@ -19,8 +19,8 @@ using namespace watertight::solids;
 
 namespace {
 
-EngineWorkers& engines() {
-  static EngineWorkers workers;
+delaunay::EngineWorkers& engines() {
+  static delaunay::EngineWorkers workers;
   return workers;
 }
 
@@ -39,16 +39,16 @@ std::vector<TouchingRings> valid_solids() {
   return list;
 }
 
-bool has_split_edges(const Solid& solid) { return !ring_touches(solid).empty(); }
+bool has_split_edges(const Solid& solid) { return !geometry::ring_touches(solid).empty(); }
 
 Document document_of(const Solid& solid, Format format) {
-  auto document = read_document(as_bytes(city_json_text(solid)), Format::city_json);
+  auto document = formats::read_document(as_bytes(city_json_text(solid)), Format::city_json);
   REQUIRE(document);
   document->format = Format::city_json;
   if (format == Format::city_json) return *std::move(document);
-  const auto bytes = convert_document(*document, format);
+  const auto bytes = pipeline::convert_document(*document, format);
   REQUIRE(bytes);
-  auto converted = read_document(*bytes, format);
+  auto converted = formats::read_document(*bytes, format);
   REQUIRE(converted);
   return *std::move(converted);
 }
@@ -181,17 +181,17 @@ TEST_CASE("modes give back rings that touch inside edges as submitted, or declin
 }
 
 TEST_CASE("solids whose rings touch inside edges share pages with others") {
-  std::vector<Certified> certified;
+  std::vector<validate::Certified> certified;
   for (const TouchingRings& touching : valid_solids()) {
     Inspection inspection = inspect(solid_of(touching.shape, millimetres()));
     REQUIRE(inspection.certified);
     certified.push_back(*std::move(inspection.certified));
   }
   std::vector<const ValidSolid*> page;
-  for (const Certified& one : certified) page.push_back(&one.solid);
-  const auto bytes = encode_page(page);
+  for (const validate::Certified& one : certified) page.push_back(&one.solid);
+  const auto bytes = codec::encode_page(page);
   REQUIRE(bytes);
-  const auto decoded = decode_page(*bytes);
+  const auto decoded = codec::decode_page(*bytes);
   REQUIRE(decoded);
   REQUIRE(decoded->size() == page.size());
   for (std::size_t i = 0; i < page.size(); ++i) CHECK((*decoded)[i].solid == page[i]->solid());

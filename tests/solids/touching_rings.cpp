@@ -69,7 +69,7 @@ class PittedBlock {
   static void insert_into(Ring& ring, const Point& v) {
     if (std::find(ring.begin(), ring.end(), v) != ring.end()) return;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      if (!is_on_segment(ring[i], ring[(i + 1) % ring.size()], v)) continue;
+      if (!geometry::is_on_segment(ring[i], ring[(i + 1) % ring.size()], v)) continue;
       ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(i) + 1, v);
       return;
     }

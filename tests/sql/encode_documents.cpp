@@ -28,9 +28,9 @@ std::string hex(ByteView bytes) {
 }
 
 /// The SQL functions see EWKB, so this does: its doubles, vertices in order of first use.
-void print_row(const std::string& name, const Solid& solid, EngineWorkers& workers) {
-  const Bytes ewkb = write_ewkb(solid);
-  const auto submitted = read_ewkb(ewkb);
+void print_row(const std::string& name, const Solid& solid, delaunay::EngineWorkers& workers) {
+  const Bytes ewkb = formats::write_ewkb(solid);
+  const auto submitted = formats::read_ewkb(ewkb);
   if (!submitted) return;
   CertifyOptions options;
   options.rounded = submitted->rounded;
@@ -44,10 +44,10 @@ void print_row(const std::string& name, const Solid& solid, EngineWorkers& worke
   std::printf("%s\t%s\t%s\n", name.c_str(), hex(ewkb).c_str(), blob.c_str());
 }
 
-void print_document(const std::string& file, ByteView bytes, EngineWorkers& workers) {
-  const auto format = detect_format(file, bytes);
+void print_document(const std::string& file, ByteView bytes, delaunay::EngineWorkers& workers) {
+  const auto format = formats::detect_format(file, bytes);
   if (!format) return;
-  const auto document = read_document(bytes, *format);
+  const auto document = formats::read_document(bytes, *format);
   if (!document) return;
   std::size_t number = 0;
   for (const Feature& feature : document->features) {
@@ -60,7 +60,7 @@ void print_document(const std::string& file, ByteView bytes, EngineWorkers& work
 }  // namespace
 
 int main(int argc, char** argv) {
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   for (int i = 1; i < argc; ++i) {
     const std::string file = argv[i];
     std::ifstream stream(file, std::ios::binary);

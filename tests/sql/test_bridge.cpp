@@ -48,9 +48,9 @@ Bytes cube(int missing = 0) {
     wkt += facets[i];
   }
   wkt += ')';
-  const auto submitted = read_wkt(wkt);
+  const auto submitted = formats::read_wkt(wkt);
   REQUIRE(submitted);
-  return write_ewkb(submitted->solid);
+  return formats::write_ewkb(submitted->solid);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr std::uint64_t kVariantsEvery = 10;
 constexpr std::uint64_t kEnginesEvery = 50;
 
 void check_family(std::string_view name) {
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   std::uint64_t right = 0;
   for (const Family& family : families()) {
     if (family.name != name) continue;

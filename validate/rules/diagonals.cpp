@@ -17,7 +17,7 @@
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// Pairs of triangles classified: half a second of work.
@@ -45,8 +45,8 @@ class DiagonalExaminer {
   void find_undone(std::span<const TrianglePair> group);
   bool is_undone(std::span<const TrianglePair> group, Index facet, Index other);
   bool must_end() { return pairs_ > kMostPairs || examined_.is_cancelled(); }
-  std::optional<ContactClass> contact_of(const Diagonal& flip, const Triangle& t, Index facet,
-                                         Index triangle);
+  std::optional<geometry::ContactClass> contact_of(const Diagonal& flip, const Triangle& t,
+                                                   Index facet, Index triangle);
   bool is_diagonal(Index facet, Index a, Index b);
   bool is_common_boundary(const Diagonal& flip, const Triangle& t, Index facet, const Triangle& u,
                           Index other);
@@ -57,7 +57,7 @@ class DiagonalExaminer {
   ExaminedSolid& examined_;
   const ShellContacts& contacts_;
   std::span<const Point> vertices_;
-  const FacetTriangles& all_;
+  const tessellate::FacetTriangles& all_;
   std::vector<Box> boxes_;                         // of all triangles
   BoxTree tree_;                                   // of boxes_
   std::map<Index, std::vector<FacetEdge>> edges_;  // of facets that were asked about
@@ -101,18 +101,20 @@ bool DiagonalExaminer::is_common_boundary(const Diagonal& flip, const Triangle& 
 }
 
 /// How a flipped triangle of `facet` meets a triangle of another facet, if that is a finding.
-std::optional<ContactClass> DiagonalExaminer::contact_of(const Diagonal& flip, const Triangle& t,
-                                                         Index facet, Index triangle) {
+std::optional<geometry::ContactClass> DiagonalExaminer::contact_of(const Diagonal& flip,
+                                                                   const Triangle& t, Index facet,
+                                                                   Index triangle) {
   ++pairs_;
-  ContactClass contact = classify_contact(vertices_, t, all_.triangles[triangle]);
+  geometry::ContactClass contact =
+      geometry::classify_contact(vertices_, t, all_.triangles[triangle]);
   const Index other = all_.facet_of[triangle];
   const bool is_one_shell = examined_.shell_of(facet) == examined_.shell_of(other);
-  if (is_one_shell && contact == ContactClass::shared_edge &&
+  if (is_one_shell && contact == geometry::ContactClass::shared_edge &&
       !is_common_boundary(flip, t, facet, all_.triangles[triangle], other)) {
-    contact = ContactClass::edge_overlap;
+    contact = geometry::ContactClass::edge_overlap;
   }
-  if (!is_intersection(contact)) return std::nullopt;
-  if (!is_one_shell && contact < ContactClass::crossing) return std::nullopt;
+  if (!geometry::is_intersection(contact)) return std::nullopt;
+  if (!is_one_shell && contact < geometry::ContactClass::crossing) return std::nullopt;
   if (is_one_shell && examined_.is_junction_contact(contact, facet, other)) return std::nullopt;
   return contact;
 }
@@ -181,7 +183,8 @@ void DiagonalExaminer::find_made(Index facet, const std::vector<Diagonal>& diago
         if (!contact_of(diagonal, t, facet, triangle) || is_reported(facet, other)) continue;
         if (std::find(reported.begin(), reported.end(), other) != reported.end()) continue;
         reported.push_back(other);
-        report(diagonal, facet, other, contact_witness(vertices_, t, all_.triangles[triangle]),
+        report(diagonal, facet, other,
+               geometry::contact_witness(vertices_, t, all_.triangles[triangle]),
                " would intersect facet ");
       }
     }
@@ -207,7 +210,8 @@ bool DiagonalExaminer::is_undone(std::span<const TrianglePair> group, Index face
     if (is_met) continue;
     const Triangle& a = all_.triangles[group.front().first];
     const Triangle& b = all_.triangles[group.front().second];
-    report(diagonal, facet, other, contact_witness(vertices_, a, b), " would not intersect facet ");
+    report(diagonal, facet, other, geometry::contact_witness(vertices_, a, b),
+           " would not intersect facet ");
     return true;
   }
   return false;
@@ -251,4 +255,4 @@ void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

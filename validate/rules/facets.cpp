@@ -16,7 +16,7 @@
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 struct Corner {
@@ -41,7 +41,7 @@ std::vector<Corner> corners_of(const ExaminedSolid& examined, Index facet) {
 }
 
 std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index facet) {
-  const FacetTriangles& all = examined.triangles();
+  const tessellate::FacetTriangles& all = examined.triangles();
   return std::span<const Triangle>(all.triangles)
       .subspan(all.first[facet], all.first[facet + 1] - all.first[facet]);
 }
@@ -62,7 +62,7 @@ bool check_distance(ExaminedSolid& examined, Index facet, const std::vector<Corn
   for (const Corner& corner : corners) {
     points.push_back(examined.metres(corners.front().vertex, corner.vertex));
   }
-  const PlaneDistance measured = distance_to_fitted_plane(points, limit);
+  const geometry::PlaneDistance measured = geometry::distance_to_fitted_plane(points, limit);
   if (measured.distance <= limit) return true;
   const Corner& corner = corners[measured.point];
   Finding finding;
@@ -161,7 +161,7 @@ void check_normals(ExaminedSolid& examined, Index facet) {
 
 /// Number of parts the triangles of a facet fall into when joined over edges.
 std::size_t count_parts(std::span<const Triangle> triangles) {
-  DisjointSets sets(triangles.size());
+  geometry::DisjointSets sets(triangles.size());
   struct Side {
     Index low, high, triangle;
   };
@@ -215,10 +215,10 @@ void check_connected(ExaminedSolid& examined, Index facet) {
 void check_turns(ExaminedSolid& examined, Index facet) {
   const Solid& solid = examined.solid();
   const IndexRange rings = solid.rings_of(facet);
-  const Projection projection = facet_projection(solid, facet);
+  const tessellate::Projection projection = tessellate::facet_projection(solid, facet);
   const int exterior = projection.is_mirrored ? -1 : 1;
   for (Index r = rings.begin + 1; r < rings.end; ++r) {
-    if (ring_turn(solid, r, projection.axis) != exterior) continue;
+    if (tessellate::ring_turn(solid, r, projection.axis) != exterior) continue;
     Finding finding;
     finding.code = kOrientationRingsSame;
     finding.place = examined.at_ring(facet, r - rings.begin);
@@ -242,7 +242,7 @@ bool has_good_points(const Solid& solid, IndexRange rings) {
 bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
   const Solid& solid = examined.solid();
   bool is_measured = true;
-  if (!is_flat(solid, facet)) {
+  if (!tessellate::is_flat(solid, facet)) {
     const std::vector<Corner> corners = corners_of(examined, facet);
     if (is_triangulated) examined.mark_not_planar(facet);
     is_measured = is_measurable(examined, corners);
@@ -268,7 +268,8 @@ std::string check_facets(ExaminedSolid& examined) {
       break;
     }
     const IndexRange rings = solid.rings_of(facet);
-    const bool is_triangulated = examined.triangles().state[facet] == FacetState::triangulated;
+    const bool is_triangulated =
+        examined.triangles().state[facet] == tessellate::FacetState::triangulated;
     if (!is_triangulated && unmeasured == kNone) unmeasured = facet;
     if (rings.size() == 1 && solid.ring(rings.begin).size() == 3) continue;
     if (is_triangulated || has_good_points(solid, rings)) {
@@ -285,4 +286,4 @@ std::string check_facets(ExaminedSolid& examined) {
   return too_large;
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

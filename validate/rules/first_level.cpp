@@ -11,7 +11,7 @@
 
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 using Codes = std::set<int>;
@@ -92,4 +92,4 @@ std::vector<int> first_level_codes(const std::vector<Finding>& findings) {
   return {result.begin(), result.end()};
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -28,7 +28,7 @@
 #include "validate/facet_diagonals.h"
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// Other diagonals are tried on solids of at most this many triangles, and so many at most: a
@@ -53,7 +53,7 @@ struct InteriorParts {
 
 class PartCounter {
  public:
-  PartCounter(std::span<const Point> points, const FacetTriangles& facets)
+  PartCounter(std::span<const Point> points, const tessellate::FacetTriangles& facets)
       : points_(points), facets_(facets), sides_(facets.triangles.size()) {}
 
   /// Nothing if the triangles form no boundary of an interior.
@@ -82,7 +82,8 @@ class PartCounter {
         sheets_.push_back({{std::min(a, b), std::max(a, b), t}, corners[(k + 2) % 3], a < b});
       }
     }
-    sort_by_vertices(sheets_, points_.size(), [](const Sheet& sheet) { return sheet.key; });
+    delaunay::sort_by_vertices(sheets_, points_.size(),
+                               [](const Sheet& sheet) { return sheet.key; });
   }
 
   /// Links the triangles at one edge that show the same part there. False if inside and outside do
@@ -103,7 +104,7 @@ class PartCounter {
     const Point& high = points_[sheets[0].key[1]];
     const Index first = sheets[0].apex;
     const auto turn = [&](Index a, Index b) {
-      return a == b ? 0 : orient3d(low, high, points_[a], points_[b]);
+      return a == b ? 0 : geometry::orient3d(low, high, points_[a], points_[b]);
     };
     // 0 the first, 1 less than half a turn from it, 2 half a turn, 3 more.
     const auto sector = [&](const Sheet& sheet) {
@@ -128,10 +129,10 @@ class PartCounter {
     for (const auto& [root, members] : classes) {
       std::vector<Triangle> triangles;
       for (const Index t : members) triangles.push_back(facets_.triangles[t]);
-      const int sign = volume_sign(points_, triangles);
+      const int sign = geometry::volume_sign(points_, triangles);
       if (sign == 0) return std::nullopt;
       if (sign < 0) continue;
-      const double volume = six_volume(points_, triangles);
+      const double volume = geometry::six_volume(points_, triangles);
       if (parts.count++ > 0 && volume >= least) continue;
       least = volume;
       parts.facet = facets_.facet_of[members.front()];
@@ -141,32 +142,34 @@ class PartCounter {
   }
 
   std::span<const Point> points_;
-  const FacetTriangles& facets_;
+  const tessellate::FacetTriangles& facets_;
   std::vector<Sheet> sheets_;
-  DisjointSets sides_;  // of triangles: their inner sides
+  geometry::DisjointSets sides_;  // of triangles: their inner sides
 };
 
 /// True if no two triangles of different facets meet in more than a vertex or an edge of both.
-bool is_complex(const Solid& solid, const FacetTriangles& facets, const CancelPoll& cancel) {
-  IntersectionOptions options;
+bool is_complex(const Solid& solid, const tessellate::FacetTriangles& facets,
+                const workers::CancelPoll& cancel) {
+  geometry::IntersectionOptions options;
   options.limit = 1;
   options.cancel = cancel;
   options.group_of = facets.facet_of;
-  const auto pairs = intersecting_pairs(solid.vertices(), facets.triangles, options);
+  const auto pairs = geometry::intersecting_pairs(solid.vertices(), facets.triangles, options);
   return pairs && pairs->empty();
 }
 
 /// Nothing if the contacts cannot be written with the vertices of the solid.
-std::optional<InteriorParts> parts_of(const Solid& solid, const FacetTriangles& facets,
-                                      const ContactTriangles& contacts, const CancelPoll& cancel) {
+std::optional<InteriorParts> parts_of(const Solid& solid, const tessellate::FacetTriangles& facets,
+                                      const delaunay::ContactTriangles& contacts,
+                                      const workers::CancelPoll& cancel) {
   if (!contacts.obstacle.empty()) return std::nullopt;
-  const FacetTriangles& divided = contacts.has_contacts() ? contacts.triangles : facets;
+  const tessellate::FacetTriangles& divided = contacts.has_contacts() ? contacts.triangles : facets;
   if (!is_complex(solid, divided, cancel)) return std::nullopt;
   return PartCounter(solid.vertices(), divided).run();
 }
 
 /// The canonical triangles with one other diagonal.
-FacetTriangles with_flip(FacetTriangles facets, const Diagonal& diagonal) {
+tessellate::FacetTriangles with_flip(tessellate::FacetTriangles facets, const Diagonal& diagonal) {
   const auto [first, second] = diagonal.flipped();
   facets.triangles[diagonal.first] = first;
   facets.triangles[diagonal.second] = second;
@@ -175,7 +178,7 @@ FacetTriangles with_flip(FacetTriangles facets, const Diagonal& diagonal) {
 
 class InteriorExaminer {
  public:
-  InteriorExaminer(ExaminedSolid& examined, const ContactTriangles& contacts)
+  InteriorExaminer(ExaminedSolid& examined, const delaunay::ContactTriangles& contacts)
       : examined_(examined),
         solid_(examined.solid()),
         contacts_(contacts),
@@ -212,8 +215,8 @@ class InteriorExaminer {
                                          "there are too many diagonals to try each");
         }
         if (cancel_()) return;
-        const FacetTriangles flipped = with_flip(examined_.triangles(), diagonal);
-        const auto contacts = divide_at_contacts(solid_, flipped, cancel_);
+        const tessellate::FacetTriangles flipped = with_flip(examined_.triangles(), diagonal);
+        const auto contacts = delaunay::divide_at_contacts(solid_, flipped, cancel_);
         if (!contacts) return;
         const auto parts = parts_of(solid_, flipped, *contacts, cancel_);
         if (parts && (parts->count > 1) != (count > 1)) report_flip(facet, diagonal, *parts);
@@ -237,14 +240,14 @@ class InteriorExaminer {
 
   ExaminedSolid& examined_;
   const Solid& solid_;
-  const ContactTriangles& contacts_;
-  CancelPoll cancel_;
+  const delaunay::ContactTriangles& contacts_;
+  workers::CancelPoll cancel_;
 };
 
 }  // namespace
 
-bool check_interior(ExaminedSolid& examined, const ContactTriangles& contacts) {
+bool check_interior(ExaminedSolid& examined, const delaunay::ContactTriangles& contacts) {
   return InteriorExaminer(examined, contacts).examine();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

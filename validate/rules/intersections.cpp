@@ -9,7 +9,7 @@
 #include "validate/facet_diagonals.h"
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// The first search stops at this many pairs: enough for any report. When all of them are allowed
@@ -20,13 +20,13 @@ constexpr std::uint64_t kLastLimit = 10'000'000;  // some 550 MB
 struct FacetPair {
   Index first = 0;
   Index second = 0;
-  IntersectingPair worst;  // the most severe of their triangle pairs
+  geometry::IntersectingPair worst;  // the most severe of their triangle pairs
 };
 
 class IntersectionExaminer {
  public:
   IntersectionExaminer(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                       const CancelPoll& cancel, unsigned threads)
+                       const workers::CancelPoll& cancel, unsigned threads)
       : examined_(examined),
         duplicate_of_(duplicate_of),
         cancel_(cancel),
@@ -53,18 +53,18 @@ class IntersectionExaminer {
   void mark_common_vertices();
   bool search(std::uint64_t limit);
   bool is_wrong(const FacetPair& pair);
-  bool have_common_vertex(const IntersectingPair& pair) const;
+  bool have_common_vertex(const geometry::IntersectingPair& pair) const;
   void report(const FacetPair& pair);
   void keep_found(const std::vector<FacetPair>& pairs, std::vector<TrianglePair> all);
   Index facet_of(Index triangle) const { return examined_.triangles().facet_of[triangle]; }
 
   ExaminedSolid& examined_;
   const std::vector<Index>& duplicate_of_;
-  const CancelPoll& cancel_;
+  const workers::CancelPoll& cancel_;
   unsigned threads_;
   std::span<const Point> vertices_;
   std::span<const Triangle> triangles_;
-  std::vector<IntersectingPair> at_diagonals_;
+  std::vector<geometry::IntersectingPair> at_diagonals_;
   ShellContacts contacts_;
 };
 
@@ -81,7 +81,7 @@ void IntersectionExaminer::mark_common_vertices() {
   }
 }
 
-bool IntersectionExaminer::have_common_vertex(const IntersectingPair& pair) const {
+bool IntersectionExaminer::have_common_vertex(const geometry::IntersectingPair& pair) const {
   const Triangle& a = triangles_[pair.first];
   const Triangle& b = triangles_[pair.second];
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
@@ -99,7 +99,7 @@ bool IntersectionExaminer::is_wrong(const FacetPair& pair) {
     return false;
   }
   contacts_.is_touching[a] = contacts_.is_touching[b] = true;
-  if (pair.worst.contact < ContactClass::crossing) return false;
+  if (pair.worst.contact < geometry::ContactClass::crossing) return false;
   contacts_.intersecting.emplace_back(std::min(a, b), std::max(a, b));
   return true;
 }
@@ -111,12 +111,12 @@ void IntersectionExaminer::report(const FacetPair& pair) {
   finding.code = a == b ? kShellSelfIntersection : kIntersectionShells;
   finding.place = examined_.at_facet(pair.first);
   finding.other = examined_.at_facet(pair.second);
-  finding.witness = examined_.world(
-      contact_witness(vertices_, triangles_[pair.worst.first], triangles_[pair.worst.second]));
+  finding.witness = examined_.world(geometry::contact_witness(
+      vertices_, triangles_[pair.worst.first], triangles_[pair.worst.second]));
   finding.detail = have_common_vertex(pair.worst)
                        ? "the facets meet in more than the vertices they share ("
                        : "the facets intersect (";
-  finding.detail += std::string(to_string(pair.worst.contact)) + ")";
+  finding.detail += std::string(geometry::to_string(pair.worst.contact)) + ")";
   finding.uncertain = examined_.is_faulty(pair.first) || examined_.is_faulty(pair.second);
   examined_.findings.add(std::move(finding));
 }
@@ -141,13 +141,13 @@ void IntersectionExaminer::keep_found(const std::vector<FacetPair>& pairs,
 
 /// False if the search must be repeated with a higher limit.
 bool IntersectionExaminer::search(std::uint64_t limit) {
-  IntersectionOptions options;
+  geometry::IntersectionOptions options;
   options.limit = limit;
   options.cancel = cancel_;
   options.threads = threads_;
   // Triangles of one facet meet in common vertices and edges only, by construction.
   options.group_of = examined_.triangles().facet_of;
-  auto found = intersecting_pairs(vertices_, triangles_, options);
+  auto found = geometry::intersecting_pairs(vertices_, triangles_, options);
   if (!found) {
     contacts_.incomplete = "the search for intersections was ended: " + to_string(found.error());
     examined_.findings.skip({kShellSelfIntersection, kIntersectionShells}, contacts_.incomplete);
@@ -156,7 +156,7 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
   const bool is_cut_off = found->size() >= limit;
   found->insert(found->end(), at_diagonals_.begin(), at_diagonals_.end());
   std::vector<FacetPair> pairs;
-  for (const IntersectingPair& pair : *found) {
+  for (const geometry::IntersectingPair& pair : *found) {
     const auto [first, second] = std::minmax({facet_of(pair.first), facet_of(pair.second)});
     pairs.push_back({first, second, pair});
   }
@@ -193,10 +193,10 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
 }  // namespace
 
 ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                                  const CancelPoll& cancel, unsigned threads) {
+                                  const workers::CancelPoll& cancel, unsigned threads) {
   const auto& states = examined.triangles().state;
-  const auto place = std::find_if(states.begin(), states.end(), [](FacetState state) {
-    return state != FacetState::triangulated;
+  const auto place = std::find_if(states.begin(), states.end(), [](tessellate::FacetState state) {
+    return state != tessellate::FacetState::triangulated;
   });
   if (place != states.end()) {
     examined.findings.skip({kShellSelfIntersection, kIntersectionShells},
@@ -206,4 +206,4 @@ ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Ind
   return IntersectionExaminer(examined, duplicate_of, cancel, threads).examine();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -7,7 +7,7 @@
 #include "tessellate/ring_problems.h"
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// Problems reported per facet; more are counted as omitted.
@@ -56,7 +56,8 @@ bool check_points(ExaminedSolid& examined, Index facet) {
   return is_good;
 }
 
-Finding finding_of(const ExaminedSolid& examined, Index facet, const RingProblem& problem) {
+Finding finding_of(const ExaminedSolid& examined, Index facet,
+                   const tessellate::RingProblem& problem) {
   Finding finding;
   finding.place = problem.edge == kNone ? examined.at_ring(facet, problem.ring)
                                         : examined.at_corner(facet, problem.ring, problem.edge);
@@ -67,27 +68,27 @@ Finding finding_of(const ExaminedSolid& examined, Index facet, const RingProblem
   }
   finding.witness = examined.world(problem.witness);
   switch (problem.kind) {
-    case RingProblemKind::collapsed:
+    case tessellate::RingProblemKind::collapsed:
       finding.code = kRingSelfIntersection;
       finding.detail = "all points of the ring lie on one line";
       break;
-    case RingProblemKind::self_contact:
+    case tessellate::RingProblemKind::self_contact:
       finding.code = kRingSelfIntersection;
       finding.detail = "the edges that start at these vertices meet";
       break;
-    case RingProblemKind::rings_meet:
+    case tessellate::RingProblemKind::rings_meet:
       finding.code = kIntersectionRings;
       finding.detail = "the rings meet other than in a shared vertex";
       break;
-    case RingProblemKind::same_ring:
+    case tessellate::RingProblemKind::same_ring:
       finding.code = kDuplicatedRings;
       finding.detail = "the rings have the same vertices";
       break;
-    case RingProblemKind::outside_exterior:
+    case tessellate::RingProblemKind::outside_exterior:
       finding.code = kInnerRingOutside;
       finding.detail = "the interior ring lies outside the exterior ring";
       break;
-    case RingProblemKind::nested:
+    case tessellate::RingProblemKind::nested:
       finding.code = kInnerRingsNested;
       finding.detail = "the interior ring lies inside another interior ring";
       break;
@@ -106,9 +107,9 @@ void report_no_region(ExaminedSolid& examined, Index facet) {
 }
 
 void check_shape(ExaminedSolid& examined, Index facet) {
-  const RingProblems found = ring_problems(examined.solid(), facet, kMostProblemsPerFacet,
-                                           [&] { return examined.ask_cancelled(); });
-  for (const RingProblem& problem : found.problems) {
+  const tessellate::RingProblems found = tessellate::ring_problems(
+      examined.solid(), facet, kMostProblemsPerFacet, [&] { return examined.ask_cancelled(); });
+  for (const tessellate::RingProblem& problem : found.problems) {
     examined.findings.add(finding_of(examined, facet, problem));
   }
   if (!found.is_complete) examined.findings.omit(1);
@@ -147,7 +148,8 @@ void check_rings(ExaminedSolid& examined) {
   for (Index facet = 0; facet < examined.solid().facet_count(); ++facet) {
     const bool has_points = check_points(examined, facet);
     const bool is_cancelled = examined.is_cancelled();
-    const bool is_triangulated = examined.triangles().state[facet] == FacetState::triangulated;
+    const bool is_triangulated =
+        examined.triangles().state[facet] == tessellate::FacetState::triangulated;
     if (has_points && is_triangulated) continue;
     examined.mark_faulty(facet);
     if (has_points && is_cancelled) {
@@ -167,4 +169,4 @@ void check_rings(ExaminedSolid& examined) {
   }
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

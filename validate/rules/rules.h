@@ -12,7 +12,7 @@
 #include "delaunay/shell_contacts.h"
 #include "validate/examined_solid.h"
 
-namespace watertight {
+namespace watertight::validate {
 
 /// 902.
 void check_not_empty(ExaminedSolid& examined);
@@ -58,7 +58,7 @@ struct ShellContacts {
 /// 306 and 401: facets that intersect. Facets of different shells may touch in points and edges;
 /// duplicate shells are not compared with each other.
 ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                                  const CancelPoll& cancel, unsigned threads);
+                                  const workers::CancelPoll& cancel, unsigned threads);
 /// Warning 804: facets that are not exactly planar, where another diagonal would make or undo a
 /// finding 306 or 401.
 void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts);
@@ -69,9 +69,9 @@ std::string check_solid(ExaminedSolid& examined, const std::vector<ShellTopology
 /// 404, and warning 804 where another diagonal makes or undoes it. Requires sound shells that
 /// passed every other rule. False if it could not be decided: where the divided triangles form no
 /// complex, as when edges of shells cross in a point that is no vertex.
-bool check_interior(ExaminedSolid& examined, const ContactTriangles& contacts);
+bool check_interior(ExaminedSolid& examined, const delaunay::ContactTriangles& contacts);
 /// Warnings: 801, 802 (with those that the reader left out), 803.
-void check_vertices(ExaminedSolid& examined, const UnusedVertices& left_out);
+void check_vertices(ExaminedSolid& examined, const geometry::UnusedVertices& left_out);
 /// Warning 805: vertices that the reader rounded.
 void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded);
 /// Warning 805 of a solid that was moved as a whole.
@@ -80,4 +80,4 @@ void report_rounded_origin(ExaminedSolid& examined);
 /// The codes that val3dity, which stops at the first level that fails, would give.
 std::vector<int> first_level_codes(const std::vector<Finding>& findings);
 
-}  // namespace watertight
+}  // namespace watertight::validate

@@ -12,7 +12,7 @@
 #include "validate/rules/rules.h"
 #include "validate/wedges.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 class ShellExaminer {
@@ -38,7 +38,7 @@ class ShellExaminer {
   void check_open();
   void report_junction(const TJunction& junction);
   void report_border(const Border& border);
-  void link_wedges(DisjointSets& fans, Index first_corner, Index last_corner);
+  void link_wedges(geometry::DisjointSets& fans, Index first_corner, Index last_corner);
   void check_umbrellas();
   void report_pinch(Index vertex, Index facet, std::size_t umbrellas);
   std::string_view interior_connected();
@@ -57,7 +57,7 @@ class ShellExaminer {
                        [&](const EdgeUse& use) { return examined_.is_faulty(use.facet); });
   }
   bool bounds_region(Index facet) const {
-    return examined_.triangles().state[facet] == FacetState::triangulated;
+    return examined_.triangles().state[facet] == tessellate::FacetState::triangulated;
   }
   /// The first corner of the first ring that has one. Requires a facet with an edge.
   Place first_corner(Index facet) const {
@@ -182,7 +182,8 @@ void ShellExaminer::check_open() {
 
 /// Links the two edges of each facet that bound its inside at a vertex: those of one corner, but
 /// where several rings of a facet pass the vertex.
-void ShellExaminer::link_wedges(DisjointSets& fans, Index first_corner, Index last_corner) {
+void ShellExaminer::link_wedges(geometry::DisjointSets& fans, Index first_corner,
+                                Index last_corner) {
   std::vector<Wedge> shared;
   for (Index facet = facets_.begin; facet < facets_.end; ++facet) {
     const std::vector<Wedge> wedges = shared_wedges(solid_, examined_.triangles(), facet);
@@ -205,7 +206,7 @@ void ShellExaminer::check_umbrellas() {
   const auto& ring_vertices = solid_.arrays().ring_vertices;
   const Index first_corner = offsets[solid_.arrays().facet_offsets[facets_.begin]];
   const Index last_corner = offsets[solid_.arrays().facet_offsets[facets_.end]];
-  DisjointSets fans(2 * std::size_t{last_corner - first_corner});
+  geometry::DisjointSets fans(2 * std::size_t{last_corner - first_corner});
   const auto arriving = [&](Index corner) { return 2 * (corner - first_corner); };
   const auto leaving = [&](Index corner) { return arriving(corner) + 1; };
   link_wedges(fans, first_corner, last_corner);
@@ -266,11 +267,11 @@ void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t umbrella
 /// inward (cavities that touch the outside in a vertex).
 std::string_view ShellExaminer::interior_connected() {
   if (!interior_connected_.empty()) return interior_connected_;
-  DisjointSets parts(facets_.size());
+  geometry::DisjointSets parts(facets_.size());
   for_each_pair(
       [&](const EdgeUse& a, const EdgeUse& b) { parts.join(local(a.facet), local(b.facet)); });
   std::map<Index, std::vector<Triangle>> triangles;
-  const FacetTriangles& all = examined_.triangles();
+  const tessellate::FacetTriangles& all = examined_.triangles();
   for (Index facet = facets_.begin; facet < facets_.end; ++facet) {
     auto& list = triangles[parts.root(local(facet))];
     list.insert(list.end(), all.triangles.begin() + all.first[facet],
@@ -278,14 +279,14 @@ std::string_view ShellExaminer::interior_connected() {
   }
   std::size_t outward = 0;
   for (const auto& [root, list] : triangles) {
-    if (volume_sign(solid_.vertices(), list) > 0) ++outward;
+    if (geometry::volume_sign(solid_.vertices(), list) > 0) ++outward;
   }
   interior_connected_ = triangles.size() == 1 || outward == 1 ? "yes" : "no";
   return interior_connected_;
 }
 
 void ShellExaminer::check_components() {
-  DisjointSets vertices(edges_.vertices().size());
+  geometry::DisjointSets vertices(edges_.vertices().size());
   for (const EdgeUse& use : uses_) vertices.join(number_of(use.low), number_of(use.high));
   // A ring of a facet may hang together with the exterior ring by the facet alone.
   std::vector<Index> anchor(facets_.size(), kNone);
@@ -427,4 +428,4 @@ std::vector<ShellTopology> check_shells(ExaminedSolid& examined) {
   return result;
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

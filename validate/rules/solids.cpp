@@ -11,7 +11,7 @@
 #include "validate/region_relation.h"
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// Points located and boxes compared while shells are located against each other: a few seconds of
@@ -22,7 +22,7 @@ constexpr int kPointExponent = 6;
 
 std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shell) {
   const IndexRange facets = examined.solid().facets_of(shell);
-  const FacetTriangles& all = examined.triangles();
+  const tessellate::FacetTriangles& all = examined.triangles();
   return std::span<const Triangle>(all.triangles)
       .subspan(all.first[facets.begin], all.first[facets.end] - all.first[facets.begin]);
 }
@@ -30,7 +30,7 @@ std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shel
 bool is_triangulated(const ExaminedSolid& examined, Index shell) {
   const IndexRange facets = examined.solid().facets_of(shell);
   for (Index facet = facets.begin; facet < facets.end; ++facet) {
-    if (examined.triangles().state[facet] != FacetState::triangulated) return false;
+    if (examined.triangles().state[facet] != tessellate::FacetState::triangulated) return false;
   }
   return true;
 }
@@ -73,7 +73,7 @@ class SolidExaminer {
   void report(int code, Index shell, Index other, std::string detail);
   void report_no_volume(Index shell);
   Location locate(const Point& p, Index around);
-  Location locate_inside(const TrianglePoint& point, Index around);
+  Location locate_inside(const geometry::TrianglePoint& point, Index around);
   bool can_be_related(Index a, Index b) const;
   const RegionSurface& region(Index shell);
   RegionRelation relate(Index a, Index b);
@@ -125,7 +125,8 @@ void SolidExaminer::check_orientation() {
       continue;
     }
     if (examined_.is_cancelled()) return;
-    const int sign = volume_sign(examined_.solid().vertices(), triangles_of(examined_, shell));
+    const int sign =
+        geometry::volume_sign(examined_.solid().vertices(), triangles_of(examined_, shell));
     volume_signs_[shell] = sign;
     if (sign == (shell == 0 ? 1 : -1)) continue;
     if (sign == 0) {
@@ -149,7 +150,7 @@ Location SolidExaminer::locate(const Point& p, Index around) {
   if (!boxes_[around].overlaps(Box{p, p})) return Location::outside;
   const std::span<const Point> vertices = examined_.solid().vertices();
   const std::span<const Triangle> surface = triangles_of(examined_, around);
-  if (surface.size() <= kSmall) return watertight::locate(p, vertices, surface);
+  if (surface.size() <= kSmall) return watertight::validate::locate(p, vertices, surface);
   auto place = locators_.find(around);
   if (place == locators_.end()) {
     place = locators_.emplace(around, PointLocator(vertices, surface)).first;
@@ -157,10 +158,10 @@ Location SolidExaminer::locate(const Point& p, Index around) {
   return place->second.locate(p);
 }
 
-Location SolidExaminer::locate_inside(const TrianglePoint& point, Index around) {
-  if (const auto exact = exact_doubles(point)) return locate(*exact, around);
-  return Location{static_cast<signed char>(
-      locate_exactly(point, examined_.solid().vertices(), triangles_of(examined_, around)))};
+Location SolidExaminer::locate_inside(const geometry::TrianglePoint& point, Index around) {
+  if (const auto exact = geometry::exact_doubles(point)) return locate(*exact, around);
+  return Location{static_cast<signed char>(geometry::locate_exactly(
+      point, examined_.solid().vertices(), triangles_of(examined_, around)))};
 }
 
 /// For shells that have no point in common, or of which one has defects of its own. Where `shell`
@@ -185,10 +186,10 @@ SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
     bool is_seen = false;
     for (const Index vertex : t) is_seen = look(vertices[vertex]) || is_seen;
     // All three corners touch: points inside the triangle.
-    for (std::uint64_t i = 1; i <= triangle_points(kPointExponent) && !is_seen; ++i) {
+    for (std::uint64_t i = 1; i <= geometry::triangle_points(kPointExponent) && !is_seen; ++i) {
       ++looks_;
       const std::array<Point, 3> corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
-      is_seen = note(locate_inside(triangle_point(corners, kPointExponent, i), around));
+      is_seen = note(locate_inside(geometry::triangle_point(corners, kPointExponent, i), around));
     }
     if (is_seen && is_one_enough) break;
     if (sides.has_inside && sides.has_outside) break;
@@ -377,4 +378,4 @@ std::string check_solid(ExaminedSolid& examined, const std::vector<ShellTopology
   return examiner.unlocated();
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

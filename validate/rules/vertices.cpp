@@ -9,7 +9,7 @@
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
 
-namespace watertight {
+namespace watertight::validate {
 namespace {
 
 /// Closer vertices are worth a warning: the snap tolerance that val3dity takes by default.
@@ -59,7 +59,7 @@ void check_near(ExaminedSolid& examined) {
 }
 
 /// `left_out` are those that the reader has left out of the solid.
-void check_unused(ExaminedSolid& examined, const UnusedVertices& left_out) {
+void check_unused(ExaminedSolid& examined, const geometry::UnusedVertices& left_out) {
   Index first = kNone;
   std::uint64_t count = left_out.count;
   for (Index vertex = 0; vertex < examined.submitted().vertex_count(); ++vertex) {
@@ -86,10 +86,10 @@ void check_unused(ExaminedSolid& examined, const UnusedVertices& left_out) {
 /// Width across the longest extent of a facet: its area divided by that extent, doubled (exact for
 /// a triangle: its height).
 void check_slivers(ExaminedSolid& examined) {
-  const FacetTriangles& all = examined.triangles();
+  const tessellate::FacetTriangles& all = examined.triangles();
   for (Index facet = 0; facet < examined.solid().facet_count(); ++facet) {
     if (examined.is_cancelled()) return;
-    if (all.state[facet] != FacetState::triangulated) continue;
+    if (all.state[facet] != tessellate::FacetState::triangulated) continue;
     double doubled_area = 0;
     double extent = 0;
     for (Index t = all.first[facet]; t < all.first[facet + 1]; ++t) {
@@ -115,7 +115,7 @@ void check_slivers(ExaminedSolid& examined) {
 
 }  // namespace
 
-void check_vertices(ExaminedSolid& examined, const UnusedVertices& left_out) {
+void check_vertices(ExaminedSolid& examined, const geometry::UnusedVertices& left_out) {
   check_near(examined);
   check_unused(examined, left_out);
   check_slivers(examined);
@@ -144,4 +144,4 @@ void report_rounded_origin(ExaminedSolid& examined) {
   examined.findings.add(std::move(finding));
 }
 
-}  // namespace watertight
+}  // namespace watertight::validate

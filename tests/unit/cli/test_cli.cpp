@@ -78,12 +78,12 @@ const std::string kCubeObj =
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 TEST_CASE("a progress line tells the rate, and the time left where the whole is known") {
-  CHECK(progress_line("a", 100, 0.5, 10) ==
+  CHECK(cli::progress_line("a", 100, 0.5, 10) ==
         "a [###############...............] 100 features  10/s  0:10 left");
-  CHECK(progress_line("a", 100, 0.01, 100) ==
+  CHECK(cli::progress_line("a", 100, 0.01, 100) ==
         "a [..............................] 100 features  1/s  2:45:00 left");
-  CHECK(progress_line("a", 7, std::nullopt, 2) == "a 7 features  4/s");
-  CHECK(progress_line("a", 0, 0.0, 0) == "a [..............................] 0 features  0/s");
+  CHECK(cli::progress_line("a", 7, std::nullopt, 2) == "a 7 features  4/s");
+  CHECK(cli::progress_line("a", 0, 0.0, 0) == "a [..............................] 0 features  0/s");
 }
 
 TEST_CASE_METHOD(Fixture, "the exit status tells valid, invalid and broken input apart") {
@@ -260,11 +260,11 @@ std::string moved() {
 
 /// A Watertight file of kValid and moved().
 std::string two_documents() {
-  ContainerWriter writer;
+  pipeline::ContainerWriter writer;
   for (const std::string& text : {kValid, moved()}) {
-    auto document = read_document(as_bytes(text), Format::city_json_seq);
+    auto document = formats::read_document(as_bytes(text), Format::city_json_seq);
     REQUIRE(document);
-    const auto encoded = encode_document(*std::move(document), nullptr, {});
+    const auto encoded = pipeline::encode_document(*std::move(document), nullptr, {});
     REQUIRE(encoded);
     for (const StoredFeature& feature : encoded->document.features) REQUIRE(writer.add(feature));
   }

@@ -54,18 +54,18 @@ class Folder {
 
 TEST_CASE("what a terminal would obey is replaced, the rest stays") {
   const std::string mark = "\xEF\xBF\xBD";
-  CHECK(printable("Gebäude 1, 高い") == "Gebäude 1, 高い");
-  CHECK(printable("a\x1b[31mb\x07") == "a" + mark + "[31mb" + mark);
-  CHECK(printable("a\r\nb\tc\x7f") == "a" + mark + mark + "b" + mark + "c" + mark);
-  CHECK(printable("a\xC2\x9B"
-                  "31mb") == "a" + mark + "31mb");  // CSI of the C1 set
-  CHECK(printable("a\x9B"
-                  "31mb\xFF") == "a" + mark + "31mb" + mark);  // no UTF-8
-  CHECK(printable("a\xE2\x80\xAE"
-                  "b\xE2\x81\xA6"
-                  "c") == "a" + mark + "b" + mark + "c");
-  CHECK(printable("1\xC2\xA0m \xE2\x80\x93 2") == "1\xC2\xA0m \xE2\x80\x93 2");
-  CHECK(printable("\xE2\x80").find('\xE2') == std::string::npos);
+  CHECK(cli::printable("Gebäude 1, 高い") == "Gebäude 1, 高い");
+  CHECK(cli::printable("a\x1b[31mb\x07") == "a" + mark + "[31mb" + mark);
+  CHECK(cli::printable("a\r\nb\tc\x7f") == "a" + mark + mark + "b" + mark + "c" + mark);
+  CHECK(cli::printable("a\xC2\x9B"
+                       "31mb") == "a" + mark + "31mb");  // CSI of the C1 set
+  CHECK(cli::printable("a\x9B"
+                       "31mb\xFF") == "a" + mark + "31mb" + mark);  // no UTF-8
+  CHECK(cli::printable("a\xE2\x80\xAE"
+                       "b\xE2\x81\xA6"
+                       "c") == "a" + mark + "b" + mark + "c");
+  CHECK(cli::printable("1\xC2\xA0m \xE2\x80\x93 2") == "1\xC2\xA0m \xE2\x80\x93 2");
+  CHECK(cli::printable("\xE2\x80").find('\xE2') == std::string::npos);
 }
 
 TEST_CASE("ids with escape sequences do not reach the terminal") {

@@ -179,7 +179,7 @@ OrientedBoundary boxes_touching_at_edge() {
   add_box(arrays, {1000, 1000, 0}, {2000, 2000, 1000});
   auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
   if (!solid) give_up(solid.error());
-  auto boundary = OrientedBoundary::make(merge_equal_vertices(*solid).solid);
+  auto boundary = OrientedBoundary::make(geometry::merge_equal_vertices(*solid).solid);
   if (!boundary) give_up(boundary.error());
   return std::move(boundary).value();
 }
@@ -190,7 +190,7 @@ OrientedBoundary boxes_touching_at_vertex() {
   add_box(arrays, {1000, 1000, 1000}, {2000, 2500, 2000});
   auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
   if (!solid) give_up(solid.error());
-  auto boundary = OrientedBoundary::make(merge_equal_vertices(*solid).solid);
+  auto boundary = OrientedBoundary::make(geometry::merge_equal_vertices(*solid).solid);
   if (!boundary) give_up(boundary.error());
   return std::move(boundary).value();
 }
@@ -294,12 +294,12 @@ OrientedBoundary schoenhardt() {
   return boundary_of(std::move(arrays));
 }
 
-Certificate schoenhardt_certificate() {
+delaunay::Certificate schoenhardt_certificate() {
   const OrientedBoundary boundary = schoenhardt();
   const Solid& solid = boundary.solid();
-  Certificate certificate;
-  certificate.rung = Rung::tetgen;
-  Tetrahedralization& mesh = certificate.tetrahedralization;
+  delaunay::Certificate certificate;
+  certificate.rung = delaunay::Rung::tetgen;
+  delaunay::Tetrahedralization& mesh = certificate.tetrahedralization;
   mesh.points.assign(solid.vertices().begin(), solid.vertices().end());
   mesh.input_count = solid.vertex_count();
   mesh.points.push_back({10000.5, 10000.125, 4500});

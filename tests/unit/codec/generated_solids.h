@@ -50,7 +50,7 @@ OrientedBoundary grid_cube(Index n);
 /// Delaunay tetrahedralization of its vertices has.
 OrientedBoundary schoenhardt();
 /// And a tetrahedralization of it with a Steiner vertex at its centre, as an engine would return.
-Certificate schoenhardt_certificate();
+delaunay::Certificate schoenhardt_certificate();
 /// A prism over a random star-shaped polygon with `sides` sides: roofs that need unrecovered faces.
 OrientedBoundary random_prism(Random& random, Index sides);
 /// A tent of random heights over a grid, closed below: triangles in general position.

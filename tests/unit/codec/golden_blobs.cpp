@@ -125,7 +125,7 @@ std::vector<Golden> goldens() {
   Random random(2);
   const auto add = [&](const std::string& name, const OrientedBoundary& boundary) {
     for (const Mode mode : {Mode::walk, Mode::polygon, Mode::parallelogram}) {
-      Golden golden{name + "-" + std::string(to_string(mode)), 0, boundary, {}, mode};
+      Golden golden{name + "-" + std::string(codec::to_string(mode)), 0, boundary, {}, mode};
       if (encode_golden(golden)) all.push_back(std::move(golden));
     }
   };
@@ -138,7 +138,7 @@ std::vector<Golden> goldens() {
   add("spire", spire());
   // What the others leave out of a decoder, found by its lines that they did not run.
   const auto add_one = [&](const std::string& name, const OrientedBoundary& boundary, Mode mode) {
-    all.push_back({name + "-" + std::string(to_string(mode)), 0, boundary, {}, mode});
+    all.push_back({name + "-" + std::string(codec::to_string(mode)), 0, boundary, {}, mode});
   };
   add_one("nested", tetrahedron_with_cavities(), Mode::parallelogram);
   add_one("coarse-torus", torus_on_coarse_steps(), Mode::parallelogram);
@@ -163,11 +163,11 @@ std::vector<Golden> goldens() {
 }
 
 Result<Bytes> encode_golden(const Golden& golden) {
-  const Certificate certificate = schoenhardt_certificate();
+  const delaunay::Certificate certificate = schoenhardt_certificate();
   EncodeOptions options{.mode = golden.mode, .keep_order = golden.keep_order};
   options.models = golden.models;
   if (golden.with_steiner) options.certificate = &certificate;
-  return encode_boundary(golden.boundary, golden.acceptance, options);
+  return codec::encode_boundary(golden.boundary, golden.acceptance, options);
 }
 
 }  // namespace watertight::generated

@@ -19,7 +19,7 @@ struct Golden {
   Mode mode = Mode::bitmap;
   bool keep_order = true;
   bool with_steiner = false;  // with schoenhardt_certificate()
-  std::uint8_t models = kModelNumber;
+  std::uint8_t models = codec::kModelNumber;
 };
 
 /// Files that are only decoded.

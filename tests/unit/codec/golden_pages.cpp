@@ -6,10 +6,10 @@
 #include <bit>
 
 #include "base/checksum.h"
-#include "codec/page/coordinates.h"
 #include "codec/encode_boundary.h"
-#include "codec/page/facet_listing.h"
 #include "codec/page/container.h"
+#include "codec/page/coordinates.h"
+#include "codec/page/facet_listing.h"
 #include "codec/page_file.h"
 #include "generated_solids.h"
 #include "geometry/canonical_form.h"
@@ -84,10 +84,11 @@ Bytes appended(Bytes bytes, const Bytes& more) {
 }
 
 Result<Bytes> page_file(const GoldenPage& golden) {
-  PageFileWriter writer(kFilePageSolids, {.mode = golden.modes.front(), .models = golden.models});
+  codec::PageFileWriter writer(kFilePageSolids,
+                               {.mode = golden.modes.front(), .models = golden.models});
   Bytes file;
   for (const OrientedBoundary& solid : golden.solids) {
-    const auto blob = encode_boundary(solid, {});
+    const auto blob = codec::encode_boundary(solid, {});
     if (!blob) return blob.error();
     if (auto status = writer.add_blob(*blob); !status) return status.error();
     file = appended(std::move(file), writer.take());
@@ -100,13 +101,13 @@ Result<Bytes> page_file(const GoldenPage& golden) {
 /// Writes streams that no encoder writes, by the numbers that docs/format.md gives families.
 class Forger {
  public:
-  Forger() : models_(neutral_priors()) {}
+  Forger() : models_(codec::neutral_priors()) {}
 
   Forger& frame(LatticeKind kind = LatticeKind::decimal) {
-    Frame frame;
+    codec::Frame frame;
     frame.grid.kind = kind;
     frame.grid.step.fill(GridNumber{1, kind == LatticeKind::float64 ? 0 : -3});
-    if (!code_frame(stream_, models_[0], frame)) stream_.fail();
+    if (!codec::code_frame(stream_, models_[0], frame)) stream_.fail();
     return *this;
   }
   Forger& decide(std::uint32_t family, std::uint32_t context, bool value) {
@@ -145,7 +146,7 @@ class Forger {
   }
   /// Mode walk up to its number of columns.
   Forger& columns(std::uint64_t count) {
-    ModelBank& bank = models_[3];
+    codec::ModelBank& bank = models_[3];
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       bank.code_signed(stream_, 0, 0, {2 * axis + 1}, 0, 54);
     }
@@ -167,8 +168,8 @@ class Forger {
   }
 
  private:
-  EntropyStream stream_ = EntropyStream::writer();
-  std::array<ModelBank, kModelParts> models_;
+  codec::EntropyStream stream_ = codec::EntropyStream::writer();
+  std::array<codec::ModelBank, codec::kModelParts> models_;
 };
 
 Bytes with(Bytes bytes, std::size_t place, std::uint8_t value) {
@@ -179,7 +180,7 @@ Bytes with(Bytes bytes, std::size_t place, std::uint8_t value) {
 /// Bytes that are nearly the golden box with neutral priors.
 void refuse_damaged(std::vector<Refused>& all) {
   const Bytes box =
-      encode_boundary(generated::box(), {}, {.mode = Mode::polygon, .models = 0}).value();
+      codec::encode_boundary(generated::box(), {}, {.mode = Mode::polygon, .models = 0}).value();
   const std::size_t stream_end = box.size() - 3;
   Bytes shorter = box;
   shorter.erase(shorter.begin() + static_cast<std::ptrdiff_t>(stream_end) - 1);
@@ -230,15 +231,15 @@ void refuse_frames(std::vector<Refused>& all) {
 
 /// A box in mode raw whose facets were changed.
 Bytes raw_box(const Bytes& facets, bool with_order = false) {
-  const CanonicalSolid box = canonical_form(generated::box());
+  const geometry::CanonicalSolid box = geometry::canonical_form(generated::box());
   Forger forger;
-  forger.frame().mode(0).section(write_vertices(box.boundary.solid().vertices()));
+  forger.frame().mode(0).section(codec::write_vertices(box.boundary.solid().vertices()));
   forger.section(facets).origin_zero().decide(7, 0, with_order);
   return forger.blob();
 }
 
 void refuse_solids(std::vector<Refused>& all) {
-  const CanonicalSolid box = canonical_form(generated::box());
+  const geometry::CanonicalSolid box = geometry::canonical_form(generated::box());
   const SolidArrays& arrays = box.boundary.solid().arrays();
   SolidArrays open = arrays;
   open.ring_vertices.resize(open.ring_vertices.size() - 4);
@@ -254,10 +255,11 @@ void refuse_solids(std::vector<Refused>& all) {
   const auto add = [&](const char* name, ErrorCode error, const Bytes& bytes) {
     all.push_back({name, "blob", error, bytes});
   };
-  add("an open box", ErrorCode::malformed, raw_box(write_facet_listing(open)));
-  add("a ring that starts elsewhere", ErrorCode::malformed, raw_box(write_facet_listing(turned)));
+  add("an open box", ErrorCode::malformed, raw_box(codec::write_facet_listing(open)));
+  add("a ring that starts elsewhere", ErrorCode::malformed,
+      raw_box(codec::write_facet_listing(turned)));
   add("a facet section with a byte more", ErrorCode::malformed,
-      raw_box(appended(write_facet_listing(arrays), {0})));
+      raw_box(appended(codec::write_facet_listing(arrays), {0})));
   Forger beyond;
   beyond.frame().mode(0).section(many.bytes()).section({}).origin_zero();
   add("raw vertices beyond the limit", ErrorCode::limit_exceeded, beyond.blob());
@@ -315,14 +317,14 @@ std::vector<GoldenPage> golden_pages() {
 
 Result<Bytes> encode_golden_page(const GoldenPage& golden) {
   if (golden.file.ends_with(".wtpf")) return page_file(golden);
-  PageContents page;
+  codec::PageContents page;
   page.models = golden.models;
-  page.frame = frame_of(golden.solids.front().solid(), {});
+  page.frame = codec::frame_of(golden.solids.front().solid(), {});
   for (std::size_t i = 0; i < golden.solids.size(); ++i) {
     page.solids.push_back(
-        page_solid(golden.solids[i], {.mode = golden.modes[i % golden.modes.size()]}));
+        codec::page_solid(golden.solids[i], {.mode = golden.modes[i % golden.modes.size()]}));
   }
-  return write_page_bytes(page, PageKind::page, nullptr);
+  return codec::write_page_bytes(page, codec::PageKind::page, nullptr);
 }
 
 std::vector<Refused> refused() {

@@ -15,7 +15,7 @@ struct GoldenPage {
   std::string file;  // name.page, or name.wtpf for a page file of pages of three solids
   std::vector<OrientedBoundary> solids;
   std::vector<Mode> modes;  // in turn
-  std::uint8_t models = kModelNumber;
+  std::uint8_t models = codec::kModelNumber;
 };
 
 std::vector<GoldenPage> golden_pages();

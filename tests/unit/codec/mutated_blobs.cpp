@@ -83,14 +83,14 @@ std::vector<Bytes> seed_blobs(std::uint64_t seed) {
   for (const auto& [name, boundary] : all(seed)) {
     for (const Mode mode : kModes) {
       for (const bool keep_order : {true, false}) {
-        auto blob = encode_boundary(boundary, {}, {.mode = mode, .keep_order = keep_order});
+        auto blob = codec::encode_boundary(boundary, {}, {.mode = mode, .keep_order = keep_order});
         if (blob) blobs.push_back(std::move(blob).value());
       }
     }
   }
-  const Certificate certificate = schoenhardt_certificate();
-  auto blob =
-      encode_boundary(schoenhardt(), {}, {.mode = Mode::bitmap, .certificate = &certificate});
+  const delaunay::Certificate certificate = schoenhardt_certificate();
+  auto blob = codec::encode_boundary(schoenhardt(), {},
+                                     {.mode = Mode::bitmap, .certificate = &certificate});
   if (blob) blobs.push_back(std::move(blob).value());
   return blobs;
 }
@@ -103,10 +103,11 @@ std::vector<Bytes> seed_pages(std::uint64_t seed) {
     std::vector<const OrientedBoundary*> boundaries;
     for (const NamedBoundary& solid : solids) boundaries.push_back(&solid.boundary);
     for (const Mode mode : kModes) {
-      auto page = encode_boundaries(boundaries, {}, {.mode = mode, .keep_order = i % 2 == 0});
+      auto page =
+          codec::encode_boundaries(boundaries, {}, {.mode = mode, .keep_order = i % 2 == 0});
       if (page) pages.push_back(std::move(page).value());
     }
-    auto page = encode_boundaries(boundaries, {}, {});
+    auto page = codec::encode_boundaries(boundaries, {}, {});
     if (page) pages.push_back(std::move(page).value());
   }
   return pages;
@@ -122,25 +123,27 @@ Result<std::vector<Decoded>> decode_unchecked(ByteView bytes, const Limits& limi
   constexpr std::size_t kHeader = 4;
   const Error malformed{ErrorCode::malformed, "no header"};
   if (bytes.size() < kHeader) return malformed;
-  PageContents page;
-  page.kind = (bytes[2] & 0x80U) != 0 ? PageKind::page : PageKind::blob;
+  codec::PageContents page;
+  page.kind = (bytes[2] & 0x80U) != 0 ? codec::PageKind::page : codec::PageKind::blob;
   page.models = bytes[3];
-  auto models = ModelSet::make(page.models);
+  auto models = codec::ModelSet::make(page.models);
   if (!models) return models.error();
   const ByteView rest = bytes.subspan(kHeader);
-  EntropyStream stream = EntropyStream::reader(rest);
+  codec::EntropyStream stream = codec::EntropyStream::reader(rest);
   const std::uint64_t count =
-      page.kind == PageKind::page ? stream.code_uniform(0, kMaxPageSolids) + 1 : 1;
-  if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.frame); !status) {
+      page.kind == codec::PageKind::page ? stream.code_uniform(0, codec::kMaxPageSolids) + 1 : 1;
+  if (auto status = codec::code_frame(stream, (*models)[codec::ModelPart::frame], page.frame);
+      !status) {
     return status.error();
   }
-  SolidCoder coder(stream, *models, page.frame, limits_of_stream(rest.size(), limits));
+  codec::SolidCoder coder(stream, *models, page.frame,
+                          codec::limits_of_stream(rest.size(), limits));
   std::vector<Decoded> solids;
   for (std::uint64_t i = 0; i < count; ++i) {
-    PageSolid solid;
+    codec::PageSolid solid;
     if (auto status = coder.code(solid); !status) break;
     page.solids.push_back(std::move(solid));
-    auto decoded = decoded_of(page, page.solids.size() - 1);
+    auto decoded = codec::decoded_of(page, page.solids.size() - 1);
     if (!decoded) return decoded.error();
     solids.push_back(std::move(decoded).value());
   }

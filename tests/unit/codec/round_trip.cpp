@@ -24,14 +24,14 @@ std::string without_numbers(std::string message) {
 }
 
 Solid wanted(const OrientedBoundary& boundary, bool keep_order) {
-  return keep_order ? boundary.solid() : canonical_form(boundary).boundary.solid();
+  return keep_order ? boundary.solid() : geometry::canonical_form(boundary).boundary.solid();
 }
 
 }  // namespace
 
 void RoundTrips::fail(const std::string& name, Mode mode, const std::string& what) {
   std::string failure = name;
-  failure.append(" in mode ").append(to_string(mode)).append(": ").append(what);
+  failure.append(" in mode ").append(codec::to_string(mode)).append(": ").append(what);
   failures_.push_back(std::move(failure));
 }
 
@@ -39,7 +39,7 @@ void RoundTrips::fail(const std::string& name, Mode mode, const std::string& wha
 /// cannot read, which encode() finds out for itself and reports as not encodable too.
 bool RoundTrips::note(const std::string& name, const Result<Bytes>& bytes,
                       const EncodeOptions& options) {
-  std::string what(to_string(options.mode));
+  std::string what(codec::to_string(options.mode));
   what += ": ";
   what += bytes ? std::string("encoded") : without_numbers(bytes.error().message);
   const bool is_lost = !bytes && (options.mode == Mode::automatic || options.mode == Mode::raw ||
@@ -51,7 +51,7 @@ bool RoundTrips::note(const std::string& name, const Result<Bytes>& bytes,
 
 void RoundTrips::check(const std::string& name, const OrientedBoundary& boundary,
                        const Acceptance& acceptance, const EncodeOptions& options) {
-  const auto blob = encode_boundary(boundary, acceptance, options);
+  const auto blob = codec::encode_boundary(boundary, acceptance, options);
   if (!note(name, blob, options)) return;
   const auto decoded = decode(*blob);
   if (!decoded) return fail(name, options.mode, to_string(decoded.error()));
@@ -66,13 +66,13 @@ void RoundTrips::check_page(const std::string& name, std::span<const NamedBounda
   std::vector<const OrientedBoundary*> boundaries;
   boundaries.reserve(solids.size());
   for (const NamedBoundary& solid : solids) boundaries.push_back(&solid.boundary);
-  const auto page = encode_boundaries(boundaries, acceptance, options);
+  const auto page = codec::encode_boundaries(boundaries, acceptance, options);
   if (!page && page.error().code == ErrorCode::invalid_argument) {
     ++counts_["page: " + page.error().message];
     return;
   }
   if (!note(name, page, options)) return;
-  const auto decoded = decode_page(*page);
+  const auto decoded = codec::decode_page(*page);
   if (!decoded) return fail(name, options.mode, to_string(decoded.error()));
   bool is_same = decoded->size() == solids.size();
   for (std::size_t i = 0; is_same && i < solids.size(); ++i) {
@@ -90,8 +90,8 @@ void RoundTrips::check_all_modes(const std::string& name, const OrientedBoundary
     check(name, boundary, acceptance, options);
     options.keep_order = false;
     check(name, boundary, acceptance, options);
-    const auto one = encode_boundary(boundary, acceptance, options);
-    const auto two = encode_boundary(other, acceptance, options);
+    const auto one = codec::encode_boundary(boundary, acceptance, options);
+    const auto two = codec::encode_boundary(other, acceptance, options);
     if (bool{one} != bool{two} || (one && *one != *two)) {
       fail(name, mode, "the source order is not without a trace");
     }

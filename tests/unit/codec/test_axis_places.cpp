@@ -17,27 +17,28 @@
 namespace watertight {
 namespace {
 
-using Kind = AxisPlaces::Kind;
+using Kind = codec::parallelogram::AxisPlaces::Kind;
 
-constexpr std::array<FamilyShape, 1> kFamilies{kPlacesFamily};
-constexpr std::array<NumberShape, 1> kNumbers{kPlacesNumber};
-constexpr ModelLayout kLayout{kFamilies, kNumbers};
+constexpr std::array<codec::FamilyShape, 1> kFamilies{codec::parallelogram::kPlacesFamily};
+constexpr std::array<codec::NumberShape, 1> kNumbers{codec::parallelogram::kPlacesNumber};
+constexpr codec::ModelLayout kLayout{kFamilies, kNumbers};
 
-Bytes write(const AxisPlaces& places) {
-  ModelBank models(kLayout);
-  EntropyStream stream = EntropyStream::writer();
-  REQUIRE(AxisPlaces::code(stream, models, 0, 0, Kind::every, places, {}));
+Bytes write(const codec::parallelogram::AxisPlaces& places) {
+  codec::ModelBank models(kLayout);
+  codec::EntropyStream stream = codec::EntropyStream::writer();
+  REQUIRE(codec::parallelogram::AxisPlaces::code(stream, models, 0, 0, Kind::every, places, {}));
   return std::move(stream).finish();
 }
 
-Result<AxisPlaces> read(ByteView bytes, const Limits& limits = {}) {
-  ModelBank models(kLayout);
-  EntropyStream stream = EntropyStream::reader(bytes);
-  return AxisPlaces::code(stream, models, 0, 0, Kind::every, {}, limits);
+Result<codec::parallelogram::AxisPlaces> read(ByteView bytes, const Limits& limits = {}) {
+  codec::ModelBank models(kLayout);
+  codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
+  return codec::parallelogram::AxisPlaces::code(stream, models, 0, 0, Kind::every, {}, limits);
 }
 
 /// Each value has a place that gives it back, and places ascend with values.
-void check_values(const AxisPlaces& places, std::vector<std::int64_t> values) {
+void check_values(const codec::parallelogram::AxisPlaces& places,
+                  std::vector<std::int64_t> values) {
   std::sort(values.begin(), values.end());
   std::int64_t before = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -52,8 +53,9 @@ void check_values(const AxisPlaces& places, std::vector<std::int64_t> values) {
 
 /// These places are suggested for the values, true to them, and still so when written and read.
 /// Returns those read.
-AxisPlaces check_suggestion(const std::vector<std::int64_t>& values, Kind kind) {
-  const AxisPlaces places = AxisPlaces::suggest(values);
+codec::parallelogram::AxisPlaces check_suggestion(const std::vector<std::int64_t>& values,
+                                                  Kind kind) {
+  const codec::parallelogram::AxisPlaces places = codec::parallelogram::AxisPlaces::suggest(values);
   REQUIRE(places.kind() == kind);
   check_values(places, values);
   const auto back = read(write(places));
@@ -73,39 +75,40 @@ std::vector<std::int64_t> steps(double step, double offset, int count) {
   return values;
 }
 
-IntegerSolid gridded_torus() {
-  const CanonicalSolid canonical = canonical_form(generated::torus(16, 16));
-  const auto gridded = grid_solid(canonical.boundary.solid());
+codec::IntegerSolid gridded_torus() {
+  const geometry::CanonicalSolid canonical = geometry::canonical_form(generated::torus(16, 16));
+  const auto gridded = codec::grid_solid(canonical.boundary.solid());
   REQUIRE(gridded);
   return gridded->solid;
 }
 
 template <class Change>
-IntegerSolid changed(IntegerSolid solid, const Change& change) {
-  for (GridPoint& vertex : solid.vertices) {
+codec::IntegerSolid changed(codec::IntegerSolid solid, const Change& change) {
+  for (codec::GridPoint& vertex : solid.vertices) {
     for (std::int64_t& coordinate : vertex) coordinate = change(coordinate);
   }
   return solid;
 }
 
 /// Writes a solid and reads it back. Returns the bytes.
-Bytes round_trip(const IntegerSolid& solid) {
-  ModelBank models(parallelogram_layout());
-  EntropyStream writer = EntropyStream::writer();
-  IntegerSolid source = solid;
-  WriterChoice choice;
-  REQUIRE(code_parallelogram(writer, models, {}, source, choice, {}));
+Bytes round_trip(const codec::IntegerSolid& solid) {
+  codec::ModelBank models(codec::parallelogram::model_layout());
+  codec::EntropyStream writer = codec::EntropyStream::writer();
+  codec::IntegerSolid source = solid;
+  codec::WriterChoice choice;
+  REQUIRE(codec::parallelogram::code_solid(writer, models, {}, source, choice, {}));
   const Bytes bytes = std::move(writer).finish();
-  ModelBank again(parallelogram_layout());
-  EntropyStream reader = EntropyStream::reader(bytes);
-  IntegerSolid back;
-  REQUIRE(code_parallelogram(reader, again, {}, back, choice, {}));
+  codec::ModelBank again(codec::parallelogram::model_layout());
+  codec::EntropyStream reader = codec::EntropyStream::reader(bytes);
+  codec::IntegerSolid back;
+  REQUIRE(codec::parallelogram::code_solid(reader, again, {}, back, choice, {}));
   CHECK(reader.is_finished());
-  const auto triangles_of = [](const IntegerSolid& s) {
-    std::vector<std::array<GridPoint, 3>> result;
+  const auto triangles_of = [](const codec::IntegerSolid& s) {
+    std::vector<std::array<codec::GridPoint, 3>> result;
     for (std::size_t i = 0; i < s.ring_vertices.size(); i += 3) {
-      std::array<GridPoint, 3> t{s.vertices[s.ring_vertices[i]], s.vertices[s.ring_vertices[i + 1]],
-                                 s.vertices[s.ring_vertices[i + 2]]};
+      std::array<codec::GridPoint, 3> t{s.vertices[s.ring_vertices[i]],
+                                        s.vertices[s.ring_vertices[i + 1]],
+                                        s.vertices[s.ring_vertices[i + 2]]};
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
       result.push_back(t);
     }
@@ -129,7 +132,7 @@ TEST_CASE("few uneven values are suggested as a list and come back") {
     some.push_back(static_cast<std::int64_t>(random.below(70000)) - 9000);
   std::vector<std::int64_t> values;
   for (int i = 0; i < 400; ++i) values.push_back(some[random.below(some.size())]);
-  const AxisPlaces places = check_suggestion(values, Kind::listed);
+  const codec::parallelogram::AxisPlaces places = check_suggestion(values, Kind::listed);
   std::int64_t value = 0;
   CHECK_FALSE(places.find_value(-1, value));
   CHECK_FALSE(places.find_value(1000, value));
@@ -139,31 +142,31 @@ TEST_CASE("nothing is suggested for values all over their range") {
   generated::Random random(10);
   std::vector<std::int64_t> values;
   for (int i = 0; i < 300; ++i) values.push_back(static_cast<std::int64_t>(random.below(1000000)));
-  CHECK(AxisPlaces::suggest(values).kind() == Kind::every);
-  CHECK(AxisPlaces::suggest({}).kind() == Kind::every);
-  CHECK(AxisPlaces::suggest({0, 0, 0}).kind() == Kind::every);
+  CHECK(codec::parallelogram::AxisPlaces::suggest(values).kind() == Kind::every);
+  CHECK(codec::parallelogram::AxisPlaces::suggest({}).kind() == Kind::every);
+  CHECK(codec::parallelogram::AxisPlaces::suggest({0, 0, 0}).kind() == Kind::every);
   CHECK(read(write({}))->kind() == Kind::every);
 }
 
 TEST_CASE("a solid on a grid finer than its source takes what it takes on the coarse one") {
   generated::Random bump(7);
-  const IntegerSolid coarse = changed(gridded_torus(), [&](std::int64_t c) {
+  const codec::IntegerSolid coarse = changed(gridded_torus(), [&](std::int64_t c) {
     return 20 * c + static_cast<std::int64_t>(bump.below(18));
   });
-  const IntegerSolid fine = changed(coarse, [](std::int64_t c) {
+  const codec::IntegerSolid fine = changed(coarse, [](std::int64_t c) {
     return static_cast<std::int64_t>(std::floor(8.36 * static_cast<double>(c) + 0.5));
   });
   generated::Random random(3);
-  const IntegerSolid anywhere =
+  const codec::IntegerSolid anywhere =
       changed(fine, [&](std::int64_t c) { return c + static_cast<std::int64_t>(random.below(8)); });
   CHECK(10 * round_trip(fine).size() < 9 * round_trip(anywhere).size());
 }
 
 TEST_CASE("a solid of few distinct coordinates is smaller than one of many") {
   generated::Random random(12);
-  const IntegerSolid solid = gridded_torus();
+  const codec::IntegerSolid solid = gridded_torus();
   std::map<std::int64_t, std::int64_t> values;
-  for (const GridPoint& vertex : solid.vertices) {
+  for (const codec::GridPoint& vertex : solid.vertices) {
     for (const std::int64_t c : vertex) values[c] = 0;
   }
   std::int64_t last = 0;
@@ -171,9 +174,9 @@ TEST_CASE("a solid of few distinct coordinates is smaller than one of many") {
     last += 2000 + static_cast<std::int64_t>(random.below(3000));
     value = last;
   }
-  const IntegerSolid few =
+  const codec::IntegerSolid few =
       changed(solid, [&](std::int64_t coordinate) { return values[coordinate]; });
-  const IntegerSolid many = changed(
+  const codec::IntegerSolid many = changed(
       few, [&](std::int64_t c) { return c + static_cast<std::int64_t>(random.below(2000)); });
   CHECK(10 * round_trip(few).size() < 7 * round_trip(many).size());
 }
@@ -181,7 +184,7 @@ TEST_CASE("a solid of few distinct coordinates is smaller than one of many") {
 TEST_CASE("lists that are too long or too wide are refused") {
   std::vector<std::int64_t> values;
   for (std::int64_t i = 0; i < 400; ++i) values.push_back(i % 40 * (i % 40) * 77);
-  const AxisPlaces places = AxisPlaces::suggest(values);
+  const codec::parallelogram::AxisPlaces places = codec::parallelogram::AxisPlaces::suggest(values);
   REQUIRE(places.kind() == Kind::listed);
   Limits few;
   few.vertices = 20;

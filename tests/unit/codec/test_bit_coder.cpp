@@ -16,17 +16,18 @@ TEST_CASE("bits, numbers and runs read back in both codings") {
       const std::uint64_t size = 1 + random.below(1ULL << random.below(40));
       values.push_back({random.below(skew) == 0 ? 1U : 0U, random.below(size), size});
     }
-    for (const BitCoding coding : {BitCoding::plain, BitCoding::arithmetic}) {
-      BitEncoder encoder(coding);
-      AdaptiveBit written[2];
+    for (const codec::bitmap::BitCoding coding :
+         {codec::bitmap::BitCoding::plain, codec::bitmap::BitCoding::arithmetic}) {
+      codec::bitmap::BitEncoder encoder(coding);
+      codec::bitmap::AdaptiveBit written[2];
       for (const auto& [bit, value, size] : values) {
         encoder.bit(bit != 0, written[0]);
         encoder.uniform(value, size);
         encoder.unary(value % 5, written[1]);
       }
       const Bytes bytes = std::move(encoder).finish();
-      BitDecoder decoder(bytes, coding);
-      AdaptiveBit read[2];
+      codec::bitmap::BitDecoder decoder(bytes, coding);
+      codec::bitmap::AdaptiveBit read[2];
       for (const auto& [bit, value, size] : values) {
         REQUIRE(decoder.bit(read[0]) == (bit != 0));
         REQUIRE(decoder.uniform(size) == value);
@@ -38,16 +39,17 @@ TEST_CASE("bits, numbers and runs read back in both codings") {
 }
 
 TEST_CASE("rare bits cost little") {
-  BitEncoder encoder(BitCoding::arithmetic);
-  AdaptiveBit model;
+  codec::bitmap::BitEncoder encoder(codec::bitmap::BitCoding::arithmetic);
+  codec::bitmap::AdaptiveBit model;
   for (int i = 0; i < 10000; ++i) encoder.bit(i % 1000 == 999, model);
   CHECK(std::move(encoder).finish().size() < 60);
 }
 
 TEST_CASE("a decoder past the end says so") {
-  for (const BitCoding coding : {BitCoding::plain, BitCoding::arithmetic}) {
+  for (const codec::bitmap::BitCoding coding :
+       {codec::bitmap::BitCoding::plain, codec::bitmap::BitCoding::arithmetic}) {
     const Bytes bytes{0x12, 0x34};
-    BitDecoder decoder(bytes, coding);
+    codec::bitmap::BitDecoder decoder(bytes, coding);
     for (int i = 0; i < 100; ++i) static_cast<void>(decoder.uniform(256));
     CHECK(decoder.failed());
     CHECK_FALSE(decoder.is_finished());
@@ -55,11 +57,11 @@ TEST_CASE("a decoder past the end says so") {
 }
 
 TEST_CASE("a run beyond its limit fails") {
-  BitEncoder encoder(BitCoding::plain);
-  AdaptiveBit model;
+  codec::bitmap::BitEncoder encoder(codec::bitmap::BitCoding::plain);
+  codec::bitmap::AdaptiveBit model;
   encoder.unary(7, model);
   const Bytes bytes = std::move(encoder).finish();
-  BitDecoder decoder(bytes, BitCoding::plain);
+  codec::bitmap::BitDecoder decoder(bytes, codec::bitmap::BitCoding::plain);
   static_cast<void>(decoder.unary(6, model));
   CHECK(decoder.failed());
 }

@@ -18,7 +18,7 @@ const std::vector<generated::NamedBoundary>& solids() {
 }
 
 Bytes encoded(const OrientedBoundary& boundary, const EncodeOptions& options) {
-  auto blob = encode_boundary(boundary, Acceptance{}, options);
+  auto blob = codec::encode_boundary(boundary, Acceptance{}, options);
   if (!blob) FAIL(to_string(blob.error()));
   return *blob;
 }
@@ -28,7 +28,7 @@ Bytes encoded(const OrientedBoundary& boundary, const EncodeOptions& options) {
 TEST_CASE("every mode brings every solid back in source order") {
   for (const auto& [name, boundary] : solids()) {
     for (const Mode mode : {Mode::raw, Mode::bitmap, Mode::automatic}) {
-      INFO(name << ", " << to_string(mode));
+      INFO(name << ", " << codec::to_string(mode));
       const Bytes blob = encoded(boundary, {.mode = mode});
       const auto decoded = decode(blob);
       REQUIRE(decoded);
@@ -42,14 +42,14 @@ TEST_CASE("without source order a blob is the same for every arrangement of the 
   generated::Random random(7);
   for (const auto& [name, boundary] : solids()) {
     for (const Mode mode : {Mode::raw, Mode::bitmap}) {
-      INFO(name << ", " << to_string(mode));
+      INFO(name << ", " << codec::to_string(mode));
       const Bytes blob = encoded(boundary, {.mode = mode, .keep_order = false});
       const OrientedBoundary other = generated::shuffled(boundary, random);
       CHECK(encoded(other, {.mode = mode, .keep_order = false}) == blob);
       const auto decoded = decode(blob);
       REQUIRE(decoded);
       CHECK_FALSE(decoded->info.has_order);
-      CHECK(decoded->solid == canonical_form(boundary).boundary.solid());
+      CHECK(decoded->solid == geometry::canonical_form(boundary).boundary.solid());
     }
   }
 }
@@ -60,7 +60,7 @@ TEST_CASE("automatic takes the smallest blob") {
     const std::size_t automatic = encoded(boundary, {.mode = Mode::automatic}).size();
     for (const Mode mode :
          {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
-      const auto blob = encode_boundary(boundary, {}, {.mode = mode});
+      const auto blob = codec::encode_boundary(boundary, {}, {.mode = mode});
       // Costs are estimated to the bit, sizes are whole bytes.
       if (blob) CHECK(automatic <= blob->size() + 1);
     }
@@ -74,9 +74,9 @@ TEST_CASE("acceptance, SRID and lattice come back") {
   acceptance.proof = Proof::boundary;
   acceptance.rule_set = 300;
   for (const Mode mode : {Mode::raw, Mode::bitmap}) {
-    const auto blob = encode_boundary(boundary, acceptance, {.mode = mode});
+    const auto blob = codec::encode_boundary(boundary, acceptance, {.mode = mode});
     REQUIRE(blob);
-    const auto info = describe(*blob);
+    const auto info = codec::describe(*blob);
     REQUIRE(info);
     CHECK(info->acceptance == acceptance);
     CHECK(info->srid == 7415);
@@ -99,7 +99,7 @@ TEST_CASE("a house 0.0001 degrees wide with one corner 3 cm up comes back") {
   for (const std::uint32_t srid : {4326U, 6697U}) {
     const OrientedBoundary house = generated::boundary_of(arrays, lattice, srid);
     for (const Mode mode : {Mode::raw, Mode::bitmap}) {
-      INFO(srid << ", " << to_string(mode));
+      INFO(srid << ", " << codec::to_string(mode));
       const auto decoded = decode(encoded(house, {.mode = mode}));
       REQUIRE(decoded);
       CHECK(decoded->solid == house.solid());
@@ -113,7 +113,7 @@ TEST_CASE("a house 0.0001 degrees wide with one corner 3 cm up comes back") {
 TEST_CASE("the parts of a blob add up to its size") {
   for (const auto& [name, boundary] : solids()) {
     const Bytes blob = encoded(boundary, {.mode = Mode::bitmap});
-    const auto info = describe(blob);
+    const auto info = codec::describe(blob);
     REQUIRE(info);
     double sum = 0;
     for (const auto& part : info->parts) sum += part.bytes;
@@ -125,7 +125,7 @@ TEST_CASE("the parts of a blob add up to its size") {
 
 TEST_CASE("a certificate's Steiner vertices are stored and leave the polygons alone") {
   generated::Random random(3);
-  const Certificate certificate = generated::schoenhardt_certificate();
+  const delaunay::Certificate certificate = generated::schoenhardt_certificate();
   const OrientedBoundary boundary = generated::schoenhardt();
   const Bytes blob = encoded(boundary, {.mode = Mode::bitmap, .certificate = &certificate});
   const auto decoded = decode(blob);
@@ -138,8 +138,8 @@ TEST_CASE("Steiner vertices on edges and in facets are dropped from rings") {
   // A box, one edge split at its middle and one facet with a vertex inside, as an engine would.
   const OrientedBoundary boundary = generated::box();
   const Solid& solid = boundary.solid();
-  Certificate certificate;
-  Tetrahedralization& mesh = certificate.tetrahedralization;
+  delaunay::Certificate certificate;
+  delaunay::Tetrahedralization& mesh = certificate.tetrahedralization;
   mesh.points.assign(solid.vertices().begin(), solid.vertices().end());
   mesh.input_count = solid.vertex_count();
   const auto ring = solid.ring(0);
@@ -175,7 +175,7 @@ TEST_CASE("Steiner vertices on edges and in facets are dropped from rings") {
     }
   }
   const auto blob =
-      encode_boundary(boundary, {}, {.mode = Mode::bitmap, .certificate = &certificate});
+      codec::encode_boundary(boundary, {}, {.mode = Mode::bitmap, .certificate = &certificate});
   REQUIRE(blob);
   const auto decoded = decode(*blob);
   REQUIRE(decoded);
@@ -184,9 +184,9 @@ TEST_CASE("Steiner vertices on edges and in facets are dropped from rings") {
 }
 
 TEST_CASE("a certificate of another solid is refused") {
-  const Certificate certificate = generated::schoenhardt_certificate();
-  const auto blob =
-      encode_boundary(generated::box(), {}, {.mode = Mode::bitmap, .certificate = &certificate});
+  const delaunay::Certificate certificate = generated::schoenhardt_certificate();
+  const auto blob = codec::encode_boundary(generated::box(), {},
+                                           {.mode = Mode::bitmap, .certificate = &certificate});
   REQUIRE_FALSE(blob);
   CHECK(blob.error().code == ErrorCode::not_encodable);
 }
@@ -211,7 +211,7 @@ TEST_CASE("coordinates beyond a safe Delaunay tetrahedralization fall back to ra
     SolidArrays arrays;
     generated::add_box(arrays, {0, 0, 0}, {size, 1, 5});
     const OrientedBoundary boundary = generated::boundary_of(std::move(arrays), doubles, 0);
-    const auto bitmap = encode_boundary(boundary, {}, {.mode = Mode::bitmap});
+    const auto bitmap = codec::encode_boundary(boundary, {}, {.mode = Mode::bitmap});
     REQUIRE_FALSE(bitmap);
     CHECK(bitmap.error().code == ErrorCode::not_encodable);
     const auto decoded = decode(encoded(boundary, {.mode = Mode::automatic}));
@@ -229,7 +229,7 @@ TEST_CASE("a flat boundary is encoded raw") {
   generated::add_facet(arrays, {{0, 2, 1}});
   arrays.end_shell();
   const OrientedBoundary boundary = generated::boundary_of(std::move(arrays));
-  CHECK_FALSE(encode_boundary(boundary, {}, {.mode = Mode::bitmap}));
+  CHECK_FALSE(codec::encode_boundary(boundary, {}, {.mode = Mode::bitmap}));
   const auto decoded = decode(encoded(boundary, {.mode = Mode::automatic}));
   REQUIRE(decoded);
   CHECK(decoded->solid == boundary.solid());

@@ -13,24 +13,24 @@
 namespace watertight {
 namespace {
 
-IntegerSolid integers_of(const OrientedBoundary& boundary) {
-  const CanonicalSolid canonical = canonical_form(boundary);
-  const auto gridded = grid_solid(canonical.boundary.solid());
+codec::IntegerSolid integers_of(const OrientedBoundary& boundary) {
+  const geometry::CanonicalSolid canonical = geometry::canonical_form(boundary);
+  const auto gridded = codec::grid_solid(canonical.boundary.solid());
   REQUIRE(gridded);
   return gridded->solid;
 }
 
 /// The corners of each triangle by position, with its shell: equal for equal solids.
-using PlacedTriangle = std::pair<Index, std::array<GridPoint, 3>>;
-std::vector<PlacedTriangle> placed(const IntegerSolid& solid) {
+using PlacedTriangle = std::pair<Index, std::array<codec::GridPoint, 3>>;
+std::vector<PlacedTriangle> placed(const codec::IntegerSolid& solid) {
   std::vector<PlacedTriangle> result;
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
     for (Index facet = solid.shell_offsets[shell]; facet < solid.shell_offsets[shell + 1];
          ++facet) {
       const auto ring = solid.ring(solid.facet_offsets[facet]);
       REQUIRE(ring.size() == 3);
-      std::array<GridPoint, 3> corners{solid.vertices[ring[0]], solid.vertices[ring[1]],
-                                       solid.vertices[ring[2]]};
+      std::array<codec::GridPoint, 3> corners{solid.vertices[ring[0]], solid.vertices[ring[1]],
+                                              solid.vertices[ring[2]]};
       std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
       result.emplace_back(shell, corners);
     }
@@ -39,29 +39,30 @@ std::vector<PlacedTriangle> placed(const IntegerSolid& solid) {
   return result;
 }
 
-Result<Bytes> write(const IntegerSolid& solid, const PageMemory& memory = {}) {
-  ModelBank models(parallelogram_layout());
-  EntropyStream stream = EntropyStream::writer();
-  IntegerSolid source = solid;
-  WriterChoice choice;
-  const Status coded = code_parallelogram(stream, models, memory, source, choice, {});
+Result<Bytes> write(const codec::IntegerSolid& solid, const codec::PageMemory& memory = {}) {
+  codec::ModelBank models(codec::parallelogram::model_layout());
+  codec::EntropyStream stream = codec::EntropyStream::writer();
+  codec::IntegerSolid source = solid;
+  codec::WriterChoice choice;
+  const Status coded = codec::parallelogram::code_solid(stream, models, memory, source, choice, {});
   if (!coded) return coded.error();
   return std::move(stream).finish();
 }
 
-Result<IntegerSolid> read(ByteView bytes, const PageMemory& memory = {},
-                          const Limits& limits = {}) {
-  ModelBank models(parallelogram_layout());
-  EntropyStream stream = EntropyStream::reader(bytes);
-  IntegerSolid solid;
-  WriterChoice unused;
-  const Status coded = code_parallelogram(stream, models, memory, solid, unused, limits);
+Result<codec::IntegerSolid> read(ByteView bytes, const codec::PageMemory& memory = {},
+                                 const Limits& limits = {}) {
+  codec::ModelBank models(codec::parallelogram::model_layout());
+  codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
+  codec::IntegerSolid solid;
+  codec::WriterChoice unused;
+  const Status coded =
+      codec::parallelogram::code_solid(stream, models, memory, solid, unused, limits);
   if (!coded) return coded.error();
   if (!stream.is_finished()) return Error{ErrorCode::malformed, "bytes are left over"};
   return solid;
 }
 
-void check_round_trip(const IntegerSolid& solid) {
+void check_round_trip(const codec::IntegerSolid& solid) {
   const auto bytes = write(solid);
   REQUIRE(bytes);
   const auto back = read(*bytes);
@@ -70,9 +71,9 @@ void check_round_trip(const IntegerSolid& solid) {
   CHECK(placed(*back) == placed(solid));
 }
 
-IntegerSolid triangles(std::vector<GridPoint> vertices,
-                       const std::vector<std::vector<Triangle>>& shells) {
-  IntegerSolid solid;
+codec::IntegerSolid triangles(std::vector<codec::GridPoint> vertices,
+                              const std::vector<std::vector<Triangle>>& shells) {
+  codec::IntegerSolid solid;
   solid.vertices = std::move(vertices);
   for (const auto& shell : shells) {
     for (const Triangle& triangle : shell) {
@@ -93,8 +94,8 @@ TEST_CASE("mode parallelogram brings triangle surfaces of any genus back") {
   check_round_trip(integers_of(generated::torus(12, 9)));
   check_round_trip(integers_of(generated::torus(16, 12)));
   generated::Random random(7);
-  IntegerSolid rough = integers_of(generated::torus(16, 16));
-  for (GridPoint& vertex : rough.vertices) {
+  codec::IntegerSolid rough = integers_of(generated::torus(16, 16));
+  for (codec::GridPoint& vertex : rough.vertices) {
     for (std::int64_t& coordinate : vertex) {
       coordinate = 1000 * coordinate + static_cast<std::int64_t>(random.below(900));
     }
@@ -103,17 +104,17 @@ TEST_CASE("mode parallelogram brings triangle surfaces of any genus back") {
 }
 
 TEST_CASE("mode parallelogram keeps cavities and bodies that touch") {
-  const std::vector<GridPoint> far{{0, 0, 0},       {900, 0, 0},     {0, 900, 0},
-                                   {0, 0, 900},     {100, 100, 100}, {150, 100, 100},
-                                   {100, 150, 100}, {100, 100, 150}};
+  const std::vector<codec::GridPoint> far{{0, 0, 0},       {900, 0, 0},     {0, 900, 0},
+                                          {0, 0, 900},     {100, 100, 100}, {150, 100, 100},
+                                          {100, 150, 100}, {100, 100, 150}};
   check_round_trip(triangles(far, {tetrahedron(0, 1, 2, 3), tetrahedron(4, 6, 5, 7)}));
   // Two tetrahedra of one shell with a common vertex, then with a common edge.
-  const std::vector<GridPoint> points{{0, 0, 0},   {90, 0, 0},  {0, 90, 0},     {0, 0, 90},
-                                      {-90, 0, 0}, {0, -90, 0}, {-10, -10, -90}};
+  const std::vector<codec::GridPoint> points{{0, 0, 0},   {90, 0, 0},  {0, 90, 0},     {0, 0, 90},
+                                             {-90, 0, 0}, {0, -90, 0}, {-10, -10, -90}};
   auto at_vertex = tetrahedron(0, 1, 2, 3);
   for (const Triangle& triangle : tetrahedron(0, 4, 5, 6)) at_vertex.push_back(triangle);
   check_round_trip(triangles(points, {at_vertex}));
-  const std::vector<GridPoint> six{points.begin(), points.begin() + 6};
+  const std::vector<codec::GridPoint> six{points.begin(), points.begin() + 6};
   auto at_edge = tetrahedron(0, 1, 2, 3);
   for (const Triangle& triangle : tetrahedron(0, 4, 5, 3)) at_edge.push_back(triangle);
   check_round_trip(triangles(six, {at_edge}));
@@ -126,9 +127,9 @@ TEST_CASE("mode parallelogram keeps coordinates near the end of their range") {
 }
 
 TEST_CASE("mode parallelogram begins from the page's last position") {
-  IntegerSolid solid = integers_of(generated::torus(5, 4));
-  for (GridPoint& vertex : solid.vertices) vertex[0] += 1'000'000'000;
-  PageMemory memory;
+  codec::IntegerSolid solid = integers_of(generated::torus(5, 4));
+  for (codec::GridPoint& vertex : solid.vertices) vertex[0] += 1'000'000'000;
+  codec::PageMemory memory;
   memory.add(solid);
   const auto near = write(solid, memory);
   const auto alone = write(solid);
@@ -162,7 +163,7 @@ TEST_CASE("mode parallelogram writes the same bytes whatever the order of facets
 }
 
 TEST_CASE("mode parallelogram asks its limits before it grows") {
-  const IntegerSolid solid = integers_of(generated::torus(16, 12));
+  const codec::IntegerSolid solid = integers_of(generated::torus(16, 12));
   const auto bytes = write(solid);
   REQUIRE(bytes);
   Limits few;
@@ -179,7 +180,7 @@ TEST_CASE("mode parallelogram asks its limits before it grows") {
 
 TEST_CASE("mode parallelogram survives damaged streams") {
   generated::Random random(11);
-  const IntegerSolid solid = integers_of(generated::torus(6, 5));
+  const codec::IntegerSolid solid = integers_of(generated::torus(6, 5));
   const auto bytes = write(solid);
   REQUIRE(bytes);
   Limits limits;

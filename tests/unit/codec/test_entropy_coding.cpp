@@ -12,9 +12,9 @@ using namespace watertight;
 
 namespace {
 
-constexpr FamilyShape kFamilies[] = {{2, {3, 16}}};
-constexpr NumberShape kNumbers[] = {{1, {4, 2}}};
-constexpr ModelLayout kLayout{kFamilies, kNumbers};
+constexpr codec::FamilyShape kFamilies[] = {{2, {3, 16}}};
+constexpr codec::NumberShape kNumbers[] = {{1, {4, 2}}};
+constexpr codec::ModelLayout kLayout{kFamilies, kNumbers};
 
 struct Sample {
   std::uint32_t context = 0;
@@ -41,7 +41,7 @@ std::vector<Sample> samples(std::uint32_t seed, int count) {
 }
 
 /// Codes the samples in one of the three directions; when reading, `all` is overwritten.
-void code(EntropyStream& stream, ModelBank& models, std::vector<Sample>& all) {
+void code(codec::EntropyStream& stream, codec::ModelBank& models, std::vector<Sample>& all) {
   std::uint32_t last = 0;
   for (Sample& sample : all) {
     sample.bit = models.code(stream, 0, last & 1U, {sample.context, last % 16}, sample.bit);
@@ -56,15 +56,15 @@ void code(EntropyStream& stream, ModelBank& models, std::vector<Sample>& all) {
 TEST_CASE("what an entropy stream writes it reads, and ends where it ended") {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     std::vector<Sample> written = samples(seed, 300);
-    EntropyStream writer = EntropyStream::writer();
-    ModelBank models(kLayout);
+    codec::EntropyStream writer = codec::EntropyStream::writer();
+    codec::ModelBank models(kLayout);
     code(writer, models, written);
     const Bytes bytes = std::move(writer).finish();
 
     std::vector<Sample> read = written;
     for (Sample& sample : read) sample.bit = false, sample.number = 0, sample.uniform = 0;
-    EntropyStream reader = EntropyStream::reader(bytes);
-    ModelBank again(kLayout);
+    codec::EntropyStream reader = codec::EntropyStream::reader(bytes);
+    codec::ModelBank again(kLayout);
     code(reader, again, read);
     REQUIRE(reader.is_finished());
     for (std::size_t i = 0; i < read.size(); ++i) {
@@ -78,27 +78,27 @@ TEST_CASE("what an entropy stream writes it reads, and ends where it ended") {
 
 TEST_CASE("a measuring stream tells the bytes that a writing one takes") {
   std::vector<Sample> all = samples(7, 5000);
-  EntropyStream writer = EntropyStream::writer();
-  EntropyStream meter = EntropyStream::meter();
-  ModelBank one(kLayout);
-  ModelBank two(kLayout);
+  codec::EntropyStream writer = codec::EntropyStream::writer();
+  codec::EntropyStream meter = codec::EntropyStream::meter();
+  codec::ModelBank one(kLayout);
+  codec::ModelBank two(kLayout);
   code(writer, one, all);
   code(meter, two, all);
   const auto written = static_cast<double>(std::move(writer).finish().size());
-  const double measured = static_cast<double>(meter.cost()) / (8.0 * (1 << kCostBits));
+  const double measured = static_cast<double>(meter.cost()) / (8.0 * (1 << codec::kCostBits));
   REQUIRE(measured > 0.998 * written - 2);
   REQUIRE(measured < 1.002 * written + 2);
 }
 
 TEST_CASE("a stream cut short fails instead of going on for ever") {
   std::vector<Sample> all = samples(3, 2000);
-  EntropyStream writer = EntropyStream::writer();
-  ModelBank models(kLayout);
+  codec::EntropyStream writer = codec::EntropyStream::writer();
+  codec::ModelBank models(kLayout);
   code(writer, models, all);
   const Bytes bytes = std::move(writer).finish();
   for (const std::size_t size : {std::size_t{0}, bytes.size() / 2, bytes.size() - 8}) {
-    EntropyStream reader = EntropyStream::reader(ByteView(bytes).first(size));
-    ModelBank again(kLayout);
+    codec::EntropyStream reader = codec::EntropyStream::reader(ByteView(bytes).first(size));
+    codec::ModelBank again(kLayout);
     code(reader, again, all);
     CHECK(reader.failed());
     CHECK_FALSE(reader.is_finished());
@@ -107,19 +107,19 @@ TEST_CASE("a stream cut short fails instead of going on for ever") {
 
 TEST_CASE("a bank learns, and starts where its prior left off") {
   std::vector<Sample> training = samples(11, 20000);
-  ModelBank trained(kLayout);
-  EntropyStream first = EntropyStream::meter();
+  codec::ModelBank trained(kLayout);
+  codec::EntropyStream first = codec::EntropyStream::meter();
   code(first, trained, training);
 
   const Bytes prior = trained.save({.max_count = 60});
-  ModelBank loaded(kLayout);
+  codec::ModelBank loaded(kLayout);
   REQUIRE(loaded.load(prior));
   REQUIRE(loaded.save({.max_count = 60}) == prior);
 
   std::vector<Sample> test = samples(12, 50);
-  EntropyStream cold = EntropyStream::meter();
-  EntropyStream warm = EntropyStream::meter();
-  ModelBank neutral(kLayout);
+  codec::EntropyStream cold = codec::EntropyStream::meter();
+  codec::EntropyStream warm = codec::EntropyStream::meter();
+  codec::ModelBank neutral(kLayout);
   code(cold, neutral, test);
   code(warm, loaded, test);
   CHECK(warm.cost() < cold.cost() * 95 / 100);
@@ -127,29 +127,29 @@ TEST_CASE("a bank learns, and starts where its prior left off") {
 
 TEST_CASE("after a trial, and trials within it, a bank goes on as if there had been none") {
   for (const std::size_t vertices : {std::size_t{0}, std::size_t{1'000'000}}) {
-    ModelBank models(kLayout);
-    EntropyStream meter = EntropyStream::meter();
+    codec::ModelBank models(kLayout);
+    codec::EntropyStream meter = codec::EntropyStream::meter();
     std::vector<Sample> coded = samples(13, 500);
     code(meter, models, coded);
-    ModelBank untouched = models;
+    codec::ModelBank untouched = models;
     const auto attempt = [&](std::uint32_t seed) {
-      EntropyStream unused = EntropyStream::meter();
+      codec::EntropyStream unused = codec::EntropyStream::meter();
       std::vector<Sample> tried = samples(seed, 700);
       code(unused, models, tried);
     };
     {
-      const BankTrial trial(models, vertices);
+      const codec::BankTrial trial(models, vertices);
       attempt(14);
       {
-        const BankTrial inner(models, 0);
+        const codec::BankTrial inner(models, 0);
         attempt(15);
       }
       attempt(16);
     }
-    const PriorShape whole{.max_count = 250};
+    const codec::PriorShape whole{.max_count = 250};
     CHECK(models.save(whole) == untouched.save(whole));
-    EntropyStream one = EntropyStream::meter();
-    EntropyStream other = EntropyStream::meter();
+    codec::EntropyStream one = codec::EntropyStream::meter();
+    codec::EntropyStream other = codec::EntropyStream::meter();
     std::vector<Sample> next = samples(17, 500);
     code(one, models, next);
     code(other, untouched, next);
@@ -159,9 +159,9 @@ TEST_CASE("after a trial, and trials within it, a bank goes on as if there had b
 }
 
 TEST_CASE("a prior of another layout is refused") {
-  constexpr FamilyShape families[] = {{1, {3}}};
-  ModelBank other(ModelLayout{families, {}});
-  ModelBank models(kLayout);
+  constexpr codec::FamilyShape families[] = {{1, {3}}};
+  codec::ModelBank other(codec::ModelLayout{families, {}});
+  codec::ModelBank models(kLayout);
   CHECK_FALSE(other.load(models.save({.max_count = 30})));
   CHECK_FALSE(models.load(other.save({.max_count = 30})));
   CHECK_FALSE(models.load({}));
@@ -170,11 +170,11 @@ TEST_CASE("a prior of another layout is refused") {
 TEST_CASE("every numbered set of priors is there, and no other") {
   for (std::uint8_t number = 0; number < 2; ++number) {
     INFO(int{number});
-    const auto models = ModelSet::make(number);
+    const auto models = codec::ModelSet::make(number);
     REQUIRE(models);
     CHECK(models->number() == number);
   }
-  const auto none = ModelSet::make(2);
+  const auto none = codec::ModelSet::make(2);
   REQUIRE_FALSE(none);
   CHECK(none.error().code == ErrorCode::unsupported);
 }

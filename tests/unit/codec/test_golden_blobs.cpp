@@ -33,7 +33,7 @@ void check_decoded(const generated::Golden& golden, const Bytes& bytes) {
   REQUIRE(decoded);
   const Solid& source = golden.boundary.solid();
   CHECK(decoded->solid ==
-        (golden.keep_order ? source : canonical_form(golden.boundary).boundary.solid()));
+        (golden.keep_order ? source : geometry::canonical_form(golden.boundary).boundary.solid()));
   CHECK(decoded->info.acceptance == golden.acceptance);
   CHECK((decoded->info.steiner_vertices > 0) == golden.with_steiner);
 }
@@ -42,12 +42,12 @@ void check_decoded(const generated::Golden& golden, const Bytes& bytes) {
 Result<std::vector<Solid>> solids_of(ByteView bytes, bool is_file) {
   std::vector<Solid> solids;
   if (!is_file) {
-    const auto page = decode_page(bytes);
+    const auto page = codec::decode_page(bytes);
     if (!page) return page.error();
     for (const Decoded& decoded : *page) solids.push_back(decoded.solid);
     return solids;
   }
-  const auto reader = PageFileReader::open(bytes);
+  const auto reader = codec::PageFileReader::open(bytes);
   if (!reader) return reader.error();
   for (std::uint64_t number = 0; number < reader->size(); ++number) {
     const auto decoded = reader->solid(number);

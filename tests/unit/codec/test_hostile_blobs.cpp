@@ -9,8 +9,8 @@
 #include <string>
 
 #include "codec/blob.h"
-#include "codec/mode_walk/columns.h"
 #include "codec/encode_boundary.h"
+#include "codec/mode_walk/columns.h"
 #include "codec/page.h"
 #include "codec/page_file.h"
 #include "geometry/canonical_form.h"
@@ -89,16 +89,16 @@ OrientedBoundary opposite_edges(Index n) {
 
 bool read_any(ByteView bytes, const std::string& kind) {
   if (kind == ".blob") return bool{decode(bytes)};
-  if (kind == ".page") return bool{decode_page(bytes)};
-  return bool{PageFileReader::open(bytes)};
+  if (kind == ".page") return bool{codec::decode_page(bytes)};
+  return bool{codec::PageFileReader::open(bytes)};
 }
 
 void require_automatic_mode_encodes(const OrientedBoundary& boundary, Mode not_in) {
-  const auto blob = encode_boundary(boundary, {}, {.keep_order = false});
+  const auto blob = codec::encode_boundary(boundary, {}, {.keep_order = false});
   REQUIRE(blob);
   const auto decoded = decode(*blob);
   REQUIRE(decoded);
-  CHECK(decoded->solid == canonical_form(boundary).boundary.solid());
+  CHECK(decoded->solid == geometry::canonical_form(boundary).boundary.solid());
   CHECK(decoded->info.mode != not_in);
   CHECK(decoded->info.mode != Mode::raw);
 }
@@ -107,9 +107,10 @@ void require_automatic_mode_encodes(const OrientedBoundary& boundary, Mode not_i
 
 TEST_CASE("a mode declines a solid whose few bytes a decoder would take for a bomb") {
   const OrientedBoundary small = plate(50);
-  CHECK(encode_boundary(small, {}, {.mode = Mode::parallelogram, .keep_order = false}));
+  CHECK(codec::encode_boundary(small, {}, {.mode = Mode::parallelogram, .keep_order = false}));
   const OrientedBoundary large = plate(90);  // in about 100 bytes
-  const auto blob = encode_boundary(large, {}, {.mode = Mode::parallelogram, .keep_order = false});
+  const auto blob =
+      codec::encode_boundary(large, {}, {.mode = Mode::parallelogram, .keep_order = false});
   REQUIRE_FALSE(blob);
   CHECK(blob.error().code == ErrorCode::not_encodable);
   require_automatic_mode_encodes(large, Mode::parallelogram);
@@ -117,17 +118,17 @@ TEST_CASE("a mode declines a solid whose few bytes a decoder would take for a bo
 
 TEST_CASE("mode walk declines a vertex of so many edges that the walk would take too long") {
   const OrientedBoundary large = cone(2000);
-  CHECK(encode_boundary(cone(300), {}, {.mode = Mode::walk}));
-  const auto blob = encode_boundary(large, {}, {.mode = Mode::walk});
+  CHECK(codec::encode_boundary(cone(300), {}, {.mode = Mode::walk}));
+  const auto blob = codec::encode_boundary(large, {}, {.mode = Mode::walk});
   REQUIRE_FALSE(blob);
   CHECK(blob.error().code == ErrorCode::not_encodable);
   require_automatic_mode_encodes(large, Mode::walk);
 }
 
 TEST_CASE("mode walk declines vertices that have too many Delaunay tetrahedra") {
-  CHECK(encode_boundary(opposite_edges(90), {}, {.mode = Mode::walk}));
+  CHECK(codec::encode_boundary(opposite_edges(90), {}, {.mode = Mode::walk}));
   const OrientedBoundary large = opposite_edges(150);
-  const auto blob = encode_boundary(large, {}, {.mode = Mode::walk});
+  const auto blob = codec::encode_boundary(large, {}, {.mode = Mode::walk});
   REQUIRE_FALSE(blob);
   CHECK(blob.error().code == ErrorCode::not_encodable);
   require_automatic_mode_encodes(large, Mode::walk);
@@ -137,12 +138,13 @@ TEST_CASE("limits hold for all solids of a page together") {
   const OrientedBoundary box = generated::box();
   const std::vector<const OrientedBoundary*> boxes(10, &box);
   for (const Mode mode : {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon}) {
-    const auto page = encode_boundaries(boxes, {}, {.mode = mode});
+    const auto page = codec::encode_boundaries(boxes, {}, {.mode = mode});
     REQUIRE(page);
-    CHECK(decode_page(*page, Limits{.vertices = 80, .facets = 60, .rings = 60, .shells = 10}));
+    CHECK(
+        codec::decode_page(*page, Limits{.vertices = 80, .facets = 60, .rings = 60, .shells = 10}));
     for (const Limits& limits :
          {Limits{.vertices = 79}, Limits{.facets = 59}, Limits{.rings = 59}, Limits{.shells = 9}}) {
-      const auto decoded = decode_page(*page, limits);
+      const auto decoded = codec::decode_page(*page, limits);
       REQUIRE_FALSE(decoded);
       CHECK(decoded.error().code == ErrorCode::limit_exceeded);
     }
@@ -195,14 +197,14 @@ TEST_CASE("a mutated blob is rejected or still a boundary that encodes again") {
     ++accepted;
     const auto boundary = OrientedBoundary::make(decoded->solid);
     REQUIRE(boundary);
-    REQUIRE(encode_boundary(*boundary, decoded->info.acceptance, {.mode = Mode::raw}));
+    REQUIRE(codec::encode_boundary(*boundary, decoded->info.acceptance, {.mode = Mode::raw}));
   }
   // Mutations that cancel out leave the blob as it was; nothing else passes the checksum.
   CHECK(accepted < 2000);
 }
 
 TEST_CASE("limits are checked before anything is decoded") {
-  const auto blob = encode_boundary(generated::pierced_block(1), {}, {.mode = Mode::raw});
+  const auto blob = codec::encode_boundary(generated::pierced_block(1), {}, {.mode = Mode::raw});
   REQUIRE(blob);
   for (const Limits& limits : {Limits{.bytes = 100}, Limits{.vertices = 15}, Limits{.facets = 9},
                                Limits{.rings = 11}, Limits{.shells = 0}}) {
@@ -216,7 +218,7 @@ TEST_CASE("limits are checked before anything is decoded") {
 }
 
 TEST_CASE("other versions, models and modes are unsupported") {
-  const auto blob = encode_boundary(generated::box(), {}, {.mode = Mode::raw});
+  const auto blob = codec::encode_boundary(generated::box(), {}, {.mode = Mode::raw});
   REQUIRE(blob);
   const auto code_with = [&](std::size_t place, std::uint8_t value) {
     Bytes changed = *blob;
@@ -231,9 +233,9 @@ TEST_CASE("other versions, models and modes are unsupported") {
 }
 
 TEST_CASE("a changed acceptance, lattice or order does not pass the checksum") {
-  const auto blob = encode_boundary(generated::box(), {}, {.mode = Mode::raw});
+  const auto blob = codec::encode_boundary(generated::box(), {}, {.mode = Mode::raw});
   REQUIRE(blob);
-  const auto info = describe(*blob);
+  const auto info = codec::describe(*blob);
   REQUIRE(info);
   std::size_t decoded_changed = 0;
   for (std::size_t i = 0; i < blob->size(); ++i) {
@@ -249,7 +251,7 @@ TEST_CASE("a changed acceptance, lattice or order does not pass the checksum") {
 TEST_CASE("models that come to expect one answer do not make a long blob without end") {
   for (const Mode mode :
        {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
-    const auto blob = encode_boundary(generated::torus(8, 4), {}, {.mode = mode});
+    const auto blob = codec::encode_boundary(generated::torus(8, 4), {}, {.mode = mode});
     REQUIRE(blob);
     for (const unsigned byte : {0x00U, 0x55U, 0xFFU}) {
       for (const std::size_t kept : {std::size_t{10}, blob->size() / 2, blob->size() - 5}) {
@@ -264,18 +266,18 @@ TEST_CASE("models that come to expect one answer do not make a long blob without
 TEST_CASE("of the columns of a page only those nearby are looked at for each of a solid") {
   // All of the page's are in the solid's range of x and none is in its range of y: without a bound
   // each place would look at all of them, which takes minutes.
-  PageMemory memory;
+  codec::PageMemory memory;
   for (std::int64_t i = 0; i < 2'000'000; ++i) memory.columns.push_back({i / 4, 1'000'000 + i % 4});
-  std::vector<GridPoint> points;
+  std::vector<codec::GridPoint> points;
   for (std::int64_t i = 0; i < 20'000; ++i) points.push_back({i * 25, i % 7, 0});
-  const ModelLayout layout{kColumnFamilies, kColumnNumbers};
-  ModelBank writing(layout);
-  EntropyStream writer = EntropyStream::writer();
-  REQUIRE(code_columns(writer, {writing, 0, 0}, memory, points, {}));
+  const codec::ModelLayout layout{codec::walk::kColumnFamilies, codec::walk::kColumnNumbers};
+  codec::ModelBank writing(layout);
+  codec::EntropyStream writer = codec::EntropyStream::writer();
+  REQUIRE(codec::walk::code_columns(writer, {writing, 0, 0}, memory, points, {}));
   const Bytes bytes = std::move(writer).finish();
-  ModelBank reading(layout);
-  EntropyStream reader = EntropyStream::reader(bytes);
-  std::vector<GridPoint> read;
-  REQUIRE(code_columns(reader, {reading, 0, 0}, memory, read, {}));
+  codec::ModelBank reading(layout);
+  codec::EntropyStream reader = codec::EntropyStream::reader(bytes);
+  std::vector<codec::GridPoint> read;
+  REQUIRE(codec::walk::code_columns(reader, {reading, 0, 0}, memory, read, {}));
   CHECK(read == points);
 }

@@ -20,9 +20,9 @@ using Boundaries = std::vector<const OrientedBoundary*>;
 /// The solids of all() by what pages share, each group in the order of all().
 std::vector<Boundaries> groups_of(const std::vector<NamedBoundary>& solids) {
   std::vector<Boundaries> groups;
-  std::vector<Frame> frames;
+  std::vector<codec::Frame> frames;
   for (const NamedBoundary& solid : solids) {
-    const Frame frame = frame_of(solid.boundary.solid(), {});
+    const codec::Frame frame = codec::frame_of(solid.boundary.solid(), {});
     const auto known = std::find(frames.begin(), frames.end(), frame);
     if (known == frames.end()) {
       frames.push_back(frame);
@@ -35,7 +35,7 @@ std::vector<Boundaries> groups_of(const std::vector<NamedBoundary>& solids) {
 }
 
 Bytes blob_of(const OrientedBoundary& boundary, const EncodeOptions& options = {}) {
-  auto blob = encode_boundary(boundary, {}, options);
+  auto blob = codec::encode_boundary(boundary, {}, options);
   REQUIRE(blob);
   return *std::move(blob);
 }
@@ -70,7 +70,7 @@ std::vector<OrientedBoundary> interleaved(std::size_t count) {
 
 Bytes page_file_of(const std::vector<OrientedBoundary>& solids, std::size_t page_solids,
                    const EncodeOptions& options = {}) {
-  PageFileWriter writer(page_solids, options);
+  codec::PageFileWriter writer(page_solids, options);
   Bytes file;
   for (const OrientedBoundary& solid : solids) {
     REQUIRE(writer.add_blob(blob_of(solid)));
@@ -83,8 +83,8 @@ Bytes page_file_of(const std::vector<OrientedBoundary>& solids, std::size_t page
   return file;
 }
 
-PageFileReader opened(ByteView file) {
-  auto reader = PageFileReader::open(file);
+codec::PageFileReader opened(ByteView file) {
+  auto reader = codec::PageFileReader::open(file);
   REQUIRE(reader);
   return *std::move(reader);
 }
@@ -105,7 +105,7 @@ Bytes forged(const std::vector<Bytes>& pages, const std::vector<std::uint64_t>& 
 
 /// Reads all that a damaged file gives.
 void read_all(ByteView file, const Limits& limits = {}) {
-  const auto reader = PageFileReader::open(file, limits);
+  const auto reader = codec::PageFileReader::open(file, limits);
   if (!reader) {
     REQUIRE_FALSE(reader.error().message.empty());
     return;
@@ -119,11 +119,11 @@ void read_all(ByteView file, const Limits& limits = {}) {
 }  // namespace
 
 TEST_CASE("a lattice whose origin leaves 128 bits on the way is refused") {
-  PageGrid grid;
+  codec::PageGrid grid;
   grid.step.fill(GridNumber{(std::int64_t{1} << 62) + 1, 18});
   grid.phase.fill(GridNumber{1, 0});
-  REQUIRE(lattice_at(grid, GridPoint{}));
-  const auto lattice = lattice_at(grid, GridPoint{0, std::int64_t{1} << 54, 0});
+  REQUIRE(codec::lattice_at(grid, codec::GridPoint{}));
+  const auto lattice = codec::lattice_at(grid, codec::GridPoint{0, std::int64_t{1} << 54, 0});
   REQUIRE_FALSE(lattice);
   CHECK(lattice.error().code == ErrorCode::malformed);
 }
@@ -132,13 +132,13 @@ TEST_CASE("a page gives back each of its solids, in source order or canonical") 
   const auto solids = generated::all(5);
   for (const Boundaries& group : groups_of(solids)) {
     for (const bool keep_order : {true, false}) {
-      const auto page = encode_boundaries(group, {}, {.keep_order = keep_order});
+      const auto page = codec::encode_boundaries(group, {}, {.keep_order = keep_order});
       REQUIRE(page);
-      const auto decoded = decode_page(*page);
+      const auto decoded = codec::decode_page(*page);
       REQUIRE(decoded);
       REQUIRE(decoded->size() == group.size());
       for (std::size_t i = 0; i < group.size(); ++i) {
-        const auto canonical = canonical_form(*group[i]);
+        const auto canonical = geometry::canonical_form(*group[i]);
         const Solid& wanted = keep_order ? group[i]->solid() : canonical.boundary.solid();
         CHECK((*decoded)[i].solid == wanted);
       }
@@ -150,9 +150,9 @@ TEST_CASE("a page holds solids in any one mode") {
   const auto solids = generated::all(6);
   for (const Boundaries& group : groups_of(solids)) {
     for (const Mode mode : {Mode::raw, Mode::bitmap}) {
-      const auto page = encode_boundaries(group, {}, {.mode = mode});
+      const auto page = codec::encode_boundaries(group, {}, {.mode = mode});
       REQUIRE(page);
-      const auto decoded = decode_page(*page);
+      const auto decoded = codec::decode_page(*page);
       REQUIRE(decoded);
       for (std::size_t i = 0; i < group.size(); ++i) {
         CHECK((*decoded)[i].solid == group[i]->solid());
@@ -172,7 +172,7 @@ TEST_CASE("a page of like solids is smaller than their blobs") {
     page.push_back(&solid);
     alone += blob_of(solid).size();
   }
-  const auto bytes = encode_boundaries(page, {});
+  const auto bytes = codec::encode_boundaries(page, {});
   REQUIRE(bytes);
   CHECK(2 * bytes->size() < alone);
 }
@@ -180,11 +180,11 @@ TEST_CASE("a page of like solids is smaller than their blobs") {
 TEST_CASE("a page of few bytes in automatic mode is no larger than in any one mode") {
   const auto solids = generated::all(6);
   for (const Boundaries& group : groups_of(solids)) {
-    const auto automatic = encode_boundaries(group, {});
+    const auto automatic = codec::encode_boundaries(group, {});
     REQUIRE(automatic);
     if (automatic->size() > 2048) continue;
     for (const Mode mode : {Mode::walk, Mode::polygon, Mode::parallelogram}) {
-      const auto page = encode_boundaries(group, {}, {.mode = mode});
+      const auto page = codec::encode_boundaries(group, {}, {.mode = mode});
       if (page) CHECK(automatic->size() <= page->size());
     }
   }
@@ -192,10 +192,10 @@ TEST_CASE("a page of few bytes in automatic mode is no larger than in any one mo
 
 TEST_CASE("an error in a page names the solid and the byte") {
   const OrientedBoundary box = generated::box();
-  auto page = encode_boundaries(Boundaries{&box, &box, &box}, {});
+  auto page = codec::encode_boundaries(Boundaries{&box, &box, &box}, {});
   REQUIRE(page);
   page->erase(page->end() - 12, page->end() - 4);  // of the stream; the checksum follows
-  const auto refused = decode_page(*page);
+  const auto refused = codec::decode_page(*page);
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::malformed);
   CHECK(refused.error().message.find("solid ") != std::string::npos);
@@ -204,52 +204,54 @@ TEST_CASE("an error in a page names the solid and the byte") {
 
 TEST_CASE("solids that share no page are refused by name") {
   const auto solids = interleaved(5);
-  const auto mixed = encode_boundaries(Boundaries{&solids[0], &solids[1]}, {});
+  const auto mixed = codec::encode_boundaries(Boundaries{&solids[0], &solids[1]}, {});
   REQUIRE_FALSE(mixed);
   CHECK(mixed.error().code == ErrorCode::invalid_argument);
   CHECK(mixed.error().message.find("grid") != std::string::npos);
-  CHECK_FALSE(encode_boundaries(Boundaries{&solids[0], &solids[4]}, {}));
-  CHECK_FALSE(encode_boundaries({}, {}));
-  CHECK_FALSE(encode_boundaries(Boundaries(kMaxPageSolids + 1, solids.data()), {}));
-  CHECK(encode_boundaries(Boundaries(kMaxPageSolids, solids.data()), {}));
+  CHECK_FALSE(codec::encode_boundaries(Boundaries{&solids[0], &solids[4]}, {}));
+  CHECK_FALSE(codec::encode_boundaries({}, {}));
+  CHECK_FALSE(codec::encode_boundaries(Boundaries(codec::kMaxPageSolids + 1, solids.data()), {}));
+  CHECK(codec::encode_boundaries(Boundaries(codec::kMaxPageSolids, solids.data()), {}));
 }
 
 TEST_CASE("pages and blobs are not taken for each other") {
   const OrientedBoundary box = generated::box();
-  const auto page = encode_boundaries(Boundaries{&box}, {});
+  const auto page = codec::encode_boundaries(Boundaries{&box}, {});
   REQUIRE(page);
   CHECK_FALSE(decode(*page));
-  CHECK_FALSE(decode_page(blob_of(box)));
+  CHECK_FALSE(codec::decode_page(blob_of(box)));
 }
 
 TEST_CASE("every truncated page and every changed byte of one is refused") {
   const auto solids = generated::all(8);
-  const auto page = encode_boundaries(Boundaries{&solids[0].boundary, &solids[1].boundary}, {});
+  const auto page =
+      codec::encode_boundaries(Boundaries{&solids[0].boundary, &solids[1].boundary}, {});
   REQUIRE(page);
   for (std::size_t size = 0; size < page->size(); ++size) {
-    CHECK_FALSE(decode_page(ByteView(*page).first(size)));
+    CHECK_FALSE(codec::decode_page(ByteView(*page).first(size)));
   }
   for (std::size_t i = 0; i < page->size(); ++i) {
     Bytes changed = *page;
     changed[i] ^= 0x55U;
-    CHECK_FALSE(decode_page(changed));
+    CHECK_FALSE(codec::decode_page(changed));
   }
 }
 
 TEST_CASE("the limit of vertices counts for a page as a whole") {
   const auto solids = interleaved(3);
-  const auto page = encode_boundaries(Boundaries{&solids[0], &solids[2]}, {});
+  const auto page = codec::encode_boundaries(Boundaries{&solids[0], &solids[2]}, {});
   REQUIRE(page);
-  CHECK(decode_page(*page, Limits{.vertices = 16}));
-  CHECK(decode_page(*page, Limits{.vertices = 15}).error().code == ErrorCode::limit_exceeded);
+  CHECK(codec::decode_page(*page, Limits{.vertices = 16}));
+  CHECK(codec::decode_page(*page, Limits{.vertices = 15}).error().code ==
+        ErrorCode::limit_exceeded);
 }
 
 TEST_CASE("a page file gives each solid back by its number and by its page") {
   const auto solids = interleaved(23);
   for (const std::size_t page_solids : {1U, 3U, 256U}) {
     const Bytes file = page_file_of(solids, page_solids);
-    CHECK(is_page_file(file));
-    const PageFileReader reader = opened(file);
+    CHECK(codec::is_page_file(file));
+    const codec::PageFileReader reader = opened(file);
     REQUIRE(reader.size() == solids.size());
     CHECK(reader.page_count() == (page_solids == 1 ? 23 : page_solids == 3 ? 9 : 3));
     std::vector<int> seen(solids.size());
@@ -279,7 +281,7 @@ TEST_CASE("a page file keeps more grids apart than it has pages open") {
     solids.push_back(box_at(i, grid_of(10 * (i % 40) + 1)));
   }
   const Bytes file = page_file_of(solids, 64);
-  const PageFileReader reader = opened(file);
+  const codec::PageFileReader reader = opened(file);
   REQUIRE(reader.size() == solids.size());
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const auto decoded = reader.solid(i);
@@ -292,16 +294,16 @@ TEST_CASE("a page file keeps what a blob says of its acceptance") {
   const OrientedBoundary box = generated::box();
   Acceptance other;
   other.proof = Proof::boundary;
-  PageFileWriter writer;
-  const auto first = encode_boundary(box, {});
-  const auto second = encode_boundary(box, other);
+  codec::PageFileWriter writer;
+  const auto first = codec::encode_boundary(box, {});
+  const auto second = codec::encode_boundary(box, other);
   REQUIRE(first);
   REQUIRE(second);
   REQUIRE(writer.add_blob(*first));
   REQUIRE(writer.add_blob(*second));
   const auto file = std::move(writer).finish();
   REQUIRE(file);
-  const PageFileReader reader = opened(*file);
+  const codec::PageFileReader reader = opened(*file);
   CHECK(reader.page_count() == 2);
   CHECK(reader.solid(0)->info.acceptance == Acceptance{});
   CHECK(reader.solid(1)->info.acceptance == other);
@@ -309,19 +311,19 @@ TEST_CASE("a page file keeps what a blob says of its acceptance") {
 
 TEST_CASE("page files without solids and with one") {
   const Bytes empty = page_file_of({}, 256);
-  const PageFileReader none = opened(empty);
+  const codec::PageFileReader none = opened(empty);
   CHECK(none.size() == 0);
   CHECK(none.page_count() == 0);
   CHECK_FALSE(none.solid(0));
   const auto solids = interleaved(1);
   const Bytes file = page_file_of(solids, 256);
-  const PageFileReader one = opened(file);
+  const codec::PageFileReader one = opened(file);
   REQUIRE(one.size() == 1);
   CHECK(one.solid(0)->solid == solids[0].solid());
 }
 
 TEST_CASE("a blob that does not decode is not taken into a page file") {
-  PageFileWriter writer;
+  codec::PageFileWriter writer;
   Bytes blob = blob_of(generated::box());
   blob.back() ^= 1U;
   CHECK_FALSE(writer.add_blob(blob));
@@ -334,12 +336,12 @@ TEST_CASE("every truncated page file is refused, and no changed byte gives anoth
   const auto solids = interleaved(7);
   const Bytes file = page_file_of(solids, 2);
   for (std::size_t size = 0; size < file.size(); ++size) {
-    CHECK_FALSE(PageFileReader::open(ByteView(file).first(size)));
+    CHECK_FALSE(codec::PageFileReader::open(ByteView(file).first(size)));
   }
   for (std::size_t i = 0; i < file.size(); ++i) {
     Bytes changed = file;
     changed[i] ^= 0x11U;
-    const auto reader = PageFileReader::open(changed);
+    const auto reader = codec::PageFileReader::open(changed);
     if (!reader) continue;
     for (std::size_t number = 0; number < solids.size(); ++number) {
       const auto decoded = reader->solid(number);
@@ -348,7 +350,7 @@ TEST_CASE("every truncated page file is refused, and no changed byte gives anoth
   }
   Bytes longer = file;
   longer.push_back(0);
-  CHECK_FALSE(PageFileReader::open(longer));
+  CHECK_FALSE(codec::PageFileReader::open(longer));
 }
 
 TEST_CASE("mutated page files are read or refused") {
@@ -360,31 +362,31 @@ TEST_CASE("mutated page files are read or refused") {
 
 TEST_CASE("a page file with an index that lies is refused before anything is decoded") {
   const OrientedBoundary box = generated::box();
-  const auto made = encode_boundaries(Boundaries{&box, &box}, {});
+  const auto made = codec::encode_boundaries(Boundaries{&box, &box}, {});
   REQUIRE(made);
   const Bytes page = *made;
   const std::uint64_t size = page.size();
   constexpr std::uint64_t kHuge = ~std::uint64_t{0};
-  REQUIRE(PageFileReader::open(forged({page}, {2, 1, size, 2, 0, 0})));
+  REQUIRE(codec::PageFileReader::open(forged({page}, {2, 1, size, 2, 0, 0})));
   const std::vector<std::vector<std::uint64_t>> lies = {
-      {kHuge, 1, size, 2, 0, 0},               // more solids than the index has bytes
-      {2, kHuge, size, 2, 0, 0},               // more pages
-      {2, 1, kHuge, 2, 0, 0},                  // a page beyond the file
-      {2, 1, size + 1, 2, 0, 0},               //
-      {2, 1, size - 1, 2, 0, 0},               // bytes between pages and index
-      {2, 1, size, kHuge, 0, 0},               // a page of too many solids
-      {2, 1, size, kMaxPageSolids + 1, 0, 0},  //
-      {2, 1, size, 2, 0, 1},                   // solid 2 of 2
-      {2, 1, size, 2, 0, kHuge},               //
-      {2, 1, size, 2, 0},                      // an index that ends early
-      {2, 1, size, 2, 0, 0, 0},                // or late
-      {3, 1, size, 2, 0, 0},                   // a solid in no page
-      {1, 1, size, 2, 0, 0},                   // a solid too many
-      {2, 2, size, 2, 0, 0, 0, 0},             // a page without solids
-      {2, 2, size, 2, 0, 0, 0, 1, 0},          // a solid twice
+      {kHuge, 1, size, 2, 0, 0},                      // more solids than the index has bytes
+      {2, kHuge, size, 2, 0, 0},                      // more pages
+      {2, 1, kHuge, 2, 0, 0},                         // a page beyond the file
+      {2, 1, size + 1, 2, 0, 0},                      //
+      {2, 1, size - 1, 2, 0, 0},                      // bytes between pages and index
+      {2, 1, size, kHuge, 0, 0},                      // a page of too many solids
+      {2, 1, size, codec::kMaxPageSolids + 1, 0, 0},  //
+      {2, 1, size, 2, 0, 1},                          // solid 2 of 2
+      {2, 1, size, 2, 0, kHuge},                      //
+      {2, 1, size, 2, 0},                             // an index that ends early
+      {2, 1, size, 2, 0, 0, 0},                       // or late
+      {3, 1, size, 2, 0, 0},                          // a solid in no page
+      {1, 1, size, 2, 0, 0},                          // a solid too many
+      {2, 2, size, 2, 0, 0, 0, 0},                    // a page without solids
+      {2, 2, size, 2, 0, 0, 0, 1, 0},                 // a solid twice
   };
   for (const auto& lie : lies) {
-    const auto reader = PageFileReader::open(forged({page}, lie));
+    const auto reader = codec::PageFileReader::open(forged({page}, lie));
     REQUIRE_FALSE(reader);
     CHECK(reader.error().code == ErrorCode::malformed);
   }
@@ -392,13 +394,13 @@ TEST_CASE("a page file with an index that lies is refused before anything is dec
 
 TEST_CASE("a page of another count than the index says is refused") {
   const OrientedBoundary box = generated::box();
-  const auto page = encode_boundaries(Boundaries{&box, &box}, {});
+  const auto page = codec::encode_boundaries(Boundaries{&box, &box}, {});
   REQUIRE(page);
   for (const std::uint64_t count : {1U, 3U}) {
     std::vector<std::uint64_t> index = {count, 1, page->size(), count};
     index.resize(index.size() + count);
     const Bytes file = forged({*page}, index);
-    const PageFileReader reader = opened(file);
+    const codec::PageFileReader reader = opened(file);
     const auto solid = reader.solid(0);
     REQUIRE_FALSE(solid);
     CHECK(solid.error().code == ErrorCode::malformed);
@@ -409,7 +411,7 @@ TEST_CASE("a page of another count than the index says is refused") {
 TEST_CASE("page files of other versions are unsupported") {
   Bytes file = page_file_of({}, 256);
   file[4] = 2;
-  const auto reader = PageFileReader::open(file);
+  const auto reader = codec::PageFileReader::open(file);
   REQUIRE_FALSE(reader);
   CHECK(reader.error().code == ErrorCode::unsupported);
 }

@@ -14,58 +14,58 @@ namespace {
 
 struct Coded {
   Bytes bytes;
-  GriddedSolid gridded;
+  codec::GriddedSolid gridded;
 };
 
-std::optional<GriddedSolid> gridded(const OrientedBoundary& boundary) {
-  return grid_solid(canonical_form(boundary).boundary.solid());
+std::optional<codec::GriddedSolid> gridded(const OrientedBoundary& boundary) {
+  return codec::grid_solid(geometry::canonical_form(boundary).boundary.solid());
 }
 
-Coded write(const OrientedBoundary& boundary, const PageMemory& memory = {}) {
+Coded write(const OrientedBoundary& boundary, const codec::PageMemory& memory = {}) {
   Coded result;
   const auto on_grid = gridded(boundary);
   REQUIRE(on_grid);
   result.gridded = *on_grid;
-  EntropyStream stream = EntropyStream::writer();
-  ModelBank models(polygon_layout());
-  IntegerSolid solid = on_grid->solid;
-  WriterChoice unused;
-  const Status status = code_polygon(stream, models, memory, solid, unused, Limits{});
+  codec::EntropyStream stream = codec::EntropyStream::writer();
+  codec::ModelBank models(codec::polygon::model_layout());
+  codec::IntegerSolid solid = on_grid->solid;
+  codec::WriterChoice unused;
+  const Status status = codec::polygon::code_solid(stream, models, memory, solid, unused, Limits{});
   REQUIRE(status);
   result.bytes = std::move(stream).finish();
   return result;
 }
 
-Status read(ByteView bytes, IntegerSolid& solid, bool& is_finished, const Limits& limits = {},
-            const PageMemory& memory = {}) {
-  EntropyStream stream = EntropyStream::reader(bytes);
-  ModelBank models(polygon_layout());
-  WriterChoice unused;
-  const Status status = code_polygon(stream, models, memory, solid, unused, limits);
+Status read(ByteView bytes, codec::IntegerSolid& solid, bool& is_finished,
+            const Limits& limits = {}, const codec::PageMemory& memory = {}) {
+  codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
+  codec::ModelBank models(codec::polygon::model_layout());
+  codec::WriterChoice unused;
+  const Status status = codec::polygon::code_solid(stream, models, memory, solid, unused, limits);
   is_finished = stream.is_finished();
   return status;
 }
 
 /// The solid that `bytes` hold, in canonical form.
-Solid canonical_of(const Coded& coded, IntegerSolid solid) {
-  GriddedSolid gridded = coded.gridded;
+Solid canonical_of(const Coded& coded, codec::IntegerSolid solid) {
+  codec::GriddedSolid gridded = coded.gridded;
   gridded.solid = std::move(solid);
-  auto ungridded = ungrid_solid(gridded, 0, Limits{});
+  auto ungridded = codec::ungrid_solid(gridded, 0, Limits{});
   REQUIRE(ungridded);
   auto boundary = OrientedBoundary::make(std::move(*ungridded));
   REQUIRE(boundary);
-  return canonical_form(*boundary).boundary.solid();
+  return geometry::canonical_form(*boundary).boundary.solid();
 }
 
-void check_round_trip(const OrientedBoundary& boundary, const PageMemory& memory = {}) {
+void check_round_trip(const OrientedBoundary& boundary, const codec::PageMemory& memory = {}) {
   const Coded coded = write(boundary, memory);
-  IntegerSolid solid;
+  codec::IntegerSolid solid;
   bool is_finished = false;
   const Status status = read(coded.bytes, solid, is_finished, {}, memory);
   REQUIRE(status);
   CHECK(is_finished);
   CHECK(canonical_of(coded, std::move(solid)).arrays() ==
-        canonical_form(boundary).boundary.solid().arrays());
+        geometry::canonical_form(boundary).boundary.solid().arrays());
 }
 
 /// A box with a chimney: a facet with a hole whose ring begins at a new vertex.
@@ -106,7 +106,7 @@ OrientedBoundary cavity_touching_at_edge() {
   generated::add_box(arrays, {0, 0, 0}, {4, 4, 10}, generated::Turn::inward);
   auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
   REQUIRE(solid);
-  auto boundary = OrientedBoundary::make(merge_equal_vertices(*solid).solid);
+  auto boundary = OrientedBoundary::make(geometry::merge_equal_vertices(*solid).solid);
   REQUIRE(boundary);
   return *boundary;
 }
@@ -141,24 +141,24 @@ TEST_CASE("mode polygon holds coordinates up to its bound, and refuses those bey
   const auto on_grid = gridded(generated::random_prism(random, 7));
   REQUIRE(on_grid);
   for (const std::int64_t bound : {most, most + 1}) {
-    IntegerSolid solid = on_grid->solid;
+    codec::IntegerSolid solid = on_grid->solid;
     // Every other vertex at one end of an axis, so that all predictions are far off.
     for (std::size_t i = 0; i < solid.vertices.size(); ++i) {
       solid.vertices[i][i % 3] = i % 2 == 0 ? bound : -bound;
     }
-    const IntegerSolid truth = solid;
-    EntropyStream writer = EntropyStream::writer();
-    ModelBank models(polygon_layout());
-    WriterChoice unused;
-    const Status written = code_polygon(writer, models, {}, solid, unused, Limits{});
+    const codec::IntegerSolid truth = solid;
+    codec::EntropyStream writer = codec::EntropyStream::writer();
+    codec::ModelBank models(codec::polygon::model_layout());
+    codec::WriterChoice unused;
+    const Status written = codec::polygon::code_solid(writer, models, {}, solid, unused, Limits{});
     CHECK(written.has_value() == (bound == most));
     if (!written) continue;
     const Bytes bytes = std::move(writer).finish();
-    IntegerSolid again;
+    codec::IntegerSolid again;
     bool is_finished = false;
     REQUIRE(read(bytes, again, is_finished));
     CHECK(is_finished);
-    std::vector<GridPoint> expected = truth.vertices;
+    std::vector<codec::GridPoint> expected = truth.vertices;
     std::sort(expected.begin(), expected.end());
     std::sort(again.vertices.begin(), again.vertices.end());
     CHECK(again.vertices == expected);
@@ -167,7 +167,7 @@ TEST_CASE("mode polygon holds coordinates up to its bound, and refuses those bey
 
 TEST_CASE("mode polygon codes a solid the better for the page around it") {
   generated::Random random(5);
-  PageMemory memory;
+  codec::PageMemory memory;
   const OrientedBoundary prism = generated::random_prism(random, 9);
   const std::size_t alone = write(prism).bytes.size();
   const auto on_grid = gridded(prism);
@@ -190,7 +190,7 @@ TEST_CASE("mode polygon holds to the limits when it reads") {
   const Coded coded = write(generated::grid_cube(5));
   Limits limits;
   limits.vertices = 20;
-  IntegerSolid solid;
+  codec::IntegerSolid solid;
   bool is_finished = false;
   const Status status = read(coded.bytes, solid, is_finished, limits);
   REQUIRE_FALSE(status);
@@ -214,7 +214,7 @@ TEST_CASE("mode polygon reads hostile bytes without harm") {
   limits.shells = 20;
   for (const Bytes& blob : blobs) {
     for (std::size_t size = 0; size < blob.size(); ++size) {
-      IntegerSolid solid;
+      codec::IntegerSolid solid;
       bool is_finished = false;
       const Status status = read(ByteView(blob).first(size), solid, is_finished, limits);
       CHECK((!status || solid.vertices.size() <= limits.vertices));
@@ -224,7 +224,7 @@ TEST_CASE("mode polygon reads hostile bytes without harm") {
       for (std::uint64_t k = 0; k <= random.below(3); ++k) {
         mutated[random.below(mutated.size())] = static_cast<std::uint8_t>(random.next());
       }
-      IntegerSolid solid;
+      codec::IntegerSolid solid;
       bool is_finished = false;
       const Status status = read(mutated, solid, is_finished, limits);
       if (!status) continue;

@@ -13,24 +13,24 @@ namespace {
 
 using generated::Random;
 
-ModelBank neutral_bank() { return ModelBank({order_families(), {}}); }
+codec::ModelBank neutral_bank() { return codec::ModelBank({codec::order_families(), {}}); }
 
-Bytes written(const Solid& canonical, const SourceOrder& order) {
-  auto stream = EntropyStream::writer();
+Bytes written(const Solid& canonical, const geometry::SourceOrder& order) {
+  auto stream = codec::EntropyStream::writer();
   auto bank = neutral_bank();
-  SourceOrder copy = order;
-  code_order(stream, bank, 0, canonical, copy);
+  geometry::SourceOrder copy = order;
+  codec::code_order(stream, bank, 0, canonical, copy);
   CHECK(copy == order);
   return std::move(stream).finish();
 }
 
 /// Nothing when the stream says that the bytes are none.
-std::optional<SourceOrder> read_back(const Solid& canonical, const Bytes& bytes) {
-  auto stream = EntropyStream::reader(bytes);
+std::optional<geometry::SourceOrder> read_back(const Solid& canonical, const Bytes& bytes) {
+  auto stream = codec::EntropyStream::reader(bytes);
   auto bank = neutral_bank();
-  SourceOrder order;
-  code_order(stream, bank, 0, canonical, order);
-  CHECK(restore_order(canonical, order));  // permutations, whatever the bytes
+  geometry::SourceOrder order;
+  codec::code_order(stream, bank, 0, canonical, order);
+  CHECK(geometry::restore_order(canonical, order));  // permutations, whatever the bytes
   if (!stream.is_finished()) return std::nullopt;
   return order;
 }
@@ -53,8 +53,8 @@ void shuffle(std::vector<Index>& list, std::size_t begin, std::size_t end, Rando
 }
 
 /// Any arrangement that a source could have.
-SourceOrder random_order(const Solid& solid, Random& random) {
-  SourceOrder order;
+geometry::SourceOrder random_order(const Solid& solid, Random& random) {
+  geometry::SourceOrder order;
   order.vertex.resize(solid.vertex_count());
   std::iota(order.vertex.begin(), order.vertex.end(), Index{0});
   shuffle(order.vertex, 0, order.vertex.size(), random);
@@ -90,7 +90,7 @@ SourceOrder random_order(const Solid& solid, Random& random) {
 
 TEST_CASE("the source order of a solid comes back") {
   for (const OrientedBoundary& boundary : samples()) {
-    const CanonicalSolid canonical = canonical_form(boundary);
+    const geometry::CanonicalSolid canonical = geometry::canonical_form(boundary);
     const Solid& solid = canonical.boundary.solid();
     const auto order = read_back(solid, written(solid, canonical.order));
     REQUIRE(order);
@@ -101,10 +101,10 @@ TEST_CASE("the source order of a solid comes back") {
 TEST_CASE("any order comes back, at the cost of a permutation") {
   Random random(5);
   for (const OrientedBoundary& boundary : samples()) {
-    const CanonicalSolid canonical = canonical_form(boundary);
+    const geometry::CanonicalSolid canonical = geometry::canonical_form(boundary);
     const Solid& solid = canonical.boundary.solid();
     for (int round = 0; round < 20; ++round) {
-      const SourceOrder chosen = random_order(solid, random);
+      const geometry::SourceOrder chosen = random_order(solid, random);
       const auto order = read_back(solid, written(solid, chosen));
       REQUIRE(order);
       CHECK(*order == chosen);
@@ -113,7 +113,7 @@ TEST_CASE("any order comes back, at the cost of a permutation") {
 }
 
 /// Numbers the vertices as readers do: by first use.
-void number_by_first_use(const Solid& solid, SourceOrder& order) {
+void number_by_first_use(const Solid& solid, geometry::SourceOrder& order) {
   std::vector<Index> rings(order.ring.size());
   for (Index ring = 0; ring < rings.size(); ++ring) rings[order.ring[ring]] = ring;
   std::fill(order.vertex.begin(), order.vertex.end(), kNone);
@@ -128,26 +128,26 @@ void number_by_first_use(const Solid& solid, SourceOrder& order) {
 }
 
 TEST_CASE("a bank that has seen a habit codes it in next to nothing") {
-  CanonicalSolid canonical = canonical_form(generated::box());
+  geometry::CanonicalSolid canonical = geometry::canonical_form(generated::box());
   number_by_first_use(canonical.boundary.solid(), canonical.order);
   const Solid& solid = canonical.boundary.solid();
   auto bank = neutral_bank();
-  auto stream = EntropyStream::meter();
+  auto stream = codec::EntropyStream::meter();
   std::uint64_t last = 0;
   for (int i = 0; i < 50; ++i) {
     const std::uint64_t before = stream.cost();
-    SourceOrder copy = canonical.order;
-    code_order(stream, bank, 0, solid, copy);
+    geometry::SourceOrder copy = canonical.order;
+    codec::code_order(stream, bank, 0, solid, copy);
     last = stream.cost() - before;
   }
-  CHECK(last < 4U << kCostBits);
+  CHECK(last < 4U << codec::kCostBits);
 }
 
 TEST_CASE("bytes that are no order give permutations all the same") {
   Random random(9);
-  const CanonicalSolid canonical = canonical_form(generated::pierced_block(3));
+  const geometry::CanonicalSolid canonical = geometry::canonical_form(generated::pierced_block(3));
   const Solid& solid = canonical.boundary.solid();
-  const SourceOrder chosen = random_order(solid, random);
+  const geometry::SourceOrder chosen = random_order(solid, random);
   const Bytes bytes = written(solid, chosen);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const Bytes prefix(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));

@@ -14,38 +14,39 @@ using generated::Random;
 
 namespace {
 
-std::optional<GriddedSolid> gridded(const OrientedBoundary& boundary) {
-  return grid_solid(canonical_form(boundary).boundary.solid());
+std::optional<codec::GriddedSolid> gridded(const OrientedBoundary& boundary) {
+  return codec::grid_solid(geometry::canonical_form(boundary).boundary.solid());
 }
 
-std::optional<Bytes> write(const IntegerSolid& solid, const PageMemory& memory = {}) {
-  EntropyStream stream = EntropyStream::writer();
-  ModelBank models(walk_layout());
-  IntegerSolid written = solid;
-  WriterChoice unused;
-  if (!code_walk(stream, models, memory, written, unused, Limits{})) return std::nullopt;
+std::optional<Bytes> write(const codec::IntegerSolid& solid, const codec::PageMemory& memory = {}) {
+  codec::EntropyStream stream = codec::EntropyStream::writer();
+  codec::ModelBank models(codec::walk::model_layout());
+  codec::IntegerSolid written = solid;
+  codec::WriterChoice unused;
+  if (!codec::walk::code_solid(stream, models, memory, written, unused, Limits{}))
+    return std::nullopt;
   return std::move(stream).finish();
 }
 
-Status read(const Bytes& bytes, IntegerSolid& solid, const PageMemory& memory = {},
+Status read(const Bytes& bytes, codec::IntegerSolid& solid, const codec::PageMemory& memory = {},
             const Limits& limits = {}) {
-  EntropyStream stream = EntropyStream::reader(bytes);
-  ModelBank models(walk_layout());
-  WriterChoice unused;
-  Status status = code_walk(stream, models, memory, solid, unused, limits);
+  codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
+  codec::ModelBank models(codec::walk::model_layout());
+  codec::WriterChoice unused;
+  Status status = codec::walk::code_solid(stream, models, memory, solid, unused, limits);
   if (status && !stream.is_finished()) return Error{ErrorCode::malformed, "bytes left"};
   return status;
 }
 
 /// True if the decoded solid is, in canonical form, the one it was made of.
-bool is_same(const GriddedSolid& expected, IntegerSolid decoded) {
-  GriddedSolid other = expected;
+bool is_same(const codec::GriddedSolid& expected, codec::IntegerSolid decoded) {
+  codec::GriddedSolid other = expected;
   other.solid = std::move(decoded);
-  const auto first = ungrid_solid(expected, 0, Limits{});
-  const auto second = ungrid_solid(other, 0, Limits{});
+  const auto first = codec::ungrid_solid(expected, 0, Limits{});
+  const auto second = codec::ungrid_solid(other, 0, Limits{});
   if (!first || !second) return false;
   const auto boundary = OrientedBoundary::make(*second);
-  return boundary && canonical_form(*boundary).boundary.solid() == *first;
+  return boundary && geometry::canonical_form(*boundary).boundary.solid() == *first;
 }
 
 void check_round_trip(const std::string& name, const OrientedBoundary& boundary) {
@@ -54,7 +55,7 @@ void check_round_trip(const std::string& name, const OrientedBoundary& boundary)
   REQUIRE(solid);
   const auto bytes = write(solid->solid);
   REQUIRE(bytes);
-  IntegerSolid decoded;
+  codec::IntegerSolid decoded;
   REQUIRE(read(*bytes, decoded));
   CHECK(is_same(*solid, std::move(decoded)));
 }
@@ -111,7 +112,7 @@ TEST_CASE("mode walk brings back every generated solid or refuses it") {
         continue;
       }
       ++held;
-      IntegerSolid decoded;
+      codec::IntegerSolid decoded;
       REQUIRE(read(*bytes, decoded));
       CHECK(is_same(*solid, std::move(decoded)));
     }
@@ -123,15 +124,15 @@ TEST_CASE("mode walk brings back every generated solid or refuses it") {
 TEST_CASE("mode walk refuses what has no volume or leaves its range") {
   const auto solid = gridded(generated::box());
   REQUIRE(solid);
-  IntegerSolid flat = solid->solid;
-  for (GridPoint& p : flat.vertices) {
+  codec::IntegerSolid flat = solid->solid;
+  for (codec::GridPoint& p : flat.vertices) {
     p[0] = 3 * p[0] + p[2];
     p[2] = p[0] + 2 * p[1];
   }
   std::sort(flat.vertices.begin(), flat.vertices.end());
   REQUIRE(std::adjacent_find(flat.vertices.begin(), flat.vertices.end()) == flat.vertices.end());
   CHECK_FALSE(write(flat));
-  IntegerSolid wide = solid->solid;
+  codec::IntegerSolid wide = solid->solid;
   wide.vertices.back()[0] += std::int64_t{1} << 31;
   CHECK_FALSE(write(wide));
 }
@@ -140,14 +141,14 @@ TEST_CASE("in a page mode walk takes columns from the solids before") {
   Random random(11);
   const auto solid = gridded(generated::random_prism(random, 12));
   REQUIRE(solid);
-  PageMemory memory;
+  codec::PageMemory memory;
   const auto alone = write(solid->solid, memory);
   memory.add(solid->solid);
   const auto again = write(solid->solid, memory);
   REQUIRE(alone);
   REQUIRE(again);
   CHECK(again->size() < alone->size());
-  IntegerSolid decoded;
+  codec::IntegerSolid decoded;
   REQUIRE(read(*again, decoded, memory));
   CHECK(is_same(*solid, std::move(decoded)));
 }
@@ -159,12 +160,12 @@ TEST_CASE("a measuring stream walks as a writing one, and both the same way ever
   const auto bytes = write(solid->solid);
   REQUIRE(bytes);
   CHECK(*bytes == *write(solid->solid));
-  EntropyStream meter = EntropyStream::meter();
-  ModelBank models(walk_layout());
-  IntegerSolid measured = solid->solid;
-  WriterChoice unused;
-  REQUIRE(code_walk(meter, models, PageMemory{}, measured, unused, Limits{}));
-  const auto bits = meter.cost() >> kCostBits;
+  codec::EntropyStream meter = codec::EntropyStream::meter();
+  codec::ModelBank models(codec::walk::model_layout());
+  codec::IntegerSolid measured = solid->solid;
+  codec::WriterChoice unused;
+  REQUIRE(codec::walk::code_solid(meter, models, codec::PageMemory{}, measured, unused, Limits{}));
+  const auto bits = meter.cost() >> codec::kCostBits;
   CHECK(bits / 8 <= bytes->size() + 2);
   CHECK(bits / 8 + 4 >= bytes->size());
 }
@@ -180,7 +181,7 @@ TEST_CASE("damaged streams of mode walk end in an error or in bounded arrays") {
     Limits limits;
     limits.vertices = 1000;
     const auto attempt = [&](const Bytes& damaged) {
-      IntegerSolid decoded;
+      codec::IntegerSolid decoded;
       if (!read(damaged, decoded, {}, limits)) return;
       CHECK(decoded.vertices.size() <= limits.vertices);
       for (const Index v : decoded.ring_vertices) REQUIRE(v < decoded.vertices.size());
@@ -205,7 +206,7 @@ TEST_CASE("reading stops at the limit of vertices") {
   REQUIRE(bytes);
   Limits limits;
   limits.vertices = 10;
-  IntegerSolid decoded;
+  codec::IntegerSolid decoded;
   const Status status = read(*bytes, decoded, {}, limits);
   REQUIRE_FALSE(status);
   CHECK(status.error().code != ErrorCode::not_encodable);
@@ -213,16 +214,16 @@ TEST_CASE("reading stops at the limit of vertices") {
 
 TEST_CASE("the walk refuses surfaces that are not closed") {
   const std::vector<Point> points{{0, 0, 0}, {0, 0, 9}, {0, 9, 0}, {9, 0, 0}};
-  const auto delaunay = canonical_delaunay(points);
+  const auto delaunay = delaunay::canonical_delaunay(points);
   REQUIRE(delaunay);
-  const ModelLayout layout{kWalkFamilies, {}};
+  const codec::ModelLayout layout{codec::walk::kWalkFamilies, {}};
   const auto measure = [&](std::vector<Triangle> triangles) {
-    ModelBank models(layout);
-    EntropyStream meter = EntropyStream::meter();
-    BoundaryMesh mesh;
+    codec::ModelBank models(layout);
+    codec::EntropyStream meter = codec::EntropyStream::meter();
+    codec::walk::BoundaryMesh mesh;
     mesh.component_first.push_back(static_cast<Index>(triangles.size()));
     mesh.triangles = std::move(triangles);
-    return code_boundary_walk(meter, models, 0, points, *delaunay, mesh);
+    return codec::walk::code_boundary_walk(meter, models, 0, points, *delaunay, mesh);
   };
   const Triangle a{0, 1, 2};
   const Triangle b{0, 2, 3};

@@ -109,7 +109,7 @@ Shape random_union(Random& random, int extent) {
         {double(random.below(extent)), double(random.below(extent)), double(random.below(extent))});
   }
   const std::vector<Point> points(chosen.begin(), chosen.end());
-  const auto delaunay = canonical_delaunay(points);
+  const auto delaunay = delaunay::canonical_delaunay(points);
   Shape shape;
   if (!delaunay || delaunay->tetrahedra.empty()) return shape;
   std::set<Triangle> boundary;  // directed, smallest corner first
@@ -199,13 +199,14 @@ bool only_meets_itself(const Report& report) {
          });
 }
 
-void check_agreement(const Solid& solid, EngineWorkers& workers, bool asks_engine, Counts& counts) {
+void check_agreement(const Solid& solid, delaunay::EngineWorkers& workers, bool asks_engine,
+                     Counts& counts) {
   const Inspection exact = certify(solid, nullptr, exact_options(Proof::boundary));
   if (exact.report.verdict == Verdict::valid) {
     ++counts.sound;
     const Report report = certify(solid, &workers, exact_options(Proof::tetrahedralization)).report;
     INFO(report.undecided_reason);
-    CHECK(to_string(report.verdict) == "valid");
+    CHECK(validate::to_string(report.verdict) == "valid");
     return;
   }
   if (!only_meets_itself(exact.report)) {
@@ -214,16 +215,17 @@ void check_agreement(const Solid& solid, EngineWorkers& workers, bool asks_engin
   }
   ++counts.meeting;
   // What the exact tests spare the engines: whatever they make of it, no certificate accepts it.
-  const Solid merged = merge_equal_vertices(solid).solid;
-  LadderOptions options;
+  const Solid merged = geometry::merge_equal_vertices(solid).solid;
+  delaunay::LadderOptions options;
   options.seconds_per_rung = 0.5;
-  options.last_rung = asks_engine ? Rung::patch : Rung::delaunay;
-  const LadderResult result = climb_ladder(merged, triangulate_facets(merged), &workers, options);
+  options.last_rung = asks_engine ? delaunay::Rung::patch : delaunay::Rung::delaunay;
+  const delaunay::LadderResult result =
+      delaunay::climb_ladder(merged, tessellate::triangulate_facets(merged), &workers, options);
   CHECK_FALSE(result.certificate.has_value());
 }
 
 Counts check_many(std::uint64_t first_seed, int count) {
-  EngineWorkers workers;
+  delaunay::EngineWorkers workers;
   Counts counts;
   for (int i = 0; i < count; ++i) {
     const std::uint64_t seed = first_seed + std::uint64_t(i);

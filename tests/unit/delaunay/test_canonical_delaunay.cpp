@@ -57,8 +57,8 @@ std::vector<Point> prism(int sides, double height) {
   return points;
 }
 
-CanonicalDelaunay build(const std::vector<Point>& points) {
-  Result<CanonicalDelaunay> result = canonical_delaunay(points);
+delaunay::CanonicalDelaunay build(const std::vector<Point>& points) {
+  Result<delaunay::CanonicalDelaunay> result = delaunay::canonical_delaunay(points);
   REQUIRE(result.has_value());
   return std::move(*result);
 }
@@ -67,19 +67,19 @@ CanonicalDelaunay build(const std::vector<Point>& points) {
 std::uint64_t digest(const std::vector<Point>& points) {
   std::vector<Point> sorted = points;
   std::sort(sorted.begin(), sorted.end());
-  const CanonicalDelaunay delaunay = build(sorted);
+  const delaunay::CanonicalDelaunay delaunay = build(sorted);
   ByteWriter writer;
   for (const Triangle& face : delaunay.faces) {
     for (const Index vertex : face) writer.u32(vertex);
   }
-  for (const Tetrahedron& tetrahedron : delaunay.tetrahedra) {
+  for (const geometry::Tetrahedron& tetrahedron : delaunay.tetrahedra) {
     for (const Index vertex : tetrahedron) writer.u32(vertex);
   }
   return content_hash(writer.bytes());
 }
 
 std::vector<std::array<Point, 3>> faces_as_points(const std::vector<Point>& points,
-                                                  const CanonicalDelaunay& delaunay) {
+                                                  const delaunay::CanonicalDelaunay& delaunay) {
   std::vector<std::array<Point, 3>> faces;
   for (const Triangle& face : delaunay.faces) {
     std::array<Point, 3> corners{points[face[0]], points[face[1]], points[face[2]]};
@@ -128,7 +128,7 @@ TEST_CASE("canonical Delaunay of golden point sets never changes") {
 }
 
 TEST_CASE("canonical Delaunay of a 3x3x3 grid has 120 faces") {
-  const CanonicalDelaunay delaunay = build(grid(3));
+  const delaunay::CanonicalDelaunay delaunay = build(grid(3));
   CHECK(delaunay.faces.size() == 120);
   CHECK(delaunay.tetrahedra.size() == 48);
 }
@@ -149,7 +149,7 @@ TEST_CASE("canonical Delaunay does not depend on the numbering of the points") {
 TEST_CASE("canonical Delaunay does not change under an exact translation or scaling") {
   for (const NamedSet& set : golden_sets()) {
     INFO(set.name);
-    const CanonicalDelaunay expected = build(set.points);
+    const delaunay::CanonicalDelaunay expected = build(set.points);
     std::vector<Point> moved = set.points;
     for (Point& p : moved) p = {p.x * 4 + 1024, p.y * 4 + 4096, p.z * 4 - 512};
     CHECK(build(moved).faces == expected.faces);
@@ -167,10 +167,10 @@ TEST_CASE("canonical Delaunay lists positive tetrahedra and sorted faces") {
   }
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  const CanonicalDelaunay delaunay = build(points);
+  const delaunay::CanonicalDelaunay delaunay = build(points);
   std::vector<Triangle> faces;
-  for (const Tetrahedron& t : delaunay.tetrahedra) {
-    REQUIRE(orient3d(points[t[0]], points[t[1]], points[t[2]], points[t[3]]) > 0);
+  for (const geometry::Tetrahedron& t : delaunay.tetrahedra) {
+    REQUIRE(geometry::orient3d(points[t[0]], points[t[1]], points[t[2]], points[t[3]]) > 0);
     REQUIRE(t[0] < t[1]);
     REQUIRE(t[1] < std::min(t[2], t[3]));
     for (std::size_t skipped = 0; skipped < 4; ++skipped) {
@@ -191,7 +191,7 @@ TEST_CASE("canonical Delaunay lists positive tetrahedra and sorted faces") {
 TEST_CASE("canonical Delaunay lists the vertices opposite to a face by side") {
   for (const NamedSet& set : golden_sets()) {
     INFO(set.name);
-    const CanonicalDelaunay delaunay = build(set.points);
+    const delaunay::CanonicalDelaunay delaunay = build(set.points);
     REQUIRE(delaunay.apexes.size() == delaunay.faces.size());
     std::size_t apex_count = 0;
     for (std::size_t f = 0; f < delaunay.faces.size(); ++f) {
@@ -200,9 +200,10 @@ TEST_CASE("canonical Delaunay lists the vertices opposite to a face by side") {
         const Index apex = delaunay.apexes[f][side];
         if (apex == kNone) continue;
         ++apex_count;
-        const int sign = orient3d(set.points[a], set.points[b], set.points[c], set.points[apex]);
+        const int sign =
+            geometry::orient3d(set.points[a], set.points[b], set.points[c], set.points[apex]);
         REQUIRE(sign == (side == 0 ? 1 : -1));
-        Tetrahedron t{a, b, c, apex};
+        geometry::Tetrahedron t{a, b, c, apex};
         std::sort(t.begin(), t.end());
         REQUIRE(std::any_of(delaunay.tetrahedra.begin(), delaunay.tetrahedra.end(), [&](auto u) {
           std::sort(u.begin(), u.end());
@@ -243,7 +244,7 @@ TEST_CASE("canonical Delaunay has no point inside a circumsphere") {
       continue;
     }
     INFO(set.name);
-    for (const Tetrahedron& t : build(set.points).tetrahedra) {
+    for (const geometry::Tetrahedron& t : build(set.points).tetrahedra) {
       const std::array<Point, 4> corners{set.points[t[0]], set.points[t[1]], set.points[t[2]],
                                          set.points[t[3]]};
       for (const Point& q : set.points) REQUIRE(in_sphere(corners, q) <= 0);
@@ -260,12 +261,12 @@ TEST_CASE("canonical Delaunay of points without volume is empty") {
 
 TEST_CASE("canonical Delaunay refuses equal, infinite and too many points") {
   const std::vector<Point> equal = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-  const auto refused = canonical_delaunay(equal);
+  const auto refused = delaunay::canonical_delaunay(equal);
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == ErrorCode::invalid_argument);
 
   const std::vector<Point> infinite = {{0, 0, std::numeric_limits<double>::infinity()}};
-  CHECK_FALSE(canonical_delaunay(infinite).has_value());
+  CHECK_FALSE(delaunay::canonical_delaunay(infinite).has_value());
 
   // Points on two skew lines: every pair of segments spans a tetrahedron.
   std::vector<Point> skew;
@@ -273,16 +274,16 @@ TEST_CASE("canonical Delaunay refuses equal, infinite and too many points") {
     skew.push_back({double(i), 0, 0});
     skew.push_back({0, double(i), 50});
   }
-  const auto limited = canonical_delaunay(skew, 2000);
+  const auto limited = delaunay::canonical_delaunay(skew, 2000);
   REQUIRE_FALSE(limited.has_value());
   CHECK(limited.error().code == ErrorCode::limit_exceeded);
-  CHECK(canonical_delaunay(skew).has_value());
+  CHECK(delaunay::canonical_delaunay(skew).has_value());
 }
 
 TEST_CASE("canonical Delaunay takes extreme coordinates") {
   const std::vector<Point> extreme = {
       {1e300, 0, 0}, {-1e300, 1e-300, 0}, {0, 1e300, 5e-324}, {0, 0, 1e300}, {1e-308, 3, -1e300}};
-  CHECK(canonical_delaunay(extreme).has_value());
+  CHECK(delaunay::canonical_delaunay(extreme).has_value());
 }
 
 }  // namespace

@@ -17,24 +17,26 @@ using samples::Shape;
 /// A solid with a tetrahedralization made without any engine.
 struct Case {
   Solid solid;
-  FacetTriangles canonical;
-  Tetrahedralization tetrahedralization;
+  tessellate::FacetTriangles canonical;
+  delaunay::Tetrahedralization tetrahedralization;
 
-  CertificateRefusal judge() const { return full().refusal; }
-  CertificateResult full() const {
-    return check_certificate(solid, canonical, tetrahedralization, Rung::delaunay);
+  delaunay::CertificateRefusal judge() const { return full().refusal; }
+  delaunay::CertificateResult full() const {
+    return delaunay::check_certificate(solid, canonical, tetrahedralization,
+                                       delaunay::Rung::delaunay);
   }
 };
 
 /// From the canonical Delaunay tetrahedralization; requires that facets are unions of its faces.
 Case delaunay_case(const Shape& shape) {
   Solid solid = samples::make_solid(shape);
-  FacetTriangles canonical = triangulate_facets(solid);
-  Result<CanonicalDelaunay> delaunay = canonical_delaunay(solid.vertices());
+  tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
+  Result<delaunay::CanonicalDelaunay> delaunay = delaunay::canonical_delaunay(solid.vertices());
   REQUIRE(delaunay.has_value());
-  const FollowingTriangles following = follow_delaunay(solid, canonical, *delaunay);
+  const delaunay::FollowingTriangles following =
+      delaunay::follow_delaunay(solid, canonical, *delaunay);
   REQUIRE(following.missing_total == 0);
-  Tetrahedralization own;
+  delaunay::Tetrahedralization own;
   own.points.assign(solid.vertices().begin(), solid.vertices().end());
   own.input_count = solid.vertex_count();
   own.tetrahedra = delaunay->tetrahedra;
@@ -48,12 +50,12 @@ Case delaunay_case(const Shape& shape) {
 Case cube_with_steiner_point(const Point& steiner, Index facet_of_steiner) {
   const Shape shape = samples::box({0, 0, 0}, {64, 64, 64});
   Solid solid = samples::make_solid(shape);
-  FacetTriangles canonical = triangulate_facets(solid);
+  tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
   std::vector<Point> points = shape.vertices;
   points.push_back(steiner);
-  Result<CanonicalDelaunay> delaunay = canonical_delaunay(points);
+  Result<delaunay::CanonicalDelaunay> delaunay = delaunay::canonical_delaunay(points);
   REQUIRE(delaunay.has_value());
-  Tetrahedralization own;
+  delaunay::Tetrahedralization own;
   own.points = points;
   own.input_count = 8;
   own.tetrahedra = delaunay->tetrahedra;
@@ -81,10 +83,10 @@ Shape box_with_cavity() {
 TEST_CASE("certificate accepts solids whose boundary is in the Delaunay tetrahedralization") {
   for (const Shape& shape : {cube(), box_with_cavity(), samples::tunnelled_box(),
                              samples::warped_box(1), samples::prism({{0, 0}, {9, 1}, {4, 8}}, 5)}) {
-    const CertificateResult result = delaunay_case(shape).full();
+    const delaunay::CertificateResult result = delaunay_case(shape).full();
     INFO(result.detail);
-    REQUIRE(to_string(result.refusal) == "none");
-    CHECK(result.certificate.rung == Rung::delaunay);
+    REQUIRE(delaunay::to_string(result.refusal) == "none");
+    CHECK(result.certificate.rung == delaunay::Rung::delaunay);
     CHECK(result.certificate.largest_deviation == 0);
     CHECK(std::count(result.certificate.is_interior.begin(), result.certificate.is_interior.end(),
                      true) > 0);
@@ -95,8 +97,8 @@ TEST_CASE("certificate names a facet that is not planar and is filled otherwise"
   CHECK(delaunay_case(cube()).full().certificate.refilled_facets.empty());
   // The roof of the warped box has two triangulations; exactly one of them is the canonical one.
   Case up = delaunay_case(samples::warped_box(1));
-  const CertificateResult result = up.full();
-  REQUIRE(result.refusal == CertificateRefusal::none);
+  const delaunay::CertificateResult result = up.full();
+  REQUIRE(result.refusal == delaunay::CertificateRefusal::none);
   std::vector<Index> expected;
   for (Index facet = 0; facet < up.solid.facet_count(); ++facet) {
     std::vector<Triangle> canonical;
@@ -106,7 +108,7 @@ TEST_CASE("certificate names a facet that is not planar and is filled otherwise"
       std::sort(triangle.begin(), triangle.end());
       canonical.push_back(triangle);
     }
-    for (const ConstrainedFace& face : up.tetrahedralization.constrained) {
+    for (const delaunay::ConstrainedFace& face : up.tetrahedralization.constrained) {
       if (face.facet == facet) own.push_back(face.vertices);
     }
     std::sort(canonical.begin(), canonical.end());
@@ -119,23 +121,23 @@ TEST_CASE("certificate names a facet that is not planar and is filled otherwise"
 
 TEST_CASE("certificate accepts a Steiner point on a facet and measures its deviation") {
   const Case exact = cube_with_steiner_point({20, 24, 0}, 0);
-  const CertificateResult result = exact.full();
+  const delaunay::CertificateResult result = exact.full();
   INFO(result.detail);
-  REQUIRE(result.refusal == CertificateRefusal::none);
+  REQUIRE(result.refusal == delaunay::CertificateRefusal::none);
   CHECK(result.certificate.largest_deviation == 0);
 
   const double tiny = 64 * 0x1p-52;
-  const CertificateResult rounded = cube_with_steiner_point({20, 24, -tiny}, 0).full();
+  const delaunay::CertificateResult rounded = cube_with_steiner_point({20, 24, -tiny}, 0).full();
   INFO(rounded.detail);
-  REQUIRE(rounded.refusal == CertificateRefusal::none);
+  REQUIRE(rounded.refusal == delaunay::CertificateRefusal::none);
   CHECK(rounded.certificate.largest_deviation == tiny);
 }
 
 TEST_CASE("certificate refuses a Steiner point off its facet") {
   CHECK(cube_with_steiner_point({20, 24, -0.001}, 0).judge() ==
-        CertificateRefusal::facet_not_conforming);
+        delaunay::CertificateRefusal::facet_not_conforming);
   CHECK(cube_with_steiner_point({20, 24, 1e-9}, 0).judge() ==
-        CertificateRefusal::facet_not_conforming);
+        delaunay::CertificateRefusal::facet_not_conforming);
 }
 
 TEST_CASE("certificate refuses a missing, a doubled and a foreign face") {
@@ -145,37 +147,37 @@ TEST_CASE("certificate refuses a missing, a doubled and a foreign face") {
       Case bad = good;
       bad.tetrahedralization.constrained.erase(bad.tetrahedralization.constrained.begin() +
                                                long(i));
-      CHECK(bad.judge() == CertificateRefusal::facet_not_conforming);
+      CHECK(bad.judge() == delaunay::CertificateRefusal::facet_not_conforming);
 
       bad = good;
       bad.tetrahedralization.constrained.push_back(bad.tetrahedralization.constrained[i]);
-      CHECK(bad.judge() == CertificateRefusal::facet_not_conforming);
+      CHECK(bad.judge() == delaunay::CertificateRefusal::facet_not_conforming);
 
       bad = good;
       bad.tetrahedralization.constrained[i].facet =
           (bad.tetrahedralization.constrained[i].facet + 1) % bad.solid.facet_count();
-      CHECK(bad.judge() == CertificateRefusal::facet_not_conforming);
+      CHECK(bad.judge() == delaunay::CertificateRefusal::facet_not_conforming);
 
       bad = good;
       bad.tetrahedralization.constrained[i].facet = bad.solid.facet_count();
-      CHECK(bad.judge() == CertificateRefusal::foreign_face);
+      CHECK(bad.judge() == delaunay::CertificateRefusal::foreign_face);
     }
   }
 }
 
 TEST_CASE("certificate refuses an inner face with a facet number") {
   const Case good = delaunay_case(box_with_cavity());
-  for (const Tetrahedron& t : good.tetrahedralization.tetrahedra) {
+  for (const geometry::Tetrahedron& t : good.tetrahedralization.tetrahedra) {
     Triangle face{t[0], t[1], t[2]};
     std::sort(face.begin(), face.end());
     const auto& constrained = good.tetrahedralization.constrained;
     if (std::any_of(constrained.begin(), constrained.end(),
-                    [&](const ConstrainedFace& c) { return c.vertices == face; })) {
+                    [&](const delaunay::ConstrainedFace& c) { return c.vertices == face; })) {
       continue;
     }
     Case bad = good;
     bad.tetrahedralization.constrained.push_back({face, 0});
-    CHECK(bad.judge() == CertificateRefusal::facet_not_conforming);
+    CHECK(bad.judge() == delaunay::CertificateRefusal::facet_not_conforming);
   }
 }
 
@@ -183,7 +185,7 @@ TEST_CASE("certificate refuses a bubble: the three other faces of a tetrahedron"
   // Replacing one face of a facet by the other three of its tetrahedron keeps the boundary closed.
   const Case good = delaunay_case(cube());
   int bubbles = 0;
-  for (const Tetrahedron& t : good.tetrahedralization.tetrahedra) {
+  for (const geometry::Tetrahedron& t : good.tetrahedralization.tetrahedra) {
     for (std::size_t skipped = 0; skipped < 4; ++skipped) {
       std::array<Triangle, 4> faces{};
       for (std::size_t f = 0; f < 4; ++f) {
@@ -203,7 +205,7 @@ TEST_CASE("certificate refuses a bubble: the three other faces of a tetrahedron"
         if (f != skipped) constrained.push_back({faces[f], facet});
       }
       ++bubbles;
-      CHECK(bad.judge() == CertificateRefusal::facet_not_conforming);
+      CHECK(bad.judge() == delaunay::CertificateRefusal::facet_not_conforming);
     }
   }
   CHECK(bubbles >= 12);
@@ -212,7 +214,7 @@ TEST_CASE("certificate refuses a bubble: the three other faces of a tetrahedron"
 TEST_CASE("certificate refuses a bubble through a Steiner point") {
   // A point above the facet's middle, and the facet's faces led over it.
   Case bad = cube_with_steiner_point({32, 32, 8}, 0);
-  CHECK(bad.judge() == CertificateRefusal::facet_not_conforming);
+  CHECK(bad.judge() == delaunay::CertificateRefusal::facet_not_conforming);
 }
 
 TEST_CASE("certificate refuses flipped, dropped, doubled and strange tetrahedra") {
@@ -221,27 +223,27 @@ TEST_CASE("certificate refuses flipped, dropped, doubled and strange tetrahedra"
   for (std::size_t i = 0; i < count; ++i) {
     Case bad = good;
     std::swap(bad.tetrahedralization.tetrahedra[i][0], bad.tetrahedralization.tetrahedra[i][1]);
-    CHECK(bad.judge() == CertificateRefusal::not_a_complex);
+    CHECK(bad.judge() == delaunay::CertificateRefusal::not_a_complex);
 
     bad = good;
     bad.tetrahedralization.tetrahedra.erase(bad.tetrahedralization.tetrahedra.begin() + long(i));
-    CHECK(bad.judge() != CertificateRefusal::none);
+    CHECK(bad.judge() != delaunay::CertificateRefusal::none);
 
     bad = good;
     bad.tetrahedralization.tetrahedra.push_back(bad.tetrahedralization.tetrahedra[i]);
-    CHECK(bad.judge() == CertificateRefusal::not_a_complex);
+    CHECK(bad.judge() == delaunay::CertificateRefusal::not_a_complex);
 
     bad = good;
     bad.tetrahedralization.tetrahedra[i][2] = 1000;
-    CHECK(bad.judge() == CertificateRefusal::not_a_complex);
+    CHECK(bad.judge() == delaunay::CertificateRefusal::not_a_complex);
 
     bad = good;
     bad.tetrahedralization.tetrahedra[i][2] = bad.tetrahedralization.tetrahedra[i][1];
-    CHECK(bad.judge() == CertificateRefusal::not_a_complex);
+    CHECK(bad.judge() == delaunay::CertificateRefusal::not_a_complex);
   }
   Case bad = good;
   bad.tetrahedralization.tetrahedra.clear();
-  CHECK(bad.judge() == CertificateRefusal::vertex_missing);
+  CHECK(bad.judge() == delaunay::CertificateRefusal::vertex_missing);
 }
 
 TEST_CASE("certificate refuses moved, dropped and additional vertices") {
@@ -249,14 +251,14 @@ TEST_CASE("certificate refuses moved, dropped and additional vertices") {
   for (Index v = 0; v < 8; ++v) {
     Case bad = good;
     bad.tetrahedralization.points[v].x += bad.tetrahedralization.points[v].x == 0 ? -1 : 1;
-    CHECK(bad.judge() == CertificateRefusal::vertex_missing);
+    CHECK(bad.judge() == delaunay::CertificateRefusal::vertex_missing);
   }
   Case bad = good;
   bad.tetrahedralization.points.push_back({32, 32, 32});
-  CHECK(bad.judge() == CertificateRefusal::vertex_missing);
+  CHECK(bad.judge() == delaunay::CertificateRefusal::vertex_missing);
   bad = good;
   bad.tetrahedralization.input_count = 7;
-  CHECK(bad.judge() == CertificateRefusal::vertex_missing);
+  CHECK(bad.judge() == delaunay::CertificateRefusal::vertex_missing);
 }
 
 TEST_CASE("certificate refuses an outer surface that is no convex hull") {
@@ -265,13 +267,14 @@ TEST_CASE("certificate refuses an outer surface that is no convex hull") {
   shape.vertices = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {3, 3, 9}, {20, 20, -1}};
   shape.shells = {{{{0, 2, 1}}, {{0, 1, 3}}, {{1, 2, 3}}, {{2, 0, 3}}}};
   const Solid solid = samples::make_solid(shape);
-  const FacetTriangles canonical = triangulate_facets(solid);
-  Tetrahedralization own;
+  const tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
+  delaunay::Tetrahedralization own;
   own.points = shape.vertices;
   own.input_count = 5;
   own.tetrahedra = {{0, 1, 2, 3}, {0, 2, 1, 4}};
-  const CertificateResult result = check_certificate(solid, canonical, own, Rung::tetgen);
-  CHECK(result.refusal == CertificateRefusal::not_convex);
+  const delaunay::CertificateResult result =
+      delaunay::check_certificate(solid, canonical, own, delaunay::Rung::tetgen);
+  CHECK(result.refusal == delaunay::CertificateRefusal::not_convex);
 }
 
 TEST_CASE("certificate refuses a complex that winds twice around an edge") {
@@ -283,43 +286,44 @@ TEST_CASE("certificate refuses a complex that winds twice around an edge") {
   shape.vertices.insert(shape.vertices.end(), ring.begin(), ring.end());
   shape.shells = {{{{0, 2, 1}}}};
   const Solid solid = samples::make_solid(shape);
-  const FacetTriangles canonical = triangulate_facets(solid);
-  Tetrahedralization own;
+  const tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
+  delaunay::Tetrahedralization own;
   own.points = shape.vertices;
   own.input_count = 10;
   const std::vector<Index> order = {2, 3, 4, 5, 6, 7, 8, 9};
   for (std::size_t i = 0; i < 8; ++i) {
     own.tetrahedra.push_back({0, 1, order[i], order[(i + 1) % 8]});
   }
-  const CertificateResult result = check_certificate(solid, canonical, own, Rung::tetgen);
+  const delaunay::CertificateResult result =
+      delaunay::check_certificate(solid, canonical, own, delaunay::Rung::tetgen);
   INFO(result.detail);
-  CHECK(result.refusal == CertificateRefusal::not_convex);
+  CHECK(result.refusal == delaunay::CertificateRefusal::not_convex);
 }
 
 TEST_CASE("certificate finds facets and solids that are turned inside out") {
   Shape flipped = cube();
   std::reverse(flipped.shells[0][3][0].begin(), flipped.shells[0][3][0].end());
-  const CertificateResult one = delaunay_case(flipped).full();
-  CHECK(one.refusal == CertificateRefusal::wrong_orientation);
+  const delaunay::CertificateResult one = delaunay_case(flipped).full();
+  CHECK(one.refusal == delaunay::CertificateRefusal::wrong_orientation);
   CHECK(one.facet == 3);
 
   Shape inside_out;
   samples::add_box(inside_out, {0, 0, 0}, {8, 8, 8}, true);
-  CHECK(delaunay_case(inside_out).judge() == CertificateRefusal::wrong_orientation);
+  CHECK(delaunay_case(inside_out).judge() == delaunay::CertificateRefusal::wrong_orientation);
 
   Shape cavity = samples::box({0, 0, 0}, {90, 90, 90});
   samples::add_box(cavity, {30, 30, 30}, {60, 60, 60}, false);
-  CHECK(delaunay_case(cavity).judge() == CertificateRefusal::wrong_orientation);
+  CHECK(delaunay_case(cavity).judge() == delaunay::CertificateRefusal::wrong_orientation);
 }
 
 TEST_CASE("certificate finds a disconnected interior") {
   Shape beside = cube();
   samples::add_box_facets(beside, {100, 0, 0}, {164, 64, 64}, false);
-  CHECK(delaunay_case(beside).judge() == CertificateRefusal::interior_disconnected);
+  CHECK(delaunay_case(beside).judge() == delaunay::CertificateRefusal::interior_disconnected);
 
   Shape nested = box_with_cavity();  // a solid inside the cavity
   samples::add_box(nested, {40, 40, 40}, {50, 50, 50}, false);
-  CHECK(delaunay_case(nested).judge() == CertificateRefusal::interior_disconnected);
+  CHECK(delaunay_case(nested).judge() == delaunay::CertificateRefusal::interior_disconnected);
 }
 
 /// The second box gets the first one's corner (63: all coordinates high) instead of its own.
@@ -340,7 +344,7 @@ Shape boxes_sharing_a_vertex() {
 
 TEST_CASE("certificate finds bodies that touch in a vertex only") {
   CHECK(delaunay_case(boxes_sharing_a_vertex()).judge() ==
-        CertificateRefusal::interior_disconnected);
+        delaunay::CertificateRefusal::interior_disconnected);
 }
 
 TEST_CASE("certificate accepts cavities that touch in a vertex") {
@@ -358,26 +362,26 @@ TEST_CASE("certificate accepts cavities that touch in a vertex") {
     }
     shape.shells.push_back(shell);
   }
-  const CertificateResult result = delaunay_case(shape).full();
+  const delaunay::CertificateResult result = delaunay_case(shape).full();
   INFO(result.detail);
-  CHECK(result.refusal == CertificateRefusal::none);
+  CHECK(result.refusal == delaunay::CertificateRefusal::none);
 
   // The same two cavities declared as one inner shell.
   Shape merged = shape;
   merged.shells[1].insert(merged.shells[1].end(), merged.shells[2].begin(), merged.shells[2].end());
   merged.shells.pop_back();
-  CHECK(delaunay_case(merged).judge() == CertificateRefusal::cavity_mismatch);
+  CHECK(delaunay_case(merged).judge() == delaunay::CertificateRefusal::cavity_mismatch);
 }
 
 TEST_CASE("certificate finds shells that are declared wrongly") {
   Shape swapped = box_with_cavity();
   std::swap(swapped.shells[0], swapped.shells[1]);
-  CHECK(delaunay_case(swapped).judge() == CertificateRefusal::cavity_mismatch);
+  CHECK(delaunay_case(swapped).judge() == delaunay::CertificateRefusal::cavity_mismatch);
 
   Shape joined = box_with_cavity();  // the cavity's facets in the exterior shell
   joined.shells[0].insert(joined.shells[0].end(), joined.shells[1].begin(), joined.shells[1].end());
   joined.shells.pop_back();
-  CHECK(delaunay_case(joined).judge() == CertificateRefusal::cavity_mismatch);
+  CHECK(delaunay_case(joined).judge() == delaunay::CertificateRefusal::cavity_mismatch);
 }
 
 /// The facets of unit cubes that no other of the cubes has, as one shell.
@@ -417,16 +421,16 @@ TEST_CASE("certificate refuses a shell that touches itself in an edge or a verte
   // An arch whose feet touch; its interior hangs together over the top.
   const std::vector<std::array<int, 3>> in_an_edge{
       {0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}};
-  CHECK(delaunay_case(cubes(in_an_edge)).judge() == CertificateRefusal::not_a_manifold);
+  CHECK(delaunay_case(cubes(in_an_edge)).judge() == delaunay::CertificateRefusal::not_a_manifold);
   const std::vector<std::array<int, 3>> in_a_vertex{{0, 0, 0}, {1, 1, 1}, {0, 0, 1},
                                                     {0, 0, 2}, {1, 0, 2}, {1, 1, 2}};
-  CHECK(delaunay_case(cubes(in_a_vertex)).judge() == CertificateRefusal::not_a_manifold);
+  CHECK(delaunay_case(cubes(in_a_vertex)).judge() == delaunay::CertificateRefusal::not_a_manifold);
 }
 
 TEST_CASE("certificate finds an open boundary") {
   Shape open = cube();
   open.shells[0].pop_back();
-  CHECK(delaunay_case(open).judge() == CertificateRefusal::not_a_boundary);
+  CHECK(delaunay_case(open).judge() == delaunay::CertificateRefusal::not_a_boundary);
 }
 
 }  // namespace

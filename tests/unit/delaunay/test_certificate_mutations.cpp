@@ -18,12 +18,13 @@ namespace watertight {
 namespace {
 
 using samples::Shape;
-using Refusals = std::set<CertificateRefusal>;
+using Refusals = std::set<delaunay::CertificateRefusal>;
 
-constexpr CertificateRefusal kNonconforming = CertificateRefusal::facet_not_conforming;
-constexpr CertificateRefusal kNoComplex = CertificateRefusal::not_a_complex;
-constexpr CertificateRefusal kNotConvex = CertificateRefusal::not_convex;
-constexpr CertificateRefusal kVertex = CertificateRefusal::vertex_missing;
+constexpr delaunay::CertificateRefusal kNonconforming =
+    delaunay::CertificateRefusal::facet_not_conforming;
+constexpr delaunay::CertificateRefusal kNoComplex = delaunay::CertificateRefusal::not_a_complex;
+constexpr delaunay::CertificateRefusal kNotConvex = delaunay::CertificateRefusal::not_convex;
+constexpr delaunay::CertificateRefusal kVertex = delaunay::CertificateRefusal::vertex_missing;
 
 /// Positions tried in each list.
 constexpr std::size_t kPositions = 60;
@@ -32,16 +33,16 @@ struct Proof {
   std::string name;
   Shape shape;
   Solid solid;
-  FacetTriangles canonical;
-  Tetrahedralization data;
+  tessellate::FacetTriangles canonical;
+  delaunay::Tetrahedralization data;
 
-  CertificateRefusal judge(const Tetrahedralization& other) const {
-    return check_certificate(solid, canonical, other, Rung::patch).refusal;
+  delaunay::CertificateRefusal judge(const delaunay::Tetrahedralization& other) const {
+    return delaunay::check_certificate(solid, canonical, other, delaunay::Rung::patch).refusal;
   }
 };
 
-EngineWorkers& engines() {
-  static EngineWorkers workers;
+delaunay::EngineWorkers& engines() {
+  static delaunay::EngineWorkers workers;
   return workers;
 }
 
@@ -89,35 +90,37 @@ Shape boxes_in_a_box(int cavities) {
 }
 
 /// A certificate made by the ladder, from the given rung on.
-void add(std::vector<Proof>& proofs, const std::string& name, const Shape& shape, Rung first) {
+void add(std::vector<Proof>& proofs, const std::string& name, const Shape& shape,
+         delaunay::Rung first) {
   Proof proof{name, shape, samples::make_solid(shape), {}, {}};
-  proof.canonical = triangulate_facets(proof.solid);
-  LadderOptions options;
+  proof.canonical = tessellate::triangulate_facets(proof.solid);
+  delaunay::LadderOptions options;
   options.first_rung = first;
-  LadderResult result = climb_ladder(proof.solid, proof.canonical, &engines(), options);
+  delaunay::LadderResult result =
+      delaunay::climb_ladder(proof.solid, proof.canonical, &engines(), options);
   INFO(name);
   REQUIRE(result.certificate.has_value());
   proof.data = std::move(result.certificate->tetrahedralization);
-  REQUIRE(proof.judge(proof.data) == CertificateRefusal::none);
+  REQUIRE(proof.judge(proof.data) == delaunay::CertificateRefusal::none);
   proofs.push_back(std::move(proof));
 }
 
 const std::vector<Proof>& proofs() {
   static const std::vector<Proof> made = [] {
     std::vector<Proof> list;
-    add(list, "cube", samples::box({0, 0, 0}, {64, 64, 64}), Rung::delaunay);
-    add(list, "tunnel", samples::tunnelled_box(), Rung::delaunay);
-    add(list, "cavities", boxes_in_a_box(3), Rung::delaunay);
-    add(list, "prism", samples::prism({{0, 0}, {90, 10}, {40, 80}}, 50), Rung::delaunay);
-    add(list, "touching pits", samples::touching_pits(), Rung::delaunay);
+    add(list, "cube", samples::box({0, 0, 0}, {64, 64, 64}), delaunay::Rung::delaunay);
+    add(list, "tunnel", samples::tunnelled_box(), delaunay::Rung::delaunay);
+    add(list, "cavities", boxes_in_a_box(3), delaunay::Rung::delaunay);
+    add(list, "prism", samples::prism({{0, 0}, {90, 10}, {40, 80}}, 50), delaunay::Rung::delaunay);
+    add(list, "touching pits", samples::touching_pits(), delaunay::Rung::delaunay);
     if (engines().cgal() == nullptr) return list;
-    add(list, "tunnel by CGAL", samples::tunnelled_box(), Rung::patch);
-    add(list, "Schoenhardt", samples::schoenhardt(), Rung::patch);
-    add(list, "Schoenhardt by triangles", samples::schoenhardt(), Rung::triangles_scaled);
-    add(list, "Schoenhardt in a cavity", schoenhardt_in_a_cavity(), Rung::patch);
-    add(list, "touching pits by CGAL", samples::touching_pits(), Rung::patch);
-    add(list, "touching pits in a cavity", touching_pits_in_a_cavity(), Rung::patch);
-    add(list, "stairs", samples::stairs(6), Rung::patch);
+    add(list, "tunnel by CGAL", samples::tunnelled_box(), delaunay::Rung::patch);
+    add(list, "Schoenhardt", samples::schoenhardt(), delaunay::Rung::patch);
+    add(list, "Schoenhardt by triangles", samples::schoenhardt(), delaunay::Rung::triangles_scaled);
+    add(list, "Schoenhardt in a cavity", schoenhardt_in_a_cavity(), delaunay::Rung::patch);
+    add(list, "touching pits by CGAL", samples::touching_pits(), delaunay::Rung::patch);
+    add(list, "touching pits in a cavity", touching_pits_in_a_cavity(), delaunay::Rung::patch);
+    add(list, "stairs", samples::stairs(6), delaunay::Rung::patch);
     return list;
   }();
   return made;
@@ -132,21 +135,23 @@ void check_refused(const Refusals& reasons, Count count, Change change) {
     const std::size_t size = count(proof.data);
     const std::size_t step = std::max<std::size_t>(1, size / kPositions);
     for (std::size_t i = 0; i < size; i += step) {
-      Tetrahedralization damaged = proof.data;
+      delaunay::Tetrahedralization damaged = proof.data;
       if (!change(damaged, i, proof)) continue;
       ++changes;
-      const CertificateRefusal refusal = proof.judge(damaged);
-      INFO(proof.name << ", position " << i << ": " << to_string(refusal));
+      const delaunay::CertificateRefusal refusal = proof.judge(damaged);
+      INFO(proof.name << ", position " << i << ": " << delaunay::to_string(refusal));
       CHECK(reasons.contains(refusal));
     }
   }
   CHECK(changes > 10);
 }
 
-std::size_t face_count(const Tetrahedralization& data) { return data.constrained.size(); }
-std::size_t tetrahedron_count(const Tetrahedralization& data) { return data.tetrahedra.size(); }
-std::size_t input_count(const Tetrahedralization& data) { return data.input_count; }
-std::size_t steiner_count(const Tetrahedralization& data) {
+std::size_t face_count(const delaunay::Tetrahedralization& data) { return data.constrained.size(); }
+std::size_t tetrahedron_count(const delaunay::Tetrahedralization& data) {
+  return data.tetrahedra.size();
+}
+std::size_t input_count(const delaunay::Tetrahedralization& data) { return data.input_count; }
+std::size_t steiner_count(const delaunay::Tetrahedralization& data) {
   return data.points.size() - data.input_count;
 }
 
@@ -167,7 +172,7 @@ TEST_CASE("mutated certificate: a wrong facet number is refused") {
                     return data.constrained[i].facet != facet;
                   });
   }
-  check_refused({CertificateRefusal::foreign_face}, face_count,
+  check_refused({delaunay::CertificateRefusal::foreign_face}, face_count,
                 [](auto& data, std::size_t i, const Proof& proof) {
                   data.constrained[i].facet = proof.solid.facet_count() + Index(i);
                   return true;
@@ -178,7 +183,7 @@ TEST_CASE("mutated certificate: two facets that change numbers are refused") {
   check_refused({kNonconforming}, face_count, [](auto& data, std::size_t i, const Proof& proof) {
     const Index a = data.constrained[i].facet;
     const Index b = (a + 1) % proof.solid.facet_count();
-    for (ConstrainedFace& face : data.constrained) {
+    for (delaunay::ConstrainedFace& face : data.constrained) {
       face.facet = face.facet == a ? b : face.facet == b ? a : face.facet;
     }
     return true;
@@ -215,7 +220,7 @@ TEST_CASE("mutated certificate: a dropped tetrahedron is refused") {
 TEST_CASE("mutated certificate: a tetrahedron with another corner is refused") {
   check_refused({kNoComplex, kNotConvex, kVertex}, tetrahedron_count,
                 [](auto& data, std::size_t i, const Proof&) {
-                  Tetrahedron& t = data.tetrahedra[i];
+                  geometry::Tetrahedron& t = data.tetrahedra[i];
                   const Index other = Index((t[0] + 1 + i) % data.points.size());
                   if (std::find(t.begin(), t.end(), other) != t.end()) return false;
                   t[i % 4] = other;
@@ -225,7 +230,7 @@ TEST_CASE("mutated certificate: a tetrahedron with another corner is refused") {
 
 TEST_CASE("mutated certificate: a double cover is refused") {
   for (const Proof& proof : proofs()) {
-    Tetrahedralization twice = proof.data;
+    delaunay::Tetrahedralization twice = proof.data;
     const auto count = long(twice.tetrahedra.size());
     twice.tetrahedra.reserve(2 * std::size_t(count));
     std::copy_n(proof.data.tetrahedra.begin(), count, std::back_inserter(twice.tetrahedra));
@@ -236,7 +241,7 @@ TEST_CASE("mutated certificate: a double cover is refused") {
       twice = proof.data;
       const auto first = Index(twice.points.size());
       for (const Point& p : proof.data.points) twice.points.push_back({p.x + aside, p.y, p.z});
-      for (const Tetrahedron& t : proof.data.tetrahedra) {
+      for (const geometry::Tetrahedron& t : proof.data.tetrahedra) {
         twice.tetrahedra.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
       }
       INFO(proof.name << " " << aside);
@@ -247,8 +252,8 @@ TEST_CASE("mutated certificate: a double cover is refused") {
 
 /// Replaces tetrahedron i by the four that its centre makes with its faces. False if rounding
 /// makes one of them flat.
-bool split(Tetrahedralization& data, std::size_t i) {
-  const Tetrahedron t = data.tetrahedra[i];
+bool split(delaunay::Tetrahedralization& data, std::size_t i) {
+  const geometry::Tetrahedron t = data.tetrahedra[i];
   Point centre{};
   for (const Index v : t) {
     for (int axis = 0; axis < 3; ++axis) centre[axis] += data.points[v][axis] / 4;
@@ -256,10 +261,10 @@ bool split(Tetrahedralization& data, std::size_t i) {
   const auto number = Index(data.points.size());
   data.points.push_back(centre);
   for (std::size_t k = 0; k < 4; ++k) {
-    Tetrahedron part = t;
+    geometry::Tetrahedron part = t;
     part[k] = number;
-    if (orient3d(data.points[part[0]], data.points[part[1]], data.points[part[2]],
-                 data.points[part[3]]) <= 0) {
+    if (geometry::orient3d(data.points[part[0]], data.points[part[1]], data.points[part[2]],
+                           data.points[part[3]]) <= 0) {
       return false;
     }
     k == 0 ? data.tetrahedra[i] = part : data.tetrahedra.emplace_back(part);
@@ -268,7 +273,7 @@ bool split(Tetrahedralization& data, std::size_t i) {
 }
 
 /// The four faces of a tetrahedron, each without one corner, sorted.
-std::array<Triangle, 4> faces_of(const Tetrahedron& t) {
+std::array<Triangle, 4> faces_of(const geometry::Tetrahedron& t) {
   std::array<Triangle, 4> faces{};
   for (std::size_t f = 0; f < 4; ++f) {
     for (std::size_t i = 0, used = 0; i < 4; ++i) {
@@ -280,7 +285,7 @@ std::array<Triangle, 4> faces_of(const Tetrahedron& t) {
 }
 
 /// A constrained face among the faces of a tetrahedron, or the end.
-auto constrained_face(Tetrahedralization& data, const Tetrahedron& t) {
+auto constrained_face(delaunay::Tetrahedralization& data, const geometry::Tetrahedron& t) {
   const auto faces = faces_of(t);
   return std::find_if(data.constrained.begin(), data.constrained.end(), [&](const auto& face) {
     return std::find(faces.begin(), faces.end(), face.vertices) != faces.end();
@@ -290,9 +295,9 @@ auto constrained_face(Tetrahedralization& data, const Tetrahedron& t) {
 TEST_CASE("certificate accepts a needless Steiner point inside a tetrahedron") {
   // What the bubbles below start from is no damage by itself.
   for (const Proof& proof : proofs()) {
-    Tetrahedralization data = proof.data;
+    delaunay::Tetrahedralization data = proof.data;
     REQUIRE(split(data, data.tetrahedra.size() / 2));
-    CHECK(proof.judge(data) == CertificateRefusal::none);
+    CHECK(proof.judge(data) == delaunay::CertificateRefusal::none);
   }
 }
 
@@ -301,7 +306,7 @@ TEST_CASE("mutated certificate: a bubble of new tetrahedra with a facet number i
   check_refused({kNonconforming}, tetrahedron_count, [](auto& data, std::size_t i, const Proof&) {
     const auto at = constrained_face(data, data.tetrahedra[i]);
     if (at == data.constrained.end() || !split(data, i)) return false;
-    const ConstrainedFace base = *at;
+    const delaunay::ConstrainedFace base = *at;
     data.constrained.erase(at);
     const auto tip = Index(data.points.size() - 1);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -347,11 +352,11 @@ TEST_CASE("mutated certificate: a dropped input vertex is refused") {
     for (Index v = 0; v < proof.data.input_count; ++v) {
       std::vector<Point> others(proof.data.points);
       others.erase(others.begin() + v);
-      auto delaunay = canonical_delaunay(others);
+      auto delaunay = delaunay::canonical_delaunay(others);
       REQUIRE(delaunay.has_value());
-      Tetrahedralization damaged = proof.data;
+      delaunay::Tetrahedralization damaged = proof.data;
       damaged.tetrahedra = delaunay->tetrahedra;
-      for (Tetrahedron& t : damaged.tetrahedra) {
+      for (geometry::Tetrahedron& t : damaged.tetrahedra) {
         for (Index& corner : t) corner += corner >= v ? 1 : 0;
       }
       CHECK(proof.judge(damaged) == kVertex);
@@ -386,18 +391,18 @@ TEST_CASE("mutated certificate: a solid with a facet or a shell turned over is r
         for (samples::Ring& ring : facet) std::reverse(ring.begin(), ring.end());
       }
       const Solid turned = samples::make_solid(shell_turned);
-      CHECK(
-          check_certificate(turned, triangulate_facets(turned), proof.data, Rung::patch).refusal ==
-          CertificateRefusal::wrong_orientation);
+      CHECK(delaunay::check_certificate(turned, tessellate::triangulate_facets(turned), proof.data,
+                                        delaunay::Rung::patch)
+                .refusal == delaunay::CertificateRefusal::wrong_orientation);
       for (std::size_t f = 0; f < proof.shape.shells[s].size(); ++f, ++facet_number) {
         Shape facet_turned = proof.shape;
         for (samples::Ring& ring : facet_turned.shells[s][f])
           std::reverse(ring.begin(), ring.end());
         const Solid other = samples::make_solid(facet_turned);
-        const CertificateResult result =
-            check_certificate(other, triangulate_facets(other), proof.data, Rung::patch);
+        const delaunay::CertificateResult result = delaunay::check_certificate(
+            other, tessellate::triangulate_facets(other), proof.data, delaunay::Rung::patch);
         INFO(proof.name << " facet " << facet_number);
-        CHECK(result.refusal == CertificateRefusal::wrong_orientation);
+        CHECK(result.refusal == delaunay::CertificateRefusal::wrong_orientation);
         CHECK(result.facet == facet_number);
       }
     }
@@ -441,8 +446,8 @@ TEST_CASE("mutated certificate: other rings than those that touch are refused") 
       Shape other = shape;
       other.shells[0][1] = others[i];
       const Solid solid = samples::make_solid(other);
-      const CertificateResult result =
-          check_certificate(solid, proof.canonical, proof.data, Rung::patch);
+      const delaunay::CertificateResult result =
+          delaunay::check_certificate(solid, proof.canonical, proof.data, delaunay::Rung::patch);
       INFO(proof.name << " " << i << ": " << result.detail);
       CHECK(result.refusal == kNonconforming);
       CHECK(result.facet == 1);
@@ -462,21 +467,22 @@ TEST_CASE("mutated certificate: a pit's mouth that belongs to the facet is refus
       Triangle mouth{rim[0], rim[1], rim[2]};
       std::sort(mouth.begin(), mouth.end());
       const auto& tetrahedra = proof.data.tetrahedra;
-      if (std::none_of(tetrahedra.begin(), tetrahedra.end(), [&](const Tetrahedron& t) {
+      if (std::none_of(tetrahedra.begin(), tetrahedra.end(), [&](const geometry::Tetrahedron& t) {
             const auto faces = faces_of(t);
             return std::find(faces.begin(), faces.end(), mouth) != faces.end();
           })) {
         continue;
       }
       ++closed;
-      Tetrahedralization damaged = proof.data;
+      delaunay::Tetrahedralization damaged = proof.data;
       damaged.constrained.push_back({mouth, 1});
       CHECK(proof.judge(damaged) == kNonconforming);
       Shape without = shape;  // and its ring is not declared
       without.shells[0][1].erase(without.shells[0][1].begin() + long(r));
       const Solid solid = samples::make_solid(without);
-      CHECK(check_certificate(solid, triangulate_facets(solid), damaged, Rung::patch).refusal !=
-            CertificateRefusal::none);
+      CHECK(delaunay::check_certificate(solid, tessellate::triangulate_facets(solid), damaged,
+                                        delaunay::Rung::patch)
+                .refusal != delaunay::CertificateRefusal::none);
     }
   }
   CHECK(closed >= 1);
@@ -486,7 +492,7 @@ TEST_CASE("mutated certificate: random numbers in place of indices are never acc
   std::mt19937 generator(7);
   for (const Proof& proof : proofs()) {
     for (int round = 0; round < 120; ++round) {
-      Tetrahedralization damaged = proof.data;
+      delaunay::Tetrahedralization damaged = proof.data;
       const auto changes = 1 + generator() % 4;
       for (auto i = changes; i > 0; --i) {
         const bool is_face = generator() % 2 == 0;
@@ -498,16 +504,16 @@ TEST_CASE("mutated certificate: random numbers in place of indices are never acc
       }
       const bool is_changed = damaged.tetrahedra != proof.data.tetrahedra ||
                               damaged.constrained != proof.data.constrained;
-      if (is_changed) CHECK(proof.judge(damaged) != CertificateRefusal::none);
+      if (is_changed) CHECK(proof.judge(damaged) != delaunay::CertificateRefusal::none);
     }
   }
 }
 
 TEST_CASE("a cancelled certificate says so and nothing else") {
   for (const Proof& proof : proofs()) {
-    const CertificateResult result = check_certificate(proof.solid, proof.canonical, proof.data,
-                                                       Rung::patch, [] { return true; });
-    CHECK(result.refusal == CertificateRefusal::cancelled);
+    const delaunay::CertificateResult result = delaunay::check_certificate(
+        proof.solid, proof.canonical, proof.data, delaunay::Rung::patch, [] { return true; });
+    CHECK(result.refusal == delaunay::CertificateRefusal::cancelled);
     CHECK(result.certificate.tetrahedralization.tetrahedra.empty());
   }
 }

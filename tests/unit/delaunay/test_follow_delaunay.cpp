@@ -17,17 +17,17 @@ using samples::Shape;
 
 struct Followed {
   Solid solid;
-  FacetTriangles canonical;
-  CanonicalDelaunay delaunay;
-  FollowingTriangles following;
+  tessellate::FacetTriangles canonical;
+  delaunay::CanonicalDelaunay delaunay;
+  delaunay::FollowingTriangles following;
 };
 
 Followed follow(const Shape& shape) {
   Solid solid = samples::make_solid(shape);
-  FacetTriangles canonical = triangulate_facets(solid);
-  Result<CanonicalDelaunay> delaunay = canonical_delaunay(solid.vertices());
+  tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
+  Result<delaunay::CanonicalDelaunay> delaunay = delaunay::canonical_delaunay(solid.vertices());
   REQUIRE(delaunay.has_value());
-  FollowingTriangles following = follow_delaunay(solid, canonical, *delaunay);
+  delaunay::FollowingTriangles following = delaunay::follow_delaunay(solid, canonical, *delaunay);
   return {std::move(solid), std::move(canonical), std::move(*delaunay), std::move(following)};
 }
 
@@ -36,14 +36,15 @@ void check_facets(const Followed& f) {
   REQUIRE(f.following.first.size() == std::size_t{f.solid.facet_count()} + 1);
   Index missing_total = 0;
   for (Index facet = 0; facet < f.solid.facet_count(); ++facet) {
-    const Projection projection = facet_projection(f.solid, facet);
+    const tessellate::Projection projection = tessellate::facet_projection(f.solid, facet);
     std::map<std::pair<Index, Index>, int> edges;
     Index missing = 0;
     for (Index t = f.following.first[facet]; t < f.following.first[facet + 1]; ++t) {
       const Triangle& triangle = f.following.triangles[t];
       CHECK(f.following.facet_of[t] == facet);
-      const int turn = orient2d(f.solid.vertices()[triangle[0]], f.solid.vertices()[triangle[1]],
-                                f.solid.vertices()[triangle[2]], projection.axis);
+      const int turn =
+          geometry::orient2d(f.solid.vertices()[triangle[0]], f.solid.vertices()[triangle[1]],
+                             f.solid.vertices()[triangle[2]], projection.axis);
       CHECK((projection.is_mirrored ? -turn : turn) == 1);
       for (std::size_t k = 0; k < 3; ++k) {
         ++edges[{triangle[k], triangle[(k + 1) % 3]}];

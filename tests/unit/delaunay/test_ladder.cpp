@@ -16,39 +16,39 @@ namespace {
 
 using samples::Shape;
 
-EngineWorkers& engines() {
-  static EngineWorkers workers;
+delaunay::EngineWorkers& engines() {
+  static delaunay::EngineWorkers workers;
   return workers;
 }
 
-LadderResult climb(const Shape& shape, const LadderOptions& options = {}) {
+delaunay::LadderResult climb(const Shape& shape, const delaunay::LadderOptions& options = {}) {
   const Solid solid = samples::make_solid(shape);
-  return climb_ladder(solid, triangulate_facets(solid), &engines(), options);
+  return delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &engines(), options);
 }
 
-LadderOptions only(Engine engine) {
-  LadderOptions options;
+delaunay::LadderOptions only(delaunay::Engine engine) {
+  delaunay::LadderOptions options;
   options.engine = engine;
-  if (engine == Engine::cgal) options.first_rung = Rung::patch;
-  if (engine == Engine::cgal) options.last_rung = Rung::triangles_scaled;
-  if (engine == Engine::tetgen) options.first_rung = Rung::tetgen;
+  if (engine == delaunay::Engine::cgal) options.first_rung = delaunay::Rung::patch;
+  if (engine == delaunay::Engine::cgal) options.last_rung = delaunay::Rung::triangles_scaled;
+  if (engine == delaunay::Engine::tetgen) options.first_rung = delaunay::Rung::tetgen;
   return options;
 }
 
-std::string attempts(const LadderResult& result) {
+std::string attempts(const delaunay::LadderResult& result) {
   std::string text = "attempts:";
-  for (const RungAttempt& attempt : result.attempts) {
-    text += " [" + std::string(to_string(attempt.rung)) + ": " + attempt.outcome + "]";
+  for (const delaunay::RungAttempt& attempt : result.attempts) {
+    text += " [" + std::string(delaunay::to_string(attempt.rung)) + ": " + attempt.outcome + "]";
   }
   return text;
 }
 
 /// An executable that ends at once, and one that never answers.
-EngineWorkers broken_engines(const std::string& executable) {
-  EngineWorkers::Options options;
+delaunay::EngineWorkers broken_engines(const std::string& executable) {
+  delaunay::EngineWorkers::Options options;
   options.cgal_executable = executable;
   options.tetgen_executable = executable;
-  return EngineWorkers(options);
+  return delaunay::EngineWorkers(options);
 }
 
 Shape torus(int around, int across) {
@@ -85,12 +85,12 @@ Shape degrees_house() {
 TEST_CASE("solids whose rings touch inside edges are proved with divided rings, by every engine") {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const Solid solid = samples::make_solid(samples::shuffled(samples::pits_inside_edges(), seed));
-    const FacetTriangles facets = triangulate_facets(solid);
+    const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
     REQUIRE(facets.divided);
-    CHECK(climb_ladder(facets.divided_solid(solid), facets, nullptr, {}).certificate);
-    for (const Engine engine : {Engine::cgal, Engine::tetgen}) {
-      const LadderResult result =
-          climb_ladder(facets.divided_solid(solid), facets, &engines(), only(engine));
+    CHECK(delaunay::climb_ladder(facets.divided_solid(solid), facets, nullptr, {}).certificate);
+    for (const delaunay::Engine engine : {delaunay::Engine::cgal, delaunay::Engine::tetgen}) {
+      const delaunay::LadderResult result =
+          delaunay::climb_ladder(facets.divided_solid(solid), facets, &engines(), only(engine));
       INFO(attempts(result));
       CHECK(result.certificate);
     }
@@ -103,10 +103,11 @@ TEST_CASE("rung 0 accepts boxes, cavities, tunnels and facets with holes without
   for (const Shape& shape : {samples::box({0, 0, 0}, {5, 6, 7}), cavity, samples::tunnelled_box(),
                              samples::warped_box(2)}) {
     const Solid solid = samples::make_solid(shape);
-    const LadderResult result = climb_ladder(solid, triangulate_facets(solid), nullptr, {});
+    const delaunay::LadderResult result =
+        delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), nullptr, {});
     INFO(attempts(result));
     REQUIRE(result.certificate.has_value());
-    CHECK(result.certificate->rung == Rung::delaunay);
+    CHECK(result.certificate->rung == delaunay::Rung::delaunay);
     CHECK(result.certificate->tetrahedralization.points.size() == solid.vertex_count());
     CHECK(result.attempts.size() == 1);
   }
@@ -114,41 +115,42 @@ TEST_CASE("rung 0 accepts boxes, cavities, tunnels and facets with holes without
 
 TEST_CASE("without engines a solid that needs Steiner points is undecided") {
   const Solid solid = samples::make_solid(samples::schoenhardt());
-  const LadderResult result = climb_ladder(solid, triangulate_facets(solid), nullptr, {});
+  const delaunay::LadderResult result =
+      delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), nullptr, {});
   CHECK_FALSE(result.certificate.has_value());
-  CHECK(result.property == CertificateRefusal::none);
+  CHECK(result.property == delaunay::CertificateRefusal::none);
   REQUIRE(result.attempts.size() == 4);  // all facets are triangles: no rung for them alone
   CHECK(result.attempts[0].outcome.starts_with("refused: 4 of 8"));
-  CHECK(result.attempts[0].result == RungOutcome::not_delaunay);
-  CHECK(result.attempts[1].result == RungOutcome::not_started);
+  CHECK(result.attempts[0].result == delaunay::RungOutcome::not_delaunay);
+  CHECK(result.attempts[1].result == delaunay::RungOutcome::not_started);
   CHECK(result.attempts[1].outcome == "not-started: no engine executable");
 }
 
 TEST_CASE("Schoenhardt's prism needs Steiner points and gets them on every rung") {
   REQUIRE(engines().cgal() != nullptr);
-  const LadderResult automatic = climb(samples::schoenhardt());
+  const delaunay::LadderResult automatic = climb(samples::schoenhardt());
   INFO(attempts(automatic));
   REQUIRE(automatic.certificate.has_value());
-  CHECK(automatic.certificate->rung == Rung::patch);
+  CHECK(automatic.certificate->rung == delaunay::Rung::patch);
   CHECK(automatic.certificate->tetrahedralization.points.size() > 6);
   CHECK(automatic.certificate->largest_deviation < 1e-6);
 
-  LadderOptions strict;
+  delaunay::LadderOptions strict;
   strict.strict = true;
-  const LadderResult triangles = climb(samples::schoenhardt(), strict);
+  const delaunay::LadderResult triangles = climb(samples::schoenhardt(), strict);
   INFO(attempts(triangles));
   REQUIRE(triangles.certificate.has_value());
-  CHECK(triangles.certificate->rung == Rung::triangles_scaled);
+  CHECK(triangles.certificate->rung == delaunay::Rung::triangles_scaled);
 }
 
 TEST_CASE("TetGen's result passes the same certificate") {
   if (engines().tetgen() == nullptr) SKIP("watertight-tetgen is not built");
   for (const Shape& shape : {samples::schoenhardt(), samples::box({0, 0, 0}, {5, 6, 7}),
                              samples::tunnelled_box(), samples::stairs(4)}) {
-    const LadderResult result = climb(shape, only(Engine::tetgen));
+    const delaunay::LadderResult result = climb(shape, only(delaunay::Engine::tetgen));
     INFO(attempts(result));
     REQUIRE(result.certificate.has_value());
-    CHECK(result.certificate->rung == Rung::tetgen);
+    CHECK(result.certificate->rung == delaunay::Rung::tetgen);
     CHECK(result.attempts.size() == 1);
   }
 }
@@ -157,15 +159,15 @@ TEST_CASE("CGAL's result passes the certificate for every sample") {
   for (const Shape& shape :
        {samples::box({0, 0, 0}, {5, 6, 7}), samples::tunnelled_box(), samples::stairs(5),
         samples::warped_box(2), torus(12, 8), samples::schoenhardt()}) {
-    const LadderResult result = climb(shape, only(Engine::cgal));
+    const delaunay::LadderResult result = climb(shape, only(delaunay::Engine::cgal));
     INFO(attempts(result));
     REQUIRE(result.certificate.has_value());
-    CHECK(result.certificate->rung == Rung::patch);
+    CHECK(result.certificate->rung == delaunay::Rung::patch);
   }
 }
 
 TEST_CASE("a torus is one connected interior") {
-  const LadderResult result = climb(torus(16, 10));
+  const delaunay::LadderResult result = climb(torus(16, 10));
   INFO(attempts(result));
   CHECK(result.certificate.has_value());
 }
@@ -173,37 +175,39 @@ TEST_CASE("a torus is one connected interior") {
 TEST_CASE("two bodies are invalid on every rung") {
   Shape beside = samples::schoenhardt();
   samples::add_box_facets(beside, {3000, 0, 0}, {4000, 700, 800}, false);
-  for (const Engine engine : {Engine::automatic, Engine::cgal, Engine::tetgen}) {
-    if (engine == Engine::tetgen && engines().tetgen() == nullptr) continue;
-    const LadderResult result = climb(beside, only(engine));
+  for (const delaunay::Engine engine :
+       {delaunay::Engine::automatic, delaunay::Engine::cgal, delaunay::Engine::tetgen}) {
+    if (engine == delaunay::Engine::tetgen && engines().tetgen() == nullptr) continue;
+    const delaunay::LadderResult result = climb(beside, only(engine));
     INFO(attempts(result));
     CHECK_FALSE(result.certificate.has_value());
-    CHECK(to_string(result.property) == "interior-disconnected");
+    CHECK(delaunay::to_string(result.property) == "interior-disconnected");
   }
 }
 
 TEST_CASE("a lattice of degrees and metres is decided on the scaled rung") {
-  LadderOptions options = only(Engine::cgal);
-  const LadderResult result = climb(degrees_house(), options);
+  delaunay::LadderOptions options = only(delaunay::Engine::cgal);
+  const delaunay::LadderResult result = climb(degrees_house(), options);
   INFO(attempts(result));
   REQUIRE(result.certificate.has_value());
-  CHECK(result.certificate->rung == Rung::patch_scaled);
+  CHECK(result.certificate->rung == delaunay::Rung::patch_scaled);
   CHECK(result.attempts.size() == 1);
 }
 
 TEST_CASE("a strict ladder keeps the canonical triangles of a facet that is not planar") {
   const Solid solid = samples::make_solid(samples::warped_box(9));
-  const FacetTriangles canonical = triangulate_facets(solid);
-  LadderOptions strict;
+  const tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
+  delaunay::LadderOptions strict;
   strict.strict = true;
-  const LadderResult result = climb_ladder(solid, canonical, &engines(), strict);
+  const delaunay::LadderResult result =
+      delaunay::climb_ladder(solid, canonical, &engines(), strict);
   INFO(attempts(result));
   REQUIRE(result.certificate.has_value());
   CHECK(result.certificate->refilled_facets.empty());
 }
 
 TEST_CASE("the ladder's answer does not depend on the numbering of the solid") {
-  const auto sorted_points = [](const LadderResult& result) {
+  const auto sorted_points = [](const delaunay::LadderResult& result) {
     REQUIRE(result.certificate.has_value());
     std::vector<Point> points = result.certificate->tetrahedralization.points;
     std::sort(points.begin(), points.end());
@@ -217,29 +221,31 @@ TEST_CASE("the ladder's answer does not depend on the numbering of the solid") {
 
 TEST_CASE("an engine that crashes, answers nonsense or is missing leaves a solid undecided") {
   for (const std::string executable : {"/bin/false", "/bin/true", "/nonexistent/engine"}) {
-    EngineWorkers workers = broken_engines(executable);
+    delaunay::EngineWorkers workers = broken_engines(executable);
     const Solid solid = samples::make_solid(samples::schoenhardt());
-    const LadderResult result = climb_ladder(solid, triangulate_facets(solid), &workers, {});
+    const delaunay::LadderResult result =
+        delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &workers, {});
     INFO(executable << " " << attempts(result));
     CHECK_FALSE(result.certificate.has_value());
-    CHECK(result.property == CertificateRefusal::none);
+    CHECK(result.property == delaunay::CertificateRefusal::none);
     REQUIRE(result.attempts.size() == 4);
     const bool is_missing = executable == "/nonexistent/engine";
     for (std::size_t i = 1; i < 4; ++i) {
       CHECK(result.attempts[i].result ==
-            (is_missing ? RungOutcome::not_started : RungOutcome::crashed));
+            (is_missing ? delaunay::RungOutcome::not_started : delaunay::RungOutcome::crashed));
     }
   }
 }
 
 TEST_CASE("an engine that takes too long is stopped") {
   // /bin/sleep without an operand ends at once; /bin/cat waits for its input, which is /dev/null.
-  EngineWorkers workers = broken_engines("/usr/bin/yes");
-  LadderOptions options;
+  delaunay::EngineWorkers workers = broken_engines("/usr/bin/yes");
+  delaunay::LadderOptions options;
   options.seconds_per_rung = 0.2;
-  options.last_rung = Rung::patch;
+  options.last_rung = delaunay::Rung::patch;
   const Solid solid = samples::make_solid(samples::schoenhardt());
-  const LadderResult result = climb_ladder(solid, triangulate_facets(solid), &workers, options);
+  const delaunay::LadderResult result =
+      delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &workers, options);
   INFO(attempts(result));
   REQUIRE(result.attempts.size() == 2);
   CHECK(result.attempts[1].outcome.starts_with("timed-out"));
@@ -247,19 +253,20 @@ TEST_CASE("an engine that takes too long is stopped") {
 }
 
 TEST_CASE("rungs that would give an engine the same task again are left out") {
-  EngineWorkers workers = broken_engines("/bin/false");
+  delaunay::EngineWorkers workers = broken_engines("/bin/false");
   const auto rungs = [&](const Shape& shape, bool is_strict) {
-    LadderOptions options = only(Engine::cgal);
+    delaunay::LadderOptions options = only(delaunay::Engine::cgal);
     options.strict = is_strict;
     const Solid solid = samples::make_solid(shape);
-    std::vector<Rung> tried;
-    for (const RungAttempt& attempt :
-         climb_ladder(solid, triangulate_facets(solid), &workers, options).attempts) {
+    std::vector<delaunay::Rung> tried;
+    for (const delaunay::RungAttempt& attempt :
+         delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &workers, options)
+             .attempts) {
       tried.push_back(attempt.rung);
     }
     return tried;
   };
-  using enum Rung;
+  using enum delaunay::Rung;
   // Extents of one size: scaling changes nothing but the unit.
   const Shape cube = samples::box({0, 0, 0}, {64, 64, 64});
   CHECK(rungs(cube, false) == std::vector{patch, triangles_scaled});
@@ -272,20 +279,22 @@ TEST_CASE("rungs that would give an engine the same task again are left out") {
 }
 
 TEST_CASE("all rungs together keep to the time for all") {
-  EngineWorkers workers = broken_engines("/usr/bin/yes");  // writes for ever, and uses CPU time
-  LadderOptions options;
+  delaunay::EngineWorkers workers =
+      broken_engines("/usr/bin/yes");  // writes for ever, and uses CPU time
+  delaunay::LadderOptions options;
   options.seconds_in_all = 0.2;
   const Solid solid = samples::make_solid(samples::box({0, 0, 0}, {64, 64, 10}));
-  options.first_rung = Rung::patch;
-  const LadderResult result = climb_ladder(solid, triangulate_facets(solid), &workers, options);
+  options.first_rung = delaunay::Rung::patch;
+  const delaunay::LadderResult result =
+      delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &workers, options);
   INFO(attempts(result));
   CHECK_FALSE(result.certificate.has_value());
   REQUIRE(result.attempts.size() == 4);
   double used = 0;
-  for (const RungAttempt& attempt : result.attempts) used += attempt.worker_seconds;
+  for (const delaunay::RungAttempt& attempt : result.attempts) used += attempt.worker_seconds;
   CHECK(used < 2);
-  CHECK(default_ladder_seconds(0) == 20);
-  CHECK(default_ladder_seconds(1000) == 22.5);
+  CHECK(delaunay::default_ladder_seconds(0) == 20);
+  CHECK(delaunay::default_ladder_seconds(1000) == 22.5);
 }
 
 TEST_CASE("statistics count solids by what became of them and attempts by class") {
@@ -294,10 +303,11 @@ TEST_CASE("statistics count solids by what became of them and attempts by class"
   Shape two_bodies = samples::box({0, 0, 0}, {8, 8, 8});
   samples::add_box_facets(two_bodies, {20, 0, 0}, {30, 7, 8}, false);
   const Solid disconnected = samples::make_solid(two_bodies);
-  CdtStatistics statistics;
+  delaunay::CdtStatistics statistics;
   for (const Solid* solid : {&needs_steiner, &simple, &disconnected}) {
-    CdtStatistics one;
-    one.add(climb_ladder(*solid, triangulate_facets(*solid), nullptr, {}).attempts);
+    delaunay::CdtStatistics one;
+    one.add(delaunay::climb_ladder(*solid, tessellate::triangulate_facets(*solid), nullptr, {})
+                .attempts);
     statistics += one;
   }
   statistics.add({});  // never climbed
@@ -305,42 +315,43 @@ TEST_CASE("statistics count solids by what became of them and attempts by class"
   CHECK(statistics.accepted == 1);
   CHECK(statistics.refuted == 1);
   CHECK(statistics.undecided == 1);
-  CHECK(statistics.count(Rung::delaunay, RungOutcome::accepted) == 1);
-  CHECK(statistics.count(Rung::delaunay, RungOutcome::not_delaunay) == 1);
-  CHECK(statistics.count(Rung::delaunay, RungOutcome::refused_by_certificate) == 1);
-  CHECK(statistics.count(Rung::tetgen, RungOutcome::not_started) == 1);
-  CHECK(statistics.count(Rung::none, RungOutcome::accepted) == 0);
+  CHECK(statistics.count(delaunay::Rung::delaunay, delaunay::RungOutcome::accepted) == 1);
+  CHECK(statistics.count(delaunay::Rung::delaunay, delaunay::RungOutcome::not_delaunay) == 1);
+  CHECK(statistics.count(delaunay::Rung::delaunay, delaunay::RungOutcome::refused_by_certificate) ==
+        1);
+  CHECK(statistics.count(delaunay::Rung::tetgen, delaunay::RungOutcome::not_started) == 1);
+  CHECK(statistics.count(delaunay::Rung::none, delaunay::RungOutcome::accepted) == 0);
   std::set<std::string_view> names;
-  for (std::size_t i = 0; i < kRungOutcomes; ++i) {
-    names.insert(to_string(static_cast<RungOutcome>(i)));
+  for (std::size_t i = 0; i < delaunay::kRungOutcomes; ++i) {
+    names.insert(delaunay::to_string(static_cast<delaunay::RungOutcome>(i)));
   }
-  CHECK(names.size() == kRungOutcomes);
+  CHECK(names.size() == delaunay::kRungOutcomes);
   CHECK_FALSE(names.contains(""));
 }
 
 TEST_CASE("a climb is cancelled within the Delaunay rung, and says so") {
-  LadderOptions options;
+  delaunay::LadderOptions options;
   int asked = 0;
   options.cancel = [&] { return ++asked > 1; };  // the first question is before the rung
-  const LadderResult result = climb(torus(90, 60), options);
+  const delaunay::LadderResult result = climb(torus(90, 60), options);
   CHECK_FALSE(result.certificate.has_value());
   REQUIRE(result.attempts.size() == 1);
-  CHECK(result.attempts[0].result == RungOutcome::cancelled);
+  CHECK(result.attempts[0].result == delaunay::RungOutcome::cancelled);
   CHECK(asked == 2);
 }
 
 TEST_CASE("a cancelled climb stops") {
-  LadderOptions options;
+  delaunay::LadderOptions options;
   options.cancel = [] { return true; };
-  const LadderResult result = climb(samples::schoenhardt(), options);
+  const delaunay::LadderResult result = climb(samples::schoenhardt(), options);
   CHECK_FALSE(result.certificate.has_value());
   CHECK(result.attempts.size() <= 1);
 }
 
 TEST_CASE("the last rung is respected") {
-  LadderOptions options;
-  options.last_rung = Rung::delaunay;
-  const LadderResult result = climb(samples::schoenhardt(), options);
+  delaunay::LadderOptions options;
+  options.last_rung = delaunay::Rung::delaunay;
+  const delaunay::LadderResult result = climb(samples::schoenhardt(), options);
   CHECK_FALSE(result.certificate.has_value());
   CHECK(result.attempts.size() == 1);
 }

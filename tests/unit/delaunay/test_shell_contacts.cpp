@@ -18,8 +18,8 @@ namespace {
 
 using samples::Shape;
 
-EngineWorkers& engines() {
-  static EngineWorkers workers;
+delaunay::EngineWorkers& engines() {
+  static delaunay::EngineWorkers workers;
   return workers;
 }
 
@@ -47,7 +47,7 @@ void add_cavity(Shape& shape, const std::vector<Point>& points,
 void add_tetrahedron(Shape& shape, const std::vector<Point>& p) {
   std::vector<Point> points = p;
   const std::vector<Triangle> facets{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  if (volume_sign(points, facets) < 0) std::swap(points[0], points[1]);
+  if (geometry::volume_sign(points, facets) < 0) std::swap(points[0], points[1]);
   add_cavity(shape, points, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
 }
 
@@ -97,15 +97,15 @@ std::vector<Shape> touching() {
   return shapes;
 }
 
-LadderResult climb(const Shape& shape, const LadderOptions& options) {
+delaunay::LadderResult climb(const Shape& shape, const delaunay::LadderOptions& options) {
   const Solid solid = samples::make_solid(shape);
-  return climb_ladder(solid, triangulate_facets(solid), &engines(), options);
+  return delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &engines(), options);
 }
 
-std::string attempts(const LadderResult& result) {
+std::string attempts(const delaunay::LadderResult& result) {
   std::string text;
-  for (const RungAttempt& attempt : result.attempts) {
-    text.append("[").append(to_string(attempt.rung)).append(": ");
+  for (const delaunay::RungAttempt& attempt : result.attempts) {
+    text.append("[").append(delaunay::to_string(attempt.rung)).append(": ");
     text.append(attempt.outcome).append("]");
   }
   return text;
@@ -114,35 +114,37 @@ std::string attempts(const LadderResult& result) {
 TEST_CASE("a cavity may touch a facet of another shell from within, on every rung") {
   const std::vector<Shape> shapes = touching();
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    for (const Rung rung : {Rung::delaunay, Rung::patch, Rung::triangles_scaled, Rung::tetgen}) {
-      if (rung == Rung::tetgen && engines().tetgen() == nullptr) continue;
-      LadderOptions options;
+    for (const delaunay::Rung rung : {delaunay::Rung::delaunay, delaunay::Rung::patch,
+                                      delaunay::Rung::triangles_scaled, delaunay::Rung::tetgen}) {
+      if (rung == delaunay::Rung::tetgen && engines().tetgen() == nullptr) continue;
+      delaunay::LadderOptions options;
       options.first_rung = rung;
-      const LadderResult result = climb(shapes[i], options);
-      INFO("shape " << i << " from " << to_string(rung) << ": " << attempts(result));
+      const delaunay::LadderResult result = climb(shapes[i], options);
+      INFO("shape " << i << " from " << delaunay::to_string(rung) << ": " << attempts(result));
       CHECK(result.certificate.has_value());
       CHECK(result.obstacle.empty());
-      if (rung != Rung::delaunay) CHECK(result.attempts.size() == 1);
+      if (rung != delaunay::Rung::delaunay) CHECK(result.attempts.size() == 1);
     }
   }
 }
 
 TEST_CASE("the Delaunay tetrahedralization alone proves a contact where it has the faces") {
-  LadderOptions options;
-  options.last_rung = Rung::delaunay;
-  const LadderResult result = climb(tip_on_wall({100, 100, 200}), options);
+  delaunay::LadderOptions options;
+  options.last_rung = delaunay::Rung::delaunay;
+  const delaunay::LadderResult result = climb(tip_on_wall({100, 100, 200}), options);
   INFO(attempts(result));
   CHECK(result.certificate.has_value());
 }
 
 TEST_CASE("a cavity that touches the walls all around divides the interior") {
-  for (const Rung rung : {Rung::delaunay, Rung::patch, Rung::triangles_scaled, Rung::tetgen}) {
-    if (rung == Rung::tetgen && engines().tetgen() == nullptr) continue;
-    LadderOptions options;
+  for (const delaunay::Rung rung : {delaunay::Rung::delaunay, delaunay::Rung::patch,
+                                    delaunay::Rung::triangles_scaled, delaunay::Rung::tetgen}) {
+    if (rung == delaunay::Rung::tetgen && engines().tetgen() == nullptr) continue;
+    delaunay::LadderOptions options;
     options.first_rung = rung;
-    const LadderResult result = climb(divided(), options);
+    const delaunay::LadderResult result = climb(divided(), options);
     INFO(attempts(result));
-    CHECK(to_string(result.property) == "interior-disconnected");
+    CHECK(delaunay::to_string(result.property) == "interior-disconnected");
   }
 }
 
@@ -151,10 +153,10 @@ TEST_CASE("edges of different shells that cross in no vertex are named") {
   Shape shape =
       samples::prism({{0, 0}, {200, 0}, {200, 200}, {100, 200}, {100, 100}, {0, 100}}, 200);
   add_tetrahedron(shape, {{150, 40, 60}, {160, 40, 120}, {50, 100, 100}, {150, 100, 103}});
-  const LadderResult result = climb(shape, {});
+  const delaunay::LadderResult result = climb(shape, {});
   INFO(attempts(result));
   CHECK(result.obstacle.find("cross in a point that is no vertex") != std::string::npos);
-  CHECK(result.property == CertificateRefusal::none);
+  CHECK(result.property == delaunay::CertificateRefusal::none);
 }
 
 Point mean(const std::vector<Point>& points) {
@@ -174,7 +176,7 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
     const Solid solid = samples::make_solid(warped);
     const auto& points = solid.vertices();
     std::vector<Triangle> roof;
-    for (const Triangle& t : triangulate_facets(solid).triangles) {
+    for (const Triangle& t : tessellate::triangulate_facets(solid).triangles) {
       if (points[t[0]].z > 0 && points[t[1]].z > 0 && points[t[2]].z > 0) roof.push_back(t);
     }
     REQUIRE(roof.size() == 2);
@@ -185,7 +187,7 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
           mean({points[t[0]], points[t[0]], points[t[1]], points[t[2]]});  // exact: quarters
       Shape touched = warped;
       add_tetrahedron(touched, {{100, 50, 90}, {150, 100, 80}, {50, 150, 90}, tip});
-      const LadderResult result = climb(touched, {});
+      const delaunay::LadderResult result = climb(touched, {});
       INFO(attempts(result));
       CHECK(result.certificate.has_value());
       CHECK(result.obstacle.empty());
@@ -206,10 +208,10 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
                               {110, 120, 80},
                               {middle.x + dx, middle.y + dy, middle.z},
                               {middle.x - dx, middle.y - dy, middle.z}});
-    const LadderResult result = climb(crossed, {});
+    const delaunay::LadderResult result = climb(crossed, {});
     INFO(attempts(result));
     CHECK(result.obstacle.find("(or folds) cross") != std::string::npos);
-    CHECK(result.property == CertificateRefusal::none);
+    CHECK(result.property == delaunay::CertificateRefusal::none);
   }
   CHECK(valleys == 1);
 }
@@ -219,20 +221,20 @@ TEST_CASE("triangles divided at contacts are the same surface") {
   for (const Shape& shape : touching()) {
     ++number;
     const Solid solid = samples::make_solid(shape);
-    const FacetTriangles canonical = triangulate_facets(solid);
-    const auto divided = divide_at_contacts(solid, canonical);
+    const tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
+    const auto divided = delaunay::divide_at_contacts(solid, canonical);
     REQUIRE(divided);
     REQUIRE(divided->has_contacts());
     CHECK(divided->triangles.first.size() == canonical.first.size());
-    CHECK(six_volume(solid.vertices(), divided->triangles.triangles) ==
-          six_volume(solid.vertices(), canonical.triangles));
+    CHECK(geometry::six_volume(solid.vertices(), divided->triangles.triangles) ==
+          geometry::six_volume(solid.vertices(), canonical.triangles));
     // No triangle of one shell meets another's but in a common vertex or edge.
     const auto& triangles = divided->triangles.triangles;
     for (Index a = 0; a < triangles.size(); ++a) {
       for (Index b = a + 1; b < triangles.size(); ++b) {
         INFO(number << ": " << a << " " << b);
-        CHECK_FALSE(
-            is_intersection(classify_contact(solid.vertices(), triangles[a], triangles[b])));
+        CHECK_FALSE(geometry::is_intersection(
+            geometry::classify_contact(solid.vertices(), triangles[a], triangles[b])));
       }
     }
   }
@@ -243,7 +245,7 @@ TEST_CASE("shells without contacts, and single shells, are left as they are") {
   samples::add_box(apart, {50, 50, 50}, {100, 100, 100}, true);
   for (const Shape& shape : {apart, block()}) {
     const Solid solid = samples::make_solid(shape);
-    const auto divided = divide_at_contacts(solid, triangulate_facets(solid));
+    const auto divided = delaunay::divide_at_contacts(solid, tessellate::triangulate_facets(solid));
     REQUIRE(divided);
     CHECK_FALSE(divided->has_contacts());
   }
@@ -251,35 +253,35 @@ TEST_CASE("shells without contacts, and single shells, are left as they are") {
 
 TEST_CASE("a vertex that is not exactly on the facet is no contact") {
   // The proof of a tip on the wall, for the solid whose tip is one unit (or the least double) off.
-  const LadderResult result = climb(tip_on_wall({100, 60, 200}), {});
+  const delaunay::LadderResult result = climb(tip_on_wall({100, 60, 200}), {});
   REQUIRE(result.certificate.has_value());
   const double below = 200 - 0x1p-45;
   for (const Point tip : {Point{100, 60, 199}, Point{100, 60, below}}) {
     const Solid off = samples::make_solid(tip_on_wall(tip));
-    Tetrahedralization data = result.certificate->tetrahedralization;
+    delaunay::Tetrahedralization data = result.certificate->tetrahedralization;
     std::copy(off.vertices().begin(), off.vertices().end(), data.points.begin());
-    const CertificateResult checked =
-        check_certificate(off, triangulate_facets(off), std::move(data), Rung::patch);
-    CHECK(checked.refusal != CertificateRefusal::none);
+    const delaunay::CertificateResult checked = delaunay::check_certificate(
+        off, tessellate::triangulate_facets(off), std::move(data), delaunay::Rung::patch);
+    CHECK(checked.refusal != delaunay::CertificateRefusal::none);
   }
 }
 
 TEST_CASE("a facet's faces must reach its own edge where another shell touches it") {
   // A face of a wall given to the neighbour, at a contact in their common edge.
   const Solid solid = samples::make_solid(tip_on_wall({110, 0, 200}));
-  const FacetTriangles canonical = triangulate_facets(solid);
-  const LadderResult result = climb_ladder(solid, canonical, &engines(), {});
+  const tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
+  const delaunay::LadderResult result = delaunay::climb_ladder(solid, canonical, &engines(), {});
   REQUIRE(result.certificate.has_value());
-  const Tetrahedralization& proof = result.certificate->tetrahedralization;
+  const delaunay::Tetrahedralization& proof = result.certificate->tetrahedralization;
   for (std::size_t i = 0; i < proof.constrained.size(); ++i) {
-    Tetrahedralization damaged = proof;
+    delaunay::Tetrahedralization damaged = proof;
     damaged.constrained[i].facet = (damaged.constrained[i].facet + 1) % solid.facet_count();
-    CHECK(check_certificate(solid, canonical, damaged, Rung::patch).refusal ==
-          CertificateRefusal::facet_not_conforming);
+    CHECK(delaunay::check_certificate(solid, canonical, damaged, delaunay::Rung::patch).refusal ==
+          delaunay::CertificateRefusal::facet_not_conforming);
     damaged = proof;
     damaged.constrained.erase(damaged.constrained.begin() + std::ptrdiff_t(i));
-    CHECK(check_certificate(solid, canonical, damaged, Rung::patch).refusal ==
-          CertificateRefusal::facet_not_conforming);
+    CHECK(delaunay::check_certificate(solid, canonical, damaged, delaunay::Rung::patch).refusal ==
+          delaunay::CertificateRefusal::facet_not_conforming);
   }
 }
 

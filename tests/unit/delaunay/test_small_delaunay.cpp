@@ -46,7 +46,7 @@ std::vector<Golden> read_goldens() {
   return goldens;
 }
 
-std::string digest(const CanonicalDelaunay& delaunay) {
+std::string digest(const delaunay::CanonicalDelaunay& delaunay) {
   ByteWriter writer;
   for (const Triangle& face : delaunay.faces) {
     for (const Index vertex : face) writer.u32(vertex);
@@ -58,14 +58,14 @@ std::string digest(const CanonicalDelaunay& delaunay) {
   return text;
 }
 
-bool is_same(const CanonicalDelaunay& a, const CanonicalDelaunay& b) {
+bool is_same(const delaunay::CanonicalDelaunay& a, const delaunay::CanonicalDelaunay& b) {
   return a.tetrahedra == b.tetrahedra && a.faces == b.faces && a.apexes == b.apexes;
 }
 
 /// Both implementations refuse, or both give the same.
 bool is_same_from_both(const std::vector<Point>& points) {
-  const auto expected = cgal_delaunay(points);
-  const auto found = small_delaunay(points);
+  const auto expected = delaunay::cgal_delaunay(points);
+  const auto found = delaunay::small_delaunay(points);
   if (expected.has_value() != found.has_value()) return false;
   return expected ? is_same(*expected, *found) : expected.error().code == found.error().code;
 }
@@ -77,8 +77,9 @@ TEST_CASE("the golden digests of the tie rule come from both implementations") {
     INFO(golden.formula);
     const std::vector<Point> points = point_sets::make(golden.formula);
     REQUIRE(points.size() == golden.points);
-    REQUIRE(is_small_grid(points));
-    for (const auto& delaunay : {cgal_delaunay(points), small_delaunay(points)}) {
+    REQUIRE(delaunay::is_small_grid(points));
+    for (const auto& delaunay :
+         {delaunay::cgal_delaunay(points), delaunay::small_delaunay(points)}) {
       REQUIRE(delaunay.has_value());
       CHECK(delaunay->tetrahedra.size() == golden.tetrahedra);
       CHECK(delaunay->faces.size() == golden.faces);
@@ -92,7 +93,7 @@ TEST_CASE("both implementations agree on sets of every kind in any order") {
     const std::string formula = point_sets::any_formula(number);
     const auto points = point_sets::shuffled(point_sets::make(formula), number);
     INFO(number << ": " << formula);
-    REQUIRE(is_small_grid(points));
+    REQUIRE(delaunay::is_small_grid(points));
     REQUIRE(is_same_from_both(points));
   }
 }
@@ -117,7 +118,7 @@ TEST_CASE("both implementations agree on coplanar and collinear sets and on few 
         "circles 65 1 1", "lines 3 100 1", "sheared 2 1 1", "sheared 3 3 1"}) {
     const std::vector<Point> points = point_sets::make(formula);
     INFO(formula);
-    const auto found = small_delaunay(points);
+    const auto found = delaunay::small_delaunay(points);
     REQUIRE(found.has_value());
     CHECK(found->tetrahedra.empty());
     CHECK(found->faces.empty());
@@ -132,7 +133,7 @@ TEST_CASE("both implementations refuse equal points, in flat sets too") {
     for (std::size_t i = 0; i < points.size(); i += 3) {
       std::vector<Point> equal = points;
       equal.push_back(points[i]);
-      const auto refused = small_delaunay(point_sets::shuffled(equal, i));
+      const auto refused = delaunay::small_delaunay(point_sets::shuffled(equal, i));
       REQUIRE_FALSE(refused.has_value());
       CHECK(refused.error().code == ErrorCode::invalid_argument);
       CHECK(is_same_from_both(equal));
@@ -144,14 +145,14 @@ TEST_CASE("a small Delaunay may be anywhere among the integers of doubles") {
   constexpr double kEnd = 9007199254740992.0;  // 2^53
   for (const char* formula : {"grid 3 3 3 1", "random 60 1000 5", "extreme 60 2"}) {
     const std::vector<Point> points = point_sets::make(formula);
-    const auto expected = small_delaunay(points);
+    const auto expected = delaunay::small_delaunay(points);
     REQUIRE(expected.has_value());
     for (const Point& origin : {Point{-kEnd, -kEnd, -kEnd}, Point{85'000'000, 447'000'000, -13},
                                 Point{kEnd - 0x1p30, 0, 1 - 0x1p30}}) {
       std::vector<Point> moved = points;
       for (Point& p : moved) p = {p.x + origin.x, p.y + origin.y, p.z + origin.z};
-      REQUIRE(is_small_grid(moved));
-      const auto found = small_delaunay(moved);
+      REQUIRE(delaunay::is_small_grid(moved));
+      const auto found = delaunay::small_delaunay(moved);
       REQUIRE(found.has_value());
       CHECK(is_same(*found, *expected));
       CHECK(is_same_from_both(moved));
@@ -161,9 +162,10 @@ TEST_CASE("a small Delaunay may be anywhere among the integers of doubles") {
 
 TEST_CASE("a small grid has integers in a box with sides below 2^30") {
   const double most = 0x1p30 - 1;
-  CHECK(is_small_grid({}));
-  CHECK(is_small_grid(std::vector<Point>{{0, 0, 0}, {most, most, most}}));
-  CHECK(is_small_grid(std::vector<Point>{{-5, -0x1p53, 0x1p53}, {most - 5, 0 - 0x1p53, 0x1p53}}));
+  CHECK(delaunay::is_small_grid({}));
+  CHECK(delaunay::is_small_grid(std::vector<Point>{{0, 0, 0}, {most, most, most}}));
+  CHECK(delaunay::is_small_grid(
+      std::vector<Point>{{-5, -0x1p53, 0x1p53}, {most - 5, 0 - 0x1p53, 0x1p53}}));
   for (int axis = 0; axis < 3; ++axis) {
     for (const double wrong :
          {0x1p30, -1.0, 0.5, 1e-300, most - 0.5, 0x1p54, 1e300,
@@ -172,12 +174,13 @@ TEST_CASE("a small grid has integers in a box with sides below 2^30") {
       std::vector<Point> points{{0, 0, 0}, {most, most, most}, {1, 1, 1}};
       points[2][axis] = wrong;
       INFO(axis << " " << wrong);
-      CHECK_FALSE(is_small_grid(points));
-      CHECK_FALSE(is_small_grid(std::vector<Point>{points[2], {0, 0, 0}, {most, most, most}}));
+      CHECK_FALSE(delaunay::is_small_grid(points));
+      CHECK_FALSE(
+          delaunay::is_small_grid(std::vector<Point>{points[2], {0, 0, 0}, {most, most, most}}));
     }
     std::vector<Point> same(3, {7, 7, 7});
     for (Point& p : same) p[axis] = std::numeric_limits<double>::infinity();
-    CHECK_FALSE(is_small_grid(same));
+    CHECK_FALSE(delaunay::is_small_grid(same));
   }
 }
 
@@ -186,10 +189,10 @@ TEST_CASE(
   // CGAL takes what has a coordinate that is no integer.
   for (const char* formula : {"grid 3 3 3 1", "houses 3", "spheres 9 25", "tower 20 1024 1"}) {
     std::vector<Point> points = point_sets::make(formula);
-    const auto expected = canonical_delaunay(points);
+    const auto expected = delaunay::canonical_delaunay(points);
     for (Point& p : points) p = {p.x / 1024, p.y / 1024, p.z / 1024};
-    CHECK_FALSE(is_small_grid(points));
-    const auto found = canonical_delaunay(points);
+    CHECK_FALSE(delaunay::is_small_grid(points));
+    const auto found = delaunay::canonical_delaunay(points);
     REQUIRE(expected.has_value());
     REQUIRE(found.has_value());
     CHECK(is_same(*expected, *found));
@@ -198,19 +201,20 @@ TEST_CASE(
 
 TEST_CASE("a small Delaunay keeps to the limit of tetrahedra") {
   const std::vector<Point> points = point_sets::make("skew 50");
-  const auto whole = small_delaunay(points);
+  const auto whole = delaunay::small_delaunay(points);
   REQUIRE(whole.has_value());
   CHECK(whole->tetrahedra.size() == 49 * 49);
-  const auto refused = small_delaunay(points, whole->tetrahedra.size() - 1);
+  const auto refused = delaunay::small_delaunay(points, whole->tetrahedra.size() - 1);
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == ErrorCode::limit_exceeded);
-  CHECK(small_delaunay(points, whole->tetrahedra.size()).has_value());
+  CHECK(delaunay::small_delaunay(points, whole->tetrahedra.size()).has_value());
 }
 
 TEST_CASE("a small Delaunay stops when the caller cancels") {
   const std::vector<Point> points = point_sets::make("random 3000 1073741824 1");
   int questions = 0;
-  const auto cancelled = small_delaunay(points, 64'000'000, [&] { return ++questions == 3; });
+  const auto cancelled =
+      delaunay::small_delaunay(points, 64'000'000, [&] { return ++questions == 3; });
   REQUIRE_FALSE(cancelled.has_value());
   CHECK(cancelled.error().code == ErrorCode::cancelled);
   CHECK(questions == 3);

@@ -19,9 +19,9 @@ inline std::string file_text(const std::string& name) {
 }
 
 inline Result<Document> read(std::string_view text, Format format, bool is_split = true) {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.split_features = is_split;
-  return read_document(as_bytes(text), format, options);
+  return formats::read_document(as_bytes(text), format, options);
 }
 
 /// A tetrahedron as a Solid, and a MultiSurface that uses a fifth vertex; two top-level objects,

@@ -12,7 +12,7 @@ using test::kTwoBuildings;
 using test::read;
 
 std::string written(const Document& document, Format format) {
-  const auto bytes = write_document(document, format);
+  const auto bytes = formats::write_document(document, format);
   REQUIRE(bytes);
   return std::string(as_text(*bytes));
 }
@@ -90,7 +90,7 @@ TEST_CASE("vertices of a solid are numbered by first use and equal ones are kept
 TEST_CASE("a feature is a CityJSONFeature with its own vertices") {
   const auto document = read(kTwoBuildings, Format::city_json);
   REQUIRE(document);
-  const auto line = write_feature(*document, document->features[0]);
+  const auto line = formats::write_feature(*document, document->features[0]);
   REQUIRE(line);
   CHECK(*line ==
         R"({"type":"CityJSONFeature","id":"a","CityObjects":{"a":{"type":"Building",)"
@@ -122,14 +122,14 @@ TEST_CASE("a CityJSONSeq of a document reads as the same features") {
 TEST_CASE("a stream is read line by line with the header of its first line") {
   const auto document = read(kTwoBuildings, Format::city_json);
   REQUIRE(document);
-  const auto header = read_city_json_header(document->header);
+  const auto header = formats::read_city_json_header(document->header);
   REQUIRE(header);
   CHECK(header->srid == 7415);
   REQUIRE(header->transform);
   CHECK(header->transform->translate[0] == GridNumber{850005, -1});
-  const auto line = write_city_json_feature(*header, document->features[1]);
+  const auto line = formats::write_city_json_feature(*header, document->features[1]);
   REQUIRE(line);
-  const auto feature = read_city_json_feature(*header, *line);
+  const auto feature = formats::read_city_json_feature(*header, *line);
   REQUIRE(feature);
   CHECK(feature->id == "b");
   CHECK(feature->skeleton == document->features[1].skeleton);
@@ -140,18 +140,18 @@ TEST_CASE("a changed solid does not fit its skeleton") {
   REQUIRE(document);
   Feature feature = document->features[1];
   feature.solids.pop_back();
-  CHECK_FALSE(write_feature(*document, feature));
+  CHECK_FALSE(formats::write_feature(*document, feature));
   feature = document->features[0];
   feature.solids[0].solid = document->features[1].solids[0].solid;
-  const auto other = write_feature(*document, feature);
+  const auto other = formats::write_feature(*document, feature);
   CHECK(other);  // as many vertices: another tetrahedron in the same place of the document
   feature.skeleton = "{}";
-  CHECK_FALSE(write_feature(*document, feature));
+  CHECK_FALSE(formats::write_feature(*document, feature));
 }
 
 TEST_CASE("EPSG codes are found in every spelling of a reference system") {
   const auto srid_of = [](const std::string& name) {
-    const auto header = read_city_json_header(
+    const auto header = formats::read_city_json_header(
         R"({"type":"CityJSON","version":"1.1","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
         R"("metadata":{"referenceSystem":")" +
         name + R"("},"CityObjects":{},"vertices":[]})");

@@ -89,7 +89,7 @@ TEST_CASE("empty boundaries, facets and rings are left to the validator") {
     const auto document = read(text, Format::city_json, false);
     REQUIRE(document);
     CHECK(document->features[0].solids.size() == 1);
-    const auto again = write_document(*document, Format::city_json);
+    const auto again = formats::write_document(*document, Format::city_json);
     REQUIRE(again);
     CHECK(as_text(*again) == text);
   }
@@ -140,14 +140,14 @@ TEST_CASE("nesting and size are limited") {
   for (int i = 0; i < 100000; ++i) deep += '[';
   CHECK(error_of(deep).code == ErrorCode::limit_exceeded);
   CHECK(error_of(with_boundaries(deep)).code == ErrorCode::limit_exceeded);
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits.bytes = 10;
-  const auto document = read_document(as_bytes(kTwoBuildings), Format::city_json, options);
+  const auto document = formats::read_document(as_bytes(kTwoBuildings), Format::city_json, options);
   REQUIRE_FALSE(document);
   CHECK(document.error().code == ErrorCode::limit_exceeded);
   options.limits = {};
   options.limits.vertices = 3;
-  const auto small = read_document(as_bytes(kTwoBuildings), Format::city_json, options);
+  const auto small = formats::read_document(as_bytes(kTwoBuildings), Format::city_json, options);
   REQUIRE_FALSE(small);
   CHECK(small.error().code == ErrorCode::limit_exceeded);
 }
@@ -161,7 +161,7 @@ TEST_CASE("a city object that is its own ancestor is an error") {
 }
 
 TEST_CASE("coordinates that had to be rounded are not written on the grid they came from") {
-  const auto document = read_document(
+  const auto document = formats::read_document(
       as_bytes(
           R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.001,0.001,0.001],)"
           R"("translate":[9007199254740993935109.076729,36718248634.330447258,0.0]},"CityObjects":{},"vertices":[]})"
@@ -174,7 +174,7 @@ TEST_CASE("coordinates that had to be rounded are not written on the grid they c
       Format::city_json_seq);
   REQUIRE(document);
   CHECK_FALSE(document->features[0].solids[0].rounded.empty());
-  const auto written = write_document(*document, Format::city_json_seq);
+  const auto written = formats::write_document(*document, Format::city_json_seq);
   REQUIRE_FALSE(written);
   CHECK(written.error().code == ErrorCode::unsupported);
 }
@@ -182,7 +182,7 @@ TEST_CASE("coordinates that had to be rounded are not written on the grid they c
 TEST_CASE("errors in a sequence name line, byte and pointer") {
   const auto document = read(kTwoBuildings, Format::city_json);
   REQUIRE(document);
-  const auto bytes = write_document(*document, Format::city_json_seq);
+  const auto bytes = formats::write_document(*document, Format::city_json_seq);
   REQUIRE(bytes);
   const std::string text(as_text(*bytes));
   const std::size_t second = text.find('\n') + 1;

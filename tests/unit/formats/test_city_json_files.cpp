@@ -58,11 +58,11 @@ TEST_CASE("real city models come back equal, with the order of their members") {
     if (kBroken.contains(name)) continue;
     INFO(name);
     const std::string text = test::file_text("cityjson/" + name);
-    const auto format = detect_format(name, as_bytes(text));
+    const auto format = formats::detect_format(name, as_bytes(text));
     REQUIRE(format);
     const auto document = test::read(text, *format, false);
     REQUIRE(document);
-    const auto again = write_document(*document, *format);
+    const auto again = formats::write_document(*document, *format);
     REQUIRE(again);
     CHECK(json_lines(as_text(*again), *format) == json_lines(text, *format));
   }
@@ -72,7 +72,7 @@ TEST_CASE("broken city models give an error that names the place") {
   for (const auto& [name, expected] : kBroken) {
     INFO(name);
     const std::string text = test::file_text("cityjson/" + name);
-    const auto format = detect_format(name, as_bytes(text));
+    const auto format = formats::detect_format(name, as_bytes(text));
     REQUIRE(format);
     const auto document = test::read(text, *format);
     REQUIRE_FALSE(document);
@@ -155,7 +155,7 @@ TEST_CASE("a city model put together from its features is equivalent") {
     if (text.starts_with("\xEF\xBB\xBF")) continue;  // the test's own parser needs plain JSON
     const auto document = test::read(text, Format::city_json);
     REQUIRE(document);
-    const auto again = write_document(*document, Format::city_json);
+    const auto again = formats::write_document(*document, Format::city_json);
     REQUIRE(again);
     // Objects are grouped by feature, members of the root are not in source order.
     CHECK(nlohmann::json(resolved_model(as_text(*again))) == nlohmann::json(resolved_model(text)));

@@ -64,7 +64,7 @@ TEST_CASE("templates of solids are read once, on lattices of their own, and writ
     CHECK(solid.solid.facet_count() == 4);
     CHECK(solid.solid.world(1) == std::array<double, 3>{0.5, 1.25, 0});
     CHECK(document->templates[2].source.pointer == "/geometry-templates/templates/2/boundaries/1");
-    const auto written = write_document(*document, Format::city_json);
+    const auto written = formats::write_document(*document, Format::city_json);
     REQUIRE(written);
     CHECK(std::string(as_text(*written)).find(kVertices) != std::string::npos);
   }
@@ -74,14 +74,14 @@ TEST_CASE("the header of a sequence gives its templates") {
   const std::string text = model(section(geometry("Solid", kTetrahedron)), instance("0"));
   const auto document = read(text, Format::city_json);
   REQUIRE(document);
-  const auto header = read_city_json_header(document->header);
+  const auto header = formats::read_city_json_header(document->header);
   REQUIRE(header);
   CHECK(header->template_count == 1);
-  const auto templates = read_geometry_templates(*header);
+  const auto templates = formats::read_geometry_templates(*header);
   REQUIRE(templates);
   REQUIRE(templates->size() == 1);
   CHECK((*templates)[0].solid == document->templates[0].solid);
-  const auto sequence = write_document(*document, Format::city_json_seq);
+  const auto sequence = formats::write_document(*document, Format::city_json_seq);
   REQUIRE(sequence);
   const auto again = read(std::string(as_text(*sequence)), Format::city_json_seq);
   REQUIRE(again);
@@ -89,7 +89,7 @@ TEST_CASE("the header of a sequence gives its templates") {
   const std::string feature =
       R"({"type":"CityJSONFeature","id":"t","CityObjects":{"t":{"type":"Tree","geometry":[)" +
       instance("1") + R"(]}},"vertices":[[0,0,0]]})";
-  CHECK(read_city_json_feature(*header, feature).error().pointer ==
+  CHECK(formats::read_city_json_feature(*header, feature).error().pointer ==
         "/CityObjects/t/geometry/0/template");
 }
 
@@ -146,13 +146,13 @@ TEST_CASE("instances have their template, exact matrix and place, in whole and s
     REQUIRE(document);
     REQUIRE(document->features.size() == 1);
     REQUIRE(document->features[0].instances.size() == 1);
-    const TemplateInstance& found = document->features[0].instances[0];
+    const formats::TemplateInstance& found = document->features[0].instances[0];
     CHECK(found.source.object_id == "tree");
     CHECK(found.source.pointer == "/CityObjects/tree/geometry/0");
     CHECK(found.template_number == 0);
     CHECK(found.placement.linear[0][0] == GridNumber{1, -1});
     CHECK(found.placement.linear[1][1] == GridNumber{2, 0});
-    CHECK(shift_of(found.placement) == std::array<double, 3>{8.5, 6, 9.25});
+    CHECK(geometry::shift_of(found.placement) == std::array<double, 3>{8.5, 6, 9.25});
   }
 }
 

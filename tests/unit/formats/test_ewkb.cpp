@@ -51,14 +51,14 @@ Bytes one_triangle(std::uint32_t surface, std::uint32_t polygon, double z_of_las
 
 TEST_CASE("WKT comes back digit by digit") {
   for (const std::string& text : {kHoled, kHollow}) {
-    const auto solid = read_wkt(text);
+    const auto solid = formats::read_wkt(text);
     REQUIRE(solid);
-    CHECK(write_wkt(solid->solid) == text);
+    CHECK(formats::write_wkt(solid->solid) == text);
   }
 }
 
 TEST_CASE("WKT merges equal points and drops the closing point") {
-  const auto solid = read_wkt(kHoled);
+  const auto solid = formats::read_wkt(kHoled);
   REQUIRE(solid);
   CHECK(solid->solid.srid() == 7415);
   CHECK(solid->solid.vertex_count() == 6);
@@ -69,24 +69,24 @@ TEST_CASE("WKT merges equal points and drops the closing point") {
 }
 
 TEST_CASE("WKT is read in every spelling") {
-  const auto solid = read_wkt("POLYHEDRALSURFACE Z (((0 0 0,1 0 0,0 1 0,0 0 0)))");
+  const auto solid = formats::read_wkt("POLYHEDRALSURFACE Z (((0 0 0,1 0 0,0 1 0,0 0 0)))");
   REQUIRE(solid);
   for (const char* text : {"polyhedralsurface(((0 0 0,1 0 0,0 1 0,0 0 0)))",
                            " PolyhedralSurfaceZ ( ( ( 0 0 0 , 1.0 0 0 ,\n 0 +1e0 -0,0 0 0 ) ) ) ; ",
                            "TIN Z (((0 0 0,1 0 0,0 1 0,0 0 0)))"}) {
-    const auto other = read_wkt(text);
+    const auto other = formats::read_wkt(text);
     REQUIRE(other);
     CHECK(other->solid == solid->solid);
   }
-  const auto empty = read_wkt("SRID=4979;POLYHEDRALSURFACE Z EMPTY");
+  const auto empty = formats::read_wkt("SRID=4979;POLYHEDRALSURFACE Z EMPTY");
   REQUIRE(empty);
   CHECK(empty->solid.facet_count() == 0);
-  CHECK(write_wkt(empty->solid) == "SRID=4979;POLYHEDRALSURFACE Z EMPTY");
+  CHECK(formats::write_wkt(empty->solid) == "SRID=4979;POLYHEDRALSURFACE Z EMPTY");
 }
 
 TEST_CASE("WKT errors name the byte") {
   const auto error_of = [](std::string_view text) {
-    const auto solid = read_wkt(text);
+    const auto solid = formats::read_wkt(text);
     REQUIRE_FALSE(solid);
     REQUIRE(solid.error().byte_offset);
     return solid.error();
@@ -103,26 +103,27 @@ TEST_CASE("WKT errors name the byte") {
   CHECK(error_of("SRID=x;POLYHEDRALSURFACE Z EMPTY").byte_offset == 5);
   CHECK(error_of("SRID=4294967296;POLYHEDRALSURFACE Z EMPTY").byte_offset == 5);
   for (std::size_t size = 0; size < kHollow.size(); ++size) {
-    CHECK_FALSE(read_wkt(std::string_view(kHollow).substr(0, size)));
+    CHECK_FALSE(formats::read_wkt(std::string_view(kHollow).substr(0, size)));
   }
 }
 
 TEST_CASE("EWKB comes back as the same solid") {
   for (const std::string& text : {kHoled, kHollow}) {
-    const auto solid = read_wkt(text);
+    const auto solid = formats::read_wkt(text);
     REQUIRE(solid);
-    const Bytes bytes = write_ewkb(solid->solid);
-    const auto again = read_ewkb(bytes);
+    const Bytes bytes = formats::write_ewkb(solid->solid);
+    const auto again = formats::read_ewkb(bytes);
     REQUIRE(again);
     CHECK(again->solid == solid->solid);
-    CHECK(write_ewkb(again->solid) == bytes);
+    CHECK(formats::write_ewkb(again->solid) == bytes);
   }
 }
 
 TEST_CASE("EWKB has the bytes that PostGIS gives") {
-  const auto solid = read_wkt("SRID=7415;POLYHEDRALSURFACE Z (((0 0 0,1 0 0,0 1 0,0 0 0)))");
+  const auto solid =
+      formats::read_wkt("SRID=7415;POLYHEDRALSURFACE Z (((0 0 0,1 0 0,0 1 0,0 0 0)))");
   REQUIRE(solid);
-  const Bytes bytes = write_ewkb(solid->solid);
+  const Bytes bytes = formats::write_ewkb(solid->solid);
   std::string hex;
   for (std::size_t i = 0; i < 27; ++i) {
     hex += "0123456789abcdef"[bytes[i] >> 4];
@@ -133,41 +134,42 @@ TEST_CASE("EWKB has the bytes that PostGIS gives") {
 }
 
 TEST_CASE("EWKB is read in both byte orders and with ISO type numbers") {
-  const auto solid = read_wkt("POLYHEDRALSURFACE Z (((0 0 0.5,1 0 0,0 1 0,0 0 0.5)))");
+  const auto solid = formats::read_wkt("POLYHEDRALSURFACE Z (((0 0 0.5,1 0 0,0 1 0,0 0 0.5)))");
   REQUIRE(solid);
   for (const std::uint32_t surface : {0x8000000Fu, 1015u}) {
     for (const std::uint32_t polygon : {0x80000003u, 1003u}) {
-      const auto other = read_ewkb(one_triangle(surface, polygon, 0.5));
+      const auto other = formats::read_ewkb(one_triangle(surface, polygon, 0.5));
       REQUIRE(other);
       CHECK(other->solid == solid->solid);
     }
   }
-  CHECK(read_ewkb(one_triangle(1016, 1017, 0.5)));
+  CHECK(formats::read_ewkb(one_triangle(1016, 1017, 0.5)));
 }
 
 TEST_CASE("EWKB that is not a closed solid of finite points is an error") {
-  CHECK_FALSE(read_ewkb(one_triangle(1015, 1003, 0.25)));
-  CHECK_FALSE(read_ewkb(one_triangle(1015, 1003, std::numeric_limits<double>::quiet_NaN())));
-  CHECK_FALSE(read_ewkb(one_triangle(15, 3, 0.5)));       // no z
-  CHECK_FALSE(read_ewkb(one_triangle(3015, 3003, 0.5)));  // z and m
-  CHECK_FALSE(read_ewkb(one_triangle(1015, 1015, 0.5)));
-  CHECK_FALSE(read_ewkb(one_triangle(1006, 1003, 0.5)));
+  CHECK_FALSE(formats::read_ewkb(one_triangle(1015, 1003, 0.25)));
+  CHECK_FALSE(
+      formats::read_ewkb(one_triangle(1015, 1003, std::numeric_limits<double>::quiet_NaN())));
+  CHECK_FALSE(formats::read_ewkb(one_triangle(15, 3, 0.5)));       // no z
+  CHECK_FALSE(formats::read_ewkb(one_triangle(3015, 3003, 0.5)));  // z and m
+  CHECK_FALSE(formats::read_ewkb(one_triangle(1015, 1015, 0.5)));
+  CHECK_FALSE(formats::read_ewkb(one_triangle(1006, 1003, 0.5)));
   Bytes longer = one_triangle(1015, 1003, 0.5);
   longer.push_back(0);
-  CHECK_FALSE(read_ewkb(longer));
+  CHECK_FALSE(formats::read_ewkb(longer));
 }
 
 // Found by fuzzing: a solid of zero shells was written as an empty surface, which has one.
 TEST_CASE("a solid without shells has an empty exterior shell and comes back as the same solid") {
   const Bytes none{1, 0x65, 0, 0, 0x80, 0, 0, 0, 0};
-  const auto solid = read_ewkb(none);
+  const auto solid = formats::read_ewkb(none);
   REQUIRE(solid);
   CHECK(solid->solid.shell_count() == 1);
   CHECK(solid->solid.facet_count() == 0);
-  const auto again = read_ewkb(write_ewkb(solid->solid));
+  const auto again = formats::read_ewkb(formats::write_ewkb(solid->solid));
   REQUIRE(again);
   CHECK(again->solid == solid->solid);
-  const auto text = read_wkt("SOLID Z EMPTY");
+  const auto text = formats::read_wkt("SOLID Z EMPTY");
   REQUIRE(text);
   CHECK(text->solid.shell_count() == 1);
 }
@@ -180,23 +182,23 @@ TEST_CASE("EWKB with an empty ring comes back as the same solid") {
   arrays.end_shell();
   const auto solid = Solid::make(arrays, Lattice{}, 0);
   REQUIRE(solid);
-  const auto again = read_ewkb(write_ewkb(*solid));
+  const auto again = formats::read_ewkb(formats::write_ewkb(*solid));
   REQUIRE(again);
   CHECK(again->solid.ring_count() == 1);
   CHECK(again->solid.ring(0).empty());
 }
 
 TEST_CASE("EWKB rejects every truncated prefix and counts beyond the bytes") {
-  const auto solid = read_wkt(kHollow);
+  const auto solid = formats::read_wkt(kHollow);
   REQUIRE(solid);
-  const Bytes bytes = write_ewkb(solid->solid);
+  const Bytes bytes = formats::write_ewkb(solid->solid);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    CHECK_FALSE(read_ewkb(ByteView(bytes).first(size)));
+    CHECK_FALSE(formats::read_ewkb(ByteView(bytes).first(size)));
   }
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     Bytes broken = bytes;
     broken[at] = 0xFF;
-    const auto result = read_ewkb(broken);
+    const auto result = formats::read_ewkb(broken);
     if (!result) CHECK_FALSE(result.error().message.empty());
   }
 }
@@ -207,12 +209,12 @@ TEST_CASE("documents hold several geometries one after the other") {
   REQUIRE(document->features.size() == 2);
   CHECK(document->features[0].srid == 7415);
   CHECK(document->features[1].srid == 0);
-  const auto bytes = write_document(*document, Format::ewkb);
+  const auto bytes = formats::write_document(*document, Format::ewkb);
   REQUIRE(bytes);
-  const auto again = read_document(*bytes, Format::ewkb);
+  const auto again = formats::read_document(*bytes, Format::ewkb);
   REQUIRE(again);
   REQUIRE(again->features.size() == 2);
-  const auto text = write_document(*again, Format::wkt);
+  const auto text = formats::write_document(*again, Format::wkt);
   REQUIRE(text);
   CHECK(as_text(*text) == kHoled + "\n" + kHollow + "\n");
 }

@@ -11,7 +11,7 @@ namespace watertight {
 namespace {
 
 /// Gives a text in pieces of `step` bytes.
-ByteSource in_pieces(std::string text, std::size_t step) {
+formats::ByteSource in_pieces(std::string text, std::size_t step) {
   return [text = std::move(text), step,
           at = std::size_t{0}](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
     const std::size_t count = std::min({step, bytes.size(), text.size() - at});
@@ -26,7 +26,7 @@ struct Read {
   std::vector<Error> errors;
 };
 
-Read read_all(FeatureReader& reader) {
+Read read_all(formats::FeatureReader& reader) {
   Read read;
   for (;;) {
     auto text = reader.next();
@@ -50,7 +50,7 @@ TEST_CASE("a sequence is read the same however its bytes arrive") {
   const std::string text =
       samples::sequence({samples::feature("a"), samples::feature("b"), samples::feature("c")});
   for (const std::size_t step : {std::size_t{1}, std::size_t{7}, text.size()}) {
-    auto reader = FeatureReader::open(in_pieces(text, step), "x.city.jsonl");
+    auto reader = formats::FeatureReader::open(in_pieces(text, step), "x.city.jsonl");
     REQUIRE(reader);
     CHECK(reader->document().format == Format::city_json_seq);
     CHECK_FALSE(reader->feature_count());
@@ -63,7 +63,7 @@ TEST_CASE("a sequence is read the same however its bytes arrive") {
 
 TEST_CASE("a sequence is told by its content when no name does") {
   const std::string text = samples::sequence({samples::feature("a")});
-  auto reader = FeatureReader::open(in_pieces(text, 100), "");
+  auto reader = formats::FeatureReader::open(in_pieces(text, 100), "");
   REQUIRE(reader);
   CHECK(reader->document().format == Format::city_json_seq);
   CHECK(read_all(*reader).ids == Ids{"a"});
@@ -73,7 +73,7 @@ TEST_CASE("one bad line of a sequence does not cost the others, and is named") {
   const std::string first = samples::feature("a");
   const std::string text =
       samples::sequence({first, R"({"type":"CityJSONFeature",)", "", samples::feature("c")});
-  auto reader = FeatureReader::open(in_pieces(text, 64), "x.jsonl");
+  auto reader = formats::FeatureReader::open(in_pieces(text, 64), "x.jsonl");
   REQUIRE(reader);
   const Read read = read_all(*reader);
   CHECK(read.ids == Ids{"a", "c"});
@@ -90,7 +90,7 @@ TEST_CASE("separators, carriage returns and a byte order mark around lines are s
   std::string text = "\xEF\xBB\xBF";
   text += "\x1E" + std::string(samples::kHeader) + "\r\n\r\n\x1E" + samples::feature("a") + "\r\n";
   text += "  " + samples::feature("b");  // no line end
-  auto reader = FeatureReader::open(in_pieces(text, 33), "x.jsonl");
+  auto reader = formats::FeatureReader::open(in_pieces(text, 33), "x.jsonl");
   REQUIRE(reader);
   CHECK(reader->document().notes.size() == 1);
   const Read read = read_all(*reader);
@@ -102,7 +102,7 @@ TEST_CASE("other documents are read whole and given feature by feature") {
   const std::string text =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no first\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
       "o second\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
-  auto reader = FeatureReader::open(in_pieces(text, 5), "x.obj");
+  auto reader = formats::FeatureReader::open(in_pieces(text, 5), "x.obj");
   REQUIRE(reader);
   CHECK(reader->document().format == Format::obj);
   REQUIRE(reader->feature_count());
@@ -113,9 +113,9 @@ TEST_CASE("other documents are read whole and given feature by feature") {
 TEST_CASE("a line beyond the limit ends the input with an error") {
   const std::string text = samples::sequence(
       {samples::feature("a", samples::kBoxFacets, "[" + std::string(900'000, ' ') + "[0,0,0]]")});
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits.bytes = 300'000;
-  auto reader = FeatureReader::open(in_pieces(text, 4096), "x.jsonl", options);
+  auto reader = formats::FeatureReader::open(in_pieces(text, 4096), "x.jsonl", options);
   REQUIRE(reader);
   const auto text_found = reader->next();
   REQUIRE_FALSE(text_found);
@@ -129,7 +129,7 @@ TEST_CASE("an error of the source is passed on, then the input is at its end") {
   const std::string text = samples::sequence({samples::feature("a")});
   auto pieces = in_pieces(text, 50);
   std::size_t left = text.size() - 60;
-  auto reader = FeatureReader::open(
+  auto reader = formats::FeatureReader::open(
       [pieces, left](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
         if (left < 50) return Error{ErrorCode::unavailable, "the disk is gone"};
         left -= 50;

@@ -222,24 +222,25 @@ TEST_CASE("GML: digits beyond the exact ones are rounded and said so") {
 }
 
 TEST_CASE("GML: srsName to EPSG code") {
-  CHECK(srid_of_srs_name("EPSG:25832") == 25832);
-  CHECK(srid_of_srs_name("epsg:4979") == 4979);
-  CHECK(srid_of_srs_name("urn:ogc:def:crs:EPSG::6697") == 6697);
-  CHECK(srid_of_srs_name("urn:ogc:def:crs:EPSG:6.12:3068") == 3068);
-  CHECK(srid_of_srs_name("urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783") == 3068);
-  CHECK(srid_of_srs_name("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783") == 25832);
-  CHECK(srid_of_srs_name("http://www.opengis.net/def/crs/EPSG/0/6697") == 6697);
-  CHECK(srid_of_srs_name("https://www.opengis.net/def/crs/EPSG/9.9.1/7415") == 7415);
-  CHECK(srid_of_srs_name("http://www.opengis.net/gml/srs/epsg.xml#4326") == 4326);
-  CHECK(srid_of_srs_name("http://www.opengis.net/def/crs-compound?1=http://www.opengis.net/def/"
-                         "crs/EPSG/0/25832&2=http://www.opengis.net/def/crs/EPSG/0/5783") == 25832);
-  CHECK(srid_of_srs_name("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016") == 25832);
-  CHECK(srid_of_srs_name("urn:adv:crs:DE_DHDN_3GK4") == 31468);
-  CHECK(srid_of_srs_name("urn:adv:crs:elsewhere") == 0);
-  CHECK(srid_of_srs_name("CH1903") == 0);
-  CHECK(srid_of_srs_name("EPSG") == 0);
-  CHECK(srid_of_srs_name("EPSG:99999999999") == 0);
-  CHECK(srid_of_srs_name("") == 0);
+  CHECK(formats::srid_of_srs_name("EPSG:25832") == 25832);
+  CHECK(formats::srid_of_srs_name("epsg:4979") == 4979);
+  CHECK(formats::srid_of_srs_name("urn:ogc:def:crs:EPSG::6697") == 6697);
+  CHECK(formats::srid_of_srs_name("urn:ogc:def:crs:EPSG:6.12:3068") == 3068);
+  CHECK(formats::srid_of_srs_name("urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783") == 3068);
+  CHECK(formats::srid_of_srs_name("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783") == 25832);
+  CHECK(formats::srid_of_srs_name("http://www.opengis.net/def/crs/EPSG/0/6697") == 6697);
+  CHECK(formats::srid_of_srs_name("https://www.opengis.net/def/crs/EPSG/9.9.1/7415") == 7415);
+  CHECK(formats::srid_of_srs_name("http://www.opengis.net/gml/srs/epsg.xml#4326") == 4326);
+  CHECK(formats::srid_of_srs_name(
+            "http://www.opengis.net/def/crs-compound?1=http://www.opengis.net/def/"
+            "crs/EPSG/0/25832&2=http://www.opengis.net/def/crs/EPSG/0/5783") == 25832);
+  CHECK(formats::srid_of_srs_name("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016") == 25832);
+  CHECK(formats::srid_of_srs_name("urn:adv:crs:DE_DHDN_3GK4") == 31468);
+  CHECK(formats::srid_of_srs_name("urn:adv:crs:elsewhere") == 0);
+  CHECK(formats::srid_of_srs_name("CH1903") == 0);
+  CHECK(formats::srid_of_srs_name("EPSG") == 0);
+  CHECK(formats::srid_of_srs_name("EPSG:99999999999") == 0);
+  CHECK(formats::srid_of_srs_name("") == 0);
 }
 
 TEST_CASE("GML: features can have reference systems of their own, a solid only one") {
@@ -341,8 +342,8 @@ TEST_CASE("GML: implicit geometries are instances of the templates that they hol
   REQUIRE(document.instances.size() == 2);
   CHECK(document.instances[0].source.object_id == "a");
   CHECK(document.instances[0].template_number == 0);
-  CHECK(determinant_sign(document.instances[0].placement) == -1);
-  CHECK(shift_of(document.instances[0].placement) == std::array<double, 3>{5, 6, 7});
+  CHECK(geometry::determinant_sign(document.instances[0].placement) == -1);
+  CHECK(geometry::shift_of(document.instances[0].placement) == std::array<double, 3>{5, 6, 7});
   CHECK(document.instances[1].placement.linear[0][0] == GridNumber{5, -1});
   for (const std::string wrong :
        {"1 0 0", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2", "a b c", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0"}) {
@@ -383,23 +384,24 @@ TEST_CASE("GML: parts of a building, and parts of parts, name the building") {
 
 TEST_CASE("GML: the format is told by name and by the first bytes") {
   for (const char* name : {"x.gml", "x.XML", "x.citygml"}) {
-    CHECK(*detect_format(name, {}) == Format::gml);
+    CHECK(*formats::detect_format(name, {}) == Format::gml);
   }
-  CHECK(*detect_format("-", as_bytes("\xEF\xBB\xBF <?xml version='1.0'?><a/>")) == Format::gml);
+  CHECK(*formats::detect_format("-", as_bytes("\xEF\xBB\xBF <?xml version='1.0'?><a/>")) ==
+        Format::gml);
 }
 
 TEST_CASE("GML: solids are written as CityJSON, OBJ and WKT; GML is not written") {
   const Document document = file("citygml_2_xlinks.gml");
   for (const Format format : {Format::city_json, Format::city_json_seq, Format::wkt, Format::obj}) {
-    const auto bytes = write_document(document, format);
+    const auto bytes = formats::write_document(document, format);
     REQUIRE(bytes);
-    const auto again = read_document(*bytes, format);
+    const auto again = formats::read_document(*bytes, format);
     REQUIRE(again);
     std::size_t solids = 0;
     for (const Feature& feature : again->features) solids += feature.solids.size();
     CHECK(solids == 3);
   }
-  const auto gml = write_document(document, Format::gml);
+  const auto gml = formats::write_document(document, Format::gml);
   REQUIRE_FALSE(gml);
   CHECK(gml.error().code == ErrorCode::unsupported);
 }
@@ -410,12 +412,12 @@ TEST_CASE("GML whose decimals span too many digits for one grid is not written a
       R"(<g:Solid xmlns:g="http://www.opengis.net/gml/3.2"><g:exterior><g:Polygon><g:exterior>)"
       R"(<g:LinearRing><g:coordinates>0.5,0,0 1,0,0 0,1,1e-30 0.5,0,0</g:coordinates>)"
       R"(</g:LinearRing></g:exterior></g:Polygon></g:exterior></g:Solid>)";
-  const auto document = read_document(as_bytes(text), Format::gml);
+  const auto document = formats::read_document(as_bytes(text), Format::gml);
   REQUIRE(document);
-  const auto written = write_document(*document, Format::city_json);
+  const auto written = formats::write_document(*document, Format::city_json);
   REQUIRE_FALSE(written);
   CHECK(written.error().code == ErrorCode::unsupported);
-  CHECK(write_document(*document, Format::ewkb));
+  CHECK(formats::write_document(*document, Format::ewkb));
 }
 
 }  // namespace

@@ -203,7 +203,7 @@ TEST_CASE("GML: encodings are UTF-8, UTF-16 and ISO-8859-1") {
     utf16 += '\0';
   }
   CHECK(gml_of(utf16).features.size() == 1);
-  CHECK(*detect_format("-", as_bytes(utf16)) == Format::gml);
+  CHECK(*formats::detect_format("-", as_bytes(utf16)) == Format::gml);
   const std::string latin =
       "<?xml version='1.0' encoding='ISO-8859-1'?>" + model(building(kTetrahedron,
                                                                      "Stra\xDF"
@@ -223,15 +223,15 @@ TEST_CASE("GML: limits hold before memory is taken") {
   CHECK(nested.code == ErrorCode::limit_exceeded);
   CHECK(says(nested, "nested deeper than 64"));
 
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits.facets = 3;
   const std::string text = model(building(kTetrahedron));
-  const auto facets = read_document(as_bytes(text), Format::gml, options);
+  const auto facets = formats::read_document(as_bytes(text), Format::gml, options);
   REQUIRE_FALSE(facets);
   CHECK(facets.error().code == ErrorCode::limit_exceeded);
   options = {};
   options.limits.vertices = 1;
-  const auto vertices = read_document(as_bytes(text), Format::gml, options);
+  const auto vertices = formats::read_document(as_bytes(text), Format::gml, options);
   REQUIRE_FALSE(vertices);
   CHECK(vertices.error().code == ErrorCode::limit_exceeded);
 }

@@ -83,9 +83,10 @@ TEST_CASE("GML: overlapping parts of a building are finding 601") {
         test::model("<m><Building g:id=\"b\">" + part(0) + part(second) + "</Building></m>"));
     CertifyOptions options;
     options.proof = Proof::boundary;
-    const InspectedFeature feature = inspect(std::move(document.features.at(0)), nullptr, options);
+    const pipeline::InspectedFeature feature =
+        pipeline::inspect(std::move(document.features.at(0)), nullptr, options);
     std::vector<int> all;
-    for (const InspectedGroup& group : feature.groups) {
+    for (const pipeline::InspectedGroup& group : feature.groups) {
       for (const Finding& finding : group.report.findings) all.push_back(finding.code);
     }
     return all;

@@ -136,7 +136,7 @@ TEST_CASE("empty polyhedra, shells, polygons and rings are for the validator") {
 
 TEST_CASE("JSON files are told apart by their type") {
   const auto format = [](std::string_view name, const std::string& text) {
-    return *detect_format(name, as_bytes(text));
+    return *formats::detect_format(name, as_bytes(text));
   };
   CHECK(format("a.json", R"({"metadata":{"type":"Feature"},"x":"\"type", "type" : "CityJSON"})") ==
         Format::city_json);

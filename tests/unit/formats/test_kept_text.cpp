@@ -18,16 +18,16 @@ namespace {
 using test::kTwoBuildings;
 
 Result<Document> read_kept(std::string_view text, Format format) {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.split_features = false;
   options.keep_text = true;
-  return read_document(as_bytes(text), format, options);
+  return formats::read_document(as_bytes(text), format, options);
 }
 
 std::string read_and_written(std::string_view text, Format format) {
   const auto document = read_kept(text, format);
   if (!document) return to_string(document.error());
-  const auto written = write_document(*document, format);
+  const auto written = formats::write_document(*document, format);
   return written ? std::string(as_text(*written)) : to_string(written.error());
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("every real city model comes back byte for byte") {
     const std::string name = entry.path().filename().string();
     INFO(name);
     const std::string text = test::file_text("cityjson/" + name);
-    const auto format = detect_format(name, as_bytes(text));
+    const auto format = formats::detect_format(name, as_bytes(text));
     REQUIRE(format);
     if (!read_kept(text, *format)) continue;  // test_city_json_files.cpp has the broken ones
     CHECK(read_and_written(text, *format) == text);
@@ -142,7 +142,7 @@ TEST_CASE("a line of a sequence comes back as it was") {
   const auto document = read_kept(text, Format::city_json_seq);
   REQUIRE(document);
   REQUIRE(document->features.size() == 2);
-  const auto line = write_feature(*document, document->features[1]);
+  const auto line = formats::write_feature(*document, document->features[1]);
   REQUIRE(line);
   CHECK(text.find(*line) != std::string::npos);
   CHECK(line->starts_with(R"({"type":"CityJSONFeature", "id")"));
@@ -168,32 +168,33 @@ TEST_CASE("a changed layout, or one of another document, is an error and no othe
   REQUIRE(document);
   const Bytes& layout = document->features[0].layout;
   const auto gives_text = [&](const Bytes& changed) {
-    const auto result = apply_layout(kTwoBuildings, changed, 1U << 20U);
+    const auto result = formats::apply_layout(kTwoBuildings, changed, 1U << 20U);
     if (!result) CHECK_FALSE(result.error().message.empty());
     return result && *result == text;
   };
   REQUIRE(gives_text(layout));
   for (std::size_t size = 1; size < layout.size(); ++size) {
-    CHECK_FALSE(apply_layout(kTwoBuildings, ByteView(layout).first(size), 1U << 20U));
+    CHECK_FALSE(formats::apply_layout(kTwoBuildings, ByteView(layout).first(size), 1U << 20U));
   }
   for (std::size_t i = 0; i < layout.size(); ++i) {
     for (const unsigned bit : {1U, 2U, 16U, 128U}) {
       Bytes changed = layout;
       changed[i] = static_cast<std::uint8_t>(changed[i] ^ bit);
-      const auto result = apply_layout(kTwoBuildings, changed, 1U << 20U);
+      const auto result = formats::apply_layout(kTwoBuildings, changed, 1U << 20U);
       if (result) CHECK(*result == text);
     }
   }
-  CHECK_FALSE(apply_layout("[1,2]", layout, 1U << 20U));
-  CHECK(apply_layout(kTwoBuildings, layout, 100).error().code == ErrorCode::limit_exceeded);
+  CHECK_FALSE(formats::apply_layout("[1,2]", layout, 1U << 20U));
+  CHECK(formats::apply_layout(kTwoBuildings, layout, 100).error().code ==
+        ErrorCode::limit_exceeded);
 }
 
 TEST_CASE("texts with other tokens are kept whole") {
   const std::string text = "{ \"b\" : [1, 2, 3] }";
   for (const std::string plain : {"", "[]", "{\"b\":[1,2]}", "{\"b\":[1,2,3]}}"}) {
-    const Bytes layout = describe_layout(plain, text);
-    CHECK(holds_whole_text(layout));
-    const auto again = apply_layout(plain, layout, 1000);
+    const Bytes layout = formats::describe_layout(plain, text);
+    CHECK(formats::holds_whole_text(layout));
+    const auto again = formats::apply_layout(plain, layout, 1000);
     REQUIRE(again);
     CHECK(*again == text);
   }
@@ -203,7 +204,7 @@ TEST_CASE("a layout cannot make more than the size that it states") {
   std::string plain = "[0";
   for (int i = 0; i < 20'000; ++i) plain += ",0";
   plain += ']';
-  ExceptionWriter gaps;  // a long gap before the first number, and so before each of them
+  formats::ExceptionWriter gaps;  // a long gap before the first number, and so before each of them
   gaps.expected();
   gaps.exception(std::string(60'000, ' '));
   const Bytes gap_bytes = std::move(gaps).finish();
@@ -213,7 +214,7 @@ TEST_CASE("a layout cannot make more than the size that it states") {
   layout.varint(100'000);
   layout.varint(gap_bytes.size());
   layout.append(gap_bytes);
-  const auto result = apply_layout(plain, layout.bytes(), 1U << 20U);
+  const auto result = formats::apply_layout(plain, layout.bytes(), 1U << 20U);
   REQUIRE_FALSE(result);
   CHECK(result.error().code == ErrorCode::malformed);
 }

@@ -113,7 +113,7 @@ TEST_CASE("each solid of a text STL is a feature") {
 
 TEST_CASE("a binary STL may start with the word solid") {
   CHECK(only_solid(binary_stl("solid but binary"), Format::stl) == tetrahedron());
-  CHECK(*detect_format("part", as_bytes(binary_stl("solid but binary"))) == Format::stl);
+  CHECK(*formats::detect_format("part", as_bytes(binary_stl("solid but binary"))) == Format::stl);
 }
 
 TEST_CASE("STL errors name the place") {
@@ -145,13 +145,13 @@ TEST_CASE("STL errors name the place") {
 }
 
 TEST_CASE("STL obeys the limits") {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.limits.facets = 3;
   const std::string binary = binary_stl();
-  CHECK(read_document(as_bytes(binary), Format::stl, options).error().code ==
+  CHECK(formats::read_document(as_bytes(binary), Format::stl, options).error().code ==
         ErrorCode::limit_exceeded);
   const std::string text = text_stl("x");
-  CHECK(read_document(as_bytes(text), Format::stl, options).error().code ==
+  CHECK(formats::read_document(as_bytes(text), Format::stl, options).error().code ==
         ErrorCode::limit_exceeded);
 }
 
@@ -320,7 +320,7 @@ TEST_CASE("interior shells are appended on a common grid") {
   REQUIRE(outer);
   REQUIRE(inner);
   const auto& shells = inner->features[0].solids;
-  const auto solid = with_interior_shells(outer->features[0].solids[0], shells);
+  const auto solid = formats::with_interior_shells(outer->features[0].solids[0], shells);
   REQUIRE(solid);
   CHECK(solid->solid.shell_count() == 2);
   CHECK(solid->solid.facet_count() == 5);
@@ -331,18 +331,18 @@ TEST_CASE("interior shells are appended on a common grid") {
   CHECK(solid->source.geometry_type == "Mesh");
   Limits limits;
   limits.vertices = 7;
-  CHECK(with_interior_shells(outer->features[0].solids[0], shells, limits).error().code ==
+  CHECK(formats::with_interior_shells(outer->features[0].solids[0], shells, limits).error().code ==
         ErrorCode::limit_exceeded);
 }
 
 TEST_CASE("mesh files are told by their names and by what they hold") {
-  CHECK(*detect_format("a.STL", {}) == Format::stl);
-  CHECK(*detect_format("a.ply", {}) == Format::ply);
-  CHECK(*detect_format("a.poly", {}) == Format::poly);
-  CHECK(*detect_format("", as_bytes(text_stl("x"))) == Format::stl);
-  CHECK(*detect_format("", as_bytes(binary_stl())) == Format::stl);
-  CHECK(*detect_format("", as_bytes(text_ply())) == Format::ply);
-  CHECK(*detect_format("", as_bytes(std::string("SOLID Z (((0 0 0)))\n"))) == Format::wkt);
+  CHECK(*formats::detect_format("a.STL", {}) == Format::stl);
+  CHECK(*formats::detect_format("a.ply", {}) == Format::ply);
+  CHECK(*formats::detect_format("a.poly", {}) == Format::poly);
+  CHECK(*formats::detect_format("", as_bytes(text_stl("x"))) == Format::stl);
+  CHECK(*formats::detect_format("", as_bytes(binary_stl())) == Format::stl);
+  CHECK(*formats::detect_format("", as_bytes(text_ply())) == Format::ply);
+  CHECK(*formats::detect_format("", as_bytes(std::string("SOLID Z (((0 0 0)))\n"))) == Format::wkt);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ Error error_of(const std::string& text, Format format) {
 }
 
 std::string written(const Document& document, Format format) {
-  const auto bytes = write_document(document, format);
+  const auto bytes = formats::write_document(document, format);
   REQUIRE(bytes);
   return std::string(as_text(*bytes));
 }
@@ -73,7 +73,8 @@ TEST_CASE("OBJ errors name line and byte") {
 }
 
 TEST_CASE("what follows the coordinates of an OBJ vertex is a weight or a colour") {
-  CHECK(read_document(as_bytes("v 0 0 0 1\nv 0 0 1 0.5 0.25 1\nv 1 0 0\nf 1 2 3\n"), Format::obj));
+  CHECK(formats::read_document(as_bytes("v 0 0 0 1\nv 0 0 1 0.5 0.25 1\nv 1 0 0\nf 1 2 3\n"),
+                               Format::obj));
   for (const std::string vertex : {"v 0 0 0 rubbish", "v 0 0 0 0.5 0.5", "v 0 0 0 0.5 0.5 nan",
                                    "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3"}) {
     CHECK(error_of(vertex + "\n", Format::obj).code == ErrorCode::malformed);
@@ -81,7 +82,7 @@ TEST_CASE("what follows the coordinates of an OBJ vertex is a weight or a colour
 }
 
 TEST_CASE("vertices of a file that no face uses are left out and told") {
-  const auto off = read_document(
+  const auto off = formats::read_document(
       as_bytes("OFF\n5 1 0\n9 9 9\n0 0 0\n1 0 0\n0 1 0\n2.5 0 0\n3 1 2 3\n"), Format::off);
   REQUIRE(off);
   const SubmittedSolid& solid = off->features[0].solids[0];
@@ -89,7 +90,7 @@ TEST_CASE("vertices of a file that no face uses are left out and told") {
   CHECK(solid.unused.count == 2);
   CHECK(solid.unused.first == 0);
   CHECK(solid.unused.place == std::array<double, 3>{9, 9, 9});
-  const auto objects = read_document(
+  const auto objects = formats::read_document(
       as_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\no a\nf 1 2 3\no b\nf 3 2 1\n"), Format::obj);
   REQUIRE(objects);
   CHECK(objects->features[0].solids[0].unused.count == 0);
@@ -234,7 +235,7 @@ TEST_CASE("holes and cavities are not written where a format has none") {
   REQUIRE(hollow);
   for (const Format format : {Format::obj, Format::off}) {
     for (const auto* document : {&holed, &hollow}) {
-      const auto bytes = write_document(**document, format);
+      const auto bytes = formats::write_document(**document, format);
       REQUIRE_FALSE(bytes);
       CHECK(bytes.error().code == ErrorCode::unsupported);
     }
@@ -243,8 +244,8 @@ TEST_CASE("holes and cavities are not written where a format has none") {
 
 TEST_CASE("formats are told by name, else by content") {
   const auto detected = [](std::string_view name, std::string_view text) {
-    const auto format = detect_format(name, as_bytes(text));
-    return format ? std::string(to_string(*format)) : std::string("unknown");
+    const auto format = formats::detect_format(name, as_bytes(text));
+    return format ? std::string(formats::to_string(*format)) : std::string("unknown");
   };
   CHECK(detected("a.city.json", "") == "city-json");
   CHECK(detected("a.CITY.JSONL", "") == "city-json-seq");

@@ -42,24 +42,25 @@ Soup random_soup(Random& random, std::size_t count, std::int64_t grid, std::int6
 
 bool is_degenerate(const Soup& soup, const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0] ||
-         are_collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]]);
+         geometry::are_collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]]);
 }
 
-std::vector<IntersectingPair> all_pairs(const Soup& soup) {
-  std::vector<IntersectingPair> pairs;
+std::vector<geometry::IntersectingPair> all_pairs(const Soup& soup) {
+  std::vector<geometry::IntersectingPair> pairs;
   for (Index i = 0; i < soup.triangles.size(); ++i) {
     if (is_degenerate(soup, soup.triangles[i])) continue;
     for (Index j = i + 1; j < soup.triangles.size(); ++j) {
       if (is_degenerate(soup, soup.triangles[j])) continue;
-      const auto contact = classify_contact(soup.points, soup.triangles[i], soup.triangles[j]);
-      if (is_intersection(contact)) pairs.push_back({i, j, contact});
+      const auto contact =
+          geometry::classify_contact(soup.points, soup.triangles[i], soup.triangles[j]);
+      if (geometry::is_intersection(contact)) pairs.push_back({i, j, contact});
     }
   }
   return pairs;
 }
 
-std::vector<IntersectingPair> found_pairs(const Soup& soup) {
-  auto pairs = intersecting_pairs(soup.points, soup.triangles, {.limit = 100'000'000});
+std::vector<geometry::IntersectingPair> found_pairs(const Soup& soup) {
+  auto pairs = geometry::intersecting_pairs(soup.points, soup.triangles, {.limit = 100'000'000});
   REQUIRE(pairs.has_value());
   return std::move(pairs).value();
 }
@@ -202,12 +203,12 @@ TEST_CASE("any number of threads finds the same pairs, also those up to a limit"
   soups.push_back(crossing_spheres());
   for (const Soup& soup : soups) {
     for (const std::uint64_t limit : {std::uint64_t{100}, std::uint64_t{1} << 40U}) {
-      const auto one = intersecting_pairs(soup.points, soup.triangles, {.limit = limit});
+      const auto one = geometry::intersecting_pairs(soup.points, soup.triangles, {.limit = limit});
       REQUIRE(one.has_value());
       CHECK(one->size() <= limit);
       for (const unsigned threads : {2U, 5U}) {
-        const auto several =
-            intersecting_pairs(soup.points, soup.triangles, {.limit = limit, .threads = threads});
+        const auto several = geometry::intersecting_pairs(soup.points, soup.triangles,
+                                                          {.limit = limit, .threads = threads});
         REQUIRE(several.has_value());
         CHECK(*several == *one);
       }
@@ -219,15 +220,16 @@ TEST_CASE("triangles of one group are not compared") {
   for (const Soup& soup : hard_soups()) {
     std::vector<Index> group_of;
     for (Index t = 0; t < soup.triangles.size(); ++t) group_of.push_back(t / 3);
-    auto expected = intersecting_pairs(soup.points, soup.triangles, {.limit = 100'000'000});
+    auto expected =
+        geometry::intersecting_pairs(soup.points, soup.triangles, {.limit = 100'000'000});
     REQUIRE(expected.has_value());
     const std::size_t all = expected->size();
-    std::erase_if(*expected, [&](const IntersectingPair& pair) {
+    std::erase_if(*expected, [&](const geometry::IntersectingPair& pair) {
       return group_of[pair.first] == group_of[pair.second];
     });
     CHECK(expected->size() < all);
-    const auto pairs = intersecting_pairs(soup.points, soup.triangles,
-                                          {.limit = 100'000'000, .group_of = group_of});
+    const auto pairs = geometry::intersecting_pairs(soup.points, soup.triangles,
+                                                    {.limit = 100'000'000, .group_of = group_of});
     REQUIRE(pairs.has_value());
     CHECK(*pairs == *expected);
   }
@@ -237,13 +239,13 @@ TEST_CASE("only the caller's thread is asked whether to end a search with thread
   const Soup soup = crossing_spheres();
   const auto caller = std::this_thread::get_id();
   bool is_other = false;
-  IntersectionOptions options;
+  geometry::IntersectionOptions options;
   options.threads = 4;
   options.cancel = [&] {
     is_other = is_other || std::this_thread::get_id() != caller;
     return true;
   };
-  const auto pairs = intersecting_pairs(soup.points, soup.triangles, options);
+  const auto pairs = geometry::intersecting_pairs(soup.points, soup.triangles, options);
   CHECK((pairs.has_value() || pairs.error().code == ErrorCode::cancelled));
   CHECK_FALSE(is_other);
 }
@@ -253,8 +255,8 @@ TEST_CASE("fans of many triangles end after few comparisons") {
   Random random(8);
   for (const Soup& soup : {fan(60'000, true, random), fan(30'000, false, random)}) {
     std::uint64_t asked = 0;
-    const auto pairs =
-        intersecting_pairs(soup.points, soup.triangles, {.cancel = [&] { return ++asked > 500; }});
+    const auto pairs = geometry::intersecting_pairs(soup.points, soup.triangles,
+                                                    {.cancel = [&] { return ++asked > 500; }});
     REQUIRE(pairs.has_value());
     CHECK(pairs->empty());
   }
@@ -298,10 +300,10 @@ TEST_CASE("many equal triangles end at the limit") {
   Soup soup;
   soup.points = {{0, 0, 0}, {5, 0, 0}, {0, 5, 0}};
   soup.triangles.assign(5000, {0, 1, 2});
-  const auto pairs = intersecting_pairs(soup.points, soup.triangles, {.limit = 1000});
+  const auto pairs = geometry::intersecting_pairs(soup.points, soup.triangles, {.limit = 1000});
   REQUIRE(pairs.has_value());
   CHECK(pairs->size() == 1000);
-  CHECK(pairs->front() == IntersectingPair{0, 1, ContactClass::duplicate});
+  CHECK(pairs->front() == geometry::IntersectingPair{0, 1, geometry::ContactClass::duplicate});
 }
 
 TEST_CASE("the search can be cancelled") {
@@ -309,7 +311,7 @@ TEST_CASE("the search can be cancelled") {
   soup.points = {{0, 0, 0}, {5, 0, 0}, {0, 5, 0}};
   soup.triangles.assign(3000, {0, 1, 2});
   int asked = 0;
-  const auto pairs = intersecting_pairs(
+  const auto pairs = geometry::intersecting_pairs(
       soup.points, soup.triangles, {.limit = 1ULL << 40U, .cancel = [&] { return ++asked == 3; }});
   REQUIRE_FALSE(pairs.has_value());
   CHECK(pairs.error().code == ErrorCode::cancelled);

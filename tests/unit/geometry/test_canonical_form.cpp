@@ -44,7 +44,7 @@ Solid renumbered(std::vector<Point> vertices, std::vector<Shell> shells, Random&
 }  // namespace
 
 TEST_CASE("the canonical form has sorted vertices, rings, facets and inner shells") {
-  const CanonicalSolid canonical = canonical_form(boundary_of(tunnel_solid()));
+  const geometry::CanonicalSolid canonical = geometry::canonical_form(boundary_of(tunnel_solid()));
   const Solid& solid = canonical.boundary.solid();
   CHECK(std::is_sorted(solid.vertices().begin(), solid.vertices().end()));
   for (Index ring = 0; ring < solid.ring_count(); ++ring) {
@@ -73,29 +73,29 @@ TEST_CASE("the canonical form has sorted vertices, rings, facets and inner shell
 TEST_CASE("the canonical form and the hash do not depend on numbering") {
   const auto [vertices, shells] = tunnel_with_cavities();
   const OrientedBoundary source = boundary_of(tunnel_solid());
-  const CanonicalSolid expected = canonical_form(source);
+  const geometry::CanonicalSolid expected = geometry::canonical_form(source);
   Random random(1);
   for (int round = 0; round < 50; ++round) {
     const OrientedBoundary shuffled = boundary_of(renumbered(vertices, shells, random));
-    const CanonicalSolid canonical = canonical_form(shuffled);
+    const geometry::CanonicalSolid canonical = geometry::canonical_form(shuffled);
     REQUIRE(canonical.boundary.solid() == expected.boundary.solid());
-    REQUIRE(solid_hash(shuffled) == solid_hash(source));
-    const auto restored = restore_order(canonical.boundary.solid(), canonical.order);
+    REQUIRE(geometry::solid_hash(shuffled) == geometry::solid_hash(source));
+    const auto restored = geometry::restore_order(canonical.boundary.solid(), canonical.order);
     REQUIRE(restored.has_value());
     REQUIRE(*restored == shuffled.solid());
   }
 }
 
 TEST_CASE("the canonical form of a canonical solid is itself") {
-  const CanonicalSolid once = canonical_form(boundary_of(tunnel_solid()));
+  const geometry::CanonicalSolid once = geometry::canonical_form(boundary_of(tunnel_solid()));
   CHECK_FALSE(once.order.is_identity());
-  const CanonicalSolid twice = canonical_form(once.boundary);
+  const geometry::CanonicalSolid twice = geometry::canonical_form(once.boundary);
   CHECK(twice.boundary.solid() == once.boundary.solid());
   CHECK(twice.order.is_identity());
 }
 
 TEST_CASE("the hash tells orientation, coordinates, lattice and reference system apart") {
-  const auto hash_of = [](const Solid& solid) { return solid_hash(boundary_of(solid)); };
+  const auto hash_of = [](const Solid& solid) { return geometry::solid_hash(boundary_of(solid)); };
   const Solid source = tunnel_solid();
   const auto remade = [&](auto change) {
     SolidArrays arrays = source.arrays();
@@ -122,22 +122,25 @@ TEST_CASE("the hash tells orientation, coordinates, lattice and reference system
 }
 
 TEST_CASE("restoring refuses orders that do not fit the solid") {
-  const CanonicalSolid canonical = canonical_form(boundary_of(tunnel_solid()));
+  const geometry::CanonicalSolid canonical = geometry::canonical_form(boundary_of(tunnel_solid()));
   const Solid& solid = canonical.boundary.solid();
   const auto is_refused = [&](auto change) {
-    SourceOrder order = canonical.order;
+    geometry::SourceOrder order = canonical.order;
     change(order);
-    const auto restored = restore_order(solid, order);
+    const auto restored = geometry::restore_order(solid, order);
     return !restored && restored.error().code == ErrorCode::malformed;
   };
-  CHECK(is_refused([](SourceOrder& order) { order.vertex.pop_back(); }));
-  CHECK(is_refused([](SourceOrder& order) { order.vertex[0] = order.vertex[1]; }));
-  CHECK(is_refused([](SourceOrder& order) { order.facet[2] = 1'000'000; }));
-  CHECK(is_refused([](SourceOrder& order) { std::swap(order.shell[0], order.shell[1]); }));
-  CHECK(is_refused([](SourceOrder& order) { std::swap(order.facet.front(), order.facet.back()); }));
-  CHECK(is_refused([](SourceOrder& order) { std::swap(order.ring.front(), order.ring.back()); }));
-  CHECK(is_refused([](SourceOrder& order) { std::swap(order.ring[0], order.ring[1]); }));
-  CHECK(is_refused([](SourceOrder& order) { order.ring_start[0] = 4; }));
+  CHECK(is_refused([](geometry::SourceOrder& order) { order.vertex.pop_back(); }));
+  CHECK(is_refused([](geometry::SourceOrder& order) { order.vertex[0] = order.vertex[1]; }));
+  CHECK(is_refused([](geometry::SourceOrder& order) { order.facet[2] = 1'000'000; }));
+  CHECK(
+      is_refused([](geometry::SourceOrder& order) { std::swap(order.shell[0], order.shell[1]); }));
+  CHECK(is_refused(
+      [](geometry::SourceOrder& order) { std::swap(order.facet.front(), order.facet.back()); }));
+  CHECK(is_refused(
+      [](geometry::SourceOrder& order) { std::swap(order.ring.front(), order.ring.back()); }));
+  CHECK(is_refused([](geometry::SourceOrder& order) { std::swap(order.ring[0], order.ring[1]); }));
+  CHECK(is_refused([](geometry::SourceOrder& order) { order.ring_start[0] = 4; }));
 }
 
 }  // namespace watertight::test

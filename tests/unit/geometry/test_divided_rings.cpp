@@ -7,7 +7,7 @@
 namespace watertight::test {
 namespace {
 
-using Touches = std::vector<RingTouch>;
+using Touches = std::vector<geometry::RingTouch>;
 
 /// One facet with these rings.
 Solid facet_solid(const std::vector<Point>& vertices, const Facet& rings) {
@@ -20,25 +20,28 @@ TEST_CASE("touches are given by corner and along the edge, for either direction"
   const std::vector<Point> vertices{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {6, 0, 0},
                                     {7, 2, 0}, {5, 2, 0}, {3, 0, 0}, {4, 2, 0}, {2, 2, 0}};
   const Facet rings{{0, 1, 2, 3}, {4, 6, 5}, {7, 9, 8}};
-  CHECK(ring_touches(facet_solid(vertices, rings)) == Touches{{0, 7}, {0, 4}});
+  CHECK(geometry::ring_touches(facet_solid(vertices, rings)) == Touches{{0, 7}, {0, 4}});
   const Facet reversed{{3, 2, 1, 0}, {4, 5, 6}, {7, 8, 9}};
-  CHECK(ring_touches(facet_solid(vertices, reversed)) == Touches{{2, 4}, {2, 7}});
+  CHECK(geometry::ring_touches(facet_solid(vertices, reversed)) == Touches{{2, 4}, {2, 7}});
 }
 
 TEST_CASE("vertices of the same ring, shared vertices and vertices beside an edge touch nothing") {
   const std::vector<Point> vertices{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0},
                                     {4, 0, 0}, {5, 2, 0}, {3, 2, 0}, {4, 0, 1}};
-  CHECK(ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}})).empty());             // one ring
-  CHECK(ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}, {4, 6, 5}})).empty());  // has it too
-  CHECK(ring_touches(facet_solid(vertices, {{0, 4, 1, 2, 3}, {4, 6, 5}})).empty());  // shared
-  CHECK(ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {7, 6, 5}})).empty());     // one step off
-  CHECK(ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {4, 6, 5}})).size() == 1);
+  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}})).empty());  // one ring
+  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}, {4, 6, 5}}))
+            .empty());  // has it too
+  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 4, 1, 2, 3}, {4, 6, 5}}))
+            .empty());  // shared
+  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {7, 6, 5}}))
+            .empty());  // one step off
+  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {4, 6, 5}})).size() == 1);
 }
 
 TEST_CASE("a vertex of two rings splits an edge of a third once") {
   const std::vector<Point> vertices{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {4, 0, 0},
                                     {5, 2, 0}, {4, 2, 0}, {3, 2, 0}, {2, 2, 0}};
-  CHECK(ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {4, 6, 5}, {4, 8, 7}})) ==
+  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {4, 6, 5}, {4, 8, 7}})) ==
         Touches{{0, 4}});
 }
 
@@ -46,11 +49,12 @@ TEST_CASE("divided rings keep vertices, facets and shells and tell where each co
   const std::vector<Point> vertices{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {6, 0, 0},
                                     {7, 2, 0}, {5, 2, 0}, {3, 0, 0}, {4, 2, 0}, {2, 2, 0}};
   const Solid solid = facet_solid(vertices, {{0, 1, 2, 3}, {4, 6, 5}, {7, 9, 8}});
-  const DividedRings divided = divide_rings(solid, ring_touches(solid));
+  const geometry::DividedRings divided =
+      geometry::divide_rings(solid, geometry::ring_touches(solid));
   CHECK(divided.solid == facet_solid(vertices, {{0, 7, 4, 1, 2, 3}, {4, 6, 5}, {7, 9, 8}}));
   CHECK(divided.corner_of == std::vector<Index>{0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
-  CHECK(divide_rings(solid, {}).solid == solid);
-  CHECK(ring_touches(divided.solid).empty());
+  CHECK(geometry::divide_rings(solid, {}).solid == solid);
+  CHECK(geometry::ring_touches(divided.solid).empty());
 }
 
 TEST_CASE("rings that must share segments are not divided, and take no more memory for it") {
@@ -63,7 +67,7 @@ TEST_CASE("rings that must share segments are not divided, and take no more memo
     vertices.insert(vertices.end(), {{x, 0, 0}, {1000 + x, 0, 0}, {x, 1 + x, 0}});
     rings.push_back({first, first + 1, first + 2});
   }
-  CHECK(ring_touches(facet_solid(vertices, rings)).empty());
+  CHECK(geometry::ring_touches(facet_solid(vertices, rings)).empty());
 }
 
 TEST_CASE("a plate with a thousand holes that touch its edges is searched at once") {
@@ -75,9 +79,9 @@ TEST_CASE("a plate with a thousand holes that touch its edges is searched at onc
     vertices.insert(vertices.end(), {{x, 0, 0}, {x - 1, 9, 0}, {x + 1, 9, 0}});
     rings.push_back({first, first + 1, first + 2});
   }
-  const Touches touches = ring_touches(facet_solid(vertices, rings));
+  const Touches touches = geometry::ring_touches(facet_solid(vertices, rings));
   REQUIRE(touches.size() == 1000);
-  for (Index i = 0; i < 1000; ++i) CHECK(touches[i] == RingTouch{0, 4 + 3 * i});
+  for (Index i = 0; i < 1000; ++i) CHECK(touches[i] == geometry::RingTouch{0, 4 + 3 * i});
 }
 
 }  // namespace watertight::test

@@ -35,7 +35,7 @@ TEST_CASE("a box has its volume, area, box and genus") {
   lattice.step = {GridNumber{1, -1}, GridNumber{1, -1}, GridNumber{1, -1}};
   lattice.origin = {GridNumber{5, 2}, GridNumber{-7, 0}, GridNumber{25, -2}};
   const Solid solid = box_solid({0, 0, 0}, {30, 20, 10}, lattice);
-  const Measures measures = measure(solid, fans(solid));
+  const geometry::Measures measures = geometry::measure(solid, fans(solid));
   CHECK(measures.volume == 6.0);  // exact, although 0.1 is no double
   CHECK(std::abs(measures.area - 22.0) < 1e-12);
   CHECK(measures.box_min == std::array<double, 3>{500, -7, 0.25});
@@ -47,34 +47,34 @@ TEST_CASE("a box has its volume, area, box and genus") {
 
 TEST_CASE("genus counts the tunnels of all shells") {
   const Solid solid = tunnel_solid();
-  CHECK(measure(solid, {}).genus == 2);
-  CHECK(measure(solid, {}).shells == 3);
-  CHECK(measure(solid, {}).rings == solid.ring_count());
+  CHECK(geometry::measure(solid, {}).genus == 2);
+  CHECK(geometry::measure(solid, {}).shells == 3);
+  CHECK(geometry::measure(solid, {}).rings == solid.ring_count());
 }
 
 TEST_CASE("the sign of the volume follows the orientation") {
   const Solid outward = box_solid({0, 0, 0}, {1, 1, 1}, {});
   const Solid inward = box_solid({0, 0, 0}, {1, 1, 1}, {}, false);
-  CHECK(volume_sign(outward.vertices(), fans(outward)) == 1);
-  CHECK(volume_sign(inward.vertices(), fans(inward)) == -1);
-  CHECK(volume_sign(inward.vertices(), {}) == 0);
-  CHECK(six_volume(inward.vertices(), fans(inward)) == -6.0);
+  CHECK(geometry::volume_sign(outward.vertices(), fans(outward)) == 1);
+  CHECK(geometry::volume_sign(inward.vertices(), fans(inward)) == -1);
+  CHECK(geometry::volume_sign(inward.vertices(), {}) == 0);
+  CHECK(geometry::six_volume(inward.vertices(), fans(inward)) == -6.0);
 }
 
 TEST_CASE("volumes are exact where doubles cancel") {
   // A sheet one unit thick at 2^52: the terms are near 2^156.
   const double far = std::ldexp(1.0, 52);
   const Solid thin = box_solid({far, far, far}, {far + 1, far + 3, far + 5}, {});
-  CHECK(six_volume(thin.vertices(), fans(thin)) == 6.0 * 15);
+  CHECK(geometry::six_volume(thin.vertices(), fans(thin)) == 6.0 * 15);
   const Solid wide = box_solid({0, 0, 0}, {far, far, 1}, {});
-  CHECK(six_volume(wide.vertices(), fans(wide)) == 6.0 * std::ldexp(1.0, 104));
+  CHECK(geometry::six_volume(wide.vertices(), fans(wide)) == 6.0 * std::ldexp(1.0, 104));
   // Doubles that are no integers, and a span of magnitudes.
   Lattice plain;
   plain.kind = LatticeKind::float64;
   const Solid small = box_solid({1e-200, 0.5, 0.25}, {3e-200, 0.75, 1e200}, plain);
-  const double volume = six_volume(small.vertices(), fans(small));
+  const double volume = geometry::six_volume(small.vertices(), fans(small));
   CHECK(std::abs(volume / (6 * 2e-200 * 0.25 * 1e200) - 1) < 1e-15);
-  CHECK(volume_sign(small.vertices(), fans(small)) == 1);
+  CHECK(geometry::volume_sign(small.vertices(), fans(small)) == 1);
 }
 
 TEST_CASE("128-bit and long integers give the same volume") {
@@ -88,13 +88,13 @@ TEST_CASE("128-bit and long integers give the same volume") {
     for (Triangle& triangle : triangles) {
       for (Index& vertex : triangle) vertex = static_cast<Index>(random.below(vertices.size()));
     }
-    const double direct = six_volume(vertices, triangles);
+    const double direct = geometry::six_volume(vertices, triangles);
     // Scaled by 2^-21 they are no integers: the same sum times 2^-63, in long integers.
     std::vector<Point> eighths = vertices;
     for (Point& p : eighths) {
       for (int axis = 0; axis < 3; ++axis) p[axis] /= 2097152.0;
     }
-    REQUIRE(six_volume(eighths, triangles) == std::ldexp(direct, -63));
+    REQUIRE(geometry::six_volume(eighths, triangles) == std::ldexp(direct, -63));
   }
 }
 

@@ -63,10 +63,10 @@ TEST_CASE("orientations near zero are exact for coordinates of every size") {
       const Point e = near_plane(a, b, b, random);
       INFO(bits << " bits, round " << round);
       const int sign = exact_orient3d(a, b, c, d);
-      CHECK(orient3d(a, b, c, d) == sign);
+      CHECK(geometry::orient3d(a, b, c, d) == sign);
       ++signs[std::size_t(sign + 1)];
       for (int axis = 0; axis < 3; ++axis) {
-        CHECK(orient2d(a, b, e, axis) == exact_orient2d(a, b, e, axis));
+        CHECK(geometry::orient2d(a, b, e, axis) == exact_orient2d(a, b, e, axis));
       }
     }
   }

@@ -30,7 +30,7 @@ Lattice decimal_lattice(int exponent, GridNumber origin = {}) {
 }
 
 GridNumber decimal(const std::string& text) {
-  const auto number = parse_decimal(text);
+  const auto number = geometry::parse_decimal(text);
   REQUIRE(number);
   return *number;
 }
@@ -40,7 +40,7 @@ GridNumber decimal(const std::string& text) {
 TEST_CASE("solids without placements are on the grid of their lattices") {
   const Solid coarse = triangle_of({{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}, decimal_lattice(-2));
   const Solid fine = triangle_of({{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}, decimal_lattice(-3, {1, 0}));
-  const auto grid = SharedGrid::of_one_frame({{&coarse, nullptr}, {&fine, nullptr}});
+  const auto grid = geometry::SharedGrid::of_one_frame({{&coarse, nullptr}, {&fine, nullptr}});
   REQUIRE(grid);
   CHECK(grid->frame() == nullptr);
   CHECK(grid->lattice().step[0] == GridNumber{1, -3});
@@ -52,11 +52,11 @@ TEST_CASE("solids without placements are on the grid of their lattices") {
 
 TEST_CASE("solids of one placement are on the grid of their template") {
   const Solid solid = triangle_of({{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}, decimal_lattice(-1));
-  Placement placement;
+  geometry::Placement placement;
   placement.linear[0][0] = decimal("0.333333333333333333");
   placement.anchor = {{{3, 0}, {4, 0}, {5, 0}}};
-  const Placement same = placement;
-  const auto grid = SharedGrid::of_one_frame({{&solid, &placement}, {&solid, &same}});
+  const geometry::Placement same = placement;
+  const auto grid = geometry::SharedGrid::of_one_frame({{&solid, &placement}, {&solid, &same}});
   REQUIRE(grid);
   CHECK(grid->frame() == &placement);
   CHECK(grid->vertices(1)->front() == Point{1, 2, 3});
@@ -65,12 +65,12 @@ TEST_CASE("solids of one placement are on the grid of their template") {
 
 TEST_CASE("solids of different placements are put into the world exactly where a grid holds them") {
   const Solid solid = triangle_of({{0, 0, 0}, {10, 0, 0}, {0, 10, 25}}, decimal_lattice(-1));
-  Placement turned;  // 0.6 -0.8; 0.8 0.6
+  geometry::Placement turned;  // 0.6 -0.8; 0.8 0.6
   turned.linear[0] = {decimal("0.6"), decimal("-0.8"), {}};
   turned.linear[1] = {decimal("0.8"), decimal("0.6"), {}};
   turned.offset = {{decimal("0.125"), {}, {}}};
   turned.anchor = {{decimal("1000"), decimal("-2000.5"), {}}};
-  const auto grid = SharedGrid::in_world({{&solid, nullptr}, {&solid, &turned}});
+  const auto grid = geometry::SharedGrid::in_world({{&solid, nullptr}, {&solid, &turned}});
   REQUIRE(grid);
   CHECK(grid->frame() == nullptr);
   CHECK(grid->rounded_axes(0) == kNoAxis);
@@ -88,10 +88,10 @@ TEST_CASE("solids of different placements are put into the world exactly where a
 
 TEST_CASE("a grid too fine for doubles is coarsened, and says whose vertices are rounded") {
   const Solid solid = triangle_of({{0, 0, 0}, {7, 0, 0}, {0, 7, 3}});
-  Placement long_digits;
+  geometry::Placement long_digits;
   long_digits.linear[0][0] = decimal("0.707106781186547524");
   long_digits.linear[1][0] = decimal("0.70710678118654752");
-  const auto grid = SharedGrid::in_world({{&solid, nullptr}, {&solid, &long_digits}});
+  const auto grid = geometry::SharedGrid::in_world({{&solid, nullptr}, {&solid, &long_digits}});
   REQUIRE(grid);
   CHECK(grid->rounded_axes(0) == kNoAxis);
   CHECK(grid->rounded_axes(1) == std::array{true, true, false});
@@ -107,8 +107,8 @@ TEST_CASE("doubles of a template count as the decimals that they are") {
   const Lattice doubles{LatticeKind::float64};
   const Solid solid = triangle_of({{0.1, 0, 0}, {1, 0, 0}, {0, 1e-300, 1}}, doubles);
   const Solid whole = triangle_of({{0, 0, 0}, {7, 0, 0}, {0, 7, 3}});
-  const Placement here;
-  const auto grid = SharedGrid::in_world({{&solid, &here}, {&whole, nullptr}});
+  const geometry::Placement here;
+  const auto grid = geometry::SharedGrid::in_world({{&solid, &here}, {&whole, nullptr}});
   REQUIRE(grid);
   CHECK(grid->rounded_axes(0)[0]);
   CHECK(grid->rounded_axes(1) == kNoAxis);
@@ -118,9 +118,9 @@ TEST_CASE("doubles of a template count as the decimals that they are") {
 
 TEST_CASE("places beyond the doubles have no grid") {
   const Solid solid = triangle_of({{0, 0, 0}, {7, 0, 0}, {0, 7, 3}}, decimal_lattice(1000));
-  Placement far;
+  geometry::Placement far;
   far.linear[0][0] = {1, 300};
-  CHECK_FALSE(SharedGrid::in_world({{&solid, nullptr}, {&solid, &far}}));
+  CHECK_FALSE(geometry::SharedGrid::in_world({{&solid, nullptr}, {&solid, &far}}));
 }
 
 }  // namespace watertight::test

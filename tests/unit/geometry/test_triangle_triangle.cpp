@@ -12,8 +12,8 @@ namespace watertight::test {
 namespace {
 
 /// The class of (p0, p1, p2) and three further points, or common ones where indices are given.
-ContactClass contact(std::vector<Point> points, Triangle second = {3, 4, 5}) {
-  return classify_contact(points, {0, 1, 2}, second);
+geometry::ContactClass contact(std::vector<Point> points, Triangle second = {3, 4, 5}) {
+  return geometry::classify_contact(points, {0, 1, 2}, second);
 }
 
 const std::vector<Point> kFloor{{0, 0, 0}, {12, 0, 0}, {0, 12, 0}};
@@ -27,67 +27,85 @@ std::vector<Point> with_floor(std::initializer_list<Point> others) {
 }  // namespace
 
 TEST_CASE("triangles that only share vertices or edges do not intersect") {
-  CHECK(contact(with_floor({{0, 0, 9}, {5, 5, 9}, {1, 7, 2}})) == ContactClass::disjoint);
-  CHECK(contact(with_floor({{5, 0, 5}, {0, 5, 5}}), {0, 3, 4}) == ContactClass::shared_vertex);
-  CHECK(contact(with_floor({{-5, -1, 0}, {-1, -5, 0}}), {0, 3, 4}) == ContactClass::shared_vertex);
-  CHECK(contact(with_floor({{5, 5, 5}}), {1, 0, 3}) == ContactClass::shared_edge);
-  CHECK(contact(with_floor({{5, -5, 0}}), {1, 0, 3}) == ContactClass::shared_edge);
-  for (const ContactClass fine :
-       {ContactClass::disjoint, ContactClass::shared_vertex, ContactClass::shared_edge}) {
-    CHECK_FALSE(is_intersection(fine));
+  CHECK(contact(with_floor({{0, 0, 9}, {5, 5, 9}, {1, 7, 2}})) == geometry::ContactClass::disjoint);
+  CHECK(contact(with_floor({{5, 0, 5}, {0, 5, 5}}), {0, 3, 4}) ==
+        geometry::ContactClass::shared_vertex);
+  CHECK(contact(with_floor({{-5, -1, 0}, {-1, -5, 0}}), {0, 3, 4}) ==
+        geometry::ContactClass::shared_vertex);
+  CHECK(contact(with_floor({{5, 5, 5}}), {1, 0, 3}) == geometry::ContactClass::shared_edge);
+  CHECK(contact(with_floor({{5, -5, 0}}), {1, 0, 3}) == geometry::ContactClass::shared_edge);
+  for (const geometry::ContactClass fine :
+       {geometry::ContactClass::disjoint, geometry::ContactClass::shared_vertex,
+        geometry::ContactClass::shared_edge}) {
+    CHECK_FALSE(geometry::is_intersection(fine));
   }
-  CHECK(is_intersection(ContactClass::vertex_vertex));
+  CHECK(geometry::is_intersection(geometry::ContactClass::vertex_vertex));
 }
 
 TEST_CASE("every way of touching has its name") {
-  CHECK(contact(with_floor({{0, 0, 0}, {3, 3, 5}, {3, 1, 5}})) == ContactClass::vertex_vertex);
-  CHECK(contact(with_floor({{6, 0, 0}, {3, 3, 5}, {3, 1, 5}})) == ContactClass::vertex_edge);
-  CHECK(contact(with_floor({{3, 3, 0}, {3, 3, 5}, {3, 1, 5}})) == ContactClass::vertex_face);
-  CHECK(contact(with_floor({{6, 0, -3}, {6, 0, 3}, {6, -9, 0}})) == ContactClass::edge_edge);
-  CHECK(contact(with_floor({{3, 0, 0}, {20, 0, 0}, {6, -9, 4}})) == ContactClass::edge_overlap);
-  CHECK(contact(with_floor({{3, 3, 0}, {20, 3, 0}, {6, 3, 4}})) == ContactClass::edge_face);
-  CHECK(contact(with_floor({{3, 3, -3}, {3, 3, 3}, {20, 3, 0}})) == ContactClass::crossing);
-  CHECK(contact(with_floor({{3, 3, 0}, {20, 3, 0}, {3, 20, 0}})) == ContactClass::coplanar_overlap);
-  CHECK(contact(with_floor({{0, 12, 0}, {0, 0, 0}, {12, 0, 0}})) == ContactClass::duplicate);
-  CHECK(contact(kFloor, {2, 1, 0}) == ContactClass::duplicate);
+  CHECK(contact(with_floor({{0, 0, 0}, {3, 3, 5}, {3, 1, 5}})) ==
+        geometry::ContactClass::vertex_vertex);
+  CHECK(contact(with_floor({{6, 0, 0}, {3, 3, 5}, {3, 1, 5}})) ==
+        geometry::ContactClass::vertex_edge);
+  CHECK(contact(with_floor({{3, 3, 0}, {3, 3, 5}, {3, 1, 5}})) ==
+        geometry::ContactClass::vertex_face);
+  CHECK(contact(with_floor({{6, 0, -3}, {6, 0, 3}, {6, -9, 0}})) ==
+        geometry::ContactClass::edge_edge);
+  CHECK(contact(with_floor({{3, 0, 0}, {20, 0, 0}, {6, -9, 4}})) ==
+        geometry::ContactClass::edge_overlap);
+  CHECK(contact(with_floor({{3, 3, 0}, {20, 3, 0}, {6, 3, 4}})) ==
+        geometry::ContactClass::edge_face);
+  CHECK(contact(with_floor({{3, 3, -3}, {3, 3, 3}, {20, 3, 0}})) ==
+        geometry::ContactClass::crossing);
+  CHECK(contact(with_floor({{3, 3, 0}, {20, 3, 0}, {3, 20, 0}})) ==
+        geometry::ContactClass::coplanar_overlap);
+  CHECK(contact(with_floor({{0, 12, 0}, {0, 0, 0}, {12, 0, 0}})) ==
+        geometry::ContactClass::duplicate);
+  CHECK(contact(kFloor, {2, 1, 0}) == geometry::ContactClass::duplicate);
 }
 
 TEST_CASE("triangles with a common vertex or edge can still intersect") {
-  CHECK(contact(with_floor({{9, 9, -5}, {9, 9, 5}}), {0, 3, 4}) == ContactClass::crossing);
-  CHECK(contact(with_floor({{-9, -9, -5}, {-9, -9, 5}}), {0, 3, 4}) == ContactClass::shared_vertex);
-  CHECK(contact(with_floor({{3, 3, 0}, {3, 3, 5}}), {0, 3, 4}) == ContactClass::edge_face);
-  CHECK(contact(with_floor({{6, 0, 0}, {3, 3, 5}}), {0, 3, 4}) == ContactClass::edge_overlap);
-  CHECK(contact(with_floor({{6, 0, 0}, {9, -9, 0}}), {0, 3, 4}) == ContactClass::edge_overlap);
-  CHECK(contact(with_floor({{3, 1, 0}, {1, 3, 0}}), {0, 3, 4}) == ContactClass::coplanar_overlap);
-  CHECK(contact(with_floor({{5, 5, 0}}), {1, 0, 3}) == ContactClass::coplanar_overlap);
-  CHECK(contact(with_floor({{0, 12, 0}}), {1, 0, 3}) == ContactClass::duplicate);
+  CHECK(contact(with_floor({{9, 9, -5}, {9, 9, 5}}), {0, 3, 4}) ==
+        geometry::ContactClass::crossing);
+  CHECK(contact(with_floor({{-9, -9, -5}, {-9, -9, 5}}), {0, 3, 4}) ==
+        geometry::ContactClass::shared_vertex);
+  CHECK(contact(with_floor({{3, 3, 0}, {3, 3, 5}}), {0, 3, 4}) ==
+        geometry::ContactClass::edge_face);
+  CHECK(contact(with_floor({{6, 0, 0}, {3, 3, 5}}), {0, 3, 4}) ==
+        geometry::ContactClass::edge_overlap);
+  CHECK(contact(with_floor({{6, 0, 0}, {9, -9, 0}}), {0, 3, 4}) ==
+        geometry::ContactClass::edge_overlap);
+  CHECK(contact(with_floor({{3, 1, 0}, {1, 3, 0}}), {0, 3, 4}) ==
+        geometry::ContactClass::coplanar_overlap);
+  CHECK(contact(with_floor({{5, 5, 0}}), {1, 0, 3}) == geometry::ContactClass::coplanar_overlap);
+  CHECK(contact(with_floor({{0, 12, 0}}), {1, 0, 3}) == geometry::ContactClass::duplicate);
 }
 
 TEST_CASE("the witness is the middle of what triangles have in common") {
   auto points = with_floor({{3, 3, -3}, {3, 3, 3}, {20, 3, 0}});
-  CHECK(contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{6, 3, 0});
+  CHECK(geometry::contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{6, 3, 0});
   points = with_floor({{1, 1, 0}, {1, 1, 1}, {1, 2, 1}});
-  CHECK(contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{1, 1, 0});
+  CHECK(geometry::contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{1, 1, 0});
   // A third is no double: rounded once.
   points = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {1, 1, -1}, {1, 1, 2}, {2, 1, 2}};
-  CHECK(contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{1 + 1.0 / 6, 1, 0});
+  CHECK(geometry::contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{1 + 1.0 / 6, 1, 0});
 }
 
 TEST_CASE("the classification agrees with an exact construction on random degenerate pairs") {
   Random random(2026);
-  std::map<ContactClass, int> counts;
+  std::map<geometry::ContactClass, int> counts;
   constexpr int kPairs = 20'000;
   for (int i = 0; i < kPairs; ++i) {
     const TrianglePair pair = random_pair(random);
     const auto difference = disagreement(pair, random);
     INFO("pair " << i << ": " << difference.value_or(""));
     REQUIRE_FALSE(difference.has_value());
-    ++counts[classify_contact(pair.points, pair.first, pair.second)];
+    ++counts[geometry::classify_contact(pair.points, pair.first, pair.second)];
   }
   // Every class occurs often enough to mean something.
   CHECK(counts.size() == 12);
   for (const auto& [contact_class, count] : counts) {
-    INFO(to_string(contact_class));
+    INFO(geometry::to_string(contact_class));
     CHECK(count > 50);
   }
 }

@@ -48,7 +48,7 @@ TEST_CASE("an edge used twice in each direction is matched") {
   Shell shell = box_shell(vertices, {0, 0, 0}, {1, 1, 1}, true);
   Shell second = box_shell(vertices, {1, 1, 0}, {2, 2, 1}, true);
   shell.insert(shell.end(), second.begin(), second.end());
-  const Solid solid = merge_equal_vertices(solid_of(vertices, {shell})).solid;
+  const Solid solid = geometry::merge_equal_vertices(solid_of(vertices, {shell})).solid;
   REQUIRE(solid.vertex_count() == 14);
   CHECK(OrientedBoundary::make(solid).has_value());
 }

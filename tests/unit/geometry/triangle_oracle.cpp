@@ -62,33 +62,33 @@ std::size_t common_indices(const TrianglePair& pair) {
       }));
 }
 
-ContactClass class_of_point(const TrianglePair& pair, Feature a, Feature b) {
-  if (common_indices(pair) > 0) return ContactClass::shared_vertex;
-  if (a == Feature::vertex && b == Feature::vertex) return ContactClass::vertex_vertex;
-  if (a == Feature::inside || b == Feature::inside) return ContactClass::vertex_face;
-  if (a == Feature::edge && b == Feature::edge) return ContactClass::edge_edge;
-  return ContactClass::vertex_edge;
+geometry::ContactClass class_of_point(const TrianglePair& pair, Feature a, Feature b) {
+  if (common_indices(pair) > 0) return geometry::ContactClass::shared_vertex;
+  if (a == Feature::vertex && b == Feature::vertex) return geometry::ContactClass::vertex_vertex;
+  if (a == Feature::inside || b == Feature::inside) return geometry::ContactClass::vertex_face;
+  if (a == Feature::edge && b == Feature::edge) return geometry::ContactClass::edge_edge;
+  return geometry::ContactClass::vertex_edge;
 }
 
-ContactClass class_of_segment(const TrianglePair& pair, Feature a, Feature b) {
-  if (common_indices(pair) == 2) return ContactClass::shared_edge;
-  if (a == Feature::inside && b == Feature::inside) return ContactClass::crossing;
-  if (a == Feature::inside || b == Feature::inside) return ContactClass::edge_face;
-  return ContactClass::edge_overlap;
+geometry::ContactClass class_of_segment(const TrianglePair& pair, Feature a, Feature b) {
+  if (common_indices(pair) == 2) return geometry::ContactClass::shared_edge;
+  if (a == Feature::inside && b == Feature::inside) return geometry::ContactClass::crossing;
+  if (a == Feature::inside || b == Feature::inside) return geometry::ContactClass::edge_face;
+  return geometry::ContactClass::edge_overlap;
 }
 
-ContactClass class_of_area(const TrianglePair& pair) {
+geometry::ContactClass class_of_area(const TrianglePair& pair) {
   const auto sorted = [&](const Triangle& t) {
     std::array<Point, 3> points{pair.points[t[0]], pair.points[t[1]], pair.points[t[2]]};
     std::sort(points.begin(), points.end());
     return points;
   };
-  return sorted(pair.first) == sorted(pair.second) ? ContactClass::duplicate
-                                                   : ContactClass::coplanar_overlap;
+  return sorted(pair.first) == sorted(pair.second) ? geometry::ContactClass::duplicate
+                                                   : geometry::ContactClass::coplanar_overlap;
 }
 
 bool is_degenerate(const TrianglePair& pair, const Triangle& t) {
-  return are_collinear(pair.points[t[0]], pair.points[t[1]], pair.points[t[2]]);
+  return geometry::are_collinear(pair.points[t[0]], pair.points[t[1]], pair.points[t[2]]);
 }
 
 /// Moves a vertex of the second triangle to a point of the first one's plane: weights of sixths on
@@ -133,9 +133,11 @@ TrianglePair candidate(Random& random) {
   return pair;
 }
 
-std::string description(const TrianglePair& pair, ContactClass expected, ContactClass found) {
+std::string description(const TrianglePair& pair, geometry::ContactClass expected,
+                        geometry::ContactClass found) {
   std::ostringstream text;
-  text << "constructed " << to_string(expected) << ", classified " << to_string(found) << ":";
+  text << "constructed " << geometry::to_string(expected) << ", classified "
+       << geometry::to_string(found) << ":";
   for (const Triangle* t : {&pair.first, &pair.second}) {
     for (const Index vertex : *t) {
       const Point& p = pair.points[vertex];
@@ -156,10 +158,10 @@ TrianglePair random_pair(Random& random) {
   return pair;
 }
 
-ContactClass constructed_class(const TrianglePair& pair) {
-  if (common_indices(pair) == 3) return ContactClass::duplicate;
+geometry::ContactClass constructed_class(const TrianglePair& pair) {
+  if (common_indices(pair) == 3) return geometry::ContactClass::duplicate;
   const std::vector<Exact> corners = common_part(pair);
-  if (corners.empty()) return ContactClass::disjoint;
+  if (corners.empty()) return geometry::ContactClass::disjoint;
   if (corners.size() > 2) return class_of_area(pair);
   const Exact middle = CGAL::midpoint(corners.front(), corners.back());
   const Feature a = feature_of(exact(pair, pair.first), middle);
@@ -168,21 +170,22 @@ ContactClass constructed_class(const TrianglePair& pair) {
 }
 
 std::optional<std::string> disagreement(const TrianglePair& pair, Random& random) {
-  const ContactClass expected = constructed_class(pair);
-  const auto found = classify_contact(pair.points, pair.first, pair.second);
+  const geometry::ContactClass expected = constructed_class(pair);
+  const auto found = geometry::classify_contact(pair.points, pair.first, pair.second);
   if (found != expected) return description(pair, expected, found);
   Triangle first = pair.first;
   Triangle second = pair.second;
   shuffle(first, random);
   shuffle(second, random);
-  const auto turned = classify_contact(pair.points, second, first);
+  const auto turned = geometry::classify_contact(pair.points, second, first);
   if (turned != expected) return "turned: " + description(pair, expected, turned);
   // The box partition decides most pairs by shorter ways.
   const std::array<Triangle, 2> both{first, second};
-  const auto searched = intersecting_pairs(pair.points, both);
+  const auto searched = geometry::intersecting_pairs(pair.points, both);
   const bool is_found = searched && searched->size() == 1;
-  const ContactClass contact = is_found ? searched->front().contact : ContactClass::disjoint;
-  if (is_found != is_intersection(expected) || (is_found && contact != expected)) {
+  const geometry::ContactClass contact =
+      is_found ? searched->front().contact : geometry::ContactClass::disjoint;
+  if (is_found != geometry::is_intersection(expected) || (is_found && contact != expected)) {
     return "searched: " + description(pair, expected, contact);
   }
   return std::nullopt;

@@ -27,7 +27,7 @@ struct TrianglePair {
 TrianglePair random_pair(Random& random);
 
 /// The class by construction.
-ContactClass constructed_class(const TrianglePair& pair);
+geometry::ContactClass constructed_class(const TrianglePair& pair);
 
 /// Nothing if the classification agrees with the construction for both orders of the triangles and
 /// for shuffled vertices, and if the box partition finds the pair exactly when it intersects; else

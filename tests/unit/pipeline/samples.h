@@ -54,14 +54,14 @@ class MemoryStore final : public SolidStore {
     if (is_away) return away();
     return Done{};
   }
-  Result<std::vector<StoredCollection>> collections() override {
+  Result<std::vector<store::StoredCollection>> collections() override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
-    std::vector<StoredCollection> all;
+    std::vector<store::StoredCollection> all;
     for (const auto& [id, features] : features_) all.push_back(summary(id));
     return all;
   }
-  Result<StoredCollection> collection(const std::string& id) override {
+  Result<store::StoredCollection> collection(const std::string& id) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
     if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
@@ -88,10 +88,10 @@ class MemoryStore final : public SolidStore {
     }
     return features->second.at(id);
   }
-  Result<FeaturePage> list(const FeatureQuery& query) override {
+  Result<store::FeaturePage> list(const store::FeatureQuery& query) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
-    FeaturePage page;
+    store::FeaturePage page;
     for (const auto& [id, feature] : features_[query.collection]) {
       if (query.box && !(feature.box && overlap(*query.box, *feature.box))) continue;
       ++page.matched;
@@ -104,21 +104,21 @@ class MemoryStore final : public SolidStore {
     }
     return page;
   }
-  Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
-                            const std::string& after) override {
+  Result<store::FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
+                                   const std::string& after) override {
     const auto page = list({collection, limit, after, {}});
     if (!page) return page.error();
-    return FeatureBatch{page->features, page->next};
+    return store::FeatureBatch{page->features, page->next};
   }
-  Result<std::vector<StoredHeader>> documents(const std::string& collection,
-                                              std::uint64_t limit) override {
+  Result<std::vector<store::StoredHeader>> documents(const std::string& collection,
+                                                     std::uint64_t limit) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
     std::set<std::pair<std::string, std::string>> distinct;
     for (const auto& [id, feature] : features_[collection]) {
       distinct.emplace(feature.format, feature.header);
     }
-    std::vector<StoredHeader> found;
+    std::vector<store::StoredHeader> found;
     for (const auto& [format, header] : distinct) {
       if (found.size() < limit) found.push_back({format, header});
     }
@@ -133,14 +133,14 @@ class MemoryStore final : public SolidStore {
 
  private:
   static Error away() { return Error{ErrorCode::unavailable, "the database is away"}; }
-  static bool overlap(const StoredBox& a, const StoredBox& b) {
+  static bool overlap(const store::StoredBox& a, const store::StoredBox& b) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (a.min[axis] > b.max[axis] || a.max[axis] < b.min[axis]) return false;
     }
     return true;
   }
-  StoredCollection summary(const std::string& id) {
-    StoredCollection collection;
+  store::StoredCollection summary(const std::string& id) {
+    store::StoredCollection collection;
     collection.id = id;
     for (const auto& [name, feature] : features_[id]) {
       collection.srid = feature.srid;

@@ -17,25 +17,26 @@
 namespace watertight {
 namespace {
 
-StoredDocument encoded(const std::string& text, const IngestOptions& options = {}) {
-  ReadOptions read;
+pipeline::StoredDocument encoded(const std::string& text,
+                                 const pipeline::IngestOptions& options = {}) {
+  formats::ReadOptions read;
   read.keep_text = true;
-  auto document = read_document(as_bytes(text), Format::city_json_seq, read);
+  auto document = formats::read_document(as_bytes(text), Format::city_json_seq, read);
   REQUIRE(document);
-  auto result = encode_document(*std::move(document), nullptr, options);
+  auto result = pipeline::encode_document(*std::move(document), nullptr, options);
   REQUIRE(result);
   REQUIRE(result->outcome.verdict == Verdict::valid);
   return std::move(result->document);
 }
 
 Bytes container_of(const std::string& text) {
-  auto container = write_container(encoded(text));
+  auto container = pipeline::write_container(encoded(text));
   REQUIRE(container);
   return *std::move(container);
 }
 
 std::string text_of(const Document& document) {
-  const auto text = write_document(document, document.format);
+  const auto text = formats::write_document(document, document.format);
   REQUIRE(text);
   return std::string(as_text(*text));
 }
@@ -58,16 +59,17 @@ std::string row_of_boxes(int count) {
 
 /// Puts the features of a document into a store.
 void put(samples::MemoryStore& store, const std::string& text) {
-  IngestOptions options;
+  pipeline::IngestOptions options;
   options.collection = "town";
-  StoredDocument document = encoded(text, options);
+  pipeline::StoredDocument document = encoded(text, options);
   for (StoredFeature& feature : document.features) feature.collection = "town";
   REQUIRE(store.put(document.features));
 }
 
 /// All bytes of an export; the first error.
-Result<Bytes> export_all(SolidStore& store, ExportFormat format, Exported* exported = nullptr) {
-  auto exporting = CollectionExport::start(store, "town", format);
+Result<Bytes> export_all(SolidStore& store, pipeline::ExportFormat format,
+                         pipeline::Exported* exported = nullptr) {
+  auto exporting = pipeline::CollectionExport::start(store, "town", format);
   if (!exporting) return std::move(exporting).error();
   Bytes all;
   for (;;) {
@@ -82,11 +84,11 @@ Result<Bytes> export_all(SolidStore& store, ExportFormat format, Exported* expor
 
 /// A file of one part with these texts, page file and blobs.
 Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
-  const auto packed = pack_text(as_text(texts.bytes()));
+  const auto packed = formats::pack_text(as_text(texts.bytes()));
   REQUIRE(packed);
   ByteWriter writer;
-  writer.append(kContainerMagic);
-  writer.u8(kContainerVersion);
+  writer.append(pipeline::kContainerMagic);
+  writer.u8(pipeline::kContainerVersion);
   writer.varint(packed->size());
   writer.append(*packed);
   writer.varint(page_file.size());
@@ -119,8 +121,8 @@ ByteWriter texts_of_one(std::uint64_t document, std::uint64_t blob_size) {
 TEST_CASE("a Watertight file returns its document") {
   const std::string text = samples::sequence({samples::feature("a"), samples::feature("b")});
   const Bytes container = container_of(text);
-  CHECK(is_container(container));
-  const auto documents = decode_container(container);
+  CHECK(pipeline::is_container(container));
+  const auto documents = pipeline::decode_container(container);
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
   CHECK(text_of(documents->front()) == text);
@@ -128,31 +130,32 @@ TEST_CASE("a Watertight file returns its document") {
 
 TEST_CASE("a Watertight file has its solids in pages when that is smaller") {
   const std::string text = row_of_boxes(300);
-  const StoredDocument document = encoded(text);
+  const pipeline::StoredDocument document = encoded(text);
   std::size_t blob_bytes = 0;
   for (const StoredFeature& feature : document.features) {
     for (const StoredSolid& solid : feature.solids) blob_bytes += solid.blob.size();
   }
   const Bytes container = container_of(text);
-  const auto info = describe_container(container);
+  const auto info = pipeline::describe_container(container);
   REQUIRE(info);
   CHECK(info->features == 300);
   CHECK(info->solids == 300);
   CHECK(info->pages == 2);
   CHECK(2 * info->solid_bytes < blob_bytes);
-  const auto documents = decode_container(container);
+  const auto documents = pipeline::decode_container(container);
   REQUIRE(documents);
   CHECK(text_of(documents->front()) == text);
-  const auto one = describe_container(container_of(samples::sequence({samples::feature("a")})));
+  const auto one =
+      pipeline::describe_container(container_of(samples::sequence({samples::feature("a")})));
   REQUIRE(one);
   CHECK(one->pages == 0);
   CHECK(one->solids == 1);
 }
 
 TEST_CASE("a file of several parts has its features in order") {
-  const auto blob = encode_boundary(generated::box(), {});
+  const auto blob = codec::encode_boundary(generated::box(), {});
   REQUIRE(blob);
-  StoredDocument document;
+  pipeline::StoredDocument document;
   document.format = "off";
   for (int i = 0; i < 9000; ++i) {
     StoredFeature& feature = document.features.emplace_back();
@@ -160,14 +163,14 @@ TEST_CASE("a file of several parts has its features in order") {
     feature.id = std::to_string(i);
     if (i % 100 == 0) feature.solids.emplace_back().blob = *blob;
   }
-  const auto file = write_container(document);
+  const auto file = pipeline::write_container(document);
   REQUIRE(file);
-  auto reader = ContainerReader::open(*file, {});
+  auto reader = pipeline::ContainerReader::open(*file, {});
   REQUIRE(reader);
   std::size_t parts = 0;
   for (auto part = reader->next(); part && *part; part = reader->next()) ++parts;
   CHECK(parts == 3);
-  const auto documents = decode_container(*file);
+  const auto documents = pipeline::decode_container(*file);
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
   const std::vector<Feature>& features = documents->front().features;
@@ -179,18 +182,18 @@ TEST_CASE("a file of several parts has its features in order") {
 }
 
 TEST_CASE("solids in pages have the mode that is asked for, and those with Steiner vertices stay") {
-  const auto box = encode_boundary(generated::box(), {}, {.mode = Mode::raw});
-  const Certificate certificate = generated::schoenhardt_certificate();
-  const auto proven = encode_boundary(generated::schoenhardt(), {},
-                                      {.mode = Mode::bitmap, .certificate = &certificate});
+  const auto box = codec::encode_boundary(generated::box(), {}, {.mode = Mode::raw});
+  const delaunay::Certificate certificate = generated::schoenhardt_certificate();
+  const auto proven = codec::encode_boundary(generated::schoenhardt(), {},
+                                             {.mode = Mode::bitmap, .certificate = &certificate});
   REQUIRE(box);
   REQUIRE(proven);
   StoredFeature feature;
   feature.format = "off";
   for (int i = 0; i < 40; ++i) feature.solids.emplace_back().blob = i == 7 ? *proven : *box;
-  const auto file = write_container({"off", {}, {}, {feature}}, {.mode = Mode::raw});
+  const auto file = pipeline::write_container({"off", {}, {}, {feature}}, {.mode = Mode::raw});
   REQUIRE(file);
-  auto reader = ContainerReader::open(*file, {});
+  auto reader = pipeline::ContainerReader::open(*file, {});
   REQUIRE(reader);
   const auto part = reader->next();
   REQUIRE(part);
@@ -211,14 +214,15 @@ TEST_CASE("a file of several documents gives back each") {
   const std::string first = samples::sequence({samples::feature("a"), samples::feature("c")});
   std::string second = samples::sequence({samples::feature("b"), samples::feature("d")});
   second.replace(second.find("100.0"), 5, "900.0");
-  const StoredDocument documents[2] = {encoded(first), encoded(second)};
-  ContainerWriter writer;
+  const pipeline::StoredDocument documents[2] = {encoded(first), encoded(second)};
+  pipeline::ContainerWriter writer;
   for (std::size_t i = 0; i < 2; ++i) {
-    for (const StoredDocument& document : documents) REQUIRE(writer.add(document.features[i]));
+    for (const pipeline::StoredDocument& document : documents)
+      REQUIRE(writer.add(document.features[i]));
   }
   const auto file = std::move(writer).finish();
   REQUIRE(file);
-  const auto decoded = decode_container(*file);
+  const auto decoded = pipeline::decode_container(*file);
   REQUIRE(decoded);
   REQUIRE(decoded->size() == 2);
   CHECK(text_of((*decoded)[0]) == first);
@@ -226,7 +230,7 @@ TEST_CASE("a file of several documents gives back each") {
 }
 
 TEST_CASE("the features of a document hold one copy of its header") {
-  const StoredDocument document =
+  const pipeline::StoredDocument document =
       encoded(samples::sequence({samples::feature("a"), samples::feature("b")}));
   REQUIRE(document.features.size() == 2);
   CHECK(&document.features[0].header.str() == &document.features[1].header.str());
@@ -236,35 +240,35 @@ TEST_CASE("documents that differ in their line ends only are one") {
   const std::string plain = samples::sequence({samples::feature("a"), samples::feature("b")});
   std::string other;
   for (const char c : plain) other += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  const StoredDocument one = encoded(plain);
-  const StoredDocument two = encoded(other);
+  const pipeline::StoredDocument one = encoded(plain);
+  const pipeline::StoredDocument two = encoded(other);
   CHECK(one.header == two.header);
-  const auto decoded = decode_container(container_of(other));
+  const auto decoded = pipeline::decode_container(container_of(other));
   REQUIRE(decoded);
   CHECK(text_of(decoded->front()) == other);
 }
 
 TEST_CASE("features of several documents are no document") {
-  StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
+  pipeline::StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
   document.header = document.header.str() + " ";
-  CHECK(write_container(document).error().code == ErrorCode::invalid_argument);
+  CHECK(pipeline::write_container(document).error().code == ErrorCode::invalid_argument);
 }
 
 TEST_CASE("the Watertight file reader rejects every prefix and every changed byte") {
   const Bytes container = container_of(row_of_boxes(4));
   for (std::size_t size = 0; size < container.size(); ++size) {
-    CHECK_FALSE(decode_container(ByteView(container).first(size)));
+    CHECK_FALSE(pipeline::decode_container(ByteView(container).first(size)));
   }
   for (std::size_t i = 0; i < container.size(); ++i) {
     Bytes changed = container;
     changed[i] ^= 0x41U;
-    CHECK_FALSE(decode_container(changed));
+    CHECK_FALSE(pipeline::decode_container(changed));
   }
 }
 
 TEST_CASE("changed bytes under the right checksum are read or refused") {
   const Bytes container = container_of(row_of_boxes(40));
-  for (std::size_t i = sizeof(kContainerMagic); i + 4 < container.size(); ++i) {
+  for (std::size_t i = sizeof(pipeline::kContainerMagic); i + 4 < container.size(); ++i) {
     ByteWriter changed;
     changed.append(ByteView(container).first(container.size() - 4));
     Bytes bytes = changed.bytes();
@@ -272,20 +276,20 @@ TEST_CASE("changed bytes under the right checksum are read or refused") {
     changed = {};
     changed.append(bytes);
     changed.u32(crc32c(bytes));
-    const auto documents = decode_container(changed.bytes());
+    const auto documents = pipeline::decode_container(changed.bytes());
     if (!documents) CHECK_FALSE(documents.error().message.empty());
   }
 }
 
 TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
-  const StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
+  const pipeline::StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
   const Bytes& blob = document.features[0].solids[0].blob;
-  PageFileWriter writer;
+  codec::PageFileWriter writer;
   REQUIRE(writer.add_blob(blob));
   const auto pages = std::move(writer).finish();
   REQUIRE(pages);
-  REQUIRE(decode_container(file_of(texts_of_one(0, blob.size()), {}, blob)));
-  REQUIRE(decode_container(file_of(texts_of_one(0, 0), *pages, {})));
+  REQUIRE(pipeline::decode_container(file_of(texts_of_one(0, blob.size()), {}, blob)));
+  REQUIRE(pipeline::decode_container(file_of(texts_of_one(0, 0), *pages, {})));
   const Bytes wrong[] = {
       file_of(texts_of_one(1, blob.size()), {}, blob),      // of no document
       file_of(texts_of_one(0, blob.size() + 1), {}, blob),  // beyond the file
@@ -296,7 +300,7 @@ TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
       file_of(texts_of_one(0, 0), blob, {}),                // no page file
   };
   for (const Bytes& bytes : wrong) {
-    const auto documents = decode_container(bytes);
+    const auto documents = pipeline::decode_container(bytes);
     REQUIRE_FALSE(documents);
     CHECK(documents.error().code == ErrorCode::malformed);
   }
@@ -312,7 +316,7 @@ TEST_CASE("texts that name more features than their file has bytes for are refus
   texts.append(Bytes(6 * 200'000));
   const Bytes bomb = file_of(texts, {}, {});
   CHECK(bomb.size() < 1000);
-  const auto documents = decode_container(bomb);
+  const auto documents = pipeline::decode_container(bomb);
   REQUIRE_FALSE(documents);
   CHECK(documents.error().code == ErrorCode::malformed);
 }
@@ -321,7 +325,7 @@ TEST_CASE("the texts of all parts together stay below the limit of bytes") {
   const Bytes container = container_of(row_of_boxes(40));
   Limits limits;
   limits.bytes = container.size();
-  const auto documents = decode_container(container, limits);
+  const auto documents = pipeline::decode_container(container, limits);
   REQUIRE_FALSE(documents);
   CHECK(documents.error().code == ErrorCode::limit_exceeded);
 }
@@ -333,12 +337,12 @@ TEST_CASE("an export of a collection is a Watertight file of its documents") {
   std::string other = samples::sequence({samples::feature("zz")});
   other.replace(other.find("100.0"), 5, "900.0");
   put(store, other);
-  Exported exported;
-  const auto bytes = export_all(store, ExportFormat::container, &exported);
+  pipeline::Exported exported;
+  const auto bytes = export_all(store, pipeline::ExportFormat::container, &exported);
   REQUIRE(bytes);
   CHECK(exported.features == 601);
   CHECK(exported.solids == 601);
-  const auto documents = decode_container(*bytes);
+  const auto documents = pipeline::decode_container(*bytes);
   REQUIRE(documents);
   REQUIRE(documents->size() == 2);
   CHECK(text_of((*documents)[0]) == row);
@@ -349,15 +353,15 @@ TEST_CASE("an export as a sequence has the header and each feature's line") {
   samples::MemoryStore store;
   const std::string row = row_of_boxes(510);
   put(store, row);
-  const auto bytes = export_all(store, ExportFormat::sequence);
+  const auto bytes = export_all(store, pipeline::ExportFormat::sequence);
   REQUIRE(bytes);
   CHECK(as_text(*bytes) == row);
-  auto begun = CollectionExport::start(store, "town", ExportFormat::sequence);
+  auto begun = pipeline::CollectionExport::start(store, "town", pipeline::ExportFormat::sequence);
   REQUIRE(begun);
   std::string other = samples::sequence({samples::feature("zz")});
   other.replace(other.find("100.0"), 5, "900.0");
   put(store, other);
-  const auto mixed = export_all(store, ExportFormat::sequence);
+  const auto mixed = export_all(store, pipeline::ExportFormat::sequence);
   REQUIRE_FALSE(mixed);
   CHECK(mixed.error().code == ErrorCode::unsupported);
   CHECK(mixed.error().message.find("different headers") != std::string::npos);
@@ -371,26 +375,28 @@ TEST_CASE("an export as a sequence has the header and each feature's line") {
 
 TEST_CASE("an export ends with the first error, of the store or of a blob") {
   samples::MemoryStore store;
-  CHECK(export_all(store, ExportFormat::container).error().code == ErrorCode::not_found);
+  CHECK(export_all(store, pipeline::ExportFormat::container).error().code == ErrorCode::not_found);
   put(store, row_of_boxes(3));
   auto feature = store.get("town", "b10001");
   REQUIRE(feature);
   REQUIRE(store.remove("town", "b10000"));
   feature->solids[0].blob.back() ^= 1U;
   REQUIRE(store.put({&*feature, 1}));
-  CHECK(export_all(store, ExportFormat::container).error().code == ErrorCode::malformed);
-  const auto sequence = export_all(store, ExportFormat::sequence);
+  CHECK(export_all(store, pipeline::ExportFormat::container).error().code == ErrorCode::malformed);
+  const auto sequence = export_all(store, pipeline::ExportFormat::sequence);
   REQUIRE_FALSE(sequence);
   CHECK(sequence.error().message.find("'b10001'") != std::string::npos);
   for (const char* id : {"b10001", "b10002"}) REQUIRE(store.remove("town", id));
-  for (const ExportFormat format : {ExportFormat::container, ExportFormat::sequence}) {
+  for (const pipeline::ExportFormat format :
+       {pipeline::ExportFormat::container, pipeline::ExportFormat::sequence}) {
     const auto empty = export_all(store, format);
     REQUIRE_FALSE(empty);
     CHECK(empty.error().code == ErrorCode::not_found);
     CHECK(empty.error().message == "collection 'town' has no features");
   }
   store.is_away = true;
-  CHECK(export_all(store, ExportFormat::container).error().code == ErrorCode::unavailable);
+  CHECK(export_all(store, pipeline::ExportFormat::container).error().code ==
+        ErrorCode::unavailable);
 }
 
 }  // namespace watertight

@@ -48,26 +48,26 @@ const std::string kSurveyFeet =
     R"([-616218,294707,878197],[-617218,295707,878197]]})";
 
 Document read_kept(const std::string& text, Format format) {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.split_features = false;
   options.keep_text = true;
-  auto document = read_document(as_bytes(text), format, options);
+  auto document = formats::read_document(as_bytes(text), format, options);
   REQUIRE(document);
   return *std::move(document);
 }
 
-std::string through_container(const std::string& text, Format format, Contract contract) {
-  IngestOptions options;
+std::string through_container(const std::string& text, Format format, formats::Contract contract) {
+  pipeline::IngestOptions options;
   options.contract = contract;
-  auto encoded = encode_document(read_kept(text, format), nullptr, options);
+  auto encoded = pipeline::encode_document(read_kept(text, format), nullptr, options);
   REQUIRE(encoded);
   REQUIRE(encoded->outcome.verdict == Verdict::valid);
-  const auto container = write_container(encoded->document);
+  const auto container = pipeline::write_container(encoded->document);
   REQUIRE(container);
-  const auto documents = decode_container(*container);
+  const auto documents = pipeline::decode_container(*container);
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
-  const auto written = write_document(documents->front(), format);
+  const auto written = formats::write_document(documents->front(), format);
   if (!written) return to_string(written.error());
   return std::string(as_text(*written));
 }
@@ -106,22 +106,24 @@ std::vector<std::string> textured_corners(const Json& model, const Json& geometr
 }
 
 TEST_CASE("contract exact gives the very bytes of a document back") {
-  CHECK(through_container(kBox, Format::city_json, Contract::exact) == kBox);
+  CHECK(through_container(kBox, Format::city_json, formats::Contract::exact) == kBox);
 }
 
 TEST_CASE("integers under a long scale are valid and come back under every contract") {
-  CHECK(through_container(kSurveyFeet, Format::city_json, Contract::exact) == kSurveyFeet);
+  CHECK(through_container(kSurveyFeet, Format::city_json, formats::Contract::exact) == kSurveyFeet);
   const auto sorted_vertices = [](const std::string& text) {
     auto vertices = Json::parse(text)["vertices"].get<std::vector<Json>>();
     std::sort(vertices.begin(), vertices.end());
     return vertices;
   };
-  for (const Contract contract : {Contract::lattice, Contract::boundary}) {
+  for (const formats::Contract contract :
+       {formats::Contract::lattice, formats::Contract::boundary}) {
     CHECK(sorted_vertices(through_container(kSurveyFeet, Format::city_json, contract)) ==
           sorted_vertices(kSurveyFeet));
   }
   const Document document = read_kept(kSurveyFeet, Format::city_json);
-  const InspectedFeature inspected = inspect(document.features.at(0), nullptr, {});
+  const pipeline::InspectedFeature inspected =
+      pipeline::inspect(document.features.at(0), nullptr, {});
   REQUIRE(inspected.solids.size() == 1);
   const Report& report = inspected.solids[0].inspection.report;
   CHECK(report.verdict == Verdict::valid);
@@ -134,35 +136,35 @@ TEST_CASE("contract exact gives the very bytes of a sequence back") {
   std::string text = "\x1E" + std::string(samples::kHeader) + " \r\n\n" + samples::feature("a") +
                      "\r\n" + samples::feature("b") + " ";
   text.insert(text.find("\"version\""), "  ");
-  CHECK(through_container(text, Format::city_json_seq, Contract::exact) == text);
+  CHECK(through_container(text, Format::city_json_seq, formats::Contract::exact) == text);
 }
 
 TEST_CASE("a sequence without features comes back") {
   const std::string text = std::string(samples::kHeader) + "\n";
-  CHECK(through_container(text, Format::city_json_seq, Contract::exact) == text);
+  CHECK(through_container(text, Format::city_json_seq, formats::Contract::exact) == text);
 }
 
 TEST_CASE("a store gives a line of a sequence back byte for byte, and keeps it compressed") {
   std::string line = samples::feature("a");
   line.insert(1, "   ");
   samples::MemoryStore store;
-  IngestOptions options;
+  pipeline::IngestOptions options;
   options.collection = "town";
   const std::string text = std::string(samples::kHeader) + "\n" + line + "\n";
-  REQUIRE(ingest(read_kept(text, Format::city_json_seq), store, nullptr, options));
+  REQUIRE(pipeline::ingest(read_kept(text, Format::city_json_seq), store, nullptr, options));
   const auto stored = store.get("town", "a");
   REQUIRE(stored);
-  CHECK(is_packed_text(as_bytes(stored->skeleton)));
-  const auto document = from_stored(*stored);
+  CHECK(formats::is_packed_text(as_bytes(stored->skeleton)));
+  const auto document = pipeline::from_stored(*stored);
   REQUIRE(document);
-  const auto written = write_feature(*document, document->features[0]);
+  const auto written = formats::write_feature(*document, document->features[0]);
   REQUIRE(written);
   CHECK(*written == line);
 }
 
 TEST_CASE("contract lattice keeps values, and semantics and textures with their facets") {
   const Json before = Json::parse(kBox.substr(3));
-  const std::string text = through_container(kBox, Format::city_json, Contract::lattice);
+  const std::string text = through_container(kBox, Format::city_json, formats::Contract::lattice);
   const Json after = Json::parse(text);
   const Json& part = after["CityObjects"]["p"];
   const Json& old_part = before["CityObjects"]["p"];
@@ -185,12 +187,13 @@ TEST_CASE("contract lattice gives one text for solids that differ in order only"
   const std::string a = samples::sequence({samples::feature("a")});
   const std::string b = samples::sequence({samples::feature(
       "a", "[[[5,6,7,4]],[[3,2,1,0]],[[1,2,6,5]],[[3,0,4,7]],[[2,3,7,6]],[[0,1,5,4]]]")});
-  CHECK(through_container(a, Format::city_json_seq, Contract::lattice) ==
-        through_container(b, Format::city_json_seq, Contract::lattice));
+  CHECK(through_container(a, Format::city_json_seq, formats::Contract::lattice) ==
+        through_container(b, Format::city_json_seq, formats::Contract::lattice));
 }
 
 TEST_CASE("contract boundary keeps solids, types and families only") {
-  const Json after = Json::parse(through_container(kBox, Format::city_json, Contract::boundary));
+  const Json after =
+      Json::parse(through_container(kBox, Format::city_json, formats::Contract::boundary));
   CHECK(after["CityObjects"]["b"] == Json({{"type", "Building"}, {"children", {"p"}}}));
   const Json& part = after["CityObjects"]["p"];
   CHECK_FALSE(part.contains("attributes"));
@@ -203,32 +206,32 @@ TEST_CASE("contract boundary keeps solids, types and families only") {
 }
 
 TEST_CASE("a stored document with another hash is an error") {
-  auto encoded = encode_document(read_kept(kBox, Format::city_json), nullptr, {});
+  auto encoded = pipeline::encode_document(read_kept(kBox, Format::city_json), nullptr, {});
   REQUIRE(encoded);
   StoredFeature& feature = encoded->document.features.at(0);
   const std::size_t place = feature.skeleton.find("BuildingPart");
   REQUIRE(place != std::string::npos);
   feature.skeleton[place] = 'X';
-  const auto container = write_container(encoded->document);
+  const auto container = pipeline::write_container(encoded->document);
   REQUIRE(container);
-  const auto documents = decode_container(*container);
+  const auto documents = pipeline::decode_container(*container);
   REQUIRE(documents);
-  const auto written = write_document(documents->at(0), Format::city_json);
+  const auto written = formats::write_document(documents->at(0), Format::city_json);
   REQUIRE_FALSE(written);
   CHECK(written.error().message.find("hash") != std::string::npos);
 }
 
 TEST_CASE("a compressed text cannot make more than the limit") {
-  const auto bomb = pack_text(std::string(50'000'000, 'a'));
+  const auto bomb = formats::pack_text(std::string(50'000'000, 'a'));
   REQUIRE(bomb);
   CHECK(bomb->size() < 10'000);
-  CHECK(unpack_text(*bomb, 1'000'000).error().code == ErrorCode::limit_exceeded);
+  CHECK(formats::unpack_text(*bomb, 1'000'000).error().code == ErrorCode::limit_exceeded);
   StoredFeature feature;
   feature.format = "city-json";
   feature.skeleton = as_text(*bomb);
   Limits limits;
   limits.bytes = 1'000'000;
-  const auto document = from_stored(feature, limits);
+  const auto document = pipeline::from_stored(feature, limits);
   REQUIRE_FALSE(document);
   CHECK(document.error().code == ErrorCode::limit_exceeded);
 }
@@ -236,19 +239,19 @@ TEST_CASE("a compressed text cannot make more than the limit") {
 TEST_CASE(
     "a compressed text that is cut, changed or followed by more is an error or another text") {
   const std::string text = kBox;
-  const auto packed = pack_text(text);
+  const auto packed = formats::pack_text(text);
   REQUIRE(packed);
-  REQUIRE(unpack_text(*packed, 1U << 20U));
+  REQUIRE(formats::unpack_text(*packed, 1U << 20U));
   for (std::size_t size = 0; size < packed->size(); ++size) {
-    CHECK_FALSE(unpack_text(ByteView(*packed).first(size), 1U << 20U));
+    CHECK_FALSE(formats::unpack_text(ByteView(*packed).first(size), 1U << 20U));
   }
   Bytes longer = *packed;
   longer.push_back(0);
-  CHECK_FALSE(unpack_text(longer, 1U << 20U));
+  CHECK_FALSE(formats::unpack_text(longer, 1U << 20U));
   for (std::size_t i = 0; i < packed->size(); ++i) {
     Bytes changed = *packed;
     changed[i] ^= 0x55U;
-    const auto result = unpack_text(changed, 1U << 20U);
+    const auto result = formats::unpack_text(changed, 1U << 20U);
     if (!result) CHECK_FALSE(result.error().message.empty());
   }
 }

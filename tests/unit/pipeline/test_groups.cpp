@@ -72,14 +72,15 @@ std::string object(const std::string& id, const std::string& type, const std::st
          "]}";
 }
 
-InspectedFeature inspected(const std::string& objects, const std::vector<int>& positions) {
+pipeline::InspectedFeature inspected(const std::string& objects,
+                                     const std::vector<int>& positions) {
   const std::string text = std::string(samples::kHeader) +
                            "\n{\"type\":\"CityJSONFeature\",\"id\":\"a\",\"CityObjects\":{" +
                            objects + "},\"vertices\":" + vertices_of(positions) + "}\n";
-  auto document = read_document(as_bytes(text), Format::city_json_seq);
+  auto document = formats::read_document(as_bytes(text), Format::city_json_seq);
   REQUIRE(document);
   REQUIRE(document->features.size() == 1);
-  return inspect(std::move(document->features[0]), nullptr, {});
+  return pipeline::inspect(std::move(document->features[0]), nullptr, {});
 }
 
 /// A building with one part for each position.
@@ -97,18 +98,18 @@ std::string building(const std::vector<std::string>& part_geometries, const std:
 }
 
 TEST_CASE("overlapping parts of a building make the feature invalid, its solids stay valid") {
-  const InspectedFeature feature = inspected(
+  const pipeline::InspectedFeature feature = inspected(
       building({geometry("Solid", "2", shells(0)), geometry("Solid", "2", shells(1))}), {0, 900});
   REQUIRE(feature.groups.size() == 1);
-  const InspectedGroup& group = feature.groups[0];
-  CHECK(group.kind == GroupKind::building_parts);
+  const pipeline::InspectedGroup& group = feature.groups[0];
+  CHECK(group.kind == validate::GroupKind::building_parts);
   CHECK(group.object_id == "a");
   CHECK(group.lod == "2");
   CHECK(group.members == std::vector<std::size_t>{0, 1});
   REQUIRE(group.report.findings.size() == 1);
   CHECK(group.report.findings[0].code == 601);
   CHECK(feature.verdict() == Verdict::invalid);
-  for (const InspectedSolid& solid : feature.solids) {
+  for (const pipeline::InspectedSolid& solid : feature.solids) {
     CHECK(solid.inspection.report.verdict == Verdict::valid);
   }
 }
@@ -117,7 +118,7 @@ TEST_CASE("parts that share a wall, or are of different levels of detail, do not
   const std::string first = geometry("Solid", "2", shells(0));
   CHECK(inspected(building({first, geometry("Solid", "2", shells(1))}), {0, 1000}).verdict() ==
         Verdict::valid);
-  const InspectedFeature lods =
+  const pipeline::InspectedFeature lods =
       inspected(building({first, geometry("Solid", "1", shells(1))}), {0, 900});
   CHECK(lods.groups.empty());
   CHECK(lods.verdict() == Verdict::valid);
@@ -135,7 +136,7 @@ TEST_CASE("solids of one MultiSolid are not compared with each other") {
   const std::string multi = geometry("MultiSolid", "2", members);
   CHECK(inspected(building({multi}), {0, 900}).groups.empty());
   // With another part they are of one group, and only pairs with that part are compared.
-  const InspectedFeature feature =
+  const pipeline::InspectedFeature feature =
       inspected(building({multi, geometry("Solid", "2", shells(2))}), {0, 900, 1800});
   REQUIRE(feature.groups.size() == 1);
   REQUIRE(feature.groups[0].report.findings.size() == 1);
@@ -147,13 +148,14 @@ TEST_CASE("members of a composite solid are compared once, whatever the object")
   const std::string members = both(0, 1);
   const std::string composite = geometry("CompositeSolid", "2", members);
   for (const std::string type : {"Building", "GenericCityObject"}) {
-    const InspectedFeature overlap = inspected(object("a", type, "", composite), {0, 900});
+    const pipeline::InspectedFeature overlap =
+        inspected(object("a", type, "", composite), {0, 900});
     REQUIRE(overlap.groups.size() == 1);
-    CHECK(overlap.groups[0].kind == GroupKind::composite_solid);
+    CHECK(overlap.groups[0].kind == validate::GroupKind::composite_solid);
     REQUIRE(overlap.groups[0].report.findings.size() == 1);
     CHECK(overlap.groups[0].report.findings[0].code == 501);
     CHECK(inspected(object("a", type, "", composite), {0, 1000}).verdict() == Verdict::valid);
-    const InspectedFeature apart = inspected(object("a", type, "", composite), {0, 1001});
+    const pipeline::InspectedFeature apart = inspected(object("a", type, "", composite), {0, 1001});
     REQUIRE(apart.groups[0].report.findings.size() == 1);
     CHECK(apart.groups[0].report.findings[0].code == 503);
   }
@@ -162,18 +164,18 @@ TEST_CASE("members of a composite solid are compared once, whatever the object")
 TEST_CASE("two composite solids of one object are two groups") {
   const std::string first = geometry("CompositeSolid", "1", both(0, 1));
   const std::string second = geometry("CompositeSolid", "1", both(2, 3));
-  const InspectedFeature feature =
+  const pipeline::InspectedFeature feature =
       inspected(object("a", "Building", "", first + "," + second), {0, 1000, 5000, 6000});
   std::size_t composites = 0;
-  for (const InspectedGroup& group : feature.groups) {
-    composites += group.kind == GroupKind::composite_solid ? 1 : 0;
+  for (const pipeline::InspectedGroup& group : feature.groups) {
+    composites += group.kind == validate::GroupKind::composite_solid ? 1 : 0;
   }
   CHECK(composites == 2);
   CHECK(feature.verdict() == Verdict::valid);
 }
 
 TEST_CASE("a part that is not valid is named and not compared") {
-  const InspectedFeature feature = inspected(
+  const pipeline::InspectedFeature feature = inspected(
       building({geometry("Solid", "2", shells(0)), geometry("Solid", "2", shells(1, true))}),
       {0, 900});
   REQUIRE(feature.groups.size() == 1);
@@ -188,13 +190,13 @@ TEST_CASE("the outcome's JSON tells of groups") {
       "\n{\"type\":\"CityJSONFeature\",\"id\":\"a\",\"CityObjects\":{" +
       building({geometry("Solid", "2", shells(0)), geometry("Solid", "2", shells(1))}) +
       "},\"vertices\":" + vertices_of({0, 900}) + "}\n";
-  auto document = read_document(as_bytes(text), Format::city_json_seq);
+  auto document = formats::read_document(as_bytes(text), Format::city_json_seq);
   REQUIRE(document);
-  const auto encoded = encode_document(*std::move(document), nullptr, {});
+  const auto encoded = pipeline::encode_document(*std::move(document), nullptr, {});
   REQUIRE(encoded);
   CHECK(encoded->document.features.empty());
   CHECK(encoded->outcome.verdict == Verdict::invalid);
-  const std::string json = outcome_json(encoded->outcome);
+  const std::string json = pipeline::outcome_json(encoded->outcome);
   CHECK(json.find(R"("groups":[{"kind":"building_parts","object":"a","lod":"2","solids":[0,1])") !=
         std::string::npos);
   CHECK(json.find(R"("code":601,"name":"BUILDINGPARTS_OVERLAP")") != std::string::npos);

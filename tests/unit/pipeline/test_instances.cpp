@@ -50,10 +50,10 @@ std::string city(const std::vector<Use>& uses) {
 }
 
 Document read(const std::string& text, bool is_split) {
-  ReadOptions options;
+  formats::ReadOptions options;
   options.split_features = is_split;
   options.keep_text = !is_split;
-  auto document = read_document(as_bytes(text), Format::city_json, options);
+  auto document = formats::read_document(as_bytes(text), Format::city_json, options);
   REQUIRE(document);
   return *std::move(document);
 }
@@ -63,9 +63,9 @@ struct Seen {
   std::vector<std::string> solids;  // type, verdict, first code
 };
 
-std::string line_of(const InspectedSolid& solid) {
+std::string line_of(const pipeline::InspectedSolid& solid) {
   std::string line = solid.source.geometry_type + ' ';
-  line += to_string(solid.inspection.report.verdict);
+  line += validate::to_string(solid.inspection.report.verdict);
   for (const Finding& finding : solid.inspection.report.findings) {
     if (finding.severity == Severity::error) line += ' ' + std::to_string(finding.code);
   }
@@ -73,13 +73,13 @@ std::string line_of(const InspectedSolid& solid) {
 }
 
 std::vector<Seen> stream(const std::string& text, std::size_t threads = 1) {
-  FeatureReader reader = FeatureReader::of(read(text, true));
-  StreamOptions options;
+  formats::FeatureReader reader = formats::FeatureReader::of(read(text, true));
+  pipeline::StreamOptions options;
   options.threads = threads;
   std::vector<Seen> all;
-  const auto outcome = validate_stream(
+  const auto outcome = pipeline::validate_stream(
       reader, nullptr, options,
-      [&](ValidatedFeature&& feature) -> Status {
+      [&](pipeline::ValidatedFeature&& feature) -> Status {
         CHECK(feature.number == all.size());
         Seen seen{feature.inspected.feature.id, {}};
         CHECK(feature.inspected.solids.size() == feature.inspected.feature.solids.size());
@@ -128,11 +128,11 @@ TEST_CASE("a template whose instances are all invalid does not count") {
 }
 
 TEST_CASE("findings of an instance name it and its template, and lie in the world") {
-  FeatureReader reader = FeatureReader::of(read(city({{1, kTurned}}), true));
-  std::vector<InspectedFeature> features;
-  const auto outcome = validate_stream(
+  formats::FeatureReader reader = formats::FeatureReader::of(read(city({{1, kTurned}}), true));
+  std::vector<pipeline::InspectedFeature> features;
+  const auto outcome = pipeline::validate_stream(
       reader, nullptr, {},
-      [&](ValidatedFeature&& feature) -> Status {
+      [&](pipeline::ValidatedFeature&& feature) -> Status {
         features.push_back(std::move(feature.inspected));
         return Done{};
       },
@@ -141,7 +141,7 @@ TEST_CASE("findings of an instance name it and its template, and lie in the worl
   CHECK(outcome->verdict == Verdict::invalid);
   REQUIRE_FALSE(features.empty());
   REQUIRE(features[0].solids.size() == 1);
-  const InspectedSolid& solid = features[0].solids[0];
+  const pipeline::InspectedSolid& solid = features[0].solids[0];
   CHECK(solid.source.object_id == "o0");
   CHECK(solid.source.lod == "2");
   CHECK(solid.source.pointer == "/geometry-templates/templates/1/boundaries");
@@ -158,17 +158,17 @@ TEST_CASE("findings of an instance name it and its template, and lie in the worl
 
 TEST_CASE("instances that no feature has are judged with the templates") {
   Document document = read(city({{0, kSame}}), true);
-  TemplateInstance mirrored = document.features.at(0).instances.at(0);
+  formats::TemplateInstance mirrored = document.features.at(0).instances.at(0);
   mirrored.placement.linear[0][0] = GridNumber{-1, 0};
   mirrored.source = {"tree", "ImplicitGeometry", {}, 0, 0, {}};
   document.instances.push_back(mirrored);
   document.features.clear();
-  FeatureReader reader = FeatureReader::of(std::move(document));
+  formats::FeatureReader reader = formats::FeatureReader::of(std::move(document));
   std::vector<std::string> solids;
   std::string detail;
-  const auto outcome = validate_stream(
+  const auto outcome = pipeline::validate_stream(
       reader, nullptr, {},
-      [&](ValidatedFeature&& feature) -> Status {
+      [&](pipeline::ValidatedFeature&& feature) -> Status {
         for (const auto& solid : feature.inspected.solids) solids.push_back(line_of(solid));
         detail = feature.inspected.solids.at(0).inspection.report.findings.at(0).detail;
         return Done{};
@@ -181,19 +181,20 @@ TEST_CASE("instances that no feature has are judged with the templates") {
 
 TEST_CASE("a document with an invalid instance is not encoded, others come back byte for byte") {
   const std::string good = city({{0, kSame}, {0, kTenfold}, {1, kTenth}});
-  const auto encoded = encode_document(read(good, false), nullptr, {});
+  const auto encoded = pipeline::encode_document(read(good, false), nullptr, {});
   REQUIRE(encoded);
   CHECK(encoded->outcome.verdict == Verdict::valid);
-  const auto container = write_container(encoded->document);
+  const auto container = pipeline::write_container(encoded->document);
   REQUIRE(container);
-  const auto documents = decode_container(*container);
+  const auto documents = pipeline::decode_container(*container);
   REQUIRE(documents);
-  const auto written = write_document(documents->at(0), Format::city_json);
+  const auto written = formats::write_document(documents->at(0), Format::city_json);
   REQUIRE(written);
   CHECK(std::string(as_text(*written)) == good);
 
   for (const std::string& matrix : {kMirror, kFlat}) {
-    const auto refused = encode_document(read(city({{0, kSame}, {0, matrix}}), false), nullptr, {});
+    const auto refused =
+        pipeline::encode_document(read(city({{0, kSame}, {0, matrix}}), false), nullptr, {});
     REQUIRE(refused);
     CHECK(refused->outcome.verdict == Verdict::invalid);
     CHECK(refused->document.features.empty());
@@ -204,11 +205,11 @@ TEST_CASE("a document with an invalid instance is not encoded, others come back 
 
 TEST_CASE("ingest skips the features whose instances are not valid") {
   samples::MemoryStore store;
-  IngestOptions options;
+  pipeline::IngestOptions options;
   options.collection = "c";
-  options.invalid_features = InvalidFeatures::skip;
-  const auto outcome =
-      ingest(read(city({{0, kSame}, {0, kMirror}, {1, kTenth}}), true), store, nullptr, options);
+  options.invalid_features = pipeline::InvalidFeatures::skip;
+  const auto outcome = pipeline::ingest(read(city({{0, kSame}, {0, kMirror}, {1, kTenth}}), true),
+                                        store, nullptr, options);
   REQUIRE(outcome);
   CHECK(outcome->verdict == Verdict::invalid);
   CHECK(outcome->stored == 2);

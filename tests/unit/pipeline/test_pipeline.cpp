@@ -14,19 +14,19 @@ namespace watertight {
 namespace {
 
 Document read(const std::string& text, Format format = Format::city_json_seq) {
-  auto document = read_document(as_bytes(text), format);
+  auto document = formats::read_document(as_bytes(text), format);
   REQUIRE(document);
   return *std::move(document);
 }
 
-IngestOptions into(const std::string& collection) {
-  IngestOptions options;
+pipeline::IngestOptions into(const std::string& collection) {
+  pipeline::IngestOptions options;
   options.collection = collection;
   return options;
 }
 
 std::string sequence_of(const Document& document) {
-  const auto bytes = write_document(document, Format::city_json_seq);
+  const auto bytes = formats::write_document(document, Format::city_json_seq);
   REQUIRE(bytes);
   return std::string(as_text(*bytes));
 }
@@ -40,10 +40,10 @@ std::string box_with_equal_vertices() {
 }
 
 Bytes container_of(const std::string& text) {
-  auto encoded = encode_document(read(text), nullptr, {});
+  auto encoded = pipeline::encode_document(read(text), nullptr, {});
   REQUIRE(encoded);
   REQUIRE(encoded->outcome.verdict == Verdict::valid);
-  auto container = write_container(encoded->document);
+  auto container = pipeline::write_container(encoded->document);
   REQUIRE(container);
   return *std::move(container);
 }
@@ -51,7 +51,7 @@ Bytes container_of(const std::string& text) {
 TEST_CASE("ingest stores a valid document, and it comes back the same") {
   samples::MemoryStore store;
   const std::string text = samples::sequence({samples::feature("a"), samples::feature("b")});
-  const auto outcome = ingest(read(text), store, nullptr, into("town"));
+  const auto outcome = pipeline::ingest(read(text), store, nullptr, into("town"));
   REQUIRE(outcome);
   CHECK(outcome->verdict == Verdict::valid);
   CHECK(outcome->stored == 2);
@@ -60,7 +60,7 @@ TEST_CASE("ingest stores a valid document, and it comes back the same") {
   CHECK(stored->srid == 7415);
   REQUIRE(stored->box);
   CHECK(stored->box->max[2] == 2.5);
-  const auto document = from_stored(*stored);
+  const auto document = pipeline::from_stored(*stored);
   REQUIRE(document);
   CHECK(sequence_of(*document) == sequence_of(read(samples::sequence({samples::feature("b")}))));
 }
@@ -69,7 +69,7 @@ TEST_CASE("ingest refuses the whole document when one feature is invalid") {
   samples::MemoryStore store;
   const std::string text =
       samples::sequence({samples::feature("a"), samples::feature("open", samples::kOpenFacets)});
-  const auto outcome = ingest(read(text), store, nullptr, into("town"));
+  const auto outcome = pipeline::ingest(read(text), store, nullptr, into("town"));
   REQUIRE(outcome);
   CHECK(outcome->verdict == Verdict::invalid);
   CHECK(outcome->stored == 0);
@@ -78,11 +78,11 @@ TEST_CASE("ingest refuses the whole document when one feature is invalid") {
 
 TEST_CASE("ingest can skip invalid features and says which were stored") {
   samples::MemoryStore store;
-  IngestOptions options = into("town");
-  options.invalid_features = InvalidFeatures::skip;
+  pipeline::IngestOptions options = into("town");
+  options.invalid_features = pipeline::InvalidFeatures::skip;
   const std::string text =
       samples::sequence({samples::feature("open", samples::kOpenFacets), samples::feature("a")});
-  const auto outcome = ingest(read(text), store, nullptr, options);
+  const auto outcome = pipeline::ingest(read(text), store, nullptr, options);
   REQUIRE(outcome);
   CHECK(outcome->stored == 1);
   CHECK_FALSE(outcome->features[0].is_stored);
@@ -95,27 +95,28 @@ TEST_CASE("ingest refuses two features of one id") {
   samples::MemoryStore store;
   Document document = read(samples::sequence({samples::feature("a")}));
   document.features.push_back(document.features.front());
-  const auto outcome = ingest(std::move(document), store, nullptr, into("town"));
+  const auto outcome = pipeline::ingest(std::move(document), store, nullptr, into("town"));
   REQUIRE_FALSE(outcome);
   CHECK(outcome.error().code == ErrorCode::malformed);
 }
 
 TEST_CASE("ingest refuses another CRS than the collection's") {
   samples::MemoryStore store;
-  REQUIRE(ingest(read(samples::sequence({samples::feature("a")})), store, nullptr, into("town")));
+  REQUIRE(pipeline::ingest(read(samples::sequence({samples::feature("a")})), store, nullptr,
+                           into("town")));
   Document document = read(samples::sequence({samples::feature("b")}));
   document.features.front().srid = 28992;
-  const auto outcome = ingest(std::move(document), store, nullptr, into("town"));
+  const auto outcome = pipeline::ingest(std::move(document), store, nullptr, into("town"));
   REQUIRE_FALSE(outcome);
   CHECK(outcome.error().code == ErrorCode::conflict);
 }
 
 TEST_CASE("ingest stores nothing when it is cancelled") {
   samples::MemoryStore store;
-  IngestOptions options = into("town");
+  pipeline::IngestOptions options = into("town");
   options.is_cancelled = [] { return true; };
   const auto outcome =
-      ingest(read(samples::sequence({samples::feature("a")})), store, nullptr, options);
+      pipeline::ingest(read(samples::sequence({samples::feature("a")})), store, nullptr, options);
   REQUIRE_FALSE(outcome);
   CHECK(outcome.error().code == ErrorCode::cancelled);
   CHECK_FALSE(store.get("town", "a"));
@@ -127,18 +128,18 @@ TEST_CASE("the outcome is the same for any number of threads") {
     features.push_back(samples::feature(std::string("f").append(std::to_string(i)),
                                         i % 3 == 0 ? samples::kOpenFacets : samples::kBoxFacets));
   }
-  IngestOptions options;
-  const auto one = encode_document(read(samples::sequence(features)), nullptr, options);
+  pipeline::IngestOptions options;
+  const auto one = pipeline::encode_document(read(samples::sequence(features)), nullptr, options);
   options.threads = 4;
-  const auto four = encode_document(read(samples::sequence(features)), nullptr, options);
+  const auto four = pipeline::encode_document(read(samples::sequence(features)), nullptr, options);
   REQUIRE(one);
   REQUIRE(four);
-  CHECK(outcome_json(one->outcome) == outcome_json(four->outcome));
+  CHECK(pipeline::outcome_json(one->outcome) == pipeline::outcome_json(four->outcome));
 }
 
 TEST_CASE("equal vertices of a document keep their own numbers through the store") {
   const std::string text = samples::sequence({box_with_equal_vertices()});
-  const auto documents = decode_container(container_of(text));
+  const auto documents = pipeline::decode_container(container_of(text));
   REQUIRE(documents);
   CHECK(sequence_of(documents->at(0)) == sequence_of(read(text)));
 }
@@ -149,7 +150,7 @@ TEST_CASE("convert triangulates facets with holes for OBJ") {
       "holed", "[[[0,1,2,3],[4,7,6,5]]]",
       "[[0,0,0],[4000,0,0],[4000,4000,0],[0,4000,0],[1000,1000,0],[3000,1000,0],[3000,3000,0],"
       "[1000,3000,0]]")});
-  const auto obj = convert_document(read(text), Format::obj);
+  const auto obj = pipeline::convert_document(read(text), Format::obj);
   REQUIRE(obj);
   std::size_t faces = 0;
   const std::string lines(as_text(*obj));
@@ -172,15 +173,15 @@ TEST_CASE("JSON strings are escaped and always UTF-8") {
 TEST_CASE("facets that could follow the same Delaunay face keep apart in mode bitmap") {
   std::ifstream stream(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto document = read_document(as_bytes(text), Format::city_json);
+  const auto document = formats::read_document(as_bytes(text), Format::city_json);
   REQUIRE(document);
   REQUIRE(document->features.at(0).solids.size() == 1);
-  const Solid solid = merge_equal_vertices(document->features[0].solids[0].solid).solid;
+  const Solid solid = geometry::merge_equal_vertices(document->features[0].solids[0].solid).solid;
   const auto boundary = OrientedBoundary::make(solid);
   REQUIRE(boundary);
   EncodeOptions options;
   options.mode = Mode::bitmap;
-  const auto blob = encode_boundary(*boundary, {}, options);
+  const auto blob = codec::encode_boundary(*boundary, {}, options);
   REQUIRE(blob);
   const auto decoded = decode(*blob);
   REQUIRE(decoded);

@@ -87,19 +87,20 @@ std::string city(const std::string& form, const std::string& objects) {
 }
 
 Document read(const std::string& text) {
-  auto document = read_document(as_bytes(text), Format::city_json, {});
+  auto document = formats::read_document(as_bytes(text), Format::city_json, {});
   REQUIRE(document);
   return *std::move(document);
 }
 
-std::vector<InspectedFeature> stream(const std::string& text, const GroupOptions& groups = {}) {
-  FeatureReader reader = FeatureReader::of(read(text));
-  StreamOptions options;
+std::vector<pipeline::InspectedFeature> stream(const std::string& text,
+                                               const validate::GroupOptions& groups = {}) {
+  formats::FeatureReader reader = formats::FeatureReader::of(read(text));
+  pipeline::StreamOptions options;
   options.groups = groups;
-  std::vector<InspectedFeature> features;
-  const auto outcome = validate_stream(
+  std::vector<pipeline::InspectedFeature> features;
+  const auto outcome = pipeline::validate_stream(
       reader, nullptr, options,
-      [&](ValidatedFeature&& feature) -> Status {
+      [&](pipeline::ValidatedFeature&& feature) -> Status {
         features.push_back(std::move(feature.inspected));
         return Done{};
       },
@@ -108,9 +109,9 @@ std::vector<InspectedFeature> stream(const std::string& text, const GroupOptions
   return features;
 }
 
-std::vector<int> codes(const InspectedFeature& feature) {
+std::vector<int> codes(const pipeline::InspectedFeature& feature) {
   std::vector<int> all;
-  for (const InspectedGroup& group : feature.groups) {
+  for (const pipeline::InspectedGroup& group : feature.groups) {
     for (const Finding& finding : group.report.findings) all.push_back(finding.code);
   }
   return all;
@@ -139,12 +140,12 @@ TEST_CASE("a group of an instance says where it is, and how deep the overlap is 
   const auto features = stream(
       city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kDouble, 24))));
   REQUIRE(features.size() == 2);
-  const InspectedFeature& feature = features[0];
+  const pipeline::InspectedFeature& feature = features[0];
   CHECK(feature.verdict() == Verdict::invalid);
   REQUIRE(feature.groups.size() == 1);
   CHECK(feature.groups[0].members == std::vector<std::size_t>{0, 1});
   REQUIRE(feature.solids.size() == 2);
-  for (const InspectedSolid& solid : feature.solids) {
+  for (const pipeline::InspectedSolid& solid : feature.solids) {
     CHECK(solid.inspection.report.verdict == Verdict::valid);
     CHECK(solid.source.object_id == "o");
     CHECK(solid.source.geometry_type == "GeometryInstance");
@@ -159,7 +160,7 @@ TEST_CASE("a group of an instance says where it is, and how deep the overlap is 
 }
 
 TEST_CASE("a tolerance of overlaps holds for instances in metres") {
-  GroupOptions options;
+  validate::GroupOptions options;
   options.overlap_metres = 0.75;
   const std::string form = composite({cube(0), cube(1)});
   const auto said = [&](const std::string& matrix) {
@@ -207,10 +208,10 @@ TEST_CASE("a building's instances are its solids where they overlap, and only th
                                         R"("parents":["b"],)")))
         .at(0);
   };
-  const InspectedFeature apart = building(16);
+  const pipeline::InspectedFeature apart = building(16);
   CHECK(apart.verdict() == Verdict::valid);
   CHECK(apart.solids.size() == 1);
-  const InspectedFeature overlapping = building(8);
+  const pipeline::InspectedFeature overlapping = building(8);
   CHECK(overlapping.verdict() == Verdict::invalid);
   REQUIRE(overlapping.solids.size() == 2);
   CHECK(overlapping.solids[1].source.object_id == "p");
@@ -244,7 +245,7 @@ TEST_CASE("the depth of an overlap is that in place, whichever instance comes fi
   // Under a turn about the diagonal the overlap of two cubes is longer along the world's axes.
   const std::string tilt = "0.6,-0.8,0,0,0.8,0.6,0,0,0,0,1,0,0,0,0,1";
   const std::string form = composite({cube(0), cube(1)});
-  GroupOptions options;
+  validate::GroupOptions options;
   options.overlap_metres = 0.5;
   const auto said = [&](const std::vector<std::string>& matrices) {
     std::string objects;
@@ -253,7 +254,7 @@ TEST_CASE("the depth of an overlap is that in place, whichever instance comes fi
       objects += object(std::to_string(i), "Bench", instance(matrices[i]));
     }
     std::vector<Codes> all;
-    for (const InspectedFeature& feature : stream(city(form, objects), options)) {
+    for (const pipeline::InspectedFeature& feature : stream(city(form, objects), options)) {
       all.push_back(codes(feature));
     }
     return all;
@@ -264,13 +265,13 @@ TEST_CASE("the depth of an overlap is that in place, whichever instance comes fi
 }
 
 TEST_CASE("features with instances that do not fit are refused") {
-  const auto refused = encode_document(
+  const auto refused = pipeline::encode_document(
       read(city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kSame)))),
       nullptr, {});
   REQUIRE(refused);
   CHECK(refused->outcome.verdict == Verdict::invalid);
   CHECK(refused->document.features.empty());
-  const auto accepted = encode_document(
+  const auto accepted = pipeline::encode_document(
       read(city(composite({cube(0), cube(2)}), object("o", "CityFurniture", instance(kSame)))),
       nullptr, {});
   REQUIRE(accepted);

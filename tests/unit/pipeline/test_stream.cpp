@@ -41,21 +41,21 @@ class LongSequence {
 
 struct Run {
   std::vector<std::string> events;
-  StreamOutcome outcome;
+  pipeline::StreamOutcome outcome;
 };
 
 Run run(std::size_t count, std::size_t threads) {
-  auto reader = FeatureReader::open(LongSequence(count), "x.jsonl");
+  auto reader = formats::FeatureReader::open(LongSequence(count), "x.jsonl");
   REQUIRE(reader);
-  StreamOptions options;
+  pipeline::StreamOptions options;
   options.threads = threads;
   Run run;
-  const auto outcome = validate_stream(
+  const auto outcome = pipeline::validate_stream(
       *reader, nullptr, options,
-      [&](ValidatedFeature&& feature) -> Status {
+      [&](pipeline::ValidatedFeature&& feature) -> Status {
         std::string event = std::to_string(feature.number);
         event += ' ' + feature.inspected.feature.id + ' ';
-        event += to_string(feature.inspected.verdict());
+        event += validate::to_string(feature.inspected.verdict());
         run.events.push_back(std::move(event));
         return Done{};
       },
@@ -84,14 +84,14 @@ TEST_CASE("a stream hands on features in document order whatever the threads") {
 
 TEST_CASE("an error of a sink ends a stream with that error") {
   for (const std::size_t threads : {std::size_t{1}, std::size_t{3}}) {
-    auto reader = FeatureReader::open(LongSequence(1'000'000), "x.jsonl");
+    auto reader = formats::FeatureReader::open(LongSequence(1'000'000), "x.jsonl");
     REQUIRE(reader);
-    StreamOptions options;
+    pipeline::StreamOptions options;
     options.threads = threads;
     std::size_t taken = 0;
-    const auto outcome = validate_stream(
+    const auto outcome = pipeline::validate_stream(
         *reader, nullptr, options,
-        [&](ValidatedFeature&&) -> Status {
+        [&](pipeline::ValidatedFeature&&) -> Status {
           if (++taken == 4) return Error{ErrorCode::unavailable, "no space left"};
           return Done{};
         },
@@ -103,15 +103,15 @@ TEST_CASE("an error of a sink ends a stream with that error") {
 }
 
 TEST_CASE("a cancelled stream stops soon") {
-  auto reader = FeatureReader::open(LongSequence(1'000'000), "x.jsonl");
+  auto reader = formats::FeatureReader::open(LongSequence(1'000'000), "x.jsonl");
   REQUIRE(reader);
-  StreamOptions options;
+  pipeline::StreamOptions options;
   options.threads = 2;
   std::atomic<std::size_t> taken = 0;
   options.is_cancelled = [&taken] { return taken >= 10; };
-  const auto outcome = validate_stream(
+  const auto outcome = pipeline::validate_stream(
       *reader, nullptr, options,
-      [&](ValidatedFeature&&) -> Status {
+      [&](pipeline::ValidatedFeature&&) -> Status {
         ++taken;
         return Done{};
       },
@@ -122,9 +122,9 @@ TEST_CASE("a cancelled stream stops soon") {
 }
 
 TEST_CASE("features read far ahead of a slow sink are bounded") {
-  auto reader = FeatureReader::open(LongSequence(2'000), "x.jsonl");
+  auto reader = formats::FeatureReader::open(LongSequence(2'000), "x.jsonl");
   REQUIRE(reader);
-  StreamOptions options;
+  pipeline::StreamOptions options;
   options.threads = 2;
   std::uint64_t farthest = 0;
   const std::uint64_t line = samples::feature("f0000", samples::kOpenFacets).size();
@@ -132,9 +132,9 @@ TEST_CASE("features read far ahead of a slow sink are bounded") {
     farthest = std::max(farthest, bytes_read / line - std::min(done, bytes_read / line));
   };
   std::uint64_t handed_on = 0;
-  const auto outcome = validate_stream(
+  const auto outcome = pipeline::validate_stream(
       *reader, nullptr, options,
-      [&](ValidatedFeature&&) -> Status {
+      [&](pipeline::ValidatedFeature&&) -> Status {
         ++handed_on;
         return Done{};
       },

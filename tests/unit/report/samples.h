@@ -45,11 +45,11 @@ inline Finding finding_of(int code, Index facet, std::optional<Index> other = {}
 }
 
 /// A feature of one solid with the findings given.
-inline ValidatedFeature feature_of(const std::string& id, std::vector<Finding> findings,
-                                   std::uint32_t srid = 7415) {
+inline pipeline::ValidatedFeature feature_of(const std::string& id, std::vector<Finding> findings,
+                                             std::uint32_t srid = 7415) {
   SubmittedSolid submitted{box_at(0, srid),
                            {id, "Solid", "2.2", 0, 0, "/CityObjects/b/geometry/0"}};
-  InspectedSolid solid{submitted.source, {}};
+  pipeline::InspectedSolid solid{submitted.source, {}};
   Report& report = solid.inspection.report;
   report.verdict = Verdict::valid;
   for (const Finding& finding : findings) {
@@ -59,7 +59,7 @@ inline ValidatedFeature feature_of(const std::string& id, std::vector<Finding> f
     }
   }
   report.findings = std::move(findings);
-  ValidatedFeature feature;
+  pipeline::ValidatedFeature feature;
   feature.inspected.feature.id = id;
   feature.inspected.feature.type = "Building";
   feature.inspected.feature.srid = srid;
@@ -69,17 +69,17 @@ inline ValidatedFeature feature_of(const std::string& id, std::vector<Finding> f
 }
 
 /// A building of two parts that overlap.
-inline ValidatedFeature overlapping_parts() {
-  ValidatedFeature feature = feature_of("part-1", {});
+inline pipeline::ValidatedFeature overlapping_parts() {
+  pipeline::ValidatedFeature feature = feature_of("part-1", {});
   SubmittedSolid second{box_at(2000),
                         {"part-2", "Solid", "2.2", 0, 0, "/CityObjects/c/geometry/0"}};
-  InspectedSolid inspected{second.source, {}};
+  pipeline::InspectedSolid inspected{second.source, {}};
   inspected.inspection.report.verdict = Verdict::valid;
   feature.inspected.feature.id = "building";
   feature.inspected.feature.solids.push_back(std::move(second));
   feature.inspected.solids.push_back(std::move(inspected));
-  InspectedGroup group;
-  group.kind = GroupKind::building_parts;
+  pipeline::InspectedGroup group;
+  group.kind = validate::GroupKind::building_parts;
   group.object_id = "building";
   group.lod = "2.2";
   group.members = {0, 1};
@@ -98,7 +98,7 @@ inline ValidatedFeature overlapping_parts() {
 struct Written {
   std::string text;
   std::size_t largest_piece = 0;
-  TextSink sink() {
+  report::TextSink sink() {
     return [this](std::string_view piece) -> Status {
       text += piece;
       largest_piece = std::max(largest_piece, piece.size());
@@ -107,16 +107,16 @@ struct Written {
   }
 };
 
-inline ReportHead head_without_times() {
-  ReportHead head;
+inline report::ReportHead head_without_times() {
+  report::ReportHead head;
   head.program_version = "1.2.3";
   return head;
 }
 
-inline void write_document(FeatureReport& report, const std::string& name,
-                           const std::vector<ValidatedFeature>& features) {
+inline void write_document(report::FeatureReport& report, const std::string& name,
+                           const std::vector<pipeline::ValidatedFeature>& features) {
   REQUIRE(report.begin_document({name, Format::city_json}));
-  for (const ValidatedFeature& feature : features) REQUIRE(report.add(feature));
+  for (const pipeline::ValidatedFeature& feature : features) REQUIRE(report.add(feature));
   REQUIRE(report.end_document({{"a note"}, 1.5}));
 }
 

@@ -7,9 +7,9 @@ using Json = nlohmann::json;
 
 namespace {
 
-Json layer_of(const std::vector<ValidatedFeature>& features) {
+Json layer_of(const std::vector<pipeline::ValidatedFeature>& features) {
   Written written;
-  const auto report = geojson_report(written.sink(), head_without_times());
+  const auto report = report::geojson_report(written.sink(), head_without_times());
   write_document(*report, "a.city.json", features);
   REQUIRE(report->finish());
   return Json::parse(written.text);
@@ -60,7 +60,7 @@ TEST_CASE("points of another reference system than the layer's are not drawn in 
 TEST_CASE("a document without findings is an empty layer, an unreadable one a feature") {
   CHECK(layer_of({feature_of("a", {})})["features"].empty());
   Written written;
-  const auto report = geojson_report(written.sink(), head_without_times());
+  const auto report = report::geojson_report(written.sink(), head_without_times());
   REQUIRE(report->begin_document({"a", std::nullopt}));
   REQUIRE(report->add_error({ErrorCode::unsupported, "what is this"}));
   REQUIRE(report->end_document({}));

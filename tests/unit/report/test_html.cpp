@@ -8,10 +8,11 @@ using namespace watertight::test;
 
 namespace {
 
-std::string page_of(const std::vector<ValidatedFeature>& features, const HtmlOptions& options = {},
+std::string page_of(const std::vector<pipeline::ValidatedFeature>& features,
+                    const report::HtmlOptions& options = {},
                     const std::string& name = "a.city.json") {
   Written written;
-  const auto report = html_report(written.sink(), head_without_times(), options);
+  const auto report = report::html_report(written.sink(), head_without_times(), options);
   write_document(*report, name, features);
   REQUIRE(report->finish());
   return written.text;
@@ -49,7 +50,7 @@ TEST_CASE("text of hostile documents stays text") {
   finding.detail = evil;
   finding.unit = evil;
   finding.measured = 1;
-  ValidatedFeature feature = feature_of(evil, {finding});
+  pipeline::ValidatedFeature feature = feature_of(evil, {finding});
   for (SolidSource* source :
        {&feature.inspected.feature.solids[0].source, &feature.inspected.solids[0].source}) {
     source->lod = evil;
@@ -63,11 +64,12 @@ TEST_CASE("text of hostile documents stays text") {
 }
 
 TEST_CASE("rows and pictures are capped and the page says so") {
-  HtmlOptions options;
+  report::HtmlOptions options;
   options.most_rows = 5;
   options.most_pictures = 3;
   const std::string page =
-      page_of(std::vector<ValidatedFeature>(10, feature_of("b", {finding_of(306, 1, 4)})), options);
+      page_of(std::vector<pipeline::ValidatedFeature>(10, feature_of("b", {finding_of(306, 1, 4)})),
+              options);
   CHECK(count_of("<tr class=\"error\" data-code=", page) == 5);
   CHECK(count_of("data-scene='{", page) == 3);
   CHECK(page.find("The first 5 of 10 findings") != page.npos);
@@ -86,7 +88,7 @@ TEST_CASE("a picture of two solids colours both") {
 }
 
 TEST_CASE("open edges are drawn as lines") {
-  ValidatedFeature feature = feature_of("b", {finding_of(302, 0)});
+  pipeline::ValidatedFeature feature = feature_of("b", {finding_of(302, 0)});
   SolidArrays arrays = feature.inspected.feature.solids[0].solid.arrays();
   arrays.facet_offsets.pop_back();
   arrays.ring_offsets.pop_back();
@@ -116,7 +118,7 @@ TEST_CASE("a page without findings says that all is valid") {
 }
 
 TEST_CASE("equal input gives an equal page") {
-  const std::vector<ValidatedFeature> features{feature_of("b", {finding_of(306, 1, 4)})};
+  const std::vector<pipeline::ValidatedFeature> features{feature_of("b", {finding_of(306, 1, 4)})};
   CHECK(page_of(features) == page_of(features));
 }
 
@@ -142,13 +144,13 @@ TEST_CASE("the picture of an open shell shows an edge that a vertex splits by it
     arrays.end_facet();
   }
   arrays.end_shell();
-  ValidatedFeature feature = feature_of("a", {finding_of(302, 2, 1)});
+  pipeline::ValidatedFeature feature = feature_of("a", {finding_of(302, 2, 1)});
   auto solid = Solid::make(std::move(arrays), box.lattice(), box.srid());
   REQUIRE(solid);
   feature.inspected.feature.solids[0].solid = *solid;
-  const std::vector<PlacedFinding> findings = findings_of(feature.inspected);
+  const std::vector<report::PlacedFinding> findings = report::findings_of(feature.inspected);
   REQUIRE(findings.size() == 1);
-  const auto scene = scene_of(feature.inspected, findings[0], {});
+  const auto scene = report::scene_of(feature.inspected, findings[0], {});
   REQUIRE(scene);
   CHECK(scene->lines.size() == 3);  // 4-8, 8-5 and 4-5
 }

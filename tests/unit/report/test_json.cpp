@@ -10,9 +10,9 @@ using Json = nlohmann::json;
 
 namespace {
 
-Json report_of(const std::vector<ValidatedFeature>& features) {
+Json report_of(const std::vector<pipeline::ValidatedFeature>& features) {
   Written written;
-  const auto report = json_report(written.sink(), head_without_times());
+  const auto report = report::json_report(written.sink(), head_without_times());
   write_document(*report, "a.city.json", features);
   REQUIRE(report->finish());
   return Json::parse(written.text);
@@ -43,7 +43,7 @@ TEST_CASE("a report has val3dity's members and the verdicts beside them") {
         "coid=b|geom=0|solid=0|shell=0|face=1&&coid=b|geom=0|solid=0|shell=0|face=4");
   CHECK(error["place"] == Json{{"solid", 0}, {"shell", 0}, {"facet", 1}});
   CHECK(error["other_pointer"] == "/CityObjects/b/geometry/0/0/4");
-  CHECK(error["hint"] == find_kind(306)->hint);
+  CHECK(error["hint"] == validate::find_kind(306)->hint);
   CHECK(error["is_repairable"] == false);
   CHECK(report["features"][1]["warnings"][0]["code"] == 801);
   CHECK(report["notes"] == Json{"a note"});
@@ -67,7 +67,7 @@ TEST_CASE("a finding about a group names both solids") {
 
 TEST_CASE("what could not be read is listed and keeps the document from being valid") {
   Written written;
-  const auto report = json_report(written.sink(), head_without_times());
+  const auto report = report::json_report(written.sink(), head_without_times());
   REQUIRE(report->begin_document({"a", std::nullopt}));
   REQUIRE(report->add(feature_of("a", {})));
   REQUIRE(report->add_error({ErrorCode::malformed, "no vertices", 17, "/vertices"}));
@@ -86,7 +86,7 @@ TEST_CASE("what could not be read is listed and keeps the document from being va
 
 TEST_CASE("each document is one line of JSON, equal for equal input") {
   Written written;
-  const auto report = json_report(written.sink(), head_without_times());
+  const auto report = report::json_report(written.sink(), head_without_times());
   write_document(*report, "a", {feature_of("line\nfeed", {finding_of(302, 0)})});
   write_document(*report, "b", {});
   write_document(*report, "a", {feature_of("line\nfeed", {finding_of(302, 0)})});
@@ -110,23 +110,24 @@ TEST_CASE("ids that are no UTF-8 or full of quotes leave the JSON well formed") 
 
 TEST_CASE("pieces of a report are no larger than a feature's part, however many there are") {
   Written written;
-  const auto report = json_report(written.sink(), head_without_times());
+  const auto report = report::json_report(written.sink(), head_without_times());
   write_document(*report, "a", {feature_of("a", {finding_of(302, 0)})});
   const std::size_t largest = written.largest_piece;
-  write_document(*report, "a",
-                 std::vector<ValidatedFeature>(300, feature_of("a", {finding_of(302, 0)})));
+  write_document(
+      *report, "a",
+      std::vector<pipeline::ValidatedFeature>(300, feature_of("a", {finding_of(302, 0)})));
   CHECK(written.largest_piece <= largest + 16);
 }
 
 TEST_CASE("every error code is one that val3dity's report browser knows") {
-  for (const FindingKind& kind : finding_kinds()) {
+  for (const validate::FindingKind& kind : validate::finding_kinds()) {
     INFO(kind.code);
     CHECK((kind.severity == Severity::warning) == (kind.code / 100 == 8));
   }
 }
 
 TEST_CASE("an error of the sink ends the report") {
-  const auto report = json_report(
+  const auto report = report::json_report(
       [](std::string_view) -> Status {
         return Error{ErrorCode::unavailable, "full"};
       },

@@ -12,25 +12,25 @@ using namespace watertight;
 
 namespace {
 
-Status add_document(FeatureReport& report, const std::string& path) {
+Status add_document(report::FeatureReport& report, const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const std::string name = path.substr(path.rfind('/') + 1);
-  const auto format = detect_format(name, as_bytes(text));
+  const auto format = formats::detect_format(name, as_bytes(text));
   Status status = report.begin_document(
       {name, format ? std::optional<Format>(*format) : std::optional<Format>()});
   auto document =
-      format ? read_document(as_bytes(text), *format) : Result<Document>(format.error());
-  DocumentEnd end;
+      format ? formats::read_document(as_bytes(text), *format) : Result<Document>(format.error());
+  report::DocumentEnd end;
   if (!document) {
     if (status) status = report.add_error(document.error());
     return status ? report.end_document(end) : status;
   }
   std::uint64_t number = 0;
   for (Feature& feature : document->features) {
-    ValidatedFeature validated;
+    pipeline::ValidatedFeature validated;
     validated.number = number++;
-    validated.inspected = inspect(std::move(feature), nullptr, {});
+    validated.inspected = pipeline::inspect(std::move(feature), nullptr, {});
     if (status) status = report.add(validated);
   }
   end.notes = document->notes;
@@ -42,15 +42,15 @@ Status add_document(FeatureReport& report, const std::string& path) {
 int main(int count, char** arguments) {
   if (count < 3) return 2;
   const std::string kind = arguments[1];
-  const TextSink sink = [](std::string_view text) -> Status {
+  const report::TextSink sink = [](std::string_view text) -> Status {
     std::fwrite(text.data(), 1, text.size(), stdout);
     return Done{};
   };
-  ReportHead head;
+  report::ReportHead head;
   head.program_version = "0.1.0";
-  const auto report = kind == "json"      ? json_report(sink, head)
-                      : kind == "geojson" ? geojson_report(sink, head)
-                                          : html_report(sink, head);
+  const auto report = kind == "json"      ? report::json_report(sink, head)
+                      : kind == "geojson" ? report::geojson_report(sink, head)
+                                          : report::html_report(sink, head);
   for (int i = 2; i < count; ++i) {
     if (!add_document(*report, arguments[i])) return 1;
   }

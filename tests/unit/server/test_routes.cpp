@@ -14,20 +14,21 @@ using Json = nlohmann::json;
 
 class Fixture {
  public:
-  Response send(Request request) const {
-    return respond(Service{&store, nullptr, {}}, request, [] { return false; });
+  server::Response send(server::Request request) const {
+    return server::respond(server::Service{&store, nullptr, {}}, request, [] { return false; });
   }
-  Response get(const std::string& target, std::vector<HeaderField> headers = {}) const {
+  server::Response get(const std::string& target,
+                       std::vector<server::HeaderField> headers = {}) const {
     return send({"GET", target, std::move(headers), ""});
   }
-  Response post(const std::string& target, std::string body,
-                const std::string& type = "application/city+json-seq") const {
+  server::Response post(const std::string& target, std::string body,
+                        const std::string& type = "application/city+json-seq") const {
     return send({"POST", target, {{"content-type", type}}, std::move(body)});
   }
   mutable samples::MemoryStore store;
 };
 
-Json problem_of(const Response& response) {
+Json problem_of(const server::Response& response) {
   CHECK(response.content_type == "application/problem+json");
   Json json = Json::parse(response.body, nullptr, false);
   REQUIRE(json.is_object());
@@ -36,8 +37,8 @@ Json problem_of(const Response& response) {
   return json;
 }
 
-const std::string* header_of(const Response& response, std::string_view name) {
-  for (const HeaderField& field : response.headers) {
+const std::string* header_of(const server::Response& response, std::string_view name) {
+  for (const server::HeaderField& field : response.headers) {
     if (field.name == name) return &field.value;
   }
   return nullptr;
@@ -51,8 +52,8 @@ TEST_CASE_METHOD(Fixture, "the OpenAPI document describes exactly the routes") {
   const Json api = Json::parse(get("/api").body);
   std::size_t operations = 0;
   for (const auto& [path, methods] : api["paths"].items()) operations += methods.size();
-  CHECK(operations == routes().size());
-  for (const Route& route : routes()) {
+  CHECK(operations == server::routes().size());
+  for (const server::Route& route : server::routes()) {
     INFO(route.method << " " << route.path);
     std::string method(route.method);
     for (char& c : method) c = static_cast<char>(c - 'A' + 'a');
@@ -71,9 +72,9 @@ TEST_CASE_METHOD(Fixture, "the OpenAPI document describes exactly the routes") {
 }
 
 TEST_CASE_METHOD(Fixture, "the landing page is HTML for browsers and JSON for programs") {
-  const Response json = get("/");
+  const server::Response json = get("/");
   CHECK(json.content_type == "application/json");
-  const Response html = get("/?f=html");
+  const server::Response html = get("/?f=html");
   CHECK(html.content_type == "text/html; charset=utf-8");
   const Json page = Json::parse(json.body);
   for (const Json& link : page["links"]) {
@@ -83,14 +84,14 @@ TEST_CASE_METHOD(Fixture, "the landing page is HTML for browsers and JSON for pr
 }
 
 TEST_CASE_METHOD(Fixture, "a posted document is stored and comes back in each format") {
-  const Response posted = post("/collections/town/items", kTwo);
+  const server::Response posted = post("/collections/town/items", kTwo);
   REQUIRE(posted.status == 201);
   CHECK(Json::parse(posted.body)["stored"] == 2);
-  const Response city = get("/collections/town/items/a");
+  const server::Response city = get("/collections/town/items/a");
   REQUIRE(city.status == 200);
   CHECK(city.content_type == "application/city+json");
   CHECK(Json::parse(city.body)["type"] == "CityJSON");
-  const Response sequence = get("/collections/town/items/a?f=cityjsonseq");
+  const server::Response sequence = get("/collections/town/items/a?f=cityjsonseq");
   const std::size_t line = sequence.body.find('\n');
   CHECK(Json::parse(sequence.body.substr(line + 1)) == Json::parse(samples::feature("a")));
   CHECK(get("/collections/town/items/a", {{"accept", "model/obj"}}).content_type == "model/obj");
@@ -102,11 +103,12 @@ TEST_CASE_METHOD(Fixture, "a posted document is stored and comes back in each fo
 }
 
 TEST_CASE_METHOD(Fixture, "a single feature takes the transform of its collection") {
-  const Response early = post("/collections/town/items", samples::feature("c"), "application/json");
+  const server::Response early =
+      post("/collections/town/items", samples::feature("c"), "application/json");
   CHECK(early.status == 400);
   problem_of(early);
   REQUIRE(post("/collections/town/items", kTwo).status == 201);
-  const Response posted =
+  const server::Response posted =
       post("/collections/town/items", samples::feature("c"), "application/city+json");
   REQUIRE(posted.status == 201);
   REQUIRE(header_of(posted, "Location"));
@@ -115,7 +117,7 @@ TEST_CASE_METHOD(Fixture, "a single feature takes the transform of its collectio
 }
 
 TEST_CASE_METHOD(Fixture, "an invalid solid is refused with the report and nothing is stored") {
-  const Response response = post("/collections/town/items", kOneOpen);
+  const server::Response response = post("/collections/town/items", kOneOpen);
   REQUIRE(response.status == 422);
   const Json json = problem_of(response);
   CHECK(json["type"] == "urn:watertight:problem:invalid-solids");
@@ -124,7 +126,7 @@ TEST_CASE_METHOD(Fixture, "an invalid solid is refused with the report and nothi
 }
 
 TEST_CASE_METHOD(Fixture, "invalid=skip stores the valid features and reports the rest") {
-  const Response response = post("/collections/town/items?invalid=skip", kOneOpen);
+  const server::Response response = post("/collections/town/items?invalid=skip", kOneOpen);
   REQUIRE(response.status == 201);
   CHECK(Json::parse(response.body)["verdict"] == "invalid");
   CHECK(get("/collections/town/items/a").status == 200);
@@ -133,7 +135,7 @@ TEST_CASE_METHOD(Fixture, "invalid=skip stores the valid features and reports th
 }
 
 TEST_CASE_METHOD(Fixture, "validate gives verdicts of any format and stores nothing") {
-  const Response response = post("/validate", kOneOpen);
+  const server::Response response = post("/validate", kOneOpen);
   REQUIRE(response.status == 200);
   CHECK(Json::parse(response.body)["verdict"] == "invalid");
   const std::string wkt = "POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)))";
@@ -172,7 +174,7 @@ TEST_CASE_METHOD(Fixture,
       {"poly", {}, poly}};
   for (const Sample& sample : samples) {
     INFO(sample.f);
-    const auto is_read = [](const Response& response) {
+    const auto is_read = [](const server::Response& response) {
       INFO(response.body);
       return response.status == 200 && Json::parse(response.body)["verdict"] == "invalid";
     };
@@ -196,17 +198,18 @@ TEST_CASE_METHOD(Fixture, "validate answers with the report, a layer or a page, 
   CHECK(report["type"] == "val3dity_report");
   CHECK(report["schema"] == 2);
   CHECK(report["all_errors"] == Json{302});
-  const Response layer = answer("application/geo+json");
+  const server::Response layer = answer("application/geo+json");
   CHECK(layer.content_type == "application/geo+json");
   CHECK(Json::parse(layer.body)["features"][0]["properties"]["code"] == 302);
-  const Response page = answer("text/html,application/xhtml+xml");
+  const server::Response page = answer("text/html,application/xhtml+xml");
   CHECK(page.content_type == "text/html; charset=utf-8");
   CHECK(page.body.find("SHELL_NOT_CLOSED") != std::string::npos);
   CHECK(answer("image/png").status == 406);
 }
 
 TEST_CASE_METHOD(Fixture, "a malformed body is answered with its place") {
-  const Response response = post("/validate", "{\"type\":\"CityJSON\",", "application/json");
+  const server::Response response =
+      post("/validate", "{\"type\":\"CityJSON\",", "application/json");
   CHECK(response.status == 400);
   CHECK(problem_of(response).contains("byteOffset"));
   CHECK(post("/validate", "x", "image/png").status == 415);
@@ -222,7 +225,7 @@ TEST_CASE_METHOD(Fixture, "lists are paged by next links that visit each item on
   std::string target = "/collections/town/items?limit=3";
   std::vector<std::string> seen;
   while (!target.empty() && seen.size() < 20) {
-    const Response response = get(target);
+    const server::Response response = get(target);
     REQUIRE(response.status == 200);
     const Json page = Json::parse(response.body);
     CHECK(page["numberMatched"] == 7);
@@ -259,7 +262,7 @@ TEST_CASE_METHOD(Fixture, "bbox counts in the storage CRS only, and must say so"
 
 TEST_CASE_METHOD(Fixture, "ETags change with the feature and save a download") {
   REQUIRE(post("/collections/town/items", kTwo).status == 201);
-  const Response first = get("/collections/town/items/a");
+  const server::Response first = get("/collections/town/items/a");
   REQUIRE(header_of(first, "ETag"));
   const std::string etag = *header_of(first, "ETag");
   CHECK(get("/collections/town/items/a", {{"if-none-match", etag}}).status == 304);
@@ -280,7 +283,7 @@ std::string many(int count) {
 }
 
 /// Body and rest of an answer.
-std::string whole(const Response& response) {
+std::string whole(const server::Response& response) {
   std::string text = response.body;
   while (response.rest) {
     const auto part = response.rest();
@@ -294,21 +297,21 @@ std::string whole(const Response& response) {
 TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is asked for") {
   const std::string text = many(600);
   REQUIRE(post("/collections/town/items", text).status == 201);
-  const Response sequence = get("/collections/town/export?f=cityjsonseq");
+  const server::Response sequence = get("/collections/town/export?f=cityjsonseq");
   REQUIRE(sequence.status == 200);
   CHECK(sequence.content_type == "application/city+json-seq");
   CHECK(*header_of(sequence, "Content-Disposition") == "attachment; filename=\"town.city.jsonl\"");
   CHECK(sequence.rest);
   CHECK(sequence.body.size() < text.size());
   CHECK(whole(sequence) == text);
-  const Response file = get("/collections/town/export");
+  const server::Response file = get("/collections/town/export");
   REQUIRE(file.status == 200);
   CHECK(file.content_type == "application/vnd.watertight");
   CHECK_FALSE(file.rest);  // one part: its length is known
-  const auto documents = decode_container(as_bytes(file.body));
+  const auto documents = pipeline::decode_container(as_bytes(file.body));
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
-  CHECK(as_text(*write_document(documents->front(), Format::city_json_seq)) == text);
+  CHECK(as_text(*formats::write_document(documents->front(), Format::city_json_seq)) == text);
   CHECK(get("/collections/town/export", {{"accept", "application/city+json-seq"}}).content_type ==
         "application/city+json-seq");
   const Json collection = Json::parse(get("/collections/town").body);
@@ -320,7 +323,7 @@ TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is as
 
 TEST_CASE_METHOD(Fixture, "an export that cannot be is refused before its first byte") {
   const auto refused = [&](const std::string& target, unsigned status, const std::string& says) {
-    const Response response = get(target);
+    const server::Response response = get(target);
     INFO(target << " " << response.body);
     CHECK(response.status == status);
     CHECK(problem_of(response)["detail"].get<std::string>().find(says) != std::string::npos);
@@ -365,7 +368,7 @@ TEST_CASE_METHOD(Fixture, "paths and parameters that mean nothing are refused by
   CHECK(get("/collections?f=json&f=json").status == 400);
   CHECK(get("/collections?colour=red").status == 400);
   CHECK(get("/collections/town/items/" + std::string(2000, 'a')).status == 400);
-  const Response wrong = send({"PUT", "/collections", {}, ""});
+  const server::Response wrong = send({"PUT", "/collections", {}, ""});
   CHECK(wrong.status == 405);
   REQUIRE(header_of(wrong, "Allow"));
   CHECK(*header_of(wrong, "Allow") == "GET, HEAD, OPTIONS");
@@ -377,7 +380,7 @@ TEST_CASE_METHOD(Fixture, "an absent database is 503 everywhere but in healthz")
   CHECK(get("/healthz").status == 200);
   for (const char* target : {"/readyz", "/collections", "/collections/town",
                              "/collections/town/items", "/collections/town/items/a"}) {
-    const Response response = get(target);
+    const server::Response response = get(target);
     CHECK(response.status == 503);
     problem_of(response);
   }
@@ -386,8 +389,8 @@ TEST_CASE_METHOD(Fixture, "an absent database is 503 everywhere but in healthz")
 
 TEST_CASE("Accept chooses by quality and specificity") {
   const std::vector<std::string_view> offers{"application/json", "model/obj"};
-  const auto choose = [&](const std::string& accept) { return negotiate(&accept, offers); };
-  CHECK(negotiate(nullptr, offers) == 0);
+  const auto choose = [&](const std::string& accept) { return server::negotiate(&accept, offers); };
+  CHECK(server::negotiate(nullptr, offers) == 0);
   CHECK(choose("*/*") == 0);
   CHECK(choose("model/*") == 1);
   CHECK(choose("application/json;q=0.1, model/obj;q=0.5") == 1);
@@ -397,15 +400,15 @@ TEST_CASE("Accept chooses by quality and specificity") {
 }
 
 TEST_CASE("targets are decoded strictly") {
-  CHECK(parse_target("/a%20b/c?x=1+2&y=%C3%A9"));
-  CHECK(parse_target("/a%20b/c?x=1+2")->segments[0] == "a b");
-  CHECK(*parse_target("/?x=1+2")->parameter("x") == "1 2");
-  CHECK(parse_target("http://a:80/b?c=d")->segments == std::vector<std::string>{"b"});
-  CHECK(parse_target("http://a/")->segments.empty());
+  CHECK(server::parse_target("/a%20b/c?x=1+2&y=%C3%A9"));
+  CHECK(server::parse_target("/a%20b/c?x=1+2")->segments[0] == "a b");
+  CHECK(*server::parse_target("/?x=1+2")->parameter("x") == "1 2");
+  CHECK(server::parse_target("http://a:80/b?c=d")->segments == std::vector<std::string>{"b"});
+  CHECK(server::parse_target("http://a/")->segments.empty());
   for (const char* wrong : {"", "x", "ftp://a/", "http://a", "/%", "/%1", "/%zz", "/%ff", "/%c0%af",
                             "/a//b", "/%0a", "/?x=1&x=2"}) {
     INFO(wrong);
-    CHECK_FALSE(parse_target(wrong));
+    CHECK_FALSE(server::parse_target(wrong));
   }
 }
 

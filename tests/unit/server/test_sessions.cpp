@@ -77,28 +77,29 @@ class Client {
 /// "/slow" computes until `release`; everything else answers at once with the body's size.
 class Server {
  public:
-  explicit Server(ServerOptions options = small()) {
+  explicit Server(server::ServerOptions options = small()) {
     options.port = 0;
-    Application application;
-    application.lane = [](const Request& request) {
-      return request.target == "/slow" ? Lane::computing : Lane::quick;
+    server::Application application;
+    application.lane = [](const server::Request& request) {
+      return request.target == "/slow" ? server::Lane::computing : server::Lane::quick;
     };
-    application.respond = [this](const Request& request, const IsCancelled& is_cancelled) {
+    application.respond = [this](const server::Request& request,
+                                 const server::IsCancelled& is_cancelled) {
       if (request.target == "/slow") {
         ++slow_;
         while (!release && !is_cancelled()) std::this_thread::sleep_for(kTick);
       }
       const std::string body = is_cancelled() ? "cancelled" : std::to_string(request.body.size());
-      return Response{200, "text/plain", body, {}};
+      return server::Response{200, "text/plain", body, {}};
     };
-    auto started = HttpServer::start(options, application, [](const std::string&) {});
+    auto started = server::HttpServer::start(options, application, [](const std::string&) {});
     REQUIRE(started);
     server = *std::move(started);
   }
   ~Server() { server->stop(); }
 
-  static ServerOptions small() {
-    ServerOptions options;
+  static server::ServerOptions small() {
+    server::ServerOptions options;
     options.header_bytes = 1000;
     options.body_bytes = 10'000;
     options.body_bytes_together = 15'000;
@@ -115,7 +116,7 @@ class Server {
     while (slow_ < count) std::this_thread::sleep_for(kTick);
   }
 
-  std::unique_ptr<HttpServer> server;
+  std::unique_ptr<server::HttpServer> server;
   std::atomic<bool> release = false;
 
  private:
@@ -237,7 +238,7 @@ TEST_CASE("quick requests are answered while others compute, and a full queue is
 }
 
 TEST_CASE("connections beyond the limit are told to come back") {
-  ServerOptions options = Server::small();
+  server::ServerOptions options = Server::small();
   options.connections = 1;
   Server server(options);
   const Client first(server.server->port());
@@ -250,7 +251,7 @@ TEST_CASE("connections beyond the limit are told to come back") {
 }
 
 TEST_CASE("stopping lets a request in flight finish and closes idle connections") {
-  ServerOptions options = Server::small();
+  server::ServerOptions options = Server::small();
   options.idle_seconds = 60;
   Server server(options);
   const Client idle(server.server->port());
@@ -269,7 +270,7 @@ TEST_CASE("stopping lets a request in flight finish and closes idle connections"
 }
 
 TEST_CASE("stopping cancels what does not finish in time") {
-  ServerOptions options = Server::small();
+  server::ServerOptions options = Server::small();
   options.drain_seconds = 0.2;
   Server server(options);
   const Client busy(server.server->port());
@@ -282,14 +283,14 @@ TEST_CASE("stopping cancels what does not finish in time") {
 /// Answers "/parts" with `parts` parts of `bytes` bytes; with `failing`, an error after them.
 struct Parts {
   explicit Parts(std::size_t count, std::size_t bytes = 5, bool failing = false) {
-    ServerOptions options = Server::small();
+    server::ServerOptions options = Server::small();
     options.port = 0;
     options.downloads = 1;
     options.write_seconds = 0.5;
-    Application application;
-    application.lane = [](const Request&) { return Lane::computing; };
-    application.respond = [=, this](const Request& request, const IsCancelled&) {
-      Response response{200, "text/plain", std::string(bytes, 'a'), {}};
+    server::Application application;
+    application.lane = [](const server::Request&) { return server::Lane::computing; };
+    application.respond = [=, this](const server::Request& request, const server::IsCancelled&) {
+      server::Response response{200, "text/plain", std::string(bytes, 'a'), {}};
       if (request.target != "/parts") return response;
       response.rest = [=, this, alive = alive, left = count - 1]() mutable -> Result<std::string> {
         ++made;
@@ -299,7 +300,7 @@ struct Parts {
       };
       return response;
     };
-    auto started = HttpServer::start(options, application, [this](const std::string& line) {
+    auto started = server::HttpServer::start(options, application, [this](const std::string& line) {
       const std::lock_guard lock(mutex);
       log += line + "\n";
     });
@@ -335,7 +336,7 @@ struct Parts {
   std::atomic<std::size_t> made = 0;
   std::mutex mutex;
   std::string log;
-  std::unique_ptr<HttpServer> server;
+  std::unique_ptr<server::HttpServer> server;
 };
 
 const std::string kGetParts = "GET /parts HTTP/1.1\r\nHost: x\r\n\r\n";
@@ -411,13 +412,13 @@ TEST_CASE("stopping cuts off an answer in parts that does not end in time") {
 
 TEST_CASE("an address that cannot be listened on is an error") {
   const Server server;
-  ServerOptions options;
+  server::ServerOptions options;
   options.port = server.server->port();
-  const auto second = HttpServer::start(options, {}, [](const std::string&) {});
+  const auto second = server::HttpServer::start(options, {}, [](const std::string&) {});
   REQUIRE_FALSE(second);
   CHECK(second.error().code == ErrorCode::unavailable);
   options.address = "nowhere";
-  CHECK_FALSE(HttpServer::start(options, {}, [](const std::string&) {}));
+  CHECK_FALSE(server::HttpServer::start(options, {}, [](const std::string&) {}));
 }
 
 }  // namespace

@@ -31,15 +31,15 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path, ignored);
 }
 
-std::unique_ptr<DatabaseSession> session_in(const std::string& connection) {
-  auto opened = DatabaseSession::open(connection);
-  REQUIRE(std::holds_alternative<std::unique_ptr<DatabaseSession>>(opened));
-  return std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
+std::unique_ptr<store::DatabaseSession> session_in(const std::string& connection) {
+  auto opened = store::DatabaseSession::open(connection);
+  REQUIRE(std::holds_alternative<std::unique_ptr<store::DatabaseSession>>(opened));
+  return std::move(std::get<std::unique_ptr<store::DatabaseSession>>(opened));
 }
 
 std::string ask(const std::string& connection, const std::string& statement) {
   const auto session = session_in(connection);
-  const Result<Rows> rows = session->run(statement);
+  const Result<store::Rows> rows = session->run(statement);
   INFO((rows ? std::string() : to_string(rows.error())));
   REQUIRE(rows);
   return rows->size() == 0 ? std::string() : std::string(rows->text(0, 0));
@@ -48,7 +48,8 @@ std::string ask(const std::string& connection, const std::string& statement) {
 Database::Database() {
   static int number = 0;
   name_ = "t" + std::to_string(getpid()) + "_" + std::to_string(++number);
-  Result<std::unique_ptr<PrivateCluster>> started = PrivateCluster::start({shared_folder()});
+  Result<std::unique_ptr<store::PrivateCluster>> started =
+      store::PrivateCluster::start({shared_folder()});
   INFO((started ? std::string() : to_string(started.error())));
   REQUIRE(started);
   cluster_ = std::move(*started);
@@ -58,7 +59,7 @@ Database::Database() {
 
 Database::~Database() {
   const auto session = session_in(cluster_->connection());
-  const Result<Rows> gone = session->run("DROP DATABASE " + name_ + " WITH (FORCE)");
+  const Result<store::Rows> gone = session->run("DROP DATABASE " + name_ + " WITH (FORCE)");
   static_cast<void>(gone);
 }
 
@@ -68,7 +69,7 @@ std::string Database::socket() const {
 }
 
 std::unique_ptr<SolidStore> Database::store(std::size_t connections) const {
-  Result<std::unique_ptr<SolidStore>> opened = open_postgres_store(connection_, connections);
+  Result<std::unique_ptr<SolidStore>> opened = store::open_postgres_store(connection_, connections);
   INFO((opened ? std::string() : to_string(opened.error())));
   REQUIRE(opened);
   return std::move(*opened);
@@ -89,8 +90,8 @@ void Database::add_many_features() const {
 }
 
 bool Database::end_sessions() const {
-  auto opened = DatabaseSession::open(cluster_->connection());
-  auto* session = std::get_if<std::unique_ptr<DatabaseSession>>(&opened);
+  auto opened = store::DatabaseSession::open(cluster_->connection());
+  auto* session = std::get_if<std::unique_ptr<store::DatabaseSession>>(&opened);
   if (session == nullptr) return false;
   return (*session)
       ->run("SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity WHERE datname = '" +
@@ -107,7 +108,7 @@ StoredFeature sample_feature(const std::string& id) {
   feature.srid = 7415;
   feature.header = "{\"type\":\"CityJSON\"}";
   feature.skeleton = std::string("{\"a\":\"\\u0000\"}\0\xFF\n", 17);
-  feature.box = StoredBox{{0, 0, 0}, {1, 1.5, 1e9}};
+  feature.box = store::StoredBox{{0, 0, 0}, {1, 1.5, 1e9}};
   for (std::uint32_t ordinal = 0; ordinal < 2; ++ordinal) {
     StoredSolid solid;
     solid.object_id = id + "-part";

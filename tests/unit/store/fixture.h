@@ -43,12 +43,12 @@ class Database {
   bool end_sessions() const;
 
  private:
-  std::unique_ptr<PrivateCluster> cluster_;
+  std::unique_ptr<store::PrivateCluster> cluster_;
   std::string name_;
   std::string connection_;
 };
 
-std::unique_ptr<DatabaseSession> session_in(const std::string& connection);
+std::unique_ptr<store::DatabaseSession> session_in(const std::string& connection);
 std::string ask(const std::string& connection, const std::string& statement);
 
 /// A feature with a box, two solids and bytes that no text encoding would survive.

@@ -17,22 +17,23 @@
 namespace watertight::test {
 namespace {
 
-std::unique_ptr<PrivateCluster> started(const ClusterOptions& options) {
-  Result<std::unique_ptr<PrivateCluster>> cluster = PrivateCluster::start(options);
+std::unique_ptr<store::PrivateCluster> started(const store::ClusterOptions& options) {
+  Result<std::unique_ptr<store::PrivateCluster>> cluster = store::PrivateCluster::start(options);
   INFO((cluster ? std::string() : to_string(cluster.error())));
   REQUIRE(cluster);
   return std::move(*cluster);
 }
 
-ErrorCode refusal(const ClusterOptions& options) {
-  const Result<std::unique_ptr<PrivateCluster>> cluster = PrivateCluster::start(options);
+ErrorCode refusal(const store::ClusterOptions& options) {
+  const Result<std::unique_ptr<store::PrivateCluster>> cluster =
+      store::PrivateCluster::start(options);
   REQUIRE(!cluster);
   CHECK(!cluster.error().message.empty());
   return cluster.error().code;
 }
 
 pid_t postmaster_of(const std::string& data) {
-  const auto file = read_postmaster_file(data + "/postgres");
+  const auto file = store::read_postmaster_file(data + "/postgres");
   return file ? file->pid : 0;
 }
 
@@ -60,7 +61,7 @@ TEST_CASE("a cluster is created, private, joined, and stopped by its last user")
   first.reset();
   CHECK(ask(second->connection(), "SELECT 'still here'") == "still here");
   second.reset();
-  CHECK(postgres_processes_in(data + "/postgres").empty());
+  CHECK(store::postgres_processes_in(data + "/postgres").empty());
   CHECK(postmaster > 0);
   CHECK(postmaster_of(data) == 0);
 }
@@ -74,7 +75,7 @@ TEST_CASE("a cluster recovers from every way its server can have died") {
     ask(cluster->connection(), "INSERT INTO t VALUES (1)");
     const pid_t pid = postmaster_of(data);
     kill(pid, SIGKILL);
-    while (!postgres_processes_in(data + "/postgres").empty()) {
+    while (!store::postgres_processes_in(data + "/postgres").empty()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   };
@@ -90,7 +91,7 @@ TEST_CASE("a cluster recovers from every way its server can have died") {
   // Its number now belongs to another process of the same user.
   kill_server();
   const std::string recycled = std::to_string(getpid());
-  const auto file = read_postmaster_file(data + "/postgres");
+  const auto file = store::read_postmaster_file(data + "/postgres");
   REQUIRE(file);
   for (const std::string& path :
        {data + "/postgres/postmaster.pid", data + "/socket/.s.PGSQL.5432.lock"}) {
@@ -116,7 +117,7 @@ TEST_CASE("a killed user leaves the cluster to the next one") {
   REQUIRE(pipe(ready) == 0);
   const pid_t child = fork();
   if (child == 0) {
-    const auto cluster = PrivateCluster::start({folder.path});
+    const auto cluster = store::PrivateCluster::start({folder.path});
     const char answer = cluster ? 'y' : 'n';
     if (write(ready[1], &answer, 1) == 1) pause();
     _exit(1);
@@ -132,7 +133,7 @@ TEST_CASE("a killed user leaves the cluster to the next one") {
     CHECK(postmaster_of(folder.path) == before);
     CHECK(ask(cluster->connection(), "SELECT 'joined'") == "joined");
   }
-  CHECK(postgres_processes_in(folder.path + "/postgres").empty());
+  CHECK(store::postgres_processes_in(folder.path + "/postgres").empty());
 }
 
 TEST_CASE("processes that start a new cluster at the same time share it") {
@@ -146,9 +147,9 @@ TEST_CASE("processes that start a new cluster at the same time share it") {
       close(go[1]);
       char byte = 0;
       if (read(go[0], &byte, 1) != 0) _exit(9);  // the pipe closes for all at once
-      auto cluster = PrivateCluster::start({folder.path});
+      auto cluster = store::PrivateCluster::start({folder.path});
       if (!cluster) _exit(2);
-      auto store = open_postgres_store((*cluster)->connection());
+      auto store = store::open_postgres_store((*cluster)->connection());
       const StoredFeature feature = sample_feature("from " + std::to_string(i));
       const bool stored = store && (*store)->put(std::span(&feature, 1));
       cluster->reset();
@@ -172,7 +173,7 @@ TEST_CASE("a path that no socket address or connection string can hold has its s
   const std::string data = folder.path + "/a, " + std::string(120, 'd');
   auto cluster = started({data});
   CHECK(ask(cluster->connection(), "SELECT 'there'") == "there");
-  const auto file = read_postmaster_file(data + "/postgres");
+  const auto file = store::read_postmaster_file(data + "/postgres");
   REQUIRE(file);
   CHECK(file->socket_folder.starts_with("/tmp/watertight-"));
   CHECK(file->socket_folder.size() < 60);
@@ -180,7 +181,7 @@ TEST_CASE("a path that no socket address or connection string can hold has its s
   cluster.reset();
   CHECK(!std::filesystem::exists(file->socket_folder));
   // A comma alone would make two hosts of one path.
-  const Result<std::string> with_comma = prepare_socket_folder("/a,b");
+  const Result<std::string> with_comma = store::prepare_socket_folder("/a,b");
   REQUIRE(with_comma);
   CHECK(with_comma->starts_with("/tmp/watertight-"));
   std::filesystem::remove(*with_comma);
@@ -203,7 +204,7 @@ TEST_CASE("a server that cannot start is reported with its own words") {
   started({folder.path}).reset();
   std::ofstream(folder.path + "/postgres/postgresql.conf", std::ios::app)
       << "no_such_setting = 1\n";
-  const auto cluster = PrivateCluster::start({folder.path});
+  const auto cluster = store::PrivateCluster::start({folder.path});
   REQUIRE(!cluster);
   CHECK(cluster.error().code == ErrorCode::unavailable);
   CHECK(cluster.error().message.find("no_such_setting") != std::string::npos);
@@ -226,7 +227,7 @@ TEST_CASE("the database has the extension exactly where the server offers it") {
 
 TEST_CASE("who is not root keeps its user") {
   const uid_t before = geteuid();
-  CHECK(drop_root_privileges("/nowhere/at/all"));
+  CHECK(store::drop_root_privileges("/nowhere/at/all"));
   CHECK(geteuid() == before);
 }
 

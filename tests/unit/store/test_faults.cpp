@@ -109,7 +109,8 @@ TEST_CASE("a commit whose answer was lost is found out, never repeated and never
   const Database database;
   const TemporaryFolder folder;
   Proxy proxy(folder.path, database.socket());
-  const auto store = open_postgres_store(database.connection() + " host='" + folder.path + "'", 1);
+  const auto store =
+      store::open_postgres_store(database.connection() + " host='" + folder.path + "'", 1);
   REQUIRE(store);
   watch_features(database);
   std::vector<std::string> expected;
@@ -133,9 +134,10 @@ TEST_CASE("a commit whose answer was lost is found out, never repeated and never
 
 TEST_CASE("every acknowledged put survives kill -9 of the server, and the store goes on") {
   const TemporaryFolder folder;
-  Result<std::unique_ptr<PrivateCluster>> cluster = PrivateCluster::start({folder.path});
+  Result<std::unique_ptr<store::PrivateCluster>> cluster =
+      store::PrivateCluster::start({folder.path});
   REQUIRE(cluster);
-  const auto store = open_postgres_store((*cluster)->connection(), 3);
+  const auto store = store::open_postgres_store((*cluster)->connection(), 3);
   REQUIRE(store);
   Writer first(**store, "first-");
   Writer second(**store, "second-");
@@ -162,25 +164,28 @@ TEST_CASE("every acknowledged put survives kill -9 of the server, and the store 
 
 TEST_CASE("a store says so when the server stays away, and works when it is back") {
   const TemporaryFolder folder;
-  Result<std::unique_ptr<PrivateCluster>> cluster = PrivateCluster::start({folder.path});
+  Result<std::unique_ptr<store::PrivateCluster>> cluster =
+      store::PrivateCluster::start({folder.path});
   REQUIRE(cluster);
-  const auto store = open_postgres_store((*cluster)->connection(), 1);
+  const auto store = store::open_postgres_store((*cluster)->connection(), 1);
   REQUIRE(store);
   (*cluster).reset();  // the last user stops the server
   CHECK((*store)->ping().error().code == ErrorCode::unavailable);
   const auto got = (*store)->get("buildings", "a");
   REQUIRE(!got);
   CHECK(got.error().code == ErrorCode::unavailable);
-  Result<std::unique_ptr<PrivateCluster>> again = PrivateCluster::start({folder.path});
+  Result<std::unique_ptr<store::PrivateCluster>> again =
+      store::PrivateCluster::start({folder.path});
   REQUIRE(again);
   CHECK((*store)->ping());
   CHECK((*store)->get("buildings", "a").error().code == ErrorCode::not_found);
 }
 
 TEST_CASE("a connection string that leads nowhere is an error at once") {
-  CHECK(open_postgres_store("host='unclosed").error().code == ErrorCode::invalid_argument);
+  CHECK(store::open_postgres_store("host='unclosed").error().code == ErrorCode::invalid_argument);
   const Database database;
-  const auto missing = open_postgres_store(database.connection() + " dbname=no_such_database");
+  const auto missing =
+      store::open_postgres_store(database.connection() + " dbname=no_such_database");
   REQUIRE(!missing);
   CHECK(missing.error().code == ErrorCode::unavailable);
   CHECK(missing.error().message.find("no_such_database") != std::string::npos);

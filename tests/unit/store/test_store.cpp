@@ -25,7 +25,7 @@ std::uint64_t put_one(SolidStore& store, const StoredFeature& feature) {
   return versions->front();
 }
 
-std::vector<std::string> all_ids(SolidStore& store, FeatureQuery query) {
+std::vector<std::string> all_ids(SolidStore& store, store::FeatureQuery query) {
   std::vector<std::string> ids;
   do {
     const auto page = store.list(query);
@@ -109,7 +109,7 @@ TEST_CASE("a collection counts its features, solids and bytes and spans their bo
   const auto store = database.store();
   StoredFeature a = sample_feature("a");
   StoredFeature b = sample_feature("b");
-  b.box = StoredBox{{-5, 7, 2}, {-4, 8, 3}};
+  b.box = store::StoredBox{{-5, 7, 2}, {-4, 8, 3}};
   REQUIRE(store->put(std::vector{a, b}));
   const auto collection = store->collection("buildings");
   REQUIRE(collection);
@@ -206,9 +206,9 @@ TEST_CASE("collection ids and boxes that make no sense are refused") {
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const StoredBox& box :
-       {StoredBox{{0, 0, 0}, {1, 1, nan}}, StoredBox{{0, 0, 0}, {1, infinity, 1}},
-        StoredBox{{2, 0, 0}, {1, 1, 1}}}) {
+  for (const store::StoredBox& box :
+       {store::StoredBox{{0, 0, 0}, {1, 1, nan}}, store::StoredBox{{0, 0, 0}, {1, infinity, 1}},
+        store::StoredBox{{2, 0, 0}, {1, 1, 1}}}) {
     StoredFeature feature = sample_feature("a");
     feature.box = box;
     CHECK(put_failure(*store, {feature}) == ErrorCode::invalid_argument);
@@ -267,12 +267,12 @@ TEST_CASE("features of any finite size are stored and found, and keep no others 
   for (int i = 0; i < 700; ++i) {
     StoredFeature feature = sample_feature("f" + std::to_string(1000 + i));
     const double size = sizes[i % 7];
-    feature.box = StoredBox{{-size, -size, -size}, {size, size, size}};
+    feature.box = store::StoredBox{{-size, -size, -size}, {size, size, size}};
     const auto versions = store->put(std::span(&feature, 1));
     INFO((versions ? std::string() : to_string(versions.error())));
     REQUIRE(versions);
   }
-  const auto count = [&](const StoredBox& box) {
+  const auto count = [&](const store::StoredBox& box) {
     const auto found = store->list({"buildings", 1000, "", box});
     REQUIRE(found);
     return found->features.size();
@@ -290,7 +290,7 @@ TEST_CASE("a box finds exactly the features whose closed boxes share a point wit
   std::mt19937 random(11);
   const auto coordinate = [&] { return static_cast<double>(random() % 12) - 3; };
   const auto random_box = [&] {
-    StoredBox box;
+    store::StoredBox box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.min[axis] = coordinate();
       box.max[axis] = box.min[axis] + static_cast<double>(random() % 3);
@@ -305,7 +305,7 @@ TEST_CASE("a box finds exactly the features whose closed boxes share a point wit
   }
   REQUIRE(store->put(features));
   for (int round = 0; round < 40; ++round) {
-    StoredBox box = random_box();
+    store::StoredBox box = random_box();
     if (round % 4 == 0)
       box.max[0] = std::nextafter(box.max[0], -100);  // one step short of touching
     if (box.max[0] < box.min[0]) box.max[0] = box.min[0];
@@ -326,7 +326,8 @@ TEST_CASE("an index serves the box filter") {
   const Database database;
   const auto store = database.store();
   database.add_many_features();
-  const auto page = store->list({"c", 10, "", StoredBox{{500.5, 500.5, 0}, {501.5, 501.5, 1}}});
+  const auto page =
+      store->list({"c", 10, "", store::StoredBox{{500.5, 500.5, 0}, {501.5, 501.5, 1}}});
   REQUIRE(page);
   CHECK(page->matched == 2);
   database.ask("ANALYZE watertight.feature");
@@ -396,7 +397,7 @@ TEST_CASE("any number of stores may be opened on a new database at once") {
   std::vector<std::thread> threads;
   for (int t = 0; t < 6; ++t) {
     threads.emplace_back([&] {
-      const auto store = open_postgres_store(database.connection(), 1);
+      const auto store = store::open_postgres_store(database.connection(), 1);
       if (!store || !(*store)->ping()) ++failures;
     });
   }
@@ -411,7 +412,7 @@ TEST_CASE("a database of a newer program is left alone") {
   REQUIRE(store->ping());
   database.ask("INSERT INTO watertight.migration (number, name) VALUES (999, 'future')");
   CHECK(store->ping().error().code == ErrorCode::unsupported);
-  const auto opened = open_postgres_store(database.connection());
+  const auto opened = store::open_postgres_store(database.connection());
   REQUIRE(!opened);
   CHECK(opened.error().code == ErrorCode::unsupported);
 }

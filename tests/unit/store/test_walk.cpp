@@ -18,7 +18,7 @@ namespace {
 
 StoredFeature at(const std::string& id, double x, double y, double width = 1) {
   StoredFeature feature = sample_feature(id);
-  feature.box = StoredBox{{x, y, 0}, {x + width, y + width, 3}};
+  feature.box = store::StoredBox{{x, y, 0}, {x + width, y + width, 3}};
   return feature;
 }
 
@@ -36,8 +36,8 @@ std::vector<std::string> walked_ids(SolidStore& store, std::uint64_t limit) {
   return ids;
 }
 
-StoredBox square(double x, double y, double width) {
-  return StoredBox{{x, y, 0}, {x + width, y + width, 3}};
+store::StoredBox square(double x, double y, double width) {
+  return store::StoredBox{{x, y, 0}, {x + width, y + width, 3}};
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ TEST_CASE("the place runs through all cells, each beside the one before") {
       for (int y = 0; y < 64; ++y) {
         // Away from the origin where the cells are of half a unit.
         const double shift = unit == 0.5 ? 1024 : 0;
-        cells[place_number(square(shift + x * unit, shift + y * unit, unit / 2))] = {x, y};
+        cells[store::place_number(square(shift + x * unit, shift + y * unit, unit / 2))] = {x, y};
       }
     }
     REQUIRE(cells.size() == 64 * 64);
@@ -64,14 +64,14 @@ TEST_CASE("the place runs through all cells, each beside the one before") {
 
 TEST_CASE("the place of any finite box is a number, and none is after all") {
   for (const double value : {0.0, 5e-324, 360.0, 1e9, 536870912.0, 1e19, 1.7e308}) {
-    for (const StoredBox& box : {StoredBox{{-value, -value, 0}, {value, value, 0}},
-                                 StoredBox{{value, -value, 0}, {value, value, 0}},
-                                 StoredBox{{-value, value, 0}, {-value, value, 0}}}) {
-      CHECK(place_number(box) >= 0);
-      CHECK(place_number(box) < kNoPlace);
+    for (const store::StoredBox& box : {store::StoredBox{{-value, -value, 0}, {value, value, 0}},
+                                        store::StoredBox{{value, -value, 0}, {value, value, 0}},
+                                        store::StoredBox{{-value, value, 0}, {-value, value, 0}}}) {
+      CHECK(store::place_number(box) >= 0);
+      CHECK(store::place_number(box) < store::kNoPlace);
     }
   }
-  CHECK(place_number(std::nullopt) == kNoPlace);
+  CHECK(store::place_number(std::nullopt) == store::kNoPlace);
 }
 
 TEST_CASE("a walk visits each feature once, in order of place") {
@@ -82,7 +82,7 @@ TEST_CASE("a walk visits each feature once, in order of place") {
   for (int i = 0; i < 200; ++i) {
     const std::string id = "b" + std::to_string(i * 7919 % 200);
     features.push_back(at(id, 85'000 + 37.25 * (i % 20), -450'000 + 41.5 * (i / 20), 4));
-    expected.emplace_back(place_number(features.back().box), id);
+    expected.emplace_back(store::place_number(features.back().box), id);
   }
   REQUIRE(store->put(features));
   std::sort(expected.begin(), expected.end());
@@ -113,9 +113,10 @@ TEST_CASE("a walk takes boxes of any size and unit, and none at the end, by id")
   for (const double extreme : {1e308, 5e-324, 1e9, 1073741824.0}) {
     const std::string name = std::to_string(features.size());
     features.push_back(sample_feature("x" + name));
-    features.back().box = StoredBox{{-extreme, -extreme, -extreme}, {extreme, extreme, extreme}};
+    features.back().box =
+        store::StoredBox{{-extreme, -extreme, -extreme}, {extreme, extreme, extreme}};
     features.push_back(sample_feature("y" + name));
-    features.back().box = StoredBox{{extreme, -extreme, 0}, {extreme, -extreme, extreme}};
+    features.back().box = store::StoredBox{{extreme, -extreme, 0}, {extreme, -extreme, extreme}};
   }
   REQUIRE(store->put(features));
   for (const std::uint64_t limit : {1U, 4U, 100U}) {

@@ -20,15 +20,15 @@ using PointTriangle = std::array<Point, 3>;
 
 std::vector<PointTriangle> point_triangles(const Solid& solid) {
   std::vector<PointTriangle> result;
-  for (const Triangle& t : triangulate_facets(solid).triangles) {
+  for (const Triangle& t : tessellate::triangulate_facets(solid).triangles) {
     result.push_back({solid.vertices()[t[0]], solid.vertices()[t[1]], solid.vertices()[t[2]]});
   }
   return result;
 }
 
-FacetState state_of(const std::vector<Ring>& rings) {
-  const FacetTriangles result = triangulate_facets(facet_solid(rings));
-  if (result.state[0] != FacetState::triangulated) REQUIRE(result.triangles.empty());
+tessellate::FacetState state_of(const std::vector<Ring>& rings) {
+  const tessellate::FacetTriangles result = tessellate::triangulate_facets(facet_solid(rings));
+  if (result.state[0] != tessellate::FacetState::triangulated) REQUIRE(result.triangles.empty());
   return result.state[0];
 }
 
@@ -160,8 +160,9 @@ TEST_CASE("random star-shaped facets are covered and canonical") {
     const Ring ring = random_star(random, 4 + round % 40, 3 + round % 5);
     if (ring.size() < 3) continue;
     const Solid solid = facet_solid({ring}, &random);
-    const FacetTriangles result = triangulate_facets(solid);
-    if (result.state[0] != FacetState::triangulated) continue;  // the origin can lie outside
+    const tessellate::FacetTriangles result = tessellate::triangulate_facets(solid);
+    if (result.state[0] != tessellate::FacetState::triangulated)
+      continue;  // the origin can lie outside
     const auto triangles = point_triangles(solid);
     CHECK(triangles.size() == ring.size() - 2);
     std::int64_t area = 0;
@@ -190,30 +191,30 @@ TEST_CASE("a reversed facet has the same triangles, turned over") {
 
 TEST_CASE("a facet is projected along the largest component of its world area, ties x, y, z") {
   const Ring tilted{{0, 0, 0}, {4, 0, 4}, {0, 4, 0}};  // normal (-16, 0, 16)
-  CHECK(facet_projection(facet_solid({tilted}), 0).axis == 0);
-  CHECK(facet_projection(facet_solid({tilted}), 0).is_mirrored);
+  CHECK(tessellate::facet_projection(facet_solid({tilted}), 0).axis == 0);
+  CHECK(tessellate::facet_projection(facet_solid({tilted}), 0).is_mirrored);
   const Ring flat = rectangle(0, 0, 3, 3);
-  CHECK(facet_projection(facet_solid({flat}), 0).axis == 2);
-  CHECK_FALSE(facet_projection(facet_solid({flat}), 0).is_mirrored);
+  CHECK(tessellate::facet_projection(facet_solid({flat}), 0).axis == 2);
+  CHECK_FALSE(tessellate::facet_projection(facet_solid({flat}), 0).is_mirrored);
 
   // A coarser step along x makes the same lattice triangle steeper in x.
   Solid solid = facet_solid({Ring{{0, 0, 0}, {1, 0, 5}, {0, 1, 0}}});
-  CHECK(facet_projection(solid, 0).axis == 0);
+  CHECK(tessellate::facet_projection(solid, 0).axis == 0);
   Lattice lattice;
   lattice.step = {GridNumber{1, 1}, GridNumber{1, 0}, GridNumber{1, 0}};
   auto coarse = Solid::make(solid.arrays(), lattice, 0);
   REQUIRE(coarse);
-  CHECK(facet_projection(*coarse, 0).axis == 2);
+  CHECK(tessellate::facet_projection(*coarse, 0).axis == 2);
 
   const Solid line = facet_solid({Ring{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}}});
-  CHECK(facet_projection(line, 0).is_degenerate);
+  CHECK(tessellate::facet_projection(line, 0).is_degenerate);
 }
 
 TEST_CASE("in a geographic system a degree counts 2^17 metres of height") {
   const auto axis = [](const Ring& ring, std::uint32_t srid, Lattice lattice = {}) {
     auto solid = Solid::make(facet_solid({ring}).arrays(), lattice, srid);
     REQUIRE(solid);
-    return facet_projection(*solid, 0).axis;
+    return tessellate::facet_projection(*solid, 0).axis;
   };
   // Ten units wide, one corner three units up; then turned about, x for y.
   const Ring along_x{{0, 0, 0}, {1, 0, 30}, {1, 1, 30}, {0, 1, 0}};
@@ -251,7 +252,7 @@ TEST_CASE("coordinates that cannot be angles count as metres in a geographic sys
   const auto axis = [](const Ring& r) {
     auto solid = Solid::make(facet_solid({r}).arrays(), Lattice{}, 4326);
     REQUIRE(solid);
-    return facet_projection(*solid, 0).axis;
+    return tessellate::facet_projection(*solid, 0).axis;
   };
   CHECK(axis(ring) == 0);
   CHECK(axis(near) == 2);
@@ -261,18 +262,18 @@ TEST_CASE("the projection of large and of fractional coordinates is exact") {
   const double large = 4503599627370496.0;  // 2^52
   // The two largest components differ by one part in 2^104.
   const Ring ring{{0, 0, 0}, {large, 0, large - 1}, {0, large, 0}};
-  const Projection projection = facet_projection(facet_solid({ring}), 0);
+  const tessellate::Projection projection = tessellate::facet_projection(facet_solid({ring}), 0);
   CHECK(projection.axis == 2);
   const Ring fraction{{0.1, 0, 0}, {0.1, 0.3, 0}, {0.1, 0, 0.7}};
-  CHECK(facet_projection(facet_solid({fraction}), 0).axis == 0);
+  CHECK(tessellate::facet_projection(facet_solid({fraction}), 0).axis == 0);
 }
 
 TEST_CASE("holes may touch the exterior ring and each other in vertices") {
   const Ring outer{{0, 0, 0}, {5, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
   const Ring hole{{5, 0, 0}, {4, 2, 0}, {6, 2, 0}};
-  CHECK(state_of({outer, hole}) == FacetState::triangulated);
+  CHECK(state_of({outer, hole}) == tessellate::FacetState::triangulated);
   const Ring other{{6, 2, 0}, {6, 4, 0}, {8, 3, 0}};
-  CHECK(state_of({outer, hole, other}) == FacetState::triangulated);
+  CHECK(state_of({outer, hole, other}) == tessellate::FacetState::triangulated);
   // Two holes that touch twice seal off a pocket, which still belongs to the facet.
   const Ring left{{2, 5, 0}, {5, 3, 0}, {4, 5, 0}, {5, 7, 0}};
   const Ring right{{8, 5, 0}, {5, 7, 0}, {6, 5, 0}, {5, 3, 0}};
@@ -294,11 +295,12 @@ TEST_CASE("a vertex of a ring inside an edge of another ring splits that edge") 
                                          {notched, at_notch},
                                          {notched, at_edge, at_notch}}) {
     const Solid solid = facet_solid(rings);
-    const FacetTriangles facets = triangulate_facets(solid);
-    CHECK(facets.state[0] == FacetState::triangulated);
+    const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
+    CHECK(facets.state[0] == tessellate::FacetState::triangulated);
     CHECK(facets.divided);
     // The same triangles as those of the rings that list the vertex.
-    const FacetTriangles listed = triangulate_facets(facets.divided_solid(solid));
+    const tessellate::FacetTriangles listed =
+        tessellate::triangulate_facets(facets.divided_solid(solid));
     CHECK_FALSE(listed.divided);
     CHECK(listed.triangles == facets.triangles);
     std::int64_t area = 0;
@@ -307,7 +309,7 @@ TEST_CASE("a vertex of a ring inside an edge of another ring splits that edge") 
     for (std::size_t i = 1; i < rings.size(); ++i) expected -= std::abs(doubled_area(rings[i]));
     CHECK(area == expected);
   }
-  CHECK_FALSE(triangulate_facets(facet_solid({outer, rectangle(2, 2, 4, 4)})).divided);
+  CHECK_FALSE(tessellate::triangulate_facets(facet_solid({outer, rectangle(2, 2, 4, 4)})).divided);
 }
 
 TEST_CASE("only facets that bound a region once their edges are split are divided") {
@@ -316,50 +318,55 @@ TEST_CASE("only facets that bound a region once their edges are split are divide
   const Ring along_edge{{0, 4, 0}, {3, 5, 0}, {0, 6, 0}};
   for (const std::vector<Ring>& rings :
        {std::vector<Ring>{outer, along_edge}, {outer, at_edge, rectangle(1, 1, 5, 5)}}) {
-    const FacetTriangles facets = triangulate_facets(facet_solid(rings));
-    CHECK(facets.state[0] == FacetState::not_simple);
+    const tessellate::FacetTriangles facets = tessellate::triangulate_facets(facet_solid(rings));
+    CHECK(facets.state[0] == tessellate::FacetState::not_simple);
     CHECK_FALSE(facets.divided);
   }
   // In the plane of projection the vertex is on the edge, in space it is beside it.
   const Ring beside{{0, 5, 1}, {3, 4, 0}, {3, 6, 0}};
-  CHECK(state_of({outer, beside}) == FacetState::not_simple);
+  CHECK(state_of({outer, beside}) == tessellate::FacetState::not_simple);
   // A vertex of the same ring splits nothing.
   CHECK(state_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {4, 0, 0}, {0, 8, 0}},
-                  rectangle(6, 1, 7, 2)}) == FacetState::not_simple);
+                  rectangle(6, 1, 7, 2)}) == tessellate::FacetState::not_simple);
 }
 
 TEST_CASE("rings that are not simple or nest wrongly give no triangles") {
   const Ring outer = rectangle(0, 0, 10, 10);
-  CHECK(state_of({{{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 6, 0}}}) == FacetState::not_simple);
-  CHECK(state_of({outer, rectangle(5, 5, 12, 8)}) == FacetState::not_simple);   // crosses
-  CHECK(state_of({outer, rectangle(20, 5, 22, 8)}) == FacetState::not_simple);  // outside
+  CHECK(state_of({{{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 6, 0}}}) ==
+        tessellate::FacetState::not_simple);
+  CHECK(state_of({outer, rectangle(5, 5, 12, 8)}) ==
+        tessellate::FacetState::not_simple);  // crosses
+  CHECK(state_of({outer, rectangle(20, 5, 22, 8)}) ==
+        tessellate::FacetState::not_simple);  // outside
   CHECK(state_of({outer, rectangle(1, 1, 9, 9), rectangle(2, 2, 3, 3)}) ==
-        FacetState::not_simple);                              // nested
-  CHECK(state_of({outer, outer}) == FacetState::not_simple);  // the same
+        tessellate::FacetState::not_simple);                              // nested
+  CHECK(state_of({outer, outer}) == tessellate::FacetState::not_simple);  // the same
   CHECK(state_of({outer, {{0, 0, 0}, {0, 10, 0}, {3, 6, 0}}}) ==
-        FacetState::not_simple);                                              // an edge shared
-  CHECK(state_of({rectangle(2, 2, 3, 3), outer}) == FacetState::not_simple);  // inside out
-  CHECK(state_of({outer, {{1, 1, 0}, {2, 2, 0}}}) == FacetState::not_simple);
+        tessellate::FacetState::not_simple);  // an edge shared
+  CHECK(state_of({rectangle(2, 2, 3, 3), outer}) ==
+        tessellate::FacetState::not_simple);  // inside out
+  CHECK(state_of({outer, {{1, 1, 0}, {2, 2, 0}}}) == tessellate::FacetState::not_simple);
   CHECK(state_of({{{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 0}}}) ==
-        FacetState::not_simple);  // passes a vertex twice
+        tessellate::FacetState::not_simple);  // passes a vertex twice
   CHECK(state_of({{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 3, 0}}}) ==
-        FacetState::not_simple);  // spike
+        tessellate::FacetState::not_simple);  // spike
 }
 
 TEST_CASE("facets without area are degenerate") {
-  CHECK(state_of({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}}) == FacetState::degenerate);
-  CHECK(state_of({{{0, 0, 0}, {1, 1, 1}}}) == FacetState::degenerate);
-  CHECK(state_of({{{0, 0, 0}, {3, 3, 0}, {3, 0, 0}, {0, 3, 0}}}) == FacetState::degenerate);
+  CHECK(state_of({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}}) == tessellate::FacetState::degenerate);
+  CHECK(state_of({{{0, 0, 0}, {1, 1, 1}}}) == tessellate::FacetState::degenerate);
+  CHECK(state_of({{{0, 0, 0}, {3, 3, 0}, {3, 0, 0}, {0, 3, 0}}}) ==
+        tessellate::FacetState::degenerate);
 }
 
 TEST_CASE("different vertices with the same projection do not crash") {
   const Ring ring{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {5, 5, 0}, {0, 10, 0}, {5, 5, 3}};
-  CHECK(state_of({ring}) == FacetState::not_simple);
+  CHECK(state_of({ring}) == tessellate::FacetState::not_simple);
 }
 
 TEST_CASE("a facet that is not planar is triangulated in projection") {
   const Ring ring{{0, 0, 0}, {10, 0, 1}, {10, 10, 0}, {0, 10, 1}};
-  CHECK(state_of({ring}) == FacetState::triangulated);
+  CHECK(state_of({ring}) == tessellate::FacetState::triangulated);
 }
 
 TEST_CASE("a rectangle with a corner off its plane has the diagonal of its mirror image") {
@@ -395,10 +402,10 @@ TEST_CASE("triangles are grouped by facet and facets without triangles are kept"
   arrays.end_shell();
   auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
   REQUIRE(solid);
-  const FacetTriangles result = triangulate_facets(*solid);
+  const tessellate::FacetTriangles result = tessellate::triangulate_facets(*solid);
   CHECK(result.first == std::vector<Index>{0, 1, 1, 2, 2});
   CHECK(result.facet_of == std::vector<Index>{0, 2});
-  CHECK(result.state[3] == FacetState::degenerate);
+  CHECK(result.state[3] == tessellate::FacetState::degenerate);
   CHECK(result.triangles[1] == Triangle{3, 1, 2});
 }
 

@@ -14,17 +14,17 @@ namespace {
 
 using test::facet_solid;
 using test::Ring;
-using Kinds = std::vector<RingProblemKind>;
+using Kinds = std::vector<tessellate::RingProblemKind>;
 
-std::vector<RingProblem> problems_of(const std::vector<Ring>& rings) {
-  const RingProblems result = ring_problems(facet_solid(rings), 0, 100);
+std::vector<tessellate::RingProblem> problems_of(const std::vector<Ring>& rings) {
+  const tessellate::RingProblems result = tessellate::ring_problems(facet_solid(rings), 0, 100);
   CHECK(result.is_complete);
   return result.problems;
 }
 
 Kinds kinds_of(const std::vector<Ring>& rings) {
   Kinds kinds;
-  for (const RingProblem& problem : problems_of(rings)) kinds.push_back(problem.kind);
+  for (const tessellate::RingProblem& problem : problems_of(rings)) kinds.push_back(problem.kind);
   return kinds;
 }
 
@@ -49,8 +49,8 @@ TEST_CASE("rings that touch inside edges have no problem; other contacts keep th
   // A third ring crosses the first hole; edges are counted in the rings as submitted.
   const auto crossed = problems_of({square(0, 9), at_edge, {{2, 1, 0}, {8, 1, 0}, {2, 8, 0}}});
   REQUIRE_FALSE(crossed.empty());
-  for (const RingProblem& problem : crossed) {
-    CHECK(problem.kind == RingProblemKind::rings_meet);
+  for (const tessellate::RingProblem& problem : crossed) {
+    CHECK(problem.kind == tessellate::RingProblemKind::rings_meet);
     CHECK(problem.ring == 1);
     CHECK(problem.edge < 3);
     CHECK(problem.other_edge < 3);
@@ -62,7 +62,7 @@ TEST_CASE("rings that touch inside edges have no problem; other contacts keep th
   CHECK(along[0].other_edge == 2);
   // A hole that touches the exterior ring from outside.
   CHECK(kinds_of({square(0, 9), {{9, 5, 0}, {12, 4, 0}, {12, 6, 0}}}) ==
-        Kinds{RingProblemKind::outside_exterior});
+        Kinds{tessellate::RingProblemKind::outside_exterior});
   // Two tips of the exterior ring inside one edge of a hole; between them inside, then outside.
   CHECK(kinds_of({{{0, 0, 0},
                    {4, 0, 0},
@@ -92,14 +92,14 @@ TEST_CASE("rings that touch inside edges have no problem; other contacts keep th
 TEST_CASE("a bow tie meets itself in the exact crossing point") {
   const auto problems = problems_of({{{0, 0, 0}, {3, 3, 3}, {3, 0, 3}, {0, 3, 0}}});
   REQUIRE(problems.size() == 1);
-  CHECK(problems[0].kind == RingProblemKind::self_contact);
+  CHECK(problems[0].kind == tessellate::RingProblemKind::self_contact);
   CHECK(problems[0].edge == 0);
   CHECK(problems[0].other_edge == 2);
   CHECK(problems[0].witness == Point{1.5, 1.5, 1.5});
 }
 
 TEST_CASE("touching, spikes and repeated vertices are contacts of a ring with itself") {
-  const Kinds once{RingProblemKind::self_contact};
+  const Kinds once{tessellate::RingProblemKind::self_contact};
   CHECK(kinds_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {4, 0, 0}, {0, 8, 0}}}) == once);
   CHECK(kinds_of({{{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 0}}}) == once);
   CHECK(kinds_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {8, 4, 0}, {0, 8, 0}}}) == once);
@@ -107,18 +107,21 @@ TEST_CASE("touching, spikes and repeated vertices are contacts of a ring with it
 
 TEST_CASE("collapsed and duplicate rings are told") {
   CHECK(kinds_of({{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}}}) ==
-        Kinds{RingProblemKind::collapsed});
-  CHECK(kinds_of({square(0, 9), square(2, 4), square(2, 4)}) == Kinds{RingProblemKind::same_ring});
+        Kinds{tessellate::RingProblemKind::collapsed});
+  CHECK(kinds_of({square(0, 9), square(2, 4), square(2, 4)}) ==
+        Kinds{tessellate::RingProblemKind::same_ring});
 }
 
 TEST_CASE("rings that cross, nest or lie outside are told apart") {
   CHECK(kinds_of({square(0, 9), square(5, 12)}) ==
-        Kinds{RingProblemKind::rings_meet, RingProblemKind::rings_meet});
-  CHECK(kinds_of({square(0, 9), square(12, 14)}) == Kinds{RingProblemKind::outside_exterior});
-  CHECK(kinds_of({square(0, 9), square(1, 8), square(3, 4)}) == Kinds{RingProblemKind::nested});
+        Kinds{tessellate::RingProblemKind::rings_meet, tessellate::RingProblemKind::rings_meet});
+  CHECK(kinds_of({square(0, 9), square(12, 14)}) ==
+        Kinds{tessellate::RingProblemKind::outside_exterior});
+  CHECK(kinds_of({square(0, 9), square(1, 8), square(3, 4)}) ==
+        Kinds{tessellate::RingProblemKind::nested});
   // Crosses the exterior ring in two of its vertices only.
   CHECK(kinds_of({square(0, 9), {{9, 0, 0}, {12, 12, 0}, {0, 9, 0}, {4, 4, 0}}}) ==
-        Kinds{RingProblemKind::rings_meet});
+        Kinds{tessellate::RingProblemKind::rings_meet});
   // All vertices are vertices of the exterior ring: the edges tell.
   CHECK(kinds_of({{{0, 0, 0}, {9, 0, 0}, {5, 5, 0}, {0, 9, 0}},
                   {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}}) != Kinds{});
@@ -132,7 +135,7 @@ TEST_CASE("problems are found whichever way the facet lies in space") {
       for (int i = 0; i < 3; ++i) turned[(i + axis) % 3] = p[i];
       p = turned;
     }
-    CHECK(kinds_of({ring}) == Kinds{RingProblemKind::self_contact});
+    CHECK(kinds_of({ring}) == Kinds{tessellate::RingProblemKind::self_contact});
   }
 }
 
@@ -150,8 +153,9 @@ TEST_CASE("a facet is triangulated exactly when its rings have no problem") {
       }
     }
     const Solid solid = facet_solid(rings);
-    const bool is_good = triangulate_facets(solid).state[0] == FacetState::triangulated;
-    const bool has_problems = !ring_problems(solid, 0, 100).problems.empty();
+    const bool is_good =
+        tessellate::triangulate_facets(solid).state[0] == tessellate::FacetState::triangulated;
+    const bool has_problems = !tessellate::ring_problems(solid, 0, 100).problems.empty();
     triangulated += is_good ? 1 : 0;
     if (is_good == has_problems) ++wrong;
   }
@@ -162,7 +166,7 @@ TEST_CASE("a facet is triangulated exactly when its rings have no problem") {
 TEST_CASE("many problems are cut off and said to be") {
   Ring ring;
   for (int i = 0; i < 60; ++i) ring.push_back({double(i % 2 * 100), double(i * 7 % 60), 0});
-  const RingProblems result = ring_problems(facet_solid({ring}), 0, 10);
+  const tessellate::RingProblems result = tessellate::ring_problems(facet_solid({ring}), 0, 10);
   CHECK(result.problems.size() <= 10);
   CHECK_FALSE(result.is_complete);
 }
@@ -174,7 +178,7 @@ TEST_CASE("a star with millions of crossings costs no more than the problems tha
     ring.push_back({std::round(1e6 * std::cos(angle)), std::round(1e6 * std::sin(angle)), 0});
   }
   const auto start = std::chrono::steady_clock::now();
-  const RingProblems result = ring_problems(facet_solid({ring}), 0, 100);
+  const tessellate::RingProblems result = tessellate::ring_problems(facet_solid({ring}), 0, 100);
   CHECK(result.problems.size() <= 100);
   CHECK_FALSE(result.is_complete);
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
@@ -184,20 +188,20 @@ TEST_CASE("a nested hole among thousands is found by the holes near it") {
   std::vector<Ring> rings{square(0, 100000)};
   for (int i = 0; i < 2000; ++i) rings.push_back(square(10 * i + 1, 10 * i + 9));
   rings.push_back(square(13, 15));
-  const RingProblems result = ring_problems(facet_solid(rings), 0, 100);
+  const tessellate::RingProblems result = tessellate::ring_problems(facet_solid(rings), 0, 100);
   REQUIRE(result.problems.size() == 1);
-  CHECK(result.problems[0].kind == RingProblemKind::nested);
+  CHECK(result.problems[0].kind == tessellate::RingProblemKind::nested);
   CHECK(result.problems[0].other_ring == 2);
 }
 
 TEST_CASE("the turn of a ring is exact and independent of its start") {
   std::vector<Ring> rings{square(0, 4)};
   for (int start = 0; start < 4; ++start) {
-    CHECK(ring_turn(facet_solid(rings), 0, 2) == 1);
+    CHECK(tessellate::ring_turn(facet_solid(rings), 0, 2) == 1);
     std::rotate(rings[0].begin(), rings[0].begin() + 1, rings[0].end());
   }
   std::reverse(rings[0].begin(), rings[0].end());
-  CHECK(ring_turn(facet_solid(rings), 0, 2) == -1);
+  CHECK(tessellate::ring_turn(facet_solid(rings), 0, 2) == -1);
 }
 
 TEST_CASE("the search for ring problems can be cancelled") {
@@ -210,8 +214,9 @@ TEST_CASE("the search for ring problems can be cancelled") {
   ring.push_back({-10, 0, 0});
   const Solid solid = facet_solid({ring});
   int asked = 0;
-  const RingProblems result = ring_problems(solid, 0, 100, [&] { return ++asked == 2; });
+  const tessellate::RingProblems result =
+      tessellate::ring_problems(solid, 0, 100, [&] { return ++asked == 2; });
   CHECK_FALSE(result.is_complete);
   CHECK(asked == 2);
-  CHECK(ring_problems(solid, 0, 100, [] { return false; }).is_complete);
+  CHECK(tessellate::ring_problems(solid, 0, 100, [] { return false; }).is_complete);
 }

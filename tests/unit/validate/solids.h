@@ -40,7 +40,7 @@ inline Solid solid_of(const std::vector<Shell>& shells, const Lattice& lattice =
 
 inline Lattice lattice_of(double step) {
   Lattice lattice;
-  lattice.step.fill(shortest_decimal(step));
+  lattice.step.fill(geometry::shortest_decimal(step));
   return lattice;
 }
 

@@ -34,22 +34,25 @@ struct Sample {
   Solid solid;
   std::vector<Index> rounded;
   std::vector<Index> unclosed;
-  UnusedVertices unused;
+  geometry::UnusedVertices unused;
   std::string pointer;
 };
 
 /// Documents that fail (901, 904), and what is no document (903).
 bool is_about_input(int code) {
-  return code == kInvalidInputFile || code == kWrongInputParameters || code == kFormatNotSupported;
+  return code == validate::kInvalidInputFile || code == validate::kWrongInputParameters ||
+         code == validate::kFormatNotSupported;
 }
-bool is_about_groups(int code) { return finding_level(code) == 5 || finding_level(code) == 6; }
+bool is_about_groups(int code) {
+  return validate::finding_level(code) == 5 || validate::finding_level(code) == 6;
+}
 
 /// Reads as the program does: the solids of the one feature.
 std::vector<SubmittedSolid> read_solids(const std::filesystem::path& path) {
   const std::string text = text_of(path);
-  const auto format = detect_format(path.filename().string(), as_bytes(text));
+  const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
   REQUIRE(format);
-  auto document = read_document(as_bytes(text), *format);
+  auto document = formats::read_document(as_bytes(text), *format);
   REQUIRE(document);
   REQUIRE(document->features.size() == 1);
   return std::move(document->features[0].solids);
@@ -84,7 +87,7 @@ std::filesystem::path sample_path(int code) {
 }  // namespace
 
 TEST_CASE("every finding about a solid has a sample that shows it and an expected report") {
-  for (const FindingKind& kind : finding_kinds()) {
+  for (const validate::FindingKind& kind : validate::finding_kinds()) {
     if (is_about_input(kind.code) || is_about_groups(kind.code)) continue;
     INFO("finding " << kind.code);
     const std::filesystem::path path = sample_path(kind.code);
@@ -100,19 +103,20 @@ TEST_CASE("every finding about a solid has a sample that shows it and an expecte
     REQUIRE(finding);
     CHECK(finding->severity == kind.severity);
     // A shell without volume (806) always has another finding, an error.
-    const bool is_error = kind.severity == Severity::error || kind.code == kZeroVolume;
+    const bool is_error = kind.severity == Severity::error || kind.code == validate::kZeroVolume;
     CHECK((report.verdict == Verdict::invalid) == is_error);
 
-    ReportJsonOptions json;
+    validate::ReportJsonOptions json;
     json.pointer_prefix = sample.pointer;
     json.include_times = false;
-    json.style = JsonStyle::indented;
-    check_expected(kind.code, ".report.json", report_json(report, sample.solid, json) + "\n");
+    json.style = validate::JsonStyle::indented;
+    check_expected(kind.code, ".report.json",
+                   validate::report_json(report, sample.solid, json) + "\n");
   }
 }
 
 TEST_CASE("every finding about several solids has a sample that shows it and an expected report") {
-  for (const FindingKind& kind : finding_kinds()) {
+  for (const validate::FindingKind& kind : validate::finding_kinds()) {
     if (!is_about_groups(kind.code)) continue;
     INFO("finding " << kind.code);
     REQUIRE_FALSE(sample_path(kind.code).empty());
@@ -121,14 +125,14 @@ TEST_CASE("every finding about several solids has a sample that shows it and an 
       members.push_back(certify(solid.solid, nullptr));
       REQUIRE(members.back().certified);
     }
-    std::vector<GroupMember> solids;
+    std::vector<validate::GroupMember> solids;
     for (const Inspection& member : members) solids.push_back({&member.certified->solid});
-    const GroupReport report =
-        check_group(solids, finding_level(kind.code) == 5 ? GroupKind::composite_solid
-                                                          : GroupKind::building_parts);
+    const validate::GroupReport report = validate::check_group(
+        solids, validate::finding_level(kind.code) == 5 ? validate::GroupKind::composite_solid
+                                                        : validate::GroupKind::building_parts);
     CHECK(report.verdict == Verdict::invalid);
     std::string text;
-    for (const Finding& finding : report.findings) text += finding_text(finding) + "\n";
+    for (const Finding& finding : report.findings) text += validate::finding_text(finding) + "\n";
     CHECK(std::any_of(report.findings.begin(), report.findings.end(),
                       [&](const Finding& finding) { return finding.code == kind.code; }));
     check_expected(kind.code, ".report.txt", text);
@@ -136,22 +140,22 @@ TEST_CASE("every finding about several solids has a sample that shows it and an 
 }
 
 TEST_CASE("the samples of findings about the input are refused") {
-  for (const int code : {int{kInvalidInputFile}, int{kFormatNotSupported}}) {
+  for (const int code : {int{validate::kInvalidInputFile}, int{validate::kFormatNotSupported}}) {
     INFO("finding " << code);
     const std::filesystem::path path = sample_path(code);
     REQUIRE_FALSE(path.empty());
     const std::string text = text_of(path);
-    const auto format = detect_format(path.filename().string(), as_bytes(text));
-    CHECK(format.has_value() == (code == kInvalidInputFile));
+    const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
+    CHECK(format.has_value() == (code == validate::kInvalidInputFile));
     if (!format) continue;
-    const auto document = read_document(as_bytes(text), *format);
+    const auto document = formats::read_document(as_bytes(text), *format);
     CHECK_FALSE(document);
   }
-  CHECK_FALSE(sample_path(kWrongInputParameters).empty());
+  CHECK_FALSE(sample_path(validate::kWrongInputParameters).empty());
 }
 
 TEST_CASE("every finding says what to do about it, in one sentence") {
-  for (const FindingKind& kind : finding_kinds()) {
+  for (const validate::FindingKind& kind : validate::finding_kinds()) {
     INFO("finding " << kind.code);
     CHECK_FALSE(kind.summary.empty());
     REQUIRE(kind.hint.size() > 10);
@@ -163,7 +167,7 @@ TEST_CASE("every finding says what to do about it, in one sentence") {
 TEST_CASE("every sample belongs to a finding") {
   for (const auto& entry : std::filesystem::directory_iterator(kSamples)) {
     INFO(entry.path());
-    CHECK(find_kind(std::atoi(entry.path().filename().string().c_str())) != nullptr);
+    CHECK(validate::find_kind(std::atoi(entry.path().filename().string().c_str())) != nullptr);
   }
 }
 
@@ -178,7 +182,7 @@ TEST_CASE("docs/findings.md describes every finding and no other") {
     }
   }
   std::vector<std::string> expected;
-  for (const FindingKind& kind : finding_kinds()) {
+  for (const validate::FindingKind& kind : validate::finding_kinds()) {
     expected.push_back(std::to_string(kind.code) + " " + std::string(kind.name));
     CHECK(text.find("tests/golden/findings/" + sample_path(kind.code).filename().string()) !=
           std::string::npos);
@@ -193,14 +197,15 @@ TEST_CASE("every figure belongs to a finding") {
   for (const auto& entry : std::filesystem::directory_iterator(kRoot / "docs" / "figures")) {
     if (entry.path().extension() != ".svg") continue;
     INFO(entry.path());
-    CHECK(find_kind(std::atoi(entry.path().filename().string().c_str())) != nullptr);
+    CHECK(validate::find_kind(std::atoi(entry.path().filename().string().c_str())) != nullptr);
   }
 }
 
 TEST_CASE("finding_name knows the table's codes only") {
-  for (const FindingKind& kind : finding_kinds()) CHECK(finding_name(kind.code) == kind.name);
-  CHECK(finding_name(302) == "SHELL_NOT_CLOSED");
-  CHECK(finding_name(0).empty());
-  CHECK(finding_name(304).empty());
-  CHECK(finding_name(9999).empty());
+  for (const validate::FindingKind& kind : validate::finding_kinds())
+    CHECK(validate::finding_name(kind.code) == kind.name);
+  CHECK(validate::finding_name(302) == "SHELL_NOT_CLOSED");
+  CHECK(validate::finding_name(0).empty());
+  CHECK(validate::finding_name(304).empty());
+  CHECK(validate::finding_name(9999).empty());
 }

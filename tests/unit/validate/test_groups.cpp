@@ -29,10 +29,11 @@ class Group {
     solids_.emplace_back();
     return *this;
   }
-  GroupReport check(GroupKind kind, const GroupOptions& options = {}) const {
-    std::vector<GroupMember> members;
+  validate::GroupReport check(validate::GroupKind kind,
+                              const validate::GroupOptions& options = {}) const {
+    std::vector<validate::GroupMember> members;
     for (const auto& solid : solids_) members.push_back({solid ? &*solid : nullptr});
-    return check_group(members, kind, options);
+    return validate::check_group(members, kind, options);
   }
 
  private:
@@ -41,7 +42,7 @@ class Group {
 
 std::vector<int> composite_codes(const Group& group) {
   std::vector<int> codes;
-  for (const Finding& finding : group.check(GroupKind::composite_solid).findings) {
+  for (const Finding& finding : group.check(validate::GroupKind::composite_solid).findings) {
     codes.push_back(finding.code);
   }
   return codes;
@@ -96,20 +97,20 @@ TEST_CASE("a member in whose facet rings touch inside an edge is compared like o
 }
 
 TEST_CASE("members that share a facet make a composite solid") {
-  const GroupReport report = Group()
-                                 .add(box({0, 0, 0}, {4, 4, 4}))
-                                 .add(box({4, 1, 1}, {8, 3, 9}))
-                                 .check(GroupKind::composite_solid);
+  const validate::GroupReport report = Group()
+                                           .add(box({0, 0, 0}, {4, 4, 4}))
+                                           .add(box({4, 1, 1}, {8, 3, 9}))
+                                           .check(validate::GroupKind::composite_solid);
   CHECK(report.verdict == Verdict::valid);
   CHECK(report.findings.empty());
   CHECK(report.not_run.empty());
 }
 
 TEST_CASE("crossing members overlap, and the finding says where and how deep") {
-  const GroupReport report = Group()
-                                 .add(box({0, 0, 0}, {10, 10, 10}))
-                                 .add(box({8, 2, 2}, {20, 12, 12}))
-                                 .check(GroupKind::composite_solid);
+  const validate::GroupReport report = Group()
+                                           .add(box({0, 0, 0}, {10, 10, 10}))
+                                           .add(box({8, 2, 2}, {20, 12, 12}))
+                                           .check(validate::GroupKind::composite_solid);
   CHECK(report.verdict == Verdict::invalid);
   REQUIRE(report.findings.size() == 1);
   const Finding& finding = report.findings[0];
@@ -182,13 +183,16 @@ TEST_CASE("equal members are duplicates, however their facets are divided") {
 TEST_CASE("building parts may touch, be apart and fill each other's cavities, but not overlap") {
   const Group apart =
       Group(Group().add(cube(4)).add(box({4, 0, 0}, {8, 4, 4}))).add(box({20, 0, 0}, {24, 4, 4}));
-  CHECK(apart.check(GroupKind::building_parts).findings.empty());
-  const GroupReport report =
-      Group().add(cube(4)).add(box({3, 0, 0}, {8, 4, 4})).check(GroupKind::building_parts);
+  CHECK(apart.check(validate::GroupKind::building_parts).findings.empty());
+  const validate::GroupReport report = Group()
+                                           .add(cube(4))
+                                           .add(box({3, 0, 0}, {8, 4, 4}))
+                                           .check(validate::GroupKind::building_parts);
   REQUIRE(report.findings.size() == 1);
   CHECK(report.findings[0].code == 601);
   CHECK(report.findings[0].measured == 1.0);
-  const GroupReport equal = Group().add(cube(4)).add(cube(4)).check(GroupKind::building_parts);
+  const validate::GroupReport equal =
+      Group().add(cube(4)).add(cube(4)).check(validate::GroupKind::building_parts);
   REQUIRE(equal.findings.size() == 1);
   CHECK(equal.findings[0].code == 601);
 }
@@ -196,31 +200,33 @@ TEST_CASE("building parts may touch, be apart and fill each other's cavities, bu
 TEST_CASE("an overlap no deeper than allowed is none") {
   const Group group =
       Group(Group().add(box({0, 0, 0}, {10, 10, 10}))).add(box({9, 3, 0}, {20, 9, 9}));
-  GroupOptions options;
+  validate::GroupOptions options;
   options.overlap_metres = 1;
-  CHECK(group.check(GroupKind::composite_solid, options).findings.empty());
-  CHECK(group.check(GroupKind::building_parts, options).findings.empty());
+  CHECK(group.check(validate::GroupKind::composite_solid, options).findings.empty());
+  CHECK(group.check(validate::GroupKind::building_parts, options).findings.empty());
   options.overlap_metres = 0.999;
-  CHECK(group.check(GroupKind::building_parts, options).findings.size() == 1);
+  CHECK(group.check(validate::GroupKind::building_parts, options).findings.size() == 1);
 }
 
 TEST_CASE("the depth is the thickness of an oblique slab") {
   // Two prisms whose roof and floor are parallel planes with the normal (1, 1, 0).
   const Ring diamond{{0, 0}, {10, -10}, {20, 0}, {10, 10}};
   const Ring moved{{9, -9}, {19, -19}, {29, -9}, {19, 1}};
-  const GroupReport report =
-      Group().add(prism(diamond, 0, 40)).add(prism(moved, 0, 40)).check(GroupKind::building_parts);
+  const validate::GroupReport report = Group()
+                                           .add(prism(diamond, 0, 40))
+                                           .add(prism(moved, 0, 40))
+                                           .check(validate::GroupKind::building_parts);
   REQUIRE(report.findings.size() == 1);
   REQUIRE(report.findings[0].measured);
   CHECK(std::abs(*report.findings[0].measured - std::sqrt(2.0)) < 1e-9);
 }
 
 TEST_CASE("a member that is not valid is not compared, and the report says so") {
-  const GroupReport report = Group()
-                                 .add(cube(4))
-                                 .add_invalid()
-                                 .add(box({3, 0, 0}, {8, 4, 4}))
-                                 .check(GroupKind::composite_solid);
+  const validate::GroupReport report = Group()
+                                           .add(cube(4))
+                                           .add_invalid()
+                                           .add(box({3, 0, 0}, {8, 4, 4}))
+                                           .check(validate::GroupKind::composite_solid);
   REQUIRE(report.findings.size() == 1);
   CHECK(report.findings[0].code == 501);
   CHECK(report.findings[0].other->solid == 2);
@@ -236,11 +242,11 @@ TEST_CASE("solids of different lattices are brought onto one grid exactly") {
   shifted.origin = {GridNumber{4, 0}, GridNumber{5, -3}, GridNumber{}};
   // [0, 4] x [0, 4] x [0, 4], and [4, 5] x [0.005, 1.005] x [0, 1] beside it.
   const Group touching = Group(Group().add({cube(400)}, centimetres)).add({cube(40)}, shifted);
-  CHECK(touching.check(GroupKind::composite_solid).findings.empty());
+  CHECK(touching.check(validate::GroupKind::composite_solid).findings.empty());
   shifted.origin[0] = {3999, -3};
-  const GroupReport report = Group(Group().add({cube(400)}, centimetres))
-                                 .add({cube(40)}, shifted)
-                                 .check(GroupKind::composite_solid);
+  const validate::GroupReport report = Group(Group().add({cube(400)}, centimetres))
+                                           .add({cube(40)}, shifted)
+                                           .check(validate::GroupKind::composite_solid);
   REQUIRE(report.findings.size() == 1);
   CHECK(report.findings[0].code == 501);
   CHECK(std::abs(*report.findings[0].measured - 0.001) < 1e-12);
@@ -250,26 +256,28 @@ TEST_CASE("solids of two kinds of grids are compared exactly, or undecided, neve
   Lattice binary;
   binary.kind = LatticeKind::binary;
   const auto overlapping = Group(Group().add(cube(4))).add({cube(4)}, binary);
-  CHECK(overlapping.check(GroupKind::building_parts).findings.at(0).code == 601);
+  CHECK(overlapping.check(validate::GroupKind::building_parts).findings.at(0).code == 601);
   binary.origin[0] = {1, 2};
   const auto touching = Group(Group().add(cube(4))).add({cube(4)}, binary);
-  CHECK(touching.check(GroupKind::building_parts).verdict == Verdict::valid);
-  CHECK(touching.check(GroupKind::composite_solid).verdict == Verdict::undecided);
+  CHECK(touching.check(validate::GroupKind::building_parts).verdict == Verdict::valid);
+  CHECK(touching.check(validate::GroupKind::composite_solid).verdict == Verdict::undecided);
   Lattice far;
   for (auto& step : far.step) step = {1, -30};
-  CHECK(Group(Group().add(cube(4))).add({cube(4)}, far).check(GroupKind::building_parts).verdict ==
-        Verdict::undecided);
+  CHECK(Group(Group().add(cube(4)))
+            .add({cube(4)}, far)
+            .check(validate::GroupKind::building_parts)
+            .verdict == Verdict::undecided);
   CHECK(Group(Group().add({cube(4)}, {}, 7415))
             .add({cube(4)}, {}, 28992)
-            .check(GroupKind::building_parts)
+            .check(validate::GroupKind::building_parts)
             .verdict == Verdict::undecided);
 }
 
 TEST_CASE("a cancelled comparison is undecided") {
-  GroupOptions options;
+  validate::GroupOptions options;
   options.cancel = [] { return true; };
-  const GroupReport report =
-      Group().add(cube(4)).add(cube(4)).check(GroupKind::composite_solid, options);
+  const validate::GroupReport report =
+      Group().add(cube(4)).add(cube(4)).check(validate::GroupKind::composite_solid, options);
   CHECK(report.verdict == Verdict::undecided);
   CHECK(report.findings.empty());
   CHECK(report.not_run.size() == 1);
@@ -278,16 +286,16 @@ TEST_CASE("a cancelled comparison is undecided") {
 TEST_CASE("findings are bounded, and the report says what was left out") {
   Group group;
   for (int i = 0; i < 20; ++i) group.add(cube(4));
-  GroupOptions options;
+  validate::GroupOptions options;
   options.limits.findings = 5;
-  const GroupReport report = group.check(GroupKind::building_parts, options);
+  const validate::GroupReport report = group.check(validate::GroupKind::building_parts, options);
   CHECK(report.findings.size() == 5);
   CHECK(report.not_run.size() == 1);
   CHECK(report.verdict == Verdict::invalid);
 }
 
 TEST_CASE("groups of no, one and no valid member have no findings") {
-  CHECK(check_group({}, GroupKind::composite_solid).verdict == Verdict::valid);
+  CHECK(validate::check_group({}, validate::GroupKind::composite_solid).verdict == Verdict::valid);
   CHECK(composite_codes(Group().add(cube(4))).empty());
   CHECK(composite_codes(Group().add_invalid().add_invalid()).empty());
 }
@@ -304,14 +312,14 @@ TEST_CASE("a point of a triangle in doubles is told like the same point in ratio
   int inside = 0;
   for (int i = 0; i < 3000; ++i) {
     const std::array<Point, 3> corners{point(), point(), point()};
-    const TrianglePoint at = triangle_point(corners, 2 + 2 * (i % 5), 1);
-    const auto exact = exact_doubles(at);
+    const geometry::TrianglePoint at = geometry::triangle_point(corners, 2 + 2 * (i % 5), 1);
+    const auto exact = geometry::exact_doubles(at);
     REQUIRE(exact);
     // Inside: all coordinates positive and their sum below 8.
     const double least =
         std::min({exact->x, exact->y, exact->z, 8 - exact->x - exact->y - exact->z});
     const int expected = least > 0 ? 1 : least < 0 ? -1 : 0;
-    CHECK(locate_exactly(at, vertices, tetrahedron) == expected);
+    CHECK(geometry::locate_exactly(at, vertices, tetrahedron) == expected);
     inside += expected == 1 ? 1 : 0;
   }
   CHECK(inside > 100);

@@ -7,8 +7,8 @@ using namespace watertight;
 using namespace watertight::test;
 
 TEST_CASE("points of a grid are located in a box of the grid, corners, edges and faces included") {
-  const Solid solid = merge_equal_vertices(solid_of({box({1, 1, 1}, {4, 4, 4})})).solid;
-  const FacetTriangles facets = triangulate_facets(solid);
+  const Solid solid = geometry::merge_equal_vertices(solid_of({box({1, 1, 1}, {4, 4, 4})})).solid;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   for (int i = 0; i < 216; ++i) {
     const Point p{double(i % 6), double(i / 6 % 6), double(i / 36)};
     int inside = 1;
@@ -16,20 +16,20 @@ TEST_CASE("points of a grid are located in a box of the grid, corners, edges and
       const int here = p[axis] > 1 && p[axis] < 4 ? 1 : p[axis] == 1 || p[axis] == 4 ? 0 : -1;
       inside = std::min(inside, here);
     }
-    CHECK(static_cast<int>(locate(p, solid.vertices(), facets.triangles)) == inside);
+    CHECK(static_cast<int>(validate::locate(p, solid.vertices(), facets.triangles)) == inside);
   }
 }
 
 TEST_CASE("points above, below and beside slanted surfaces are located") {
-  const Solid solid = merge_equal_vertices(solid_of({corner({0, 0, 0}, 6)})).solid;
-  const FacetTriangles facets = triangulate_facets(solid);
+  const Solid solid = geometry::merge_equal_vertices(solid_of({corner({0, 0, 0}, 6)})).solid;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   for (int i = 0; i < 512; ++i) {
     const Point p{double(i % 8), double(i / 8 % 8), double(i / 64)};
     const double sum = p.x + p.y + p.z;
     const bool is_on = sum <= 6 && (sum == 6 || p.x == 0 || p.y == 0 || p.z == 0);
-    const Location expected = is_on     ? Location::boundary
-                              : sum < 6 ? Location::inside
-                                        : Location::outside;
-    CHECK(locate(p, solid.vertices(), facets.triangles) == expected);
+    const validate::Location expected = is_on     ? validate::Location::boundary
+                                        : sum < 6 ? validate::Location::inside
+                                                  : validate::Location::outside;
+    CHECK(validate::locate(p, solid.vertices(), facets.triangles) == expected);
   }
 }

@@ -10,17 +10,19 @@ using Codes = std::set<int>;
 
 namespace {
 
-Placement linear(const std::array<double, 9>& numbers) {
-  Placement placement;
+geometry::Placement linear(const std::array<double, 9>& numbers) {
+  geometry::Placement placement;
   for (std::size_t i = 0; i < 9; ++i) {
-    placement.linear[i / 3][i % 3] = shortest_decimal(numbers[i]);
+    placement.linear[i / 3][i % 3] = geometry::shortest_decimal(numbers[i]);
   }
   return placement;
 }
 
-Placement scaled(double x, double y, double z) { return linear({x, 0, 0, 0, y, 0, 0, 0, z}); }
+geometry::Placement scaled(double x, double y, double z) {
+  return linear({x, 0, 0, 0, y, 0, 0, 0, z});
+}
 
-Report placed_report(const std::vector<Shell>& shells, const Placement& placement,
+Report placed_report(const std::vector<Shell>& shells, const geometry::Placement& placement,
                      CertifyOptions options = {}) {
   options.placement = &placement;
   return certify(solid_of(shells), nullptr, options).report;
@@ -48,7 +50,7 @@ TEST_CASE("planarity is measured in metres in the instance's place") {
   CHECK(error_codes(placed_report(flat, scaled(1, 1, 1))) == Codes{203});
   // A shear of 45 degrees makes the tilted top lie 1 / sqrt(2) as far from its plane.
   const std::vector<Shell> raised{bent_cube(1000, 0.05)};  // 12.5 mm
-  CHECK(error_codes(placed_report(raised, Placement{})) == Codes{203});
+  CHECK(error_codes(placed_report(raised, geometry::Placement{})) == Codes{203});
   CHECK(error_codes(placed_report(raised, linear({1, 0, 0, 0, 1, 0, 1, 0, 1}))).empty());
   // 204 depends on the shape: the roof becomes steep when z is stretched.
   CHECK(error_codes(placed_report({bent_cube(1000, 100)}, scaled(1e-6, 1e-6, 1e-4))).count(204) ==
@@ -58,7 +60,7 @@ TEST_CASE("planarity is measured in metres in the instance's place") {
 
 TEST_CASE("an oblique measure is that of the placed points") {
   // The lattice's z lies along the world's x: what is raised is raised there.
-  const Placement turned = linear({0, 0, 0.001, 1, 0, 0, 0, 1, 0});
+  const geometry::Placement turned = linear({0, 0, 0.001, 1, 0, 0, 0, 1, 0});
   CHECK(error_codes(placed_report({bent_cube(1000, 36)}, turned)).empty());
   CHECK(error_codes(placed_report({bent_cube(1000, 36)}, linear({0, 0, 1, 1, 0, 0, 0, 1, 0}))) ==
         Codes{203});
@@ -66,7 +68,7 @@ TEST_CASE("an oblique measure is that of the placed points") {
 
 TEST_CASE("a mirrored solid is inside out, and one that was inside out is not") {
   CHECK(error_codes(placed_report({cube(4)}, scaled(-1, 1, 1))) == Codes{405});
-  CHECK(error_codes(placed_report({inside_out(cube(4))}, Placement{})) == Codes{405});
+  CHECK(error_codes(placed_report({inside_out(cube(4))}, geometry::Placement{})) == Codes{405});
   CHECK(placed_report({inside_out(cube(4))}, scaled(1, -2, 1)).verdict == Verdict::valid);
   CHECK(placed_report({cube(4)}, scaled(-1, -1, 1)).verdict == Verdict::valid);
 }
@@ -93,7 +95,7 @@ TEST_CASE("snapping, warnings, measures and witnesses are of the place") {
         Verdict::valid);
   CHECK(placed_report({gap}, scaled(1, 1, 1), options).verdict == Verdict::invalid);
 
-  Placement tiny = scaled(0.0001, 0.0001, 0.0001);
+  geometry::Placement tiny = scaled(0.0001, 0.0001, 0.0001);
   tiny.anchor = {{{5, 1}, {6, 1}, {7, 1}}};
   const Report near = placed_report({cube(4)}, tiny);
   CHECK(near.verdict == Verdict::valid);
@@ -111,7 +113,7 @@ TEST_CASE("snapping, warnings, measures and witnesses are of the place") {
 }
 
 TEST_CASE("the units of the place count: feet and degrees") {
-  Placement placement;
+  geometry::Placement placement;
   placement.srid = 2229;  // US survey feet
   const std::vector<Shell> shells{bent_cube(1000, 0.1)};
   CHECK(error_codes(placed_report(shells, placement)).empty());  // 25 mm in feet: 7.6 mm
@@ -123,6 +125,6 @@ TEST_CASE("a template that is proven in one place needs the exact tests in other
   options.is_proven = true;
   const Report valid = placed_report({cube(4)}, scaled(2, 2, 2), options);
   CHECK(valid.verdict == Verdict::valid);
-  CHECK(valid.rung == Rung::none);
+  CHECK(valid.rung == delaunay::Rung::none);
   CHECK(placed_report({bent_cube(4, 1)}, scaled(2, 2, 2), options).verdict == Verdict::invalid);
 }

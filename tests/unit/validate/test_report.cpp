@@ -22,19 +22,19 @@ Finding finding_at(int code, Index shell, Index facet) {
 
 TEST_CASE("a finding's pointer leads to its place in the document") {
   const Solid solid = solid_of({cube(9), inside_out(box({1, 1, 1}, {3, 3, 3}))});
-  ReportJsonOptions options;
+  validate::ReportJsonOptions options;
   options.pointer_prefix = "/CityObjects/a~1b/geometry/0/boundaries";
   Place place;
   place.shell = 1;
-  CHECK(place_pointer(place, solid, options) == options.pointer_prefix + "/1");
+  CHECK(validate::place_pointer(place, solid, options) == options.pointer_prefix + "/1");
   place.facet = 8;  // the third of shell 1
-  CHECK(place_pointer(place, solid, options) == options.pointer_prefix + "/1/2");
+  CHECK(validate::place_pointer(place, solid, options) == options.pointer_prefix + "/1/2");
   place.ring = 0;
   place.vertex = solid.ring(8)[3];
-  CHECK(place_pointer(place, solid, options) == options.pointer_prefix + "/1/2/0/3");
+  CHECK(validate::place_pointer(place, solid, options) == options.pointer_prefix + "/1/2/0/3");
   options.has_shells = false;
-  CHECK(place_pointer(place, solid, options) == options.pointer_prefix + "/2/0/3");
-  CHECK(place_pointer(Place{}, solid, options) == options.pointer_prefix);
+  CHECK(validate::place_pointer(place, solid, options) == options.pointer_prefix + "/2/0/3");
+  CHECK(validate::place_pointer(Place{}, solid, options) == options.pointer_prefix);
 }
 
 TEST_CASE("the JSON report says what val3dity's says and more") {
@@ -42,9 +42,9 @@ TEST_CASE("the JSON report says what val3dity's says and more") {
   shell.pop_back();
   const Solid solid = solid_of({shell});
   const Report report = certify(solid, nullptr).report;
-  ReportJsonOptions options;
+  validate::ReportJsonOptions options;
   options.pointer_prefix = "/b";
-  const auto json = nlohmann::json::parse(report_json(report, solid, options));
+  const auto json = nlohmann::json::parse(validate::report_json(report, solid, options));
   CHECK(json["validity"] == false);
   CHECK(json["verdict"] == "invalid");
   CHECK(json["all_errors"] == nlohmann::json{302});
@@ -64,10 +64,10 @@ TEST_CASE("the JSON report says what val3dity's says and more") {
 
 TEST_CASE("the JSON report without times is the same for the same solid") {
   const Solid solid = solid_of({cube(4)});
-  ReportJsonOptions options;
+  validate::ReportJsonOptions options;
   options.include_times = false;
-  const std::string text = report_json(certify(solid, nullptr).report, solid, options);
-  CHECK(text == report_json(certify(solid, nullptr).report, solid, options));
+  const std::string text = validate::report_json(certify(solid, nullptr).report, solid, options);
+  CHECK(text == validate::report_json(certify(solid, nullptr).report, solid, options));
   CHECK(text.find("seconds") == std::string::npos);
 }
 
@@ -77,24 +77,26 @@ TEST_CASE("a finding reads as one line") {
   finding.limit = 0.01;
   finding.unit = "metre";
   finding.detail = "the point is off the plane";
-  CHECK(finding_text(finding) ==
+  CHECK(validate::finding_text(finding) ==
         "error 203 NON_PLANAR_POLYGON_DISTANCE_PLANE at shell 0 facet 5: the point is off the "
         "plane (0.0250001 metre, limit 0.01)");
 }
 
 TEST_CASE("first_level stops per facet, then per shell, then at the solid") {
   using Codes = std::vector<int>;
-  CHECK(first_level_codes({}).empty());
-  CHECK(first_level_codes({finding_at(306, 0, 1), finding_at(203, 0, 2)}) == Codes{203});
-  CHECK(first_level_codes({finding_at(101, 0, 1), finding_at(102, 0, 1), finding_at(203, 0, 2)}) ==
-        Codes{101, 203});
-  CHECK(first_level_codes({finding_at(204, 0, 1), finding_at(302, 0, kNone)}) == Codes{204});
-  CHECK(first_level_codes({finding_at(302, 0, 1), finding_at(303, 0, 1), finding_at(306, 0, 2)}) ==
-        Codes{303});
-  CHECK(first_level_codes({finding_at(302, 0, 1), finding_at(306, 0, 2), finding_at(306, 1, 9)}) ==
-        Codes{302, 306});
-  CHECK(first_level_codes({finding_at(401, 0, 1), finding_at(403, 1, 2)}) == Codes{401, 403});
+  CHECK(validate::first_level_codes({}).empty());
+  CHECK(validate::first_level_codes({finding_at(306, 0, 1), finding_at(203, 0, 2)}) == Codes{203});
+  CHECK(validate::first_level_codes({finding_at(101, 0, 1), finding_at(102, 0, 1),
+                                     finding_at(203, 0, 2)}) == Codes{101, 203});
+  CHECK(validate::first_level_codes({finding_at(204, 0, 1), finding_at(302, 0, kNone)}) ==
+        Codes{204});
+  CHECK(validate::first_level_codes(
+            {finding_at(302, 0, 1), finding_at(303, 0, 1), finding_at(306, 0, 2)}) == Codes{303});
+  CHECK(validate::first_level_codes({finding_at(302, 0, 1), finding_at(306, 0, 2),
+                                     finding_at(306, 1, 9)}) == Codes{302, 306});
+  CHECK(validate::first_level_codes({finding_at(401, 0, 1), finding_at(403, 1, 2)}) ==
+        Codes{401, 403});
   Finding warning = finding_at(801, kNone, kNone);
   warning.severity = Severity::warning;
-  CHECK(first_level_codes({warning}).empty());
+  CHECK(validate::first_level_codes({warning}).empty());
 }

@@ -250,8 +250,8 @@ TEST_CASE("tolerances are metres in degrees and in feet") {
   }
   const auto codes = [&](std::uint32_t srid, double horizontal, double vertical) {
     Lattice lattice;
-    lattice.step = {shortest_decimal(horizontal), shortest_decimal(horizontal),
-                    shortest_decimal(vertical)};
+    lattice.step = {geometry::shortest_decimal(horizontal), geometry::shortest_decimal(horizontal),
+                    geometry::shortest_decimal(vertical)};
     CertifyOptions options;
     options.proof = Proof::boundary;
     return error_codes(certify(solid_of({shell}, lattice, srid), nullptr, options).report);
@@ -350,12 +350,12 @@ TEST_CASE("first_level looks at each shell by itself, and 405 ends the tests of 
     return result;
   };
   using List = std::vector<int>;
-  CHECK(first_level_codes({finding(203, 0, 1), finding(306, 0, 2), finding(302, 1, 9)}) ==
+  CHECK(validate::first_level_codes({finding(203, 0, 1), finding(306, 0, 2), finding(302, 1, 9)}) ==
         List{203, 302});
-  CHECK(first_level_codes({finding(204, 0, 1), finding(303, 1, 9)}) == List{204, 303});
-  CHECK(first_level_codes({finding(405, 1, kNone), finding(401, 1, kNone)}) == List{405});
-  CHECK(first_level_codes({finding(103, 0, 1), finding(101, 0, 2)}) == List{103});
-  CHECK(first_level_codes({finding(300, 0, 1)}) == List{303});
+  CHECK(validate::first_level_codes({finding(204, 0, 1), finding(303, 1, 9)}) == List{204, 303});
+  CHECK(validate::first_level_codes({finding(405, 1, kNone), finding(401, 1, kNone)}) == List{405});
+  CHECK(validate::first_level_codes({finding(103, 0, 1), finding(101, 0, 2)}) == List{103});
+  CHECK(validate::first_level_codes({finding(300, 0, 1)}) == List{303});
 }
 
 TEST_CASE("the farthest pair of normals is found among thousands of triangles") {
@@ -439,10 +439,11 @@ TEST_CASE("the search for the problems of one large ring can be cancelled") {
     options.ladder.cancel = [&] { return ++polls > after; };
     const Report report = certify(solid, nullptr, options).report;
     CHECK(error_codes(report).count(104) == 1);
-    return std::any_of(report.not_run.begin(), report.not_run.end(), [](const SkippedRule& rule) {
-      return rule.reason == "the search was cancelled" &&
-             std::count(rule.codes.begin(), rule.codes.end(), 104) == 1;
-    });
+    return std::any_of(report.not_run.begin(), report.not_run.end(),
+                       [](const validate::SkippedRule& rule) {
+                         return rule.reason == "the search was cancelled" &&
+                                std::count(rule.codes.begin(), rule.codes.end(), 104) == 1;
+                       });
   };
   CHECK(skips_104(0));  // asked before the search
   CHECK(skips_104(1));  // asked in the search

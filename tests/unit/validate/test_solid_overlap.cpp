@@ -18,7 +18,7 @@ namespace watertight {
 namespace {
 
 /// A step of the grid is a metre along each axis.
-constexpr StepMetres kMetres{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+constexpr validate::StepMetres kMetres{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 using Cell = std::array<int, 4>;  // corner of a cube, and which of its six tetrahedra
 using Corner = std::array<int, 3>;
@@ -159,7 +159,7 @@ std::set<std::set<Corner>> fine_boundary(const Body& body) {
 
 /// An affine map of integers with determinant 1 makes all planes oblique. With `scale` the
 /// coordinates are no integers of few digits, so that rationals decide.
-RegionSurface surface_of(const Body& body, bool is_oblique, double scale) {
+validate::RegionSurface surface_of(const Body& body, bool is_oblique, double scale) {
   std::map<Corner, Index> number;
   std::vector<Point> points;
   std::vector<Triangle> triangles;
@@ -201,9 +201,10 @@ void check_pair(const Body& a, const Body& b, bool is_oblique, double scale, Cou
     const auto boundary = fine_boundary(a);
     for (const auto& face : fine_boundary(b)) share_area = share_area || boundary.contains(face);
   }
-  const RegionSurface first = surface_of(a, is_oblique, scale);
-  const RegionSurface second = surface_of(b, is_oblique, scale);
-  const RegionRelation relation = relate_regions(first, second, {true, true}, {});
+  const validate::RegionSurface first = surface_of(a, is_oblique, scale);
+  const validate::RegionSurface second = surface_of(b, is_oblique, scale);
+  const validate::RegionRelation relation =
+      validate::relate_regions(first, second, {true, true}, {});
   REQUIRE(relation.do_overlap == do_overlap);
   const auto is_within = [](const std::set<Corner>& inner, const std::set<Corner>& outer) {
     return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
@@ -212,16 +213,16 @@ void check_pair(const Body& a, const Body& b, bool is_oblique, double scale, Cou
   REQUIRE(relation.is_second_inside == is_within(cells_b, cells_a));
   if (!do_overlap) REQUIRE(relation.touch_back_to_back == share_area);
   REQUIRE_FALSE(relation.is_cancelled);
-  const RegionRelation turned = relate_regions(second, first, {true, true}, {});
+  const validate::RegionRelation turned = validate::relate_regions(second, first, {true, true}, {});
   REQUIRE(turned.do_overlap == do_overlap);
   REQUIRE(turned.is_first_inside == relation.is_second_inside);
   REQUIRE(turned.is_second_inside == relation.is_first_inside);
   if (do_overlap && scale == 1) {
-    const OverlapExtent extent = measure_overlap(first, second, kMetres);
+    const validate::OverlapExtent extent = validate::measure_overlap(first, second, kMetres);
     REQUIRE(extent.depth > 0);
     if (extent.witness) {
-      REQUIRE(first.locate(*extent.witness) == Location::inside);
-      REQUIRE(second.locate(*extent.witness) == Location::inside);
+      REQUIRE(first.locate(*extent.witness) == validate::Location::inside);
+      REQUIRE(second.locate(*extent.witness) == validate::Location::inside);
     }
   }
   counts.overlapping += do_overlap ? 1 : 0;
@@ -308,8 +309,8 @@ TEST_CASE(
     // A corner cell less may leave the rest in two parts; as the second solid that is allowed for.
     Body less = fine;
     less.cells.erase(less.cells.begin());
-    const RegionRelation relation =
-        relate_regions(surface_of(coarse, false, 1), surface_of(less, false, 1), {true, true}, {});
+    const validate::RegionRelation relation = validate::relate_regions(
+        surface_of(coarse, false, 1), surface_of(less, false, 1), {true, true}, {});
     REQUIRE(relation.do_overlap);
     REQUIRE_FALSE(relation.is_first_inside);
     REQUIRE(relation.is_second_inside);

@@ -183,4 +183,4 @@ Bytes handle(ByteView request) {
 
 }  // namespace
 
-int main() { return watertight::serve_jobs(handle); }
+int main() { return watertight::workers::serve_jobs(handle); }

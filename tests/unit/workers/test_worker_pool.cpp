@@ -22,24 +22,25 @@
 namespace watertight {
 namespace {
 
-WorkerPool::Options faulty(std::size_t size = 1) {
-  WorkerPool::Options options;
+workers::WorkerPool::Options faulty(std::size_t size = 1) {
+  workers::WorkerPool::Options options;
   options.executable = FAULTY_WORKER;
   options.size = size;
   return options;
 }
 
-WorkerLimits seconds(double wall) {
-  WorkerLimits limits;
+workers::WorkerLimits seconds(double wall) {
+  workers::WorkerLimits limits;
   limits.wall_seconds = wall;
   return limits;
 }
 
-JobResult run(WorkerPool& pool, const std::string& request, const WorkerLimits& limits = {}) {
+workers::JobResult run(workers::WorkerPool& pool, const std::string& request,
+                       const workers::WorkerLimits& limits = {}) {
   return pool.run(as_bytes(request), limits);
 }
 
-std::string reply(const JobResult& result) { return std::string(as_text(result.reply)); }
+std::string reply(const workers::JobResult& result) { return std::string(as_text(result.reply)); }
 
 bool exists(pid_t process) { return kill(process, 0) == 0; }
 
@@ -60,81 +61,82 @@ bool has_children() {
 }
 
 TEST_CASE("a worker answers many jobs from one process") {
-  WorkerPool pool(faulty());
+  workers::WorkerPool pool(faulty());
   const std::string process = reply(run(pool, "process"));
   for (int i = 0; i < 50; ++i) {
-    const JobResult result = run(pool, "job " + std::to_string(i));
-    REQUIRE(result.outcome == JobOutcome::ok);
+    const workers::JobResult result = run(pool, "job " + std::to_string(i));
+    REQUIRE(result.outcome == workers::JobOutcome::ok);
     REQUIRE(reply(result) == "job " + std::to_string(i));
   }
   CHECK(reply(run(pool, "process")) == process);
 }
 
 TEST_CASE("empty and large requests come back unchanged") {
-  WorkerPool pool(faulty());
-  CHECK(run(pool, "").outcome == JobOutcome::ok);
+  workers::WorkerPool pool(faulty());
+  CHECK(run(pool, "").outcome == workers::JobOutcome::ok);
   const std::string large(20'000'000, 'x');
-  const JobResult result = run(pool, large);
-  REQUIRE(result.outcome == JobOutcome::ok);
+  const workers::JobResult result = run(pool, large);
+  REQUIRE(result.outcome == workers::JobOutcome::ok);
   CHECK(reply(result) == large);
 }
 
 TEST_CASE("every fault of a worker has its own outcome and costs only its job") {
-  WorkerPool pool(faulty());
-  const WorkerLimits limits = seconds(0.3);
-  const auto check = [&](const std::string& fault, JobOutcome outcome, const std::string& detail) {
+  workers::WorkerPool pool(faulty());
+  const workers::WorkerLimits limits = seconds(0.3);
+  const auto check = [&](const std::string& fault, workers::JobOutcome outcome,
+                         const std::string& detail) {
     INFO(fault);
-    const JobResult result = run(pool, fault, limits);
-    CHECK(to_string(result.outcome) == to_string(outcome));
+    const workers::JobResult result = run(pool, fault, limits);
+    CHECK(workers::to_string(result.outcome) == workers::to_string(outcome));
     CHECK(result.detail.find(detail) != std::string::npos);
     CHECK(reply(result).empty());
-    const JobResult next = run(pool, "next", seconds(20));
-    CHECK(next.outcome == JobOutcome::ok);
+    const workers::JobResult next = run(pool, "next", seconds(20));
+    CHECK(next.outcome == workers::JobOutcome::ok);
   };
-  check("crash", JobOutcome::crashed, "signal 11");
-  check("abort", JobOutcome::crashed, "signal 6");
-  check("exit", JobOutcome::crashed, "status 7");
-  check("orphan", JobOutcome::crashed, "status 5");
-  check("half-reply", JobOutcome::crashed, "status 0");
-  check("exception", JobOutcome::failed, "thrown on purpose");
-  check("hang", JobOutcome::timed_out, "wall");
-  check("slow-drip", JobOutcome::timed_out, "wall");
-  check("garbage", JobOutcome::garbage, "");
-  check("wrong-checksum", JobOutcome::garbage, "checksum");
-  check("huge-reply", JobOutcome::garbage, "4294967295 bytes");
-  check("stack", JobOutcome::crashed, "signal 11");
-  check("killed-mid-frame", JobOutcome::crashed, "signal 9");
-  check("half-header", JobOutcome::timed_out, "wall");
-  check("too-long", JobOutcome::garbage, "bytes after the reply");
-  check("flood", JobOutcome::garbage, "bytes after the reply");
-  check("unknown-status", JobOutcome::garbage, "unknown status");
+  check("crash", workers::JobOutcome::crashed, "signal 11");
+  check("abort", workers::JobOutcome::crashed, "signal 6");
+  check("exit", workers::JobOutcome::crashed, "status 7");
+  check("orphan", workers::JobOutcome::crashed, "status 5");
+  check("half-reply", workers::JobOutcome::crashed, "status 0");
+  check("exception", workers::JobOutcome::failed, "thrown on purpose");
+  check("hang", workers::JobOutcome::timed_out, "wall");
+  check("slow-drip", workers::JobOutcome::timed_out, "wall");
+  check("garbage", workers::JobOutcome::garbage, "");
+  check("wrong-checksum", workers::JobOutcome::garbage, "checksum");
+  check("huge-reply", workers::JobOutcome::garbage, "4294967295 bytes");
+  check("stack", workers::JobOutcome::crashed, "signal 11");
+  check("killed-mid-frame", workers::JobOutcome::crashed, "signal 9");
+  check("half-header", workers::JobOutcome::timed_out, "wall");
+  check("too-long", workers::JobOutcome::garbage, "bytes after the reply");
+  check("flood", workers::JobOutcome::garbage, "bytes after the reply");
+  check("unknown-status", workers::JobOutcome::garbage, "unknown status");
 }
 
 TEST_CASE("a reply longer than its limit is refused by its header") {
-  WorkerPool pool(faulty());
-  WorkerLimits limits;
+  workers::WorkerPool pool(faulty());
+  workers::WorkerLimits limits;
   limits.reply_bytes = 500'000;
-  const JobResult result = run(pool, "flood", limits);
-  CHECK(result.outcome == JobOutcome::garbage);
+  const workers::JobResult result = run(pool, "flood", limits);
+  CHECK(result.outcome == workers::JobOutcome::garbage);
   CHECK(result.detail == "reply of 1000000 bytes");
-  CHECK(run(pool, "next").outcome == JobOutcome::ok);
+  CHECK(run(pool, "next").outcome == workers::JobOutcome::ok);
 }
 
 TEST_CASE("the CPU time of a job is counted, also when it is stopped or crashes") {
-  WorkerPool pool(faulty());
-  WorkerLimits limits;
+  workers::WorkerPool pool(faulty());
+  workers::WorkerLimits limits;
   limits.wall_seconds = 120;
   limits.cpu_seconds = 0.3;
-  const JobResult spun = run(pool, "spin", limits);
-  CHECK(spun.outcome == JobOutcome::timed_out);
+  const workers::JobResult spun = run(pool, "spin", limits);
+  CHECK(spun.outcome == workers::JobOutcome::timed_out);
   CHECK(spun.detail == "CPU limit");
   CHECK(spun.cpu_seconds >= 0.3);
-  CHECK(run(pool, "next").outcome == JobOutcome::ok);
+  CHECK(run(pool, "next").outcome == workers::JobOutcome::ok);
   // A process's second job does not pay for its first: the limit is for each job.
   limits.cpu_seconds = 0.5;
   for (int i = 0; i < 8; ++i) {
-    const JobResult result = run(pool, "burn", limits);
-    REQUIRE(to_string(result.outcome) == "ok");
+    const workers::JobResult result = run(pool, "burn", limits);
+    REQUIRE(workers::to_string(result.outcome) == "ok");
     CHECK(result.cpu_seconds >= 0.1);
     CHECK(result.cpu_seconds < 0.5);
   }
@@ -142,40 +144,40 @@ TEST_CASE("the CPU time of a job is counted, also when it is stopped or crashes"
 
 #if !defined(__SANITIZE_ADDRESS__)
 TEST_CASE("a worker that wants too much memory is out of memory") {
-  WorkerPool pool(faulty());
-  WorkerLimits limits;
+  workers::WorkerPool pool(faulty());
+  workers::WorkerLimits limits;
   limits.memory_bytes = std::uint64_t{256} << 20;
-  CHECK(run(pool, "memory", limits).outcome == JobOutcome::out_of_memory);
-  CHECK(run(pool, std::string(300 << 20, 'x'), limits).outcome != JobOutcome::ok);
-  CHECK(run(pool, "next", limits).outcome == JobOutcome::ok);
+  CHECK(run(pool, "memory", limits).outcome == workers::JobOutcome::out_of_memory);
+  CHECK(run(pool, std::string(300 << 20, 'x'), limits).outcome != workers::JobOutcome::ok);
+  CHECK(run(pool, "next", limits).outcome == workers::JobOutcome::ok);
 }
 #endif
 
 TEST_CASE("a worker that burns CPU is stopped by its CPU limit") {
-  WorkerPool pool(faulty());
-  WorkerLimits limits = seconds(30);
+  workers::WorkerPool pool(faulty());
+  workers::WorkerLimits limits = seconds(30);
   limits.cpu_seconds = 0.1;
-  const JobResult result = run(pool, "spin", limits);
-  CHECK(result.outcome == JobOutcome::timed_out);
+  const workers::JobResult result = run(pool, "spin", limits);
+  CHECK(result.outcome == workers::JobOutcome::timed_out);
   CHECK(result.detail == "CPU limit");
 }
 
 TEST_CASE("a worker that sleeps is stopped long before its wall-clock limit") {
-  WorkerPool pool(faulty());
-  WorkerLimits limits = seconds(1e6);
+  workers::WorkerPool pool(faulty());
+  workers::WorkerLimits limits = seconds(1e6);
   limits.sleep_seconds = 0.1;
   for (const std::string fault : {"hang", "half-header"}) {
-    const JobResult result = run(pool, fault, limits);
-    CHECK(result.outcome == JobOutcome::timed_out);
+    const workers::JobResult result = run(pool, fault, limits);
+    CHECK(result.outcome == workers::JobOutcome::timed_out);
     CHECK(result.detail == "no CPU time used for too long");
   }
 }
 
 TEST_CASE("a job can be cancelled while it runs and while it waits for a process") {
-  WorkerPool pool(faulty());
+  workers::WorkerPool pool(faulty());
   std::atomic<bool> stop = false;
   std::atomic<bool> started = false;
-  JobResult first;
+  workers::JobResult first;
   std::thread busy([&] {
     first = pool.run(as_bytes("hang"), {}, [&] {
       started = true;
@@ -184,35 +186,35 @@ TEST_CASE("a job can be cancelled while it runs and while it waits for a process
   });
   while (!started) std::this_thread::yield();
   int asked = 0;
-  const JobResult waiting = pool.run(as_bytes("next"), {}, [&] { return ++asked > 3; });
-  CHECK(waiting.outcome == JobOutcome::cancelled);
+  const workers::JobResult waiting = pool.run(as_bytes("next"), {}, [&] { return ++asked > 3; });
+  CHECK(waiting.outcome == workers::JobOutcome::cancelled);
   stop = true;
   busy.join();
-  CHECK(first.outcome == JobOutcome::cancelled);
+  CHECK(first.outcome == workers::JobOutcome::cancelled);
   CHECK(first.seconds < 10);
-  CHECK(run(pool, "next").outcome == JobOutcome::ok);
+  CHECK(run(pool, "next").outcome == workers::JobOutcome::ok);
 }
 
 TEST_CASE("a worker that is killed between two jobs is replaced") {
-  WorkerPool pool(faulty());
+  workers::WorkerPool pool(faulty());
   for (const int signal : {SIGKILL, SIGSEGV, SIGTERM}) {
     const std::string first = reply(run(pool, "process"));
     const pid_t process = std::stoi(first);
     kill(process, signal);
     siginfo_t info{};  // waits until it has ended, and leaves it to the pool to reap
     REQUIRE(waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOWAIT) == 0);
-    const JobResult next = run(pool, "process");
-    CHECK(next.outcome == JobOutcome::ok);
+    const workers::JobResult next = run(pool, "process");
+    CHECK(next.outcome == workers::JobOutcome::ok);
     CHECK(reply(next) != first);
   }
 }
 
 TEST_CASE("a missing executable is not started") {
-  WorkerPool::Options options;
+  workers::WorkerPool::Options options;
   options.executable = "/nonexistent/worker";
-  WorkerPool pool(options);
-  const JobResult result = run(pool, "job");
-  CHECK(result.outcome == JobOutcome::not_started);
+  workers::WorkerPool pool(options);
+  const workers::JobResult result = run(pool, "job");
+  CHECK(result.outcome == workers::JobOutcome::not_started);
   CHECK(result.detail.find("/nonexistent/worker") != std::string::npos);
 }
 
@@ -223,7 +225,7 @@ TEST_CASE("a worker sees nothing of its host") {
   sigaddset(&blocked, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
   const int leaked = open("/dev/null", O_RDONLY);  // without O_CLOEXEC
-  WorkerPool pool(faulty());
+  workers::WorkerPool pool(faulty());
   const std::string text = reply(run(pool, "surroundings"));
   close(leaked);
   pthread_sigmask(SIG_UNBLOCK, &blocked, nullptr);
@@ -233,9 +235,9 @@ TEST_CASE("a worker sees nothing of its host") {
 }
 
 TEST_CASE("a worker is replaced after its number of jobs") {
-  WorkerPool::Options options = faulty();
+  workers::WorkerPool::Options options = faulty();
   options.jobs_per_process = 3;
-  WorkerPool pool(options);
+  workers::WorkerPool pool(options);
   const std::string first = reply(run(pool, "process"));
   CHECK(reply(run(pool, "process")) == first);
   CHECK(reply(run(pool, "process")) == first);
@@ -243,37 +245,37 @@ TEST_CASE("a worker is replaced after its number of jobs") {
 }
 
 TEST_CASE("an idle worker ends itself and the next job gets another") {
-  WorkerPool::Options options = faulty();
+  workers::WorkerPool::Options options = faulty();
   options.idle_seconds = 0.05;
-  WorkerPool pool(options);
+  workers::WorkerPool pool(options);
   const std::string first = reply(run(pool, "process"));
   CHECK(disappears(std::stoi(first)));
-  const JobResult next = run(pool, "process");
-  CHECK(next.outcome == JobOutcome::ok);
+  const workers::JobResult next = run(pool, "process");
+  CHECK(next.outcome == workers::JobOutcome::ok);
   CHECK(reply(next) != first);
 }
 
 TEST_CASE("jobs that arrive just as a worker ends from idleness are run all the same") {
-  WorkerPool::Options options = faulty();
+  workers::WorkerPool::Options options = faulty();
   options.idle_seconds = 0.004;
-  WorkerPool pool(options);
+  workers::WorkerPool pool(options);
   for (int i = 0; i < 60; ++i) {
-    const JobResult result = run(pool, "job");
-    REQUIRE(to_string(result.outcome) == "ok");
+    const workers::JobResult result = run(pool, "job");
+    REQUIRE(workers::to_string(result.outcome) == "ok");
     std::this_thread::sleep_for(std::chrono::microseconds(3600 + 20 * i));
   }
 }
 
 TEST_CASE("concurrent jobs use different processes, at most as many as the pool has") {
-  WorkerPool pool(faulty(3));
+  workers::WorkerPool pool(faulty(3));
   std::vector<std::thread> threads;
   std::atomic<int> wrong = 0;
   for (int t = 0; t < 8; ++t) {
     threads.emplace_back([&pool, &wrong, t] {
       for (int i = 0; i < 30; ++i) {
         const std::string request = "thread " + std::to_string(t) + " job " + std::to_string(i);
-        const JobResult result = run(pool, request);
-        if (result.outcome != JobOutcome::ok || reply(result) != request) ++wrong;
+        const workers::JobResult result = run(pool, request);
+        if (result.outcome != workers::JobOutcome::ok || reply(result) != request) ++wrong;
       }
     });
   }
@@ -285,7 +287,7 @@ TEST_CASE("a pool leaves no process behind, not even a worker's children") {
   pid_t worker = 0;
   pid_t child = 0;
   {
-    WorkerPool pool(faulty(2));
+    workers::WorkerPool pool(faulty(2));
     worker = std::stoi(reply(run(pool, "process")));
     child = std::stoi(reply(run(pool, "child")));
     CHECK(exists(worker));
@@ -309,32 +311,32 @@ std::size_t open_descriptors() {
 /// A fault, what becomes of the job, and its limits.
 struct Fault {
   std::string request;
-  JobOutcome outcome = JobOutcome::ok;
+  workers::JobOutcome outcome = workers::JobOutcome::ok;
   double wall_seconds = 120;
   double cpu_seconds = 60;
 };
 
 std::vector<Fault> faults() {
-  std::vector<Fault> list = {{"crash", JobOutcome::crashed},
-                             {"abort", JobOutcome::crashed},
-                             {"exit", JobOutcome::crashed},
-                             {"orphan", JobOutcome::crashed},
-                             {"half-reply", JobOutcome::crashed},
-                             {"killed-mid-frame", JobOutcome::crashed},
-                             {"stack", JobOutcome::crashed},
-                             {"exception", JobOutcome::failed},
-                             {"garbage", JobOutcome::garbage},
-                             {"wrong-checksum", JobOutcome::garbage},
-                             {"huge-reply", JobOutcome::garbage},
-                             {"too-long", JobOutcome::garbage},
-                             {"unknown-status", JobOutcome::garbage},
-                             {"hang", JobOutcome::timed_out, 0.05},
-                             {"half-header", JobOutcome::timed_out, 0.05},
-                             {"slow-drip", JobOutcome::timed_out, 0.05},
-                             {"spin", JobOutcome::timed_out, 120, 0.02}};
+  std::vector<Fault> list = {{"crash", workers::JobOutcome::crashed},
+                             {"abort", workers::JobOutcome::crashed},
+                             {"exit", workers::JobOutcome::crashed},
+                             {"orphan", workers::JobOutcome::crashed},
+                             {"half-reply", workers::JobOutcome::crashed},
+                             {"killed-mid-frame", workers::JobOutcome::crashed},
+                             {"stack", workers::JobOutcome::crashed},
+                             {"exception", workers::JobOutcome::failed},
+                             {"garbage", workers::JobOutcome::garbage},
+                             {"wrong-checksum", workers::JobOutcome::garbage},
+                             {"huge-reply", workers::JobOutcome::garbage},
+                             {"too-long", workers::JobOutcome::garbage},
+                             {"unknown-status", workers::JobOutcome::garbage},
+                             {"hang", workers::JobOutcome::timed_out, 0.05},
+                             {"half-header", workers::JobOutcome::timed_out, 0.05},
+                             {"slow-drip", workers::JobOutcome::timed_out, 0.05},
+                             {"spin", workers::JobOutcome::timed_out, 120, 0.02}};
 #if !defined(__SANITIZE_ADDRESS__)
-  list.push_back({"memory", JobOutcome::out_of_memory});
-  list.push_back({"memory-bit-by-bit", JobOutcome::out_of_memory});
+  list.push_back({"memory", workers::JobOutcome::out_of_memory});
+  list.push_back({"memory-bit-by-bit", workers::JobOutcome::out_of_memory});
 #endif
   return list;
 }
@@ -347,7 +349,7 @@ std::vector<std::string> run_random_faults(unsigned seed,
   const std::vector<Fault> list = faults();
   std::vector<std::string> wrong;
   std::mutex mutex;
-  WorkerPool pool(faulty(4));
+  workers::WorkerPool pool(faulty(4));
   std::vector<std::thread> threads;
   for (unsigned t = 0; t < 6; ++t) {
     threads.emplace_back([&, t] {
@@ -356,16 +358,16 @@ std::vector<std::string> run_random_faults(unsigned seed,
         const auto number = generator();
         Fault job{"thread " + std::to_string(t) + " job " + std::to_string(number)};
         if (generator() % 2 == 0) job = list[number % list.size()];
-        WorkerLimits limits;
+        workers::WorkerLimits limits;
         limits.wall_seconds = job.wall_seconds;
         limits.cpu_seconds = job.cpu_seconds;
         limits.memory_bytes = std::uint64_t{256} << 20;
-        const JobResult result = pool.run(as_bytes(job.request), limits);
-        const std::string expected = job.outcome == JobOutcome::ok ? job.request : "";
+        const workers::JobResult result = pool.run(as_bytes(job.request), limits);
+        const std::string expected = job.outcome == workers::JobOutcome::ok ? job.request : "";
         if (result.outcome == job.outcome && reply(result) == expected) continue;
         const std::lock_guard lock(mutex);
-        wrong.push_back(job.request + ": " + std::string(to_string(result.outcome)) + ": " +
-                        result.detail);
+        wrong.push_back(job.request + ": " + std::string(workers::to_string(result.outcome)) +
+                        ": " + result.detail);
       }
     });
   }
@@ -406,7 +408,7 @@ TEST_CASE("random faults for a long time", "[.soak]") {
 
 /// Tells the worker's number through the pipe, then waits for ever with a job running.
 void be_a_host(int pipe_end) {
-  WorkerPool pool(faulty());
+  workers::WorkerPool pool(faulty());
   const std::string process = reply(run(pool, "process"));
   if (write(pipe_end, process.data(), process.size()) <= 0) return;
   run(pool, "hang", seconds(60));
@@ -437,7 +439,7 @@ TEST_CASE("a worker's job ends when its host is killed") {
 }
 
 TEST_CASE("a worker started by a thread that ended keeps working") {
-  WorkerPool pool(faulty());
+  workers::WorkerPool pool(faulty());
   std::string first;
   std::thread([&] { first = reply(run(pool, "process")); }).join();
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -447,15 +449,15 @@ TEST_CASE("a worker started by a thread that ended keeps working") {
 TEST_CASE("a helper is found in the named folder first") {
   const std::string folder = std::filesystem::path(FAULTY_WORKER).parent_path().string();
   setenv("WATERTIGHT_LIBEXEC", folder.c_str(), 1);
-  const Result<std::string> found = find_helper("faulty_worker");
+  const Result<std::string> found = workers::find_helper("faulty_worker");
   REQUIRE(found.has_value());
   CHECK(*found == FAULTY_WORKER);
   unsetenv("WATERTIGHT_LIBEXEC");
-  const Result<std::string> missing = find_helper("no-such-helper");
+  const Result<std::string> missing = workers::find_helper("no-such-helper");
   REQUIRE_FALSE(missing.has_value());
   CHECK(missing.error().code == ErrorCode::unavailable);
   CHECK(missing.error().message.find("libexec/watertight") != std::string::npos);
-  CHECK_FALSE(find_helper("../bin/sh").has_value());
+  CHECK_FALSE(workers::find_helper("../bin/sh").has_value());
 }
 
 }  // namespace

@@ -16,17 +16,10 @@
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/tip_prediction.h"
 #include "codec/mode_parallelogram/vectors.h"
+#include "codec/mode_parallelogram/vertex_options.h"
 #include "codec/page/integer_solid.h"
 
 namespace watertight::codec::parallelogram {
-
-/// What the writer chose for a solid.
-struct VertexOptions {
-  bool has_repeats = false;  // whether coordinates of vertices nearby come again
-  bool has_guesses = false;  // whether each tip names the guess that it is coded from
-  std::array<AxisPlaces, 3> places{};
-  double habit = 0.5;  // what a bit for naming a guess counts for in choosing it; not in the stream
-};
 
 /// Positions are given when writing or measuring and are nothing when reading. All others are
 /// relative to the first vertex of the solid, the origin.

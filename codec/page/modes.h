@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "codec/entropy/entropy_stream.h"
 #include "codec/entropy/model_bank.h"
-#include "codec/mode_parallelogram/vertex_coder.h"
+#include "codec/mode_parallelogram/vertex_options.h"
 #include "codec/page/integer_solid.h"
 
 namespace watertight::codec {

@@ -8,6 +8,7 @@
 
 Rules, one function each:
   layers       a folder includes only itself, base, and the folders its CMakeLists.txt DEPENDS on
+  modes        no mode of the codec includes another
   existence    a quoted include of the product names a file from the repository's root (tests and
                benches may also name a header beside them)
   homes        third-party headers stay in their folders
@@ -16,6 +17,10 @@ Rules, one function each:
   places       no file names a path of one machine, or the host of a package registry
   unfinished   no word that marks unfinished work
   length       no source file of the product is longer than 600 lines
+  namespaces   a file of a folder puts its names into the folder's namespace, a file of a mode of the
+               codec into the mode's; namespace watertight has base/ and the names that headers
+               export to it, which docs/architecture.md lists
+  names        no two files of the product define one qualified type, constant or function
 """
 import os
 import pathlib
@@ -131,6 +136,18 @@ def check_layers(tree):
                 yield f"{name}: layers: includes \"{path}\", but {folder} does not declare {target}"
 
 
+MODE = re.compile(r"codec/(mode_\w+)/")
+
+
+def check_modes(tree):
+    for name, includes in tree.includes.items():
+        own = MODE.match(name)
+        for _, path in includes:
+            other = MODE.match(path)
+            if own and other and own.group(1) != other.group(1):
+                yield f"{name}: modes: includes \"{path}\" of another mode"
+
+
 def check_existence(tree):
     for name, includes in tree.includes.items():
         if folder_of(name) is None:
@@ -209,8 +226,97 @@ def check_length(tree):
             yield f"{name}: length: {lines} lines, at most {MAX_LINES}"
 
 
-RULES = [check_layers, check_existence, check_homes, check_cgal, check_licence, check_places,
-         check_unfinished, check_length]
+NAMESPACE = re.compile(r"^(?:inline )?namespace(?: ([\w:]+))? \{")
+EXPORT = re.compile(r"^using ([\w:]+)::(\w+);$")
+FORWARD = re.compile(r"^(class|struct|enum class) \w+;")
+TYPE = re.compile(r"^(?:class|struct|union|enum class|enum)\s+([\w:]+)(?:\s+final)?\s*[{:]")
+ALIAS = re.compile(r"^using (\w+) =")
+CONSTANT = re.compile(r"^(?:inline )?constexpr [^=({]*?\b(k[A-Z]\w*)\b")
+INLINE = re.compile(r"^(?:inline|constexpr)\b[^;=]*?\b([a-z_]\w*)(\([^;{]*\))[^;{]*\{")
+LAYERED = re.compile(r"\.(h|cpp)$")
+
+
+def namespace_of(name):
+    """The namespace that a file's names belong to."""
+    parts = name.split("/")
+    if parts[0] == "base":
+        return "watertight"
+    mode = re.match(r"mode_(\w+)$", parts[1]) if parts[0] == "codec" and len(parts) > 2 else None
+    return "::".join(["watertight", parts[0]] + ([mode.group(1)] if mode else []))
+
+
+def namespace_blocks(text):
+    """(namespace, its lines at the left margin with their numbers) for each block; nested ones apart."""
+    stack, blocks = [], []
+    for number, line in enumerate(text.split("\n"), 1):
+        opened = NAMESPACE.match(line)
+        if opened and not line.rstrip().endswith("}"):
+            own = opened.group(1) or "(anonymous)"
+            path = f"{stack[-1][0]}::{own}" if stack else own
+            stack.append((path, []))
+            blocks.append(stack[-1])
+        elif line.startswith("}") and "namespace" in line and stack:
+            stack.pop()
+        elif stack:
+            stack[-1][1].append((number, line))
+    return blocks
+
+
+def check_namespaces(tree):
+    vocabulary = tree.text.get("docs/architecture.md", "")
+    for name, text in tree.text.items():
+        if folder_of(name) is None or not LAYERED.search(name):
+            continue
+        expected = namespace_of(name)
+        for path, lines in namespace_blocks(text):
+            if not path.startswith("watertight") or (path + "::").startswith(expected + "::"):
+                continue
+            code = [(number, line) for number, line in lines
+                    if line.strip() and not line.startswith(("//", " ", "}"))]
+            exports = [EXPORT.match(line) for _, line in code]
+            if path == "watertight" and name.endswith(".h") and all(exports):
+                for export in exports:
+                    if f"`{export.group(2)}`" not in vocabulary:
+                        yield (f"{name}: namespaces: exports {export.group(2)}, which the vocabulary of "
+                               "docs/architecture.md does not list")
+            elif name == "codec/page/modes.h" and path.startswith("watertight::codec::"):
+                continue  # what every mode must define
+            elif not all(FORWARD.match(line) for _, line in code):
+                yield f"{name}:{lines[0][0]}: namespaces: {path}, but its names belong to {expected}"
+
+
+def definitions(text):
+    """Qualified names that a file defines outside of anonymous namespaces and templates."""
+    for path, lines in namespace_blocks(text):
+        if "(anonymous)" in path:
+            continue
+        for number, line in lines:
+            joined = line
+            if re.match(r"(inline|constexpr)\b", line) and "{" not in line:
+                joined = " ".join(part for at, part in lines if number <= at < number + 4)
+            for pattern in (TYPE, ALIAS, CONSTANT, INLINE):
+                found = pattern.match(joined)
+                if found:
+                    parameters = found.group(2) if pattern is INLINE else ""
+                    types = re.sub(r"\s*\b\w+(?=[,)])", "", re.sub(r"\s+", " ", parameters))
+                    yield f"{path}::{found.group(1)}{types}", number
+                    break
+
+
+def check_names(tree):
+    seen = {}
+    for name, text in sorted(tree.text.items()):
+        if folder_of(name) is None or not LAYERED.search(name):
+            continue
+        for defined, number in definitions(text):
+            other = seen.setdefault(defined, name)
+            if other != name:
+                yield f"{name}:{number}: names: {defined} is defined in {other} too"
+
+
+RULES = [check_layers, check_modes, check_existence, check_homes, check_cgal, check_licence, check_places,
+         check_unfinished, check_length,
+         check_namespaces, check_names]
 
 
 def violations(root):
@@ -236,6 +342,13 @@ GOOD_TREE = {
     "formats/texts.cpp": SPDX + "#include <zstd.h>\n",
     "sql/CMakeLists.txt": "# SPDX-License-Identifier: X\nwatertight_folder(sql DEPENDS base)\n",
     "sql/bridge.c": SPDX + '#include "postgres.h"\n#include "utils/builtins.h"\n',
+    "docs/architecture.md": "The vocabulary: `Solid`.\n",
+    "geometry/named.h": SPDX + "namespace watertight::geometry {\nclass Solid {\n};\n"
+        "}  // namespace watertight::geometry\n\nnamespace watertight {\nusing geometry::Solid;\n}  // namespace watertight\n",
+    "codec/mode_walk/front.h": SPDX + "namespace watertight::codec::walk {\nstruct Gate {\n};\n"
+        "}  // namespace watertight::codec::walk\n",
+    "codec/mode_polygon/front.h": SPDX + "namespace watertight::codec::polygon {\nstruct Gate {\n};\n"
+        "}  // namespace watertight::codec::polygon\n",
     "scripts/test": "#!/bin/sh\n# SPDX-License-Identifier: X\n",
 }
 # (file, its text, the rule that must speak, words that must be in the line)
@@ -263,6 +376,21 @@ BREAKS = [
     ("docs/build.md", "get it from http://" + "deb.example.org\n", "places", "docs/build.md:1"),
     ("geometry/solid.cpp", SPDX + "// TO" + "DO: later\n", "unfinished", "geometry/solid.cpp:2"),
     ("geometry/solid.cpp", SPDX + "\n" * MAX_LINES, "length", "601 lines"),
+    ("geometry/solid.cpp", SPDX + "namespace watertight {\nint f();\n}  // namespace watertight\n",
+     "namespaces", "watertight::geometry"),
+    ("codec/mode_walk/mode.cpp", SPDX + "namespace watertight::codec {\nint f();\n}  // namespace watertight::codec\n",
+     "namespaces", "watertight::codec::walk"),
+    ("codec/mode_walk/mode.cpp", SPDX + '#include "codec/mode_polygon/front.h"\n', "modes", "another mode"),
+    ("geometry/kernel.h", SPDX + "namespace watertight {\nusing geometry::Kernel;\n}  // namespace watertight\n",
+     "namespaces", "exports Kernel"),
+    ("geometry/kernel.h", SPDX + "namespace watertight::geometry {\nstruct Solid {\n};\n"
+     "}  // namespace watertight::geometry\n", "names", "watertight::geometry::Solid"),
+    ("geometry/solid.cpp", SPDX + "namespace watertight::geometry {\nclass Solid final {\n};\n"
+     "}  // namespace watertight::geometry\n", "names", "watertight::geometry::Solid"),
+    ("geometry/kernel.h", SPDX + "namespace watertight::geometry {\nusing Solid = int;\n"
+     "}  // namespace watertight::geometry\n", "names", "watertight::geometry::Solid"),
+    ("codec/mode_walk/shapes.h", SPDX + "namespace watertight::codec::walk {\nstruct Gate {\n};\n"
+     "}  // namespace watertight::codec::walk\n", "names", "watertight::codec::walk::Gate"),
 ]
 
 

@@ -132,10 +132,6 @@ Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options) {
   return encode_boundary(solid.boundary(), solid.acceptance(), options);
 }
 
-bool share_page(const ValidSolid& one, const ValidSolid& other) {
-  return frame_of(one.solid(), one.acceptance()) == frame_of(other.solid(), other.acceptance());
-}
-
 Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundaries,
                                 const Acceptance& acceptance, const EncodeOptions& options) {
   if (boundaries.empty() || boundaries.size() > kMaxPageSolids) {
@@ -151,19 +147,6 @@ Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundar
     sources.push_back({boundary, acceptance});
   }
   return encode_contents(sources, PageKind::page, options);
-}
-
-Result<Bytes> encode_page(std::span<const ValidSolid* const> solids, const EncodeOptions& options) {
-  std::vector<const OrientedBoundary*> boundaries;
-  for (const ValidSolid* solid : solids) {
-    if (!(solid->acceptance() == solids.front()->acceptance())) {
-      return Error{ErrorCode::invalid_argument,
-                   "the solids of a page share their grid, reference system and acceptance"};
-    }
-    boundaries.push_back(&solid->boundary());
-  }
-  const Acceptance acceptance = solids.empty() ? Acceptance{} : solids.front()->acceptance();
-  return encode_boundaries(boundaries, acceptance, options);
 }
 
 }  // namespace watertight::codec

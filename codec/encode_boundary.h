@@ -15,7 +15,8 @@ namespace watertight::codec {
 Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
                               const EncodeOptions& options = {});
 
-/// The same for pages (codec/page.h). Errors: those of encode_page().
+/// The same for a page (codec/page.h) of 1 to kMaxPageSolids boundaries on one grid, in one
+/// reference system. Errors: not_encodable; invalid_argument.
 Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundaries,
                                 const Acceptance& acceptance, const EncodeOptions& options = {});
 

@@ -5,7 +5,6 @@
 // bulk export; single blobs (codec/blob.h) are for rows.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "codec/blob.h"
@@ -14,19 +13,8 @@ namespace watertight::codec {
 
 inline constexpr std::size_t kMaxPageSolids = 256;
 
-/// True if both may stand in one page: the same lattice steps and phase, reference system and
-/// acceptance.
-bool share_page(const ValidSolid& one, const ValidSolid& other);
-
-/// Encodes, decodes, compares, and only then returns. `options` are those of encode(), without a
-/// certificate. Requires 1 to kMaxPageSolids solids that share a page. Errors: not_encodable;
-/// invalid_argument.
-Result<Bytes> encode_page(std::span<const ValidSolid* const> solids,
-                          const EncodeOptions& options = {});
-
-/// As decode(), for each solid of the page in the order given to encode_page(). `limits` hold
-/// for all of them together. Errors: malformed; unsupported;
-/// limit_exceeded.
+/// As decode(), for each solid of the page in the order in which it was written. `limits` hold
+/// for all of them together. Errors: malformed; unsupported; limit_exceeded.
 Result<std::vector<Decoded>> decode_page(ByteView page, const Limits& limits = {});
 
 }  // namespace watertight::codec

@@ -3,15 +3,16 @@
 // Asking the caller now and then, within long loops, whether to go on. Private to delaunay/.
 #pragma once
 
+#include "base/cancel.h"
+
 #include <cstddef>
-#include <functional>
 
 namespace watertight::delaunay {
 
 /// Keeps a reference to `is_cancelled`, which may be empty. One per loop; not thread-safe.
 class Cancellation {
  public:
-  explicit Cancellation(const std::function<bool()>& is_cancelled) : is_cancelled_(is_cancelled) {}
+  explicit Cancellation(const CancelPoll& is_cancelled) : is_cancelled_(is_cancelled) {}
 
   /// Counts `steps`; asks the caller once in about 4096 of them.
   bool is_due_and_wanted(std::size_t steps = 1) {
@@ -24,7 +25,7 @@ class Cancellation {
 
  private:
   static constexpr std::size_t kStepsPerQuestion = 4096;
-  const std::function<bool()>& is_cancelled_;
+  const CancelPoll& is_cancelled_;
   std::size_t steps_ = 0;
 };
 

@@ -8,7 +8,7 @@ namespace watertight::delaunay {
 
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
                                              std::uint64_t max_tetrahedra,
-                                             const std::function<bool()>& is_cancelled) {
+                                             const CancelPoll& is_cancelled) {
   if (is_small_grid(points)) return small_delaunay(points, max_tetrahedra, is_cancelled);
   return cgal_delaunay(points, max_tetrahedra, is_cancelled);
 }

@@ -11,10 +11,10 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "base/cancel.h"
 #include "base/result.h"
 #include "delaunay/tetrahedralization.h"
 
@@ -38,6 +38,6 @@ struct CanonicalDelaunay {
 /// Cost: O(n log n) typical, O(n^2) worst.
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
                                              std::uint64_t max_tetrahedra = 64'000'000,
-                                             const std::function<bool()>& is_cancelled = {});
+                                             const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::delaunay

@@ -56,7 +56,7 @@ struct FaceEdge {
 class Examination {
  public:
   Examination(const Solid& solid, const tessellate::FacetTriangles& canonical,
-              Certificate& certificate, const std::function<bool()>& is_cancelled)
+              Certificate& certificate, const CancelPoll& is_cancelled)
       : solid_(solid),
         canonical_(canonical),
         certificate_(certificate),
@@ -492,7 +492,7 @@ std::string_view to_string(CertificateRefusal refusal) {
 
 CertificateResult check_certificate(const Solid& solid, const tessellate::FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,
-                                    const std::function<bool()>& is_cancelled) {
+                                    const CancelPoll& is_cancelled) {
   CertificateResult result;
   result.certificate.rung = rung;
   result.certificate.tetrahedralization = std::move(tetrahedralization);

@@ -5,10 +5,10 @@
 // one interior region. Source: Verbree & Si 2008, section 3.1.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "base/cancel.h"
 #include "delaunay/tetrahedralization.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
@@ -70,6 +70,6 @@ struct CertificateResult {
 /// every few thousand steps. Cost: O(n log n) in tetrahedra.
 CertificateResult check_certificate(const Solid& solid, const tessellate::FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,
-                                    const std::function<bool()>& is_cancelled = {});
+                                    const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::delaunay

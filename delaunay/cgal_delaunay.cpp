@@ -46,7 +46,7 @@ std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& poi
 }
 
 Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
-                  const std::function<bool()>& is_cancelled, Delaunay& delaunay) {
+                  const CancelPoll& is_cancelled, Delaunay& delaunay) {
   std::vector<Kernel::Point_3> converted;
   converted.reserve(points.size());
   for (const Point& p : points) {
@@ -89,7 +89,7 @@ geometry::Tetrahedron vertices_of(Delaunay::Cell_handle cell) {
 }  // namespace
 
 Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint64_t max_tetrahedra,
-                                        const std::function<bool()>& is_cancelled) {
+                                        const CancelPoll& is_cancelled) {
   if (points.size() >= kNone) {
     return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
   }

@@ -5,9 +5,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 
+#include "base/cancel.h"
 #include "base/result.h"
 #include "delaunay/canonical_delaunay.h"
 
@@ -16,6 +16,6 @@ namespace watertight::delaunay {
 /// As canonical_delaunay(), for any finite points.
 Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points,
                                         std::uint64_t max_tetrahedra = 64'000'000,
-                                        const std::function<bool()>& is_cancelled = {});
+                                        const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::delaunay

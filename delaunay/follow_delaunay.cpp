@@ -330,7 +330,7 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged,
                                            const tessellate::FacetTriangles& canonical,
                                            const CanonicalDelaunay& delaunay,
                                            const std::vector<bool>& is_kept,
-                                           const std::function<bool()>& is_cancelled) {
+                                           const CancelPoll& is_cancelled) {
   WATERTIGHT_ASSERT(canonical.first.size() == std::size_t{merged.facet_count()} + 1);
   FollowingTriangles result;
   Cancellation cancellation(is_cancelled);

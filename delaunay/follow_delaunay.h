@@ -7,9 +7,9 @@
 // marks and the list of unrecovered faces say which triangles were taken.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "base/cancel.h"
 #include "base/result.h"
 #include "delaunay/canonical_delaunay.h"
 #include "geometry/solid.h"
@@ -51,6 +51,6 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged,
                                            const tessellate::FacetTriangles& canonical,
                                            const CanonicalDelaunay& delaunay,
                                            const std::vector<bool>& is_kept,
-                                           const std::function<bool()>& is_cancelled);
+                                           const CancelPoll& is_cancelled);
 
 }  // namespace watertight::delaunay

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/cancel.h"
 #include "delaunay/certificate.h"
 #include "delaunay/shell_contacts.h"
 #include "workers/worker_pool.h"
@@ -44,7 +45,7 @@ struct LadderOptions {
   /// CPU time of all engines on one solid together; 0: by size (20 s and more, see
   /// default_ladder_seconds()). A rung gets what those before it left.
   double seconds_in_all = 0;
-  workers::CancelPoll cancel = {};
+  CancelPoll cancel = {};
   /// divide_at_contacts() of the solid, where the caller has it; null: the ladder divides.
   const ContactTriangles* contacts = nullptr;
   /// The exact tests have shown one interior: a refusal that calls the solid wrong is no end, and

@@ -200,7 +200,7 @@ class ContactDivision {
   ContactDivision(const Solid& solid, const tessellate::FacetTriangles& canonical)
       : solid_(solid), canonical_(canonical), points_(solid.vertices()) {}
 
-  Result<ContactTriangles> run(const std::function<bool()>& is_cancelled) {
+  Result<ContactTriangles> run(const CancelPoll& is_cancelled) {
     geometry::IntersectionOptions options;
     options.limit = kMostPairs;
     options.cancel = is_cancelled;
@@ -402,7 +402,7 @@ bool is_on_triangle(std::span<const Point> points, const Triangle& triangle, con
 
 Result<ContactTriangles> divide_at_contacts(const Solid& solid,
                                             const tessellate::FacetTriangles& canonical,
-                                            const std::function<bool()>& is_cancelled) {
+                                            const CancelPoll& is_cancelled) {
   if (solid.shell_count() < 2) return ContactTriangles{};
   return ContactDivision(solid, canonical).run(is_cancelled);
 }

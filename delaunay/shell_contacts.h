@@ -5,9 +5,9 @@
 // facets, and engines want them in their input.
 #pragma once
 
-#include <functional>
 #include <string>
 
+#include "base/cancel.h"
 #include "base/result.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
@@ -32,7 +32,7 @@ struct ContactTriangles {
 /// intersecting_pairs(), and for each facet its triangles times its contacts.
 Result<ContactTriangles> divide_at_contacts(const Solid& solid,
                                             const tessellate::FacetTriangles& canonical,
-                                            const std::function<bool()>& is_cancelled = {});
+                                            const CancelPoll& is_cancelled = {});
 
 /// True if the point lies in the closed triangle, exactly. `axis` is one along which the triangle
 /// has an area in projection.

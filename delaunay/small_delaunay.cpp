@@ -371,7 +371,7 @@ bool is_small_grid(std::span<const Point> points) {
 
 Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
                                          std::uint64_t max_tetrahedra,
-                                         const std::function<bool()>& is_cancelled) {
+                                         const CancelPoll& is_cancelled) {
   if (points.size() >= kMostCells / 4) {
     return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
   }

@@ -8,9 +8,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 
+#include "base/cancel.h"
 #include "base/result.h"
 #include "delaunay/canonical_delaunay.h"
 
@@ -24,6 +24,6 @@ bool is_small_grid(std::span<const Point> points);
 /// integers. Memory: about 800 bytes per point, in a few vectors.
 Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
                                          std::uint64_t max_tetrahedra = 64'000'000,
-                                         const std::function<bool()>& is_cancelled = {});
+                                         const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::delaunay

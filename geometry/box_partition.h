@@ -5,10 +5,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "base/cancel.h"
 #include "base/result.h"
 #include "geometry/point.h"
 #include "geometry/triangle_triangle.h"
@@ -28,7 +28,7 @@ struct IntersectionOptions {
   std::uint64_t limit = 10'000;
   /// Asked about every 2^16 box comparisons, by the caller's thread only; true ends the search with
   /// ErrorCode::cancelled.
-  std::function<bool()> cancel = {};
+  CancelPoll cancel = {};
   /// Threads that share the search, the caller's among them; the result does not depend on it.
   unsigned threads = 1;
   /// If not empty, a group for each triangle: triangles of one group are known not to intersect and

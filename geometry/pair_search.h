@@ -6,10 +6,10 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "base/cancel.h"
 #include "geometry/box_partition.h"
 #include "geometry/leaf_comparer.h"
 #include "geometry/pair_tester.h"
@@ -25,7 +25,7 @@ struct SearchContext {
   PairTester tester;
   std::span<const Index> group_of;  // by triangle, or empty
   std::uint64_t limit = 0;
-  std::function<bool()> cancel;  // asked by the caller's thread only
+  CancelPoll cancel;  // asked by the caller's thread only
   std::atomic<bool> is_ended = false;
   std::atomic<bool> is_cancelled = false;
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/cancel.h"
 #include "codec/blob.h"
 #include "formats/document.h"
 #include "store/solid_store.h"
@@ -128,7 +129,7 @@ struct IngestOptions {
   formats::Contract contract = formats::Contract::exact;
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
   std::size_t threads = 1;
-  std::function<bool()> is_cancelled = {};
+  CancelPoll is_cancelled = {};
   Progress progress = {};
 };
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "base/cancel.h"
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
 
@@ -27,7 +28,7 @@ struct StreamOptions {
   CertifyOptions certify;
   validate::GroupOptions groups;
   std::size_t threads = 1;  // features at once; a document of one feature has them for itself
-  std::function<bool()> is_cancelled = {};
+  CancelPoll is_cancelled = {};
   /// Called with features done and bytes read; from one thread at a time.
   std::function<void(std::uint64_t, std::uint64_t)> progress = {};
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/cancel.h"
 #include "server/problem.h"
 #include "server/routes.h"
 
@@ -24,7 +25,7 @@ struct RoutedRequest {
   const Service& service;
   const Request& request;
   const Target& target;
-  const IsCancelled& is_cancelled;
+  const CancelPoll& is_cancelled;
 };
 
 using Handler = Response (*)(const RoutedRequest&);

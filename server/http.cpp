@@ -114,8 +114,6 @@ std::string_view reason_phrase(unsigned status) {
       return "Created";
     case 204:
       return "No Content";
-    case 207:
-      return "Multi-Status";
     case 304:
       return "Not Modified";
     case 400:
@@ -126,14 +124,10 @@ std::string_view reason_phrase(unsigned status) {
       return "Method Not Allowed";
     case 406:
       return "Not Acceptable";
-    case 408:
-      return "Request Timeout";
     case 409:
       return "Conflict";
     case 411:
       return "Length Required";
-    case 412:
-      return "Precondition Failed";
     case 413:
       return "Content Too Large";
     case 415:
@@ -144,8 +138,6 @@ std::string_view reason_phrase(unsigned status) {
       return "Request Header Fields Too Large";
     case 500:
       return "Internal Server Error";
-    case 501:
-      return "Not Implemented";
     case 503:
       return "Service Unavailable";
     case 505:

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "base/cancel.h"
 #include "base/result.h"
 #include "server/http.h"
 
@@ -20,13 +21,10 @@ namespace watertight::server {
 /// their own.
 enum class Lane : std::uint8_t { quick, reading, computing };
 
-/// True when the request's answer is no longer wanted (time is up, the server is stopping).
-using IsCancelled = std::function<bool()>;
-
 /// What answers requests. Both functions are called from several threads at once.
 struct Application {
   std::function<Lane(const Request&)> lane;
-  std::function<Response(const Request&, const IsCancelled&)> respond;
+  std::function<Response(const Request&, const CancelPoll&)> respond;
 };
 
 /// One line about an answered request or an event, already formatted as key=value pairs.

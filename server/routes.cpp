@@ -134,7 +134,7 @@ Lane lane_of(const Request& request) {
   return Lane::quick;
 }
 
-Response respond(const Service& service, const Request& request, const IsCancelled& is_cancelled) {
+Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
   const auto target = parse_target(request.target);
   if (!target) return to_response(to_problem(target.error()));
   for (const Route& route : routes()) {
@@ -147,7 +147,7 @@ Response respond(const Service& service, const Request& request, const IsCancell
 }
 
 Application make_application(const Service& service) {
-  return Application{lane_of, [service](const Request& request, const IsCancelled& is_cancelled) {
+  return Application{lane_of, [service](const Request& request, const CancelPoll& is_cancelled) {
                        return respond(service, request, is_cancelled);
                      }};
 }

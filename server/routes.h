@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "base/cancel.h"
 #include "pipeline/pipeline.h"
 #include "server/http.h"
 #include "server/listener.h"
@@ -30,7 +31,7 @@ struct Service {
 };
 
 /// Answers a request. Never fails: every error is an application/problem+json answer.
-Response respond(const Service& service, const Request& request, const IsCancelled& is_cancelled);
+Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled);
 
 /// Which threads should answer a request.
 Lane lane_of(const Request& request);

@@ -148,7 +148,7 @@ std::string quoted(std::string_view text) {
 }
 
 Response respond_guarded(const Application& application, const Request& request,
-                         const IsCancelled& is_cancelled) {
+                         const CancelPoll& is_cancelled) {
   try {
     return application.respond(request, is_cancelled);
   } catch (const std::bad_alloc&) {
@@ -266,7 +266,7 @@ awaitable<std::optional<Response>> Session::receive(Parser& parser) {
 awaitable<Response> Session::answer(const Request& request) {
   const Clock::time_point deadline = Clock::now() + seconds(options_.answer_seconds);
   const SessionEnvironment& environment = environment_;
-  const IsCancelled is_cancelled = [deadline, &environment] {
+  const CancelPoll is_cancelled = [deadline, &environment] {
     return environment.is_cancelled || Clock::now() > deadline;
   };
   const Lane lane = environment_.application.lane(request);

@@ -34,8 +34,7 @@ struct Contact {
 
 class RingExaminer {
  public:
-  RingExaminer(const Solid& solid, Index facet, std::size_t most,
-               const std::function<bool()>& cancel)
+  RingExaminer(const Solid& solid, Index facet, std::size_t most, const CancelPoll& cancel)
       : solid_(solid),
         vertices_(solid.vertices()),
         rings_(solid.rings_of(facet)),
@@ -84,7 +83,7 @@ class RingExaminer {
   std::span<const Point> vertices_;
   IndexRange rings_;
   std::size_t most_;
-  const std::function<bool()>& cancel_;
+  const CancelPoll& cancel_;
   std::size_t steps_ = 0;  // since `cancel` was asked
   int axis_ = 2;
   struct Box {
@@ -465,7 +464,7 @@ RingProblems RingExaminer::examine(Index facet) {
 }  // namespace
 
 RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most,
-                           const std::function<bool()>& cancel) {
+                           const CancelPoll& cancel) {
   return RingExaminer(solid, facet, most, cancel).examine(facet);
 }
 

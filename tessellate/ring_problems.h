@@ -5,9 +5,9 @@
 // projection. For validate, on facets that triangulate_facets() did not triangulate.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "base/cancel.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
@@ -42,7 +42,7 @@ struct RingProblems {
 /// `cancel` is asked about every 2^16 steps; true ends the search with what was found.
 /// Cost: O(n log n + pairs of edges that overlap in one axis), bounded; nesting O(rings x n).
 RingProblems ring_problems(const Solid& solid, Index facet, std::size_t most,
-                           const std::function<bool()>& cancel = {});
+                           const CancelPoll& cancel = {});
 
 /// +1 if a simple ring turns left in the projection along `axis`, -1 right, 0 if it has a spike at
 /// its smallest vertex. Requires at least 3 vertices. Exact.

@@ -47,7 +47,7 @@ void FindingCollector::move_to(Report& report) && {
 }
 
 ExaminedSolid::ExaminedSolid(const Solid& submitted, const Tolerances& tolerances,
-                             const Limits& limits, workers::CancelPoll cancel,
+                             const Limits& limits, CancelPoll cancel,
                              const geometry::Placement* placement)
     : findings(limits.findings),
       submitted_(submitted),

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cancel.h"
 #include "geometry/crs.h"
 #include "geometry/triangle_triangle.h"
 #include "tessellate/facets.h"
@@ -50,7 +51,7 @@ class ExaminedSolid {
  public:
   /// Keeps a reference to `submitted`. With a placement, metres are those of the placed solid.
   ExaminedSolid(const Solid& submitted, const Tolerances& tolerances, const Limits& limits,
-                workers::CancelPoll cancel = {}, const geometry::Placement* placement = nullptr);
+                CancelPoll cancel = {}, const geometry::Placement* placement = nullptr);
 
   /// For long loops: true once the caller wants an end. Asks now and then, and remembers.
   bool is_cancelled();
@@ -114,7 +115,7 @@ class ExaminedSolid {
   bool is_junction(Index without, Index with) const;
 
   const Solid& submitted_;
-  workers::CancelPoll cancel_;
+  CancelPoll cancel_;
   std::uint32_t polls_ = 0;
   bool was_cancelled_ = false;
   geometry::MergedSolid merged_;

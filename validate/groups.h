@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/cancel.h"
 #include "base/limits.h"
 #include "delaunay/ladder.h"
 #include "geometry/placement.h"
@@ -25,7 +26,7 @@ struct GroupOptions {
   /// small, and of a slab between two facets it is the thickness.
   double overlap_metres = 0;
   Limits limits;
-  workers::CancelPoll cancel = {};
+  CancelPoll cancel = {};
 };
 
 /// A member that is compared: a valid solid; with a placement, a geometry template's where an

@@ -34,8 +34,7 @@ struct Nearest {
 
 }  // namespace
 
-NearPoints near_points(std::span<const Point> points, double reach,
-                       const std::function<bool()>& cancel) {
+NearPoints near_points(std::span<const Point> points, double reach, const CancelPoll& cancel) {
   std::vector<Box> boxes;
   boxes.reserve(points.size());
   for (const Point& p : points) boxes.push_back({p, p});

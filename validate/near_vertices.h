@@ -5,10 +5,10 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "base/cancel.h"
 #include "geometry/point.h"
 
 namespace watertight::validate {
@@ -23,7 +23,6 @@ struct NearPoints {
 /// All points that have another at most `reach` away. Every point's nearest neighbour is looked
 /// for, so it does not matter how many pairs are near. `cancel` (may be empty) ends the search with
 /// what was found. Deterministic. Cost: O(n log n) but for points placed against it.
-NearPoints near_points(std::span<const Point> points, double reach,
-                       const std::function<bool()>& cancel);
+NearPoints near_points(std::span<const Point> points, double reach, const CancelPoll& cancel);
 
 }  // namespace watertight::validate

@@ -28,7 +28,7 @@ class OpenEdgeExaminer {
   OpenEdgeExaminer(const Solid& solid, std::span<const EdgeUse> open)
       : vertices_(solid.vertices()), open_(open), is_explained_(open.size(), false) {}
 
-  OpenEdges examine(const std::function<bool()>& is_cancelled) {
+  OpenEdges examine(const CancelPoll& is_cancelled) {
     collect_ends();
     const BoxTree tree(end_boxes());
     for (std::size_t e = 0; e < open_.size() && result_.is_complete; ++e) {
@@ -179,7 +179,7 @@ void OpenEdgeExaminer::collect_borders() {
 }  // namespace
 
 OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open,
-                             const std::function<bool()>& is_cancelled) {
+                             const CancelPoll& is_cancelled) {
   return OpenEdgeExaminer(solid, open).examine(is_cancelled);
 }
 

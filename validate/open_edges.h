@@ -4,9 +4,9 @@
 // validate/.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "base/cancel.h"
 #include "validate/edge_table.h"
 
 namespace watertight::validate {
@@ -32,6 +32,6 @@ struct OpenEdges {
 /// Requires edges that are each used once, sorted by vertices. Exact. `is_cancelled` ends the
 /// search for T-junctions. Cost: O(n log n + vertices close to each edge), bounded.
 OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open,
-                             const std::function<bool()>& is_cancelled);
+                             const CancelPoll& is_cancelled);
 
 }  // namespace watertight::validate

@@ -117,7 +117,7 @@ struct Side {
 class Comparison {
  public:
   Comparison(const RegionSurface& first, const RegionSurface& second,
-             const RegionQuestions& questions, const workers::CancelPoll& cancel)
+             const RegionQuestions& questions, const CancelPoll& cancel)
       : first_(side(first, second)),
         second_(side(second, first)),
         questions_(questions),
@@ -146,7 +146,7 @@ class Comparison {
   Side first_;
   Side second_;
   const RegionQuestions& questions_;
-  const workers::CancelPoll& cancel_;
+  const CancelPoll& cancel_;
   std::vector<Point> points_;  // of the listed triangles, three each, the first solid's first
   std::vector<Box> boxes_;     // of the second's
   std::uint64_t comparisons_ = 0;
@@ -403,7 +403,7 @@ bool contains(const Box& outer, const Box& inner) {
 }
 
 RegionRelation relate_regions(const RegionSurface& first, const RegionSurface& second,
-                              const RegionQuestions& questions, const workers::CancelPoll& cancel) {
+                              const RegionQuestions& questions, const CancelPoll& cancel) {
   if (!first.box().overlaps(second.box())) return {};
   return Comparison(first, second, questions, cancel).run();
 }

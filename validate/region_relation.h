@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "delaunay/ladder.h"
+#include "base/cancel.h"
 #include "geometry/point.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
@@ -82,6 +82,6 @@ struct RegionRelation {
 /// Deterministic. Cost: near linear in the triangles inside the overlap of the boxes; the product
 /// of their numbers when all of them meet.
 RegionRelation relate_regions(const RegionSurface& first, const RegionSurface& second,
-                              const RegionQuestions& questions, const workers::CancelPoll& cancel);
+                              const RegionQuestions& questions, const CancelPoll& cancel);
 
 }  // namespace watertight::validate

@@ -90,8 +90,7 @@ class Snapper {
 
 }  // namespace
 
-Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
-                                   const std::function<bool()>& cancel,
+Result<SnappedSolid> snap_vertices(const Solid& solid, double metres, const CancelPoll& cancel,
                                    const geometry::Placement* placement) {
   if (solid.vertex_count() == 0) return SnappedSolid{solid, 0};
   Snapper snapper(solid, metres, placement);

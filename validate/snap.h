@@ -4,8 +4,7 @@
 // to validate/.
 #pragma once
 
-#include <functional>
-
+#include "base/cancel.h"
 #include "base/result.h"
 #include "geometry/placement.h"
 #include "geometry/solid.h"
@@ -22,8 +21,7 @@ struct SnappedSolid {
 /// Requires metres > 0.
 /// Errors: limit_exceeded if the tolerance is too small for the size of the solid; cancelled.
 /// Cost: O(n log n).
-Result<SnappedSolid> snap_vertices(const Solid& solid, double metres,
-                                   const std::function<bool()>& cancel = {},
+Result<SnappedSolid> snap_vertices(const Solid& solid, double metres, const CancelPoll& cancel = {},
                                    const geometry::Placement* placement = nullptr);
 
 }  // namespace watertight::validate

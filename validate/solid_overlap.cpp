@@ -34,8 +34,7 @@ bool may_be_equal(const RegionSurface& a, const RegionSurface& b) {
 
 class SolidComparison {
  public:
-  SolidComparison(const SolidSurface& first, const SolidSurface& second,
-                  const workers::CancelPoll& cancel)
+  SolidComparison(const SolidSurface& first, const SolidSurface& second, const CancelPoll& cancel)
       : first_(first), second_(second), cancel_(cancel) {}
 
   SolidRelation run() {
@@ -114,7 +113,7 @@ class SolidComparison {
 
   const SolidSurface& first_;
   const SolidSurface& second_;
-  const workers::CancelPoll& cancel_;
+  const CancelPoll& cancel_;
   SolidRelation result_;
 };
 
@@ -130,7 +129,7 @@ SolidSurface::SolidSurface(const Solid& solid, std::span<const Point> vertices,
 }
 
 SolidRelation relate(const SolidSurface& first, const SolidSurface& second,
-                     const workers::CancelPoll& cancel) {
+                     const CancelPoll& cancel) {
   if (!first.boundary().box().overlaps(second.boundary().box())) return {};
   return SolidComparison(first, second, cancel).run();
 }

@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "base/cancel.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 #include "validate/region_relation.h"
@@ -46,7 +47,7 @@ struct SolidRelation {
 /// Deterministic. Cost: as relate_regions() for the exterior shells and, where these overlap, for
 /// each cavity that can hold the other solid or equal a cavity of it.
 SolidRelation relate(const SolidSurface& first, const SolidSurface& second,
-                     const workers::CancelPoll& cancel);
+                     const CancelPoll& cancel);
 
 /// Metres along the axes of the world (rows) of one step along each axis of a grid.
 using StepMetres = std::array<std::array<double, 3>, 3>;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "base/bytes.h"
+#include "base/cancel.h"
 #include "base/result.h"
 
 namespace watertight::workers {
@@ -42,9 +43,6 @@ struct JobResult {
   double seconds = 0;      // wall
   double cpu_seconds = 0;  // of the worker: its start if it was new, framing and the job itself
 };
-
-/// Asked every few milliseconds while a job runs; true cancels it.
-using CancelPoll = std::function<bool()>;
 
 /// A pool of processes of one executable. Thread-safe: concurrent run() calls use different
 /// processes, at most `size` at a time. Processes start on first use, serve many jobs, and are

@@ -82,11 +82,11 @@ void add_orders(const Document& document, Sizes& sizes) {
       sizes.order_bytes += codec::write_order(solid, canonical.order).size();
       codec::ModelBank neutral(layout);
       codec::EntropyStream alone = codec::EntropyStream::meter();
-      codec::code_order(alone, neutral, 0, solid, canonical.order);
+      codec::code_order(alone, neutral, solid, canonical.order);
       sizes.order_alone += alone.cost();
       if (sizes.closed++ % kPage == 0) page = codec::ModelBank(layout);
       codec::EntropyStream in_page = codec::EntropyStream::meter();
-      codec::code_order(in_page, page, 0, solid, canonical.order);
+      codec::code_order(in_page, page, solid, canonical.order);
       sizes.order_in_page += in_page.cost();
     }
   }

@@ -256,7 +256,7 @@ class Stopwatch {
 
 void measure_case(const std::string& name, std::size_t facets) {
   const Solid solid = make(name, facets);
-  const workers::CancelPoll never = {};
+  const CancelPoll never = {};
   Stopwatch watch;
   validate::ExaminedSolid examined(solid, Tolerances{}, Limits{});
   std::printf("%-9s %8u %8.3f", name.c_str(), solid.facet_count(), watch.lap());

@@ -28,7 +28,6 @@ class LeastSquares {
     for (std::size_t i = 0; i < Size; ++i) sum += coefficients_[i] * features[i];
     return sum;
   }
-  double coefficient(std::size_t i) const { return coefficients_[i]; }
 
   void learn(const Features& features, double target, double weight) {
     for (std::size_t i = 0; i < Size; ++i) {

@@ -342,7 +342,7 @@ Status SolidCoder::code_order(PageSolid& solid) {
       models_[ModelPart::frame].code(stream_, kOrder, 0, {last_order_}, solid.keeps_order);
   last_order_ = solid.keeps_order ? 1 : 0;
   if (!solid.keeps_order) return Done{};
-  watertight::codec::code_order(stream_, models_[ModelPart::order], 0,
+  watertight::codec::code_order(stream_, models_[ModelPart::order],
                                 solid.canonical->boundary.solid(), solid.canonical->order);
   if (stream_.is_reading() && solid.canonical->order.is_identity()) {
     return Error{ErrorCode::malformed, "an order that orders nothing"};

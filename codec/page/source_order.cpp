@@ -77,9 +77,9 @@ std::uint32_t sign_of(double from, double to) { return to < from ? 0U : to > fro
 
 class OrderCoder {
  public:
-  OrderCoder(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family, const Solid& solid,
+  OrderCoder(EntropyStream& stream, ModelBank& bank, const Solid& solid,
              geometry::SourceOrder& order)
-      : stream_(stream), bank_(bank), first_(first_family), solid_(solid), order_(order) {}
+      : stream_(stream), bank_(bank), solid_(solid), order_(order) {}
 
   void run() {
     stream_.enter(StreamPart::order);
@@ -94,7 +94,7 @@ class OrderCoder {
  private:
   bool decide(Family family, std::uint32_t selector, std::initializer_list<std::uint32_t> contexts,
               bool value) {
-    return bank_.code(stream_, first_ + family, selector, contexts, value);
+    return bank_.code(stream_, family, selector, contexts, value);
   }
 
   void prepare() {
@@ -452,7 +452,6 @@ class OrderCoder {
 
   EntropyStream& stream_;
   ModelBank& bank_;
-  std::uint32_t first_;
   const Solid& solid_;
   geometry::SourceOrder& order_;
   std::vector<Index> source_facet_;   // source facet -> canonical
@@ -480,9 +479,9 @@ class OrderCoder {
 
 std::span<const FamilyShape> order_families() { return kShapes; }
 
-void code_order(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family,
-                const Solid& canonical, geometry::SourceOrder& order) {
-  OrderCoder(stream, bank, first_family, canonical, order).run();
+void code_order(EntropyStream& stream, ModelBank& bank, const Solid& canonical,
+                geometry::SourceOrder& order) {
+  OrderCoder(stream, bank, canonical, order).run();
 }
 
 }  // namespace watertight::codec

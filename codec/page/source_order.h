@@ -21,10 +21,10 @@ namespace watertight::codec {
 std::span<const FamilyShape> order_families();
 
 /// Writes or measures the order of a canonical solid, or reads it into `order`. Requires the bank's
-/// families from `first_family` on to be order_families(); unless reading, an order made by
-/// canonical_form(). When the stream has failed `order` is of permutations all the same.
-/// Cost: O(n log n), and for facets that follow no habit up to 64 decisions each.
-void code_order(EntropyStream& stream, ModelBank& bank, std::uint32_t first_family,
-                const Solid& canonical, geometry::SourceOrder& order);
+/// first families to be order_families(); unless reading, an order made by canonical_form(). When
+/// the stream has failed `order` is of permutations all the same. Cost: O(n log n), and for facets
+/// that follow no habit up to 64 decisions each.
+void code_order(EntropyStream& stream, ModelBank& bank, const Solid& canonical,
+                geometry::SourceOrder& order);
 
 }  // namespace watertight::codec

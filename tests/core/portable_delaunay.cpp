@@ -10,7 +10,7 @@ namespace watertight::delaunay {
 
 Result<CanonicalDelaunay> canonical_delaunay(std::span<const Point> points,
                                              std::uint64_t max_tetrahedra,
-                                             const std::function<bool()>& is_cancelled) {
+                                             const CancelPoll& is_cancelled) {
   if (is_small_grid(points)) return small_delaunay(points, max_tetrahedra, is_cancelled);
   return Error{ErrorCode::unsupported, "coordinates that only CGAL takes"};
 }

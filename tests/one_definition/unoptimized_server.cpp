@@ -12,8 +12,8 @@
 
 namespace {
 
+using watertight::CancelPoll;
 using watertight::server::HttpServer;
-using watertight::server::IsCancelled;
 using watertight::server::Lane;
 using watertight::server::Request;
 using watertight::server::Response;
@@ -46,7 +46,7 @@ int main() {
   options.port = 0;
   watertight::server::Application application;
   application.lane = [](const Request&) { return Lane::quick; };
-  application.respond = [](const Request&, const IsCancelled&) { return Response{}; };
+  application.respond = [](const Request&, const CancelPoll&) { return Response{}; };
   auto server = HttpServer::start(options, application, [](const std::string&) {});
   if (!server) return fail(to_string(server.error()));
   for (int i = 0; i < 3; ++i) {

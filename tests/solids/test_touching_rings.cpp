@@ -6,6 +6,7 @@
 #include <map>
 
 #include "codec/blob.h"
+#include "codec/encode_boundary.h"
 #include "codec/page.h"
 #include "formats/document.h"
 #include "pipeline/pipeline.h"
@@ -187,9 +188,9 @@ TEST_CASE("solids whose rings touch inside edges share pages with others") {
     REQUIRE(inspection.certified);
     certified.push_back(*std::move(inspection.certified));
   }
-  std::vector<const ValidSolid*> page;
-  for (const validate::Certified& one : certified) page.push_back(&one.solid);
-  const auto bytes = codec::encode_page(page);
+  std::vector<const OrientedBoundary*> page;
+  for (const validate::Certified& one : certified) page.push_back(&one.solid.boundary());
+  const auto bytes = codec::encode_boundaries(page, {});
   REQUIRE(bytes);
   const auto decoded = codec::decode_page(*bytes);
   REQUIRE(decoded);

@@ -149,7 +149,7 @@ class PartCounter {
 
 /// True if no two triangles of different facets meet in more than a vertex or an edge of both.
 bool is_complex(const Solid& solid, const tessellate::FacetTriangles& facets,
-                const workers::CancelPoll& cancel) {
+                const CancelPoll& cancel) {
   geometry::IntersectionOptions options;
   options.limit = 1;
   options.cancel = cancel;
@@ -161,7 +161,7 @@ bool is_complex(const Solid& solid, const tessellate::FacetTriangles& facets,
 /// Nothing if the contacts cannot be written with the vertices of the solid.
 std::optional<InteriorParts> parts_of(const Solid& solid, const tessellate::FacetTriangles& facets,
                                       const delaunay::ContactTriangles& contacts,
-                                      const workers::CancelPoll& cancel) {
+                                      const CancelPoll& cancel) {
   if (!contacts.obstacle.empty()) return std::nullopt;
   const tessellate::FacetTriangles& divided = contacts.has_contacts() ? contacts.triangles : facets;
   if (!is_complex(solid, divided, cancel)) return std::nullopt;
@@ -241,7 +241,7 @@ class InteriorExaminer {
   ExaminedSolid& examined_;
   const Solid& solid_;
   const delaunay::ContactTriangles& contacts_;
-  workers::CancelPoll cancel_;
+  CancelPoll cancel_;
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ struct FacetPair {
 class IntersectionExaminer {
  public:
   IntersectionExaminer(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                       const workers::CancelPoll& cancel, unsigned threads)
+                       const CancelPoll& cancel, unsigned threads)
       : examined_(examined),
         duplicate_of_(duplicate_of),
         cancel_(cancel),
@@ -60,7 +60,7 @@ class IntersectionExaminer {
 
   ExaminedSolid& examined_;
   const std::vector<Index>& duplicate_of_;
-  const workers::CancelPoll& cancel_;
+  const CancelPoll& cancel_;
   unsigned threads_;
   std::span<const Point> vertices_;
   std::span<const Triangle> triangles_;
@@ -193,7 +193,7 @@ bool IntersectionExaminer::search(std::uint64_t limit) {
 }  // namespace
 
 ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                                  const workers::CancelPoll& cancel, unsigned threads) {
+                                  const CancelPoll& cancel, unsigned threads) {
   const auto& states = examined.triangles().state;
   const auto place = std::find_if(states.begin(), states.end(), [](tessellate::FacetState state) {
     return state != tessellate::FacetState::triangulated;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cancel.h"
 #include "delaunay/shell_contacts.h"
 #include "validate/examined_solid.h"
 
@@ -58,7 +59,7 @@ struct ShellContacts {
 /// 306 and 401: facets that intersect. Facets of different shells may touch in points and edges;
 /// duplicate shells are not compared with each other.
 ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Index>& duplicate_of,
-                                  const workers::CancelPoll& cancel, unsigned threads);
+                                  const CancelPoll& cancel, unsigned threads);
 /// Warning 804: facets that are not exactly planar, where another diagonal would make or undo a
 /// finding 306 or 401.
 void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts);

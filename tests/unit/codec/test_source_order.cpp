@@ -19,7 +19,7 @@ Bytes written(const Solid& canonical, const geometry::SourceOrder& order) {
   auto stream = codec::EntropyStream::writer();
   auto bank = neutral_bank();
   geometry::SourceOrder copy = order;
-  codec::code_order(stream, bank, 0, canonical, copy);
+  codec::code_order(stream, bank, canonical, copy);
   CHECK(copy == order);
   return std::move(stream).finish();
 }
@@ -29,7 +29,7 @@ std::optional<geometry::SourceOrder> read_back(const Solid& canonical, const Byt
   auto stream = codec::EntropyStream::reader(bytes);
   auto bank = neutral_bank();
   geometry::SourceOrder order;
-  codec::code_order(stream, bank, 0, canonical, order);
+  codec::code_order(stream, bank, canonical, order);
   CHECK(geometry::restore_order(canonical, order));  // permutations, whatever the bytes
   if (!stream.is_finished()) return std::nullopt;
   return order;
@@ -137,7 +137,7 @@ TEST_CASE("a bank that has seen a habit codes it in next to nothing") {
   for (int i = 0; i < 50; ++i) {
     const std::uint64_t before = stream.cost();
     geometry::SourceOrder copy = canonical.order;
-    codec::code_order(stream, bank, 0, solid, copy);
+    codec::code_order(stream, bank, solid, copy);
     last = stream.cost() - before;
   }
   CHECK(last < 4U << codec::kCostBits);

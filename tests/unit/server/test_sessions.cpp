@@ -83,8 +83,7 @@ class Server {
     application.lane = [](const server::Request& request) {
       return request.target == "/slow" ? server::Lane::computing : server::Lane::quick;
     };
-    application.respond = [this](const server::Request& request,
-                                 const server::IsCancelled& is_cancelled) {
+    application.respond = [this](const server::Request& request, const CancelPoll& is_cancelled) {
       if (request.target == "/slow") {
         ++slow_;
         while (!release && !is_cancelled()) std::this_thread::sleep_for(kTick);
@@ -289,7 +288,7 @@ struct Parts {
     options.write_seconds = 0.5;
     server::Application application;
     application.lane = [](const server::Request&) { return server::Lane::computing; };
-    application.respond = [=, this](const server::Request& request, const server::IsCancelled&) {
+    application.respond = [=, this](const server::Request& request, const CancelPoll&) {
       server::Response response{200, "text/plain", std::string(bytes, 'a'), {}};
       if (request.target != "/parts") return response;
       response.rest = [=, this, alive = alive, left = count - 1]() mutable -> Result<std::string> {

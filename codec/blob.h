@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The public codec: a ValidSolid to a blob and back (docs/format.md, design section 5).
+// The public codec: a ValidSolid to a blob and back (docs/codec.md; the bytes:
+// docs/format.md).
 // Source: Verbree & Si 2008, section 4.1, decomposition steps 1-7 and composition steps 1-7.
 #pragma once
 

@@ -50,9 +50,10 @@ void decline_mode(PageSolid& solid) {
   solid.plain = {};
 }
 
-/// In automatic mode each solid takes the mode that is smallest after those before it; what does
-/// not come back in the mode that seemed best is stored raw; where so few bytes tell so much that a
-/// decoder would refuse them, the next best modes are taken.
+/// In automatic mode each solid takes the mode that codes it in fewest bytes after the solids
+/// before it. A solid that does not decode to itself is stored raw. If the bytes are so few that
+/// decoders reject them as a decompression bomb (docs/format.md, "Limits"), all take their next
+/// best mode.
 Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
                            const EncodeOptions& options) {
   PageContents page;

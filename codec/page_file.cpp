@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint8_t kMagic[4] = {'W', 'T', 'P', 'F'};
 constexpr std::size_t kHeadBytes = 5;
 constexpr std::size_t kTailBytes = 12;
-// The solids of a page that cannot keep up with the others wait no longer than this many pages.
+// At most this many pages, one for each frame, wait for more solids.
 constexpr std::size_t kMaxOpenPages = 16;
 
 bool has_magic(ByteView bytes) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The canonical Delaunay tetrahedralization (design section 5): the Delaunay tetrahedralization of
-// a point set with ties broken by lexicographic symbolic perturbation, so that it is unique. Part
-// of the blob format: docs/format.md states the rule. For the codec and for rung 0 of the CDT
+// The canonical Delaunay tetrahedralization: the Delaunay tetrahedralization of a point set with
+// ties broken by lexicographic symbolic perturbation, so that it is unique. Part of the blob
+// format: docs/format.md states the rule. For the codec and for rung 0 of the CDT
 // ladder. Integers in a box of sides below 2^30 are taken by small_delaunay.h, without a library;
 // all other points by CGAL.
 // Source: Verbree & Si 2008, section 2.2 and composition steps 2 and 4; the tie rule is Devillers &

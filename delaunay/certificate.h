@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The independent certificate (design section 4): checks, without trusting the engine, that a
-// tetrahedralization is an embedded complex that conforms to a solid's boundary and leaves exactly
-// one interior region. Source: Verbree & Si 2008, section 3.1.
+// The independent certificate (docs/robustness.md, "What is proven"): checks, without trusting the
+// engine, that a tetrahedralization is an embedded complex that conforms to a solid's boundary and
+// leaves exactly one interior region. Source: Verbree & Si 2008, section 3.1.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The CDT ladder (design section 4): rung 0 in this process, the engines in worker processes, each
-// rung's result accepted only by the certificate.
+// The CDT ladder (docs/robustness.md, "Engines prove nothing"): rung 0 in this process, the engines
+// in worker processes, each rung's result accepted only by the certificate.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Documents: bytes to features with solids, and back. A feature keeps everything that is not solid
-// geometry in a skeleton, so that writing returns the same document (design section 6).
+// geometry in a skeleton, so that writing returns the same document (docs/formats.md).
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The canonical form (design section 5), on which equality, hash and blob bytes are defined:
-// vertices sorted lexicographically; each ring rotated to its smallest vertex; the exterior ring
-// first, interior rings sorted; facets sorted within a shell; the exterior shell first, inner
-// shells sorted; orientation kept. And the way back to the source order.
+// The canonical form (docs/format.md, "Conventions"), on which equality, hash and blob bytes are
+// defined: vertices sorted lexicographically; each ring rotated to its smallest vertex; the
+// exterior ring first, interior rings sorted; facets sorted within a shell; the exterior shell
+// first, inner shells sorted; orientation kept. And the way back to the source order.
 #pragma once
 
 #include <vector>

@@ -18,7 +18,7 @@ constexpr std::int32_t kDecimal = 10;
 constexpr std::int32_t kBinary = 2;
 /// Coordinates that doubles hold exactly.
 constexpr UnsignedWide kCoordinateEnd = UnsignedWide{1} << 53U;
-/// Relative coordinates that the codec's Delaunay modes take (design section 3).
+/// Mode walk of the codec takes relative coordinates below this (docs/format-walk.md).
 constexpr UnsignedWide kCompactEnd = UnsignedWide{1} << 30U;
 
 /// One axis of a point set: values are origin + offset * radix^exponent, exactly.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The exact grid on which a solid's coordinates live (design section 3). Every decision about a
-// solid is made on the lattice coordinates, never on transformed ones; world coordinates are for
-// measures, tolerances and output.
+// The exact grid on which a solid's coordinates live (docs/decisions/0002-lattice.md). Every
+// decision about a solid is made on the lattice coordinates, never on transformed ones; world
+// coordinates are for measures, tolerances and output.
 //
 //   world(axis) = origin(axis) + step(axis) * coordinate(axis)        exactly
 //

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Validity as a type (design section 3): a ValidSolid exists only because the validator made it,
-// and it is the only thing that the public encoder takes.
+// Validity as a type (docs/architecture.md): a ValidSolid exists only because the validator made
+// it, and it is the only thing that the public encoder takes.
 #pragma once
 
 #include <cstdint>

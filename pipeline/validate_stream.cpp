@@ -27,7 +27,7 @@ struct Passage {
   std::optional<Error> error;
 };
 
-/// Threads that no other feature can use work on the one there is.
+/// If the document is a single feature, all threads help within it.
 CertifyOptions certify_options(const formats::FeatureReader& reader, const StreamOptions& options) {
   CertifyOptions certify = options.certify;
   if (reader.feature_count() == std::size_t{1}) {

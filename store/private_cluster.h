@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The embedded default (design section 7): a private PostgreSQL cluster in the data directory, on a
-// Unix socket only. For `serve`, `ingest` and quickstart when no database URL is given.
+// The embedded default (docs/decisions/0004-private-postgresql.md): a private PostgreSQL cluster in
+// the data directory, on a Unix socket only. For `serve`, `ingest` and quickstart when no database
+// URL is given.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The store of valid solids (design section 7): collections of features, each a document skeleton
-// with the blobs of its solids. Knows blobs as bytes only. Implementations are thread-safe.
+// The store of valid solids (docs/architecture.md, "What is stored"): collections of features, each
+// a document skeleton with the blobs of its solids. Knows blobs as bytes only. Implementations are
+// thread-safe.
 #pragma once
 
 #include <array>

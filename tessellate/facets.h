@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The canonical triangulation of planar facets (design section 4.1): a constrained 2D Delaunay
-// triangulation of each facet's rings on an exact coordinate-plane projection. Same facet, same
-// triangles, whatever the order of vertices, rings and facets. For validate, delaunay and codec.
+// The canonical triangulation of planar facets (docs/robustness.md, "What is proven"): a
+// constrained 2D Delaunay triangulation of each facet's rings on an exact coordinate-plane
+// projection. Same facet, same triangles, whatever the order of vertices, rings and facets. For
+// validate, delaunay and codec.
 #pragma once
 
 #include <cstdint>

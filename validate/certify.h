@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The validator (design section 4; Verbree & Si 2008, section 3): runs every rule on a solid,
-// reports all findings, and is the only maker of a ValidSolid.
+// The validator (docs/robustness.md, "What is proven"; Verbree & Si 2008, section 3): runs every
+// rule on a solid, reports all findings, and is the only maker of a ValidSolid.
 #pragma once
 
 #include <optional>

@@ -29,11 +29,11 @@ std::uint32_t length_of(std::int64_t value) {
                   kLengths - 1);
 }
 
-/// What each value of a line of equal steps is the floor of.
+/// A line of equal steps: every coordinate value is floor(offset + k * step) for some integer k.
 struct Line {
-  double least = 0;  // least and greatest offset of the line at the place of number 0
+  double least = 0;  // the least and the greatest offset that give all values
   double greatest = 0;
-  std::size_t lower = 0;  // the values that set them
+  std::size_t lower = 0;  // the values that set these bounds
   std::size_t upper = 0;
 };
 
@@ -55,8 +55,8 @@ Line offsets_at(const std::vector<std::int64_t>& values, const std::vector<std::
   return line;
 }
 
-/// The numbers of steps from the first value to each, found by refining the step from near values
-/// to far ones; nothing if no step from 1.2 on fits.
+/// For each value, how many steps lie between the first value and it. The step is narrowed down by
+/// the distances of values, short ones first. Returns nothing if no step of 1.2 or more fits.
 std::optional<std::vector<std::int64_t>> count_steps(const std::vector<std::int64_t>& values,
                                                      double& step) {
   std::int64_t least_gap = kRange;
@@ -65,7 +65,7 @@ std::optional<std::vector<std::int64_t>> count_steps(const std::vector<std::int6
   }
   double low = std::max(1.2, static_cast<double>(least_gap) - 1);
   double high = static_cast<double>(least_gap) + 1;
-  // By distances from a value to the next but few, the shortest first.
+  // `reach` is the distance in the list: first to the next value, then to farther ones.
   for (std::size_t reach = 1; reach < values.size(); reach += 1 + reach / 2) {
     for (std::size_t i = 0; i + reach < values.size(); i += reach) {
       const auto distance = static_cast<double>(values[i + reach] - values[i]);
@@ -88,7 +88,8 @@ std::optional<std::vector<std::int64_t>> count_steps(const std::vector<std::int6
   return places;
 }
 
-/// A step for which one offset fits all places, between the least and the greatest such.
+/// Finds a step for which some offset gives all values, and takes the offset in the middle of those
+/// that do. False if there is no such step near `step`.
 bool fit_line(const std::vector<std::int64_t>& values, const std::vector<std::int64_t>& places,
               double& step, double& offset) {
   const double reach = 2 / static_cast<double>(places.back());
@@ -101,7 +102,8 @@ bool fit_line(const std::vector<std::int64_t>& values, const std::vector<std::in
       offset = 0.5 * (line.least + line.greatest);
       return true;
     }
-    // The room grows towards where the two values that leave none come apart.
+    // No offset is left between the two values that set the bounds: a longer or a shorter step
+    // moves these bounds apart.
     (places[line.lower] > places[line.upper] ? low : high) = step;
   }
   return false;
@@ -136,7 +138,7 @@ std::int64_t AxisPlaces::place_of(std::int64_t value) const {
 double AxisPlaces::position_of(double coordinate) const {
   if (kind_ == Kind::every) return coordinate;
   if (kind_ == Kind::stepped) {
-    // In the middle of what the floor of a place comes from.
+    // Values are rounded down: on average the line is half a unit above the coordinate.
     return ((coordinate + 0.5) * static_cast<double>(std::int64_t{1} << shift_) -
             static_cast<double>(offset_)) /
            static_cast<double>(step_);
@@ -172,7 +174,8 @@ bool AxisPlaces::code_steps(EntropyStream& stream, ModelBank& models, std::uint3
   return true;
 }
 
-/// From the value 0 downward, then upward: how many, and how far each is from the one before.
+/// Codes the values below 0, then those above: how many there are, and the distance of each from
+/// the one before it, going away from 0.
 bool AxisPlaces::code_list(EntropyStream& stream, ModelBank& models, std::uint32_t number,
                            const Limits& limits) {
   const std::vector<std::int64_t> truth = std::move(list_);
@@ -225,7 +228,7 @@ AxisPlaces AxisPlaces::stepped(const std::vector<std::int64_t>& values) {
   double offset = 0;
   const auto places = count_steps(values, step);
   if (!places || !fit_line(values, *places, step, offset)) return {};
-  // The first vertex, of value 0, becomes the place of number 0.
+  // The first vertex has the value 0, and 0 must be the number of its place.
   const auto zero = std::lower_bound(values.begin(), values.end(), 0) - values.begin();
   offset += static_cast<double>((*places)[static_cast<std::size_t>(zero)]) * step;
   AxisPlaces result;

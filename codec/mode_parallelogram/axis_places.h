@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The values that the coordinates of a solid take on one axis, numbered in ascending order: a
-// residual that counts places of such a list instead of grid steps is smaller where a solid uses
-// few of the steps (parts of machines; grids finer than their source). For mode parallelogram.
+// The values that the coordinates of a solid take on one axis, numbered in ascending order; the
+// number of a value is its place. Where a solid uses few of the grid's steps (parts of machines;
+// grids finer than their source), a residual in places is smaller than one in grid steps. For mode
+// parallelogram.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,7 @@ class AxisPlaces {
   /// Where a coordinate lies among the places, between them in proportion; 0 to the last place if
   /// listed. Cost: likewise.
   double position_of(double coordinate) const;
-  /// How many places a distance around `coordinate` takes.
+  /// How many places lie within `distance` of `coordinate`.
   double spread_of(double coordinate, double distance) const;
 
   /// Writes, reads or measures what the list is. The first vertex of the solid has the value 0.
@@ -39,8 +40,9 @@ class AxisPlaces {
                                  std::uint32_t number, Kind before, const AxisPlaces& places,
                                  const Limits& limits);
 
-  /// The kind that promises least for coordinates relative to the first vertex; every if none is
-  /// worth a trial. Cost: n log n.
+  /// Estimates the kind that gives the smallest residuals for these coordinates, which are relative
+  /// to the first vertex. Returns Kind::every if no other kind is likely to save bytes.
+  /// Cost: O(n log n).
   static AxisPlaces suggest(std::vector<std::int64_t> values);
 
  private:

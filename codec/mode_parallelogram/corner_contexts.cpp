@@ -48,8 +48,9 @@ CloseContexts corner_contexts(const CornerView& view) {
   const std::uint32_t next_bend = cosine_bucket(normal, second * -1.0);
   const double near_area = 0.5 * (length(first) + length(second)) + 1;
 
-  // Both angles opposite of an edge: of those it shares, and of its third if that were shared with
-  // a triangle that ends at the next vertex of the front. More than a half turn is not Delaunay.
+  // The sum of the two angles opposite an edge: for the two edges that the triangle shares with
+  // known ones, and for its third edge, as if the triangle beyond that ended at the next vertex of
+  // the front. In a Delaunay triangulation of a plane no such sum exceeds a half turn.
   const double opposite_u = angle(apex, u, v) + angle_w;
   const double opposite_w = angle(next_apex, v, w) + angle_u;
   const double opposite = std::max(opposite_u, opposite_w);
@@ -57,7 +58,7 @@ CloseContexts corner_contexts(const CornerView& view) {
   const double over = angle_v + std::max(angle(centres[before.start], u, w),
                                          angle(centres[front[after.next].end], u, w));
 
-  // How far the tips that are expected are from closing it.
+  // The distances of the expected tips from the vertices that a closing triangle would have.
   const double miss_u = length(view.tip - w) / sides;
   const double miss_w = length(view.next_tip - u) / sides;
   const double miss = std::min(miss_u, miss_w);
@@ -67,7 +68,7 @@ CloseContexts corner_contexts(const CornerView& view) {
   const std::uint32_t degree = degree_of(gate.end);
   const std::uint32_t degree_u = degree_of(gate.start);
   const std::uint32_t degree_w = degree_of(after.end);
-  // Triangles that are missing at v, each as wide as those that are known.
+  // How many triangles are missing at v if they are as wide as the known ones.
   const double missing = room * front.degree(gate.end) / (2 * kHalfTurn - room + 0.01);
 
   const std::uint32_t rooms = bucket(room * 8, kRooms);

@@ -9,14 +9,15 @@ namespace {
 
 Index next_half_edge(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
 
-/// The one of the sets of triangles that holds triangle `t`.
+/// The representative of the set of triangles that holds triangle `t`; shortens the paths to it.
 Index root_of(std::vector<Index>& parent, Index t) {
   while (parent[t] != t) t = parent[t] = parent[parent[t]];
   return t;
 }
 
-/// Pairs the half-edges of the triangles from `begin` on. Where more than two meet, those pair up
-/// whose triangles are connected otherwise: bodies that touch come apart.
+/// Pairs the half-edges of the triangles from `begin` on. Where more than two meet in one edge, two
+/// pair up if their triangles are also connected across other edges. So bodies that touch along an
+/// edge are separated.
 Status pair_half_edges(CutSurface& surface, Index begin) {
   struct Side {
     Index low, high;

@@ -6,7 +6,8 @@
 namespace watertight::codec::parallelogram {
 namespace {
 
-/// Corners that wait and have changed since are thrown away when there are more.
+/// A corner that changes enters the queue anew, and its older entry becomes stale. Stale
+/// entries are dropped when the queue holds more than this many and two for each open gate.
 constexpr std::size_t kMostStale = 4096;
 
 }  // namespace
@@ -47,7 +48,7 @@ void SurfaceFront::set_room(Index gate, double room) {
   if (waiting_.size() > kMostStale + 2 * std::size_t{open_count_}) forget_stale();
 }
 
-/// Their order is total: what is taken next does not depend on what else waits.
+/// Does not change which corner is next: no two entries are equal in the order of the queue.
 void SurfaceFront::forget_stale() {
   std::erase_if(waiting_, [&](const Waiting& corner) { return is_stale(corner); });
   std::make_heap(waiting_.begin(), waiting_.end(), is_later);

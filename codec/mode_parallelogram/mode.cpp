@@ -136,7 +136,8 @@ class SurfaceCoder {
       truth = surface_->twin[previous_of(beyond)] == after.half_edge;
       half_edge = next_of(beyond);
       if (ends && truth) {
-        // In a loop of three a triangle ends all or none.
+        // A loop of three gates ends with one triangle beyond all of them. A triangle beyond only
+        // two of them cannot be coded.
         is_stuck_ = surface_->twin[half_edge] != front_[gate.previous].half_edge;
       }
     }
@@ -196,7 +197,8 @@ class SurfaceCoder {
     return Done{};
   }
 
-  /// Which corner of the front: by its distance from the prediction among those near on the loop.
+  /// Codes the corner of the front at which the triangle ends: its rank by distance from the
+  /// prediction among the corners near the gate on its loop, or else its number.
   Status join(Index corner, const std::array<Index, 2>& half_edges, const Vector& predicted) {
     const Gate& gate = front_[corner];
     Index truth = kNone;
@@ -255,7 +257,7 @@ class SurfaceCoder {
     candidates_.push_back({dot(offset, offset), corner});
   }
 
-  /// Glues what was cut apart, by position.
+  /// Makes one vertex of all vertices at the same position, which cut_surface() had separated.
   Status finish(IntegerSolid& solid) const {
     const std::vector<GridPoint>& cells = vertices_.cells();
     std::vector<Index> order(cells.size());
@@ -318,7 +320,7 @@ class SurfaceCoder {
   bool is_stuck_ = false;       // writing: the surface has edges between the same two vertices
 };
 
-/// What the options are measured on: so many triangles of a surface.
+/// Options are measured on this many triangles of a surface.
 constexpr std::size_t kTrialTriangles = 2500;
 
 /// Smaller ones are not worth the time of trying all.
@@ -338,7 +340,7 @@ class OptionTrials {
     SurfaceCoder coder(meter, models_, memory_, limits_);
     coder.stop_after(kTrialTriangles);
     if (Status coded = coder.code(&surface_, unused, options); !coded) return coded;
-    // The lists of values come once, the rest goes on for all triangles.
+    // The lists of values are coded once; all other costs grow with the number of triangles.
     const auto once = static_cast<double>(meter.cost(StreamPart::position));
     const double share = static_cast<double>(surface_.triangles.size()) /
                          static_cast<double>(coder.triangle_count());
@@ -372,8 +374,8 @@ std::array<AxisPlaces, 3> suggest_places(const CutSurface& surface) {
   return places;
 }
 
-/// The options that take least: of all with places for every number, and of those near the best
-/// of them with the places that the coordinates take.
+/// Chooses the options of least cost. Repeats and guesses are tried first, with Kind::every on all
+/// axes; then the best of these, and its variants, with the values that occur on each axis.
 Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& models,
                                      const PageMemory& memory, const Limits& limits) {
   OptionTrials trials(surface, models, memory, limits);

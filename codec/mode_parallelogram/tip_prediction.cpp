@@ -8,7 +8,7 @@ namespace {
 
 std::uint32_t span(double room) { return room < 1.7 ? 0U : room < 2.7 ? 1U : room < 3.8 ? 2U : 3U; }
 
-/// Of the triangle that a gate belongs to, of any length.
+/// A normal of the known triangle of a gate; its length is not 1.
 Vector normal_of(const Gate& gate, const std::vector<Vector>& centres) {
   const Vector& start = centres[gate.start];
   return cross(centres[gate.end] - start, centres[gate.apex] - start);

@@ -57,7 +57,7 @@ class TipPrediction {
   std::vector<LeastSquares<1>> shift_predictors_{kBendClasses, LeastSquares<1>{{0.5}, 4}};
 };
 
-/// Within the range of coordinates, also if it is no number.
+/// Clamps to -9e15 to 9e15; NaN becomes -9e15.
 inline double tamed(double x) { return x > -9e15 ? (x < 9e15 ? x : 9e15) : -9e15; }
 
 }  // namespace watertight::codec::parallelogram

@@ -195,7 +195,7 @@ std::uint32_t VertexCoder::code_guess(const SurfaceFront& front, const Gate& gat
   std::uint32_t best = 0;
   if (truth != nullptr) {
     double least = 0;
-    double passed = 0;  // bits of the decisions for earlier guesses
+    double passed = 0;  // weighted bits of the answers "no" to all earlier guesses
     for (std::uint32_t i = 0; i < kGuesses; ++i) {
       double bits = passed;
       if (i + 1 < kGuesses) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shells, facets, and where a ring begins. Its other vertices: polygon_ring.cpp.
+// Shells, facets, and where a ring begins. facet_walk_ring.cpp codes its other vertices.
 #include "codec/mode_polygon/facet_walk.h"
 
 #include <algorithm>
@@ -100,7 +100,8 @@ void SurfaceWalk::code_facet(Index gate, Index truth_half) {
 void SurfaceWalk::code_exterior(Index rings, Index truth_half) {
   Index exterior = 0;
   if (truth_ != nullptr) {
-    // The rings come in the order of the truth, but for the one that was reached first.
+    // Rings are in the order of the truth, except that the ring at the gate is first: the exterior
+    // ring, which is first in the truth, is ring 0 or ring 1.
     const PolygonSurface& truth = truth_->surface;
     const Index own = truth.ring_of[truth_half];
     exterior = own == truth.facet_offsets[truth.facet_of[own]] ? 0 : 1;
@@ -146,7 +147,8 @@ void SurfaceWalk::begin_at_gate(Index gate, Index truth_half) {
   if (!is_closed_) extend_backward();
 }
 
-/// Where all facets but one are known around a vertex, the ring goes on along the known edge.
+/// If only one corner of the end's vertex is missing, the ring must go on along the edge of the
+/// neighbouring facet there, and nothing is coded. Repeats this at the next vertex.
 void SurfaceWalk::extend_forward() {
   while (chain_count_[end_] == 1 && remaining_[end_] == 1 && !stopped()) {
     const Index edge = chains_[first_chain_[end_]].in;
@@ -240,7 +242,7 @@ void SurfaceWalk::begin_at_vertex(Index vertex, Index truth_half) {
   end_truth_ = truth_half;
   end_ = vertex;
   if (vertex == kNone) {
-    // Its degree is told before the size of the ring.
+    // The degree of this vertex is coded before the size of the ring.
     end_ = new_vertex();
     if (stopped()) return;
   } else if (remaining_[vertex] == 0) {
@@ -288,7 +290,8 @@ void SurfaceWalk::code_size(bool is_interior) {
   size_ += static_cast<Index>(rest);
 }
 
-/// The vertices that follow the end of the ring along the front, those whose facets can grow.
+/// Goes along the front from the end of the ring and lists the vertices at which a new edge can
+/// arrive.
 void SurfaceWalk::list_loop() {
   loop_.clear();
   loop_reaches_start_ = false;

@@ -3,8 +3,8 @@
 // The walk of mode `polygon` over the facets of a surface, the same for all three directions.
 // Based on: M. Isenburg, "Compressing polygon mesh connectivity with degree duality prediction"
 // (Graphics Interface 2002).
-// Departures: facets are reached first in, first out; vertices on the front are told by their steps
-// along it instead of splits; interior rings, several shells and several components.
+// Departures: facets are reached first in, first out; vertices on the front are coded by their
+// steps along it instead of splits; interior rings, several shells and several components.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The families of models of mode `polygon`, in the order of its layout (polygon_mode.cpp).
+// The families of models of mode `polygon`, in the order of its layout (mode.cpp).
 #pragma once
 
 #include <algorithm>

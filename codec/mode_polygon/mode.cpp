@@ -9,7 +9,8 @@
 namespace watertight::codec::polygon {
 namespace {
 
-// In the order of PolygonFamily; the contexts are told where each is coded.
+// In the order of PolygonFamily: the number of weight sets, then the size of the table of each
+// context. The call of code() for a family says what its contexts mean.
 constexpr FamilyShape kFamilies[] = {
     {4, {384, 64, 160, 128, 192}},  // kRingSize
     {1, {24, 192, 144}},            // kDegree

@@ -55,8 +55,8 @@ struct FacetPlane {
   /// The height of the plane in a column, of its origin if that is 2^53 or more. Requires a kind
   /// that is level or steep.
   std::int64_t height(GridColumn column) const;
-  /// How far that is from what is known: squared distance from the origin by twice the area of the
-  /// triangle in the xy plane, times 16. The same requirement.
+  /// How uncertain height() is in that column: 16 times the squared distance from the origin,
+  /// divided by twice the area of the triangle of `points` seen from above. The same requirement.
   double reach(GridColumn column) const;
 };
 

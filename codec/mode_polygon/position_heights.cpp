@@ -131,8 +131,8 @@ void PositionCoder::code_other_height(Index /*vertex*/) {
       return;
     }
   }
-  // Else from a neighbour in the ring that is not in the same column, from the vertex before that
-  // was found above another, or from the one below.
+  // None of these: code the difference from a neighbour in the ring that stands in another column,
+  // else from the last upright vertex, else from the neighbour in the same column.
   std::uint32_t from = 3;
   Index near = current_ - 1;
   const auto is_beside = [&](Index other) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The order of things, and columns. Heights: polygon_heights.cpp.
+// The sequence of steps for a vertex, and its column. position_heights.cpp codes its height.
 #include "codec/mode_polygon/positions.h"
 
 #include <algorithm>
@@ -122,7 +122,8 @@ bool PositionCoder::code_upright(Index vertex) {
   return false;
 }
 
-/// The lines in which the known walls around the vertex cut the xy plane.
+/// Predicts the column from the known walls around the vertex, each a line seen from above: at the
+/// point where two lines cross, else on the one line. False if no wall is known.
 bool PositionCoder::predict_on_walls(Prediction& prediction) const {
   const FacetPlane* first = nullptr;
   for (const Index facet : facets_) {
@@ -320,7 +321,7 @@ void PositionCoder::code_offset(const Prediction& prediction) {
   for (std::size_t axis = 0; axis < 2; ++axis) point()[axis] = prediction.base[axis] + offset[axis];
 }
 
-/// What the position of a vertex tells about its facets and neighbours.
+/// Updates planes, heights, directions and vertical edges by the position of a vertex.
 void PositionCoder::learn(Index vertex) {
   const GridPoint& own = points_[vertex];
   remember_height(own[2]);

@@ -11,8 +11,8 @@
 
 namespace watertight::codec::polygon {
 
-/// `same_as` of a vertex that is one more fan at the place of an earlier one is that one, of any
-/// other itself.
+/// `same_as[v]` is the first vertex at the same position, or v itself. (A vertex of the solid where
+/// several fans meet is one vertex of the surface for each fan.)
 struct CodedPositions {
   std::vector<GridPoint> points;
   std::vector<Index> same_as;

@@ -77,7 +77,8 @@ void number_fans(SurfaceTruth& truth, const std::vector<Index>& vertices) {
   }
 }
 
-/// Low and level facets first, then large ones.
+/// The facet at which the walk of a shell begins: the one whose highest vertex is lowest; of equals
+/// the one with most vertices, then the first.
 Index first_facet(const IntegerSolid& solid, Index shell) {
   Index best = solid.shell_offsets[shell];
   std::int64_t best_height = 0;

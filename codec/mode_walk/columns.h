@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The vertices of a building as columns: the places (x, y) in sorted order, then the heights at
-// each. Their order tells nothing and costs nothing. For mode walk (docs/format-walk.md,
-// "Columns").
+// each. The order of vertices is not coded: the canonical form sorts them. For mode walk
+// (docs/format-walk.md, "Columns").
 #pragma once
 
 #include <array>

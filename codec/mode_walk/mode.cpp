@@ -22,8 +22,8 @@ constexpr std::uint32_t kFirstFacets = kFirstWalk + kWalkFamilyCount;
 constexpr std::uint32_t kFirstColumns = kFirstFacets + kFacetFamilyCount;
 constexpr std::uint32_t kFamilies = kFirstColumns + kColumnFamilyCount;
 
-/// As many tetrahedra as solids need, and more: the decoder's time stays in proportion. (Those of
-/// the test data have up to 8.5 for each vertex.)
+/// More tetrahedra than solids have, so that hostile vertices cannot take much time. (Solids of the
+/// test data have up to 8.5 tetrahedra for each vertex.)
 std::uint64_t max_tetrahedra(std::size_t points) { return std::uint64_t{24} * points + 4096; }
 
 /// The vertices from the corner of their box.
@@ -41,7 +41,7 @@ std::vector<Point> points_of(const std::vector<GridPoint>& vertices) {
   return points;
 }
 
-/// The solid itself on these points, for those who triangulate facets.
+/// The solid with these points as vertices, for triangulate_facets() and follow_delaunay().
 Result<Solid> solid_on(const std::vector<Point>& points, const IntegerSolid& solid) {
   SolidArrays arrays;
   arrays.vertices = points;

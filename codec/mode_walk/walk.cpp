@@ -52,7 +52,7 @@ constexpr FamilyShape kChoiceShape{
     {kLikelihoods * kRanks * kKinds, kLikelihoods / 2 * kLikelihoods / 2,
      kLikelihoods / 2 * kStates* kRanks}};
 
-/// A probability of 65536 in half octaves, of itself or of the rest to one.
+/// A class of a probability (of 65536): half octaves of it, or, above one half, of its complement.
 std::uint32_t likelihood(std::uint32_t probability) {
   const bool is_high = probability > 32768;
   const std::uint32_t lesser = is_high ? 65536 - probability : probability;
@@ -66,8 +66,9 @@ std::uint32_t likelihood(std::uint32_t probability) {
 /// An edge as certain as this is not scored again when a triangle comes beside it.
 constexpr std::uint32_t kCertain = 32768;
 
-/// What a walk may take, whatever its bytes say: vertices of degree d take about d^2 steps. Solids
-/// of 1 to 100,000 vertices took up to 120 for each (docs/format.md, "Limits").
+/// The most steps that a walk may take, whatever its bytes are: a vertex of degree d takes about
+/// d^2 steps. Solids of 1 to 100,000 vertices took up to 120 for each vertex (docs/format.md,
+/// "Limits").
 constexpr std::uint64_t kStepsPerPoint = 256;
 constexpr std::uint64_t kFreeSteps = 1U << 20;
 
@@ -146,7 +147,7 @@ class Walk {
   void score(std::uint32_t family, std::vector<Candidate>& list);
 
   EntropyStream& stream_;
-  EntropyStream lessons_ = EntropyStream::meter();  // what only teaches
+  EntropyStream lessons_ = EntropyStream::meter();  // decisions that models learn, not coded
   ModelBank& models_;
   std::uint32_t family_;
   std::span<const Point> points_;

@@ -40,7 +40,7 @@ struct PlainSections {
 /// A solid as it stands in a page.
 struct PageSolid {
   Mode mode = Mode::raw;
-  /// Reading: made by code(). With the identity as its order unless it keeps one.
+  /// When reading, code() sets it; its order is the identity unless the blob keeps a source order.
   std::optional<geometry::CanonicalSolid> canonical;
   bool keeps_order = false;
   GriddedSolid gridded;        // of raw and bitmap only the origin counts

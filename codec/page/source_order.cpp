@@ -286,7 +286,7 @@ class OrderCoder {
       ++index;
       if (!is_it) continue;
       habits_ = {candidate.habit, habits_[0]};
-      // A neighbour of the last facet makes that the reference only when the old one is used up.
+      // Neighbours of the old reference were asked first: it changes only if none of them is next.
       reference_ = candidate.reference;
       place_ = candidate.place;
       return candidate.facet;

@@ -47,3 +47,18 @@ function(watertight_folder name)
     target_link_libraries(watertight_${name} INTERFACE watertight_options ${libraries})
   endif()
 endfunction()
+
+# watertight_embed(FOLDER FILE BYTES|TEXT NAME)
+# Builds FILE into the library of FOLDER, as the constant NAME of the folder's namespace.
+function(watertight_embed folder file kind name)
+  set(script "${PROJECT_SOURCE_DIR}/cmake/embed.cmake")
+  cmake_path(GET file FILENAME source)
+  set(source "${CMAKE_CURRENT_BINARY_DIR}/${source}.cpp")
+  cmake_path(ABSOLUTE_PATH file)
+  add_custom_command(OUTPUT "${source}"
+    COMMAND "${CMAKE_COMMAND}" "-DINPUT=${file}" "-DOUTPUT=${source}" -DNAMESPACE=watertight::${folder}
+      -DNAME=${name} -DKIND=${kind} -P "${script}"
+    DEPENDS "${file}" "${script}"
+    VERBATIM)
+  target_sources(watertight_${folder} PRIVATE "${source}")
+endfunction()

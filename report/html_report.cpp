@@ -337,7 +337,7 @@ std::string HtmlReport::top() const {
   html += "<meta name=\"generator\" content=\"watertight ";
   html += html_text(head_.program_version);
   append(html, {"\"><title>", html_text(title), "</title>\n<style>"});
-  html += page_style();
+  html += kPageStyle;
   html += "</style></head>\n<body><main><header><h1>";
   html += html_text(documents_ == 1 ? files_.front() : counted(documents_, "file"));
   html += "</h1><span class=\"soft\">Watertight ";
@@ -480,7 +480,7 @@ std::string HtmlReport::bottom() const {
   html += "<p>Decided exactly on the coordinates as written. Facets are numbered from 0 in the ";
   html += "order of the document. This page holds everything it shows and loads nothing.</p>";
   html += "</footer></main><script>";
-  html += page_script();
+  html += kPageScript;
   return html + "</script></body></html>\n";
 }
 

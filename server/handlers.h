@@ -66,7 +66,7 @@ std::string crs_header(std::uint32_t srid);
 /// "/collections/<id>/items/<item>", percent-encoded.
 std::string item_path(std::string_view collection, std::string_view item);
 
-/// The OpenAPI 3 document as JSON text.
-std::string openapi_text();
+/// The OpenAPI 3 document: the file server/openapi.json, which server/CMakeLists.txt embeds.
+extern const std::string_view kOpenApi;
 
 }  // namespace watertight::server

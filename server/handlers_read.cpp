@@ -38,6 +38,7 @@ std::optional<Response> json_only(const RoutedRequest& request) {
 }
 
 constexpr std::string_view kHtml = "text/html";
+constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
 constexpr std::string_view kTitle = "Watertight";
 constexpr std::string_view kDescription = "Validates, stores and compresses 3D solids";
 
@@ -213,8 +214,7 @@ Response get_landing(const RoutedRequest& request) {
     return refuse(406, "not-acceptable", "application/json and text/html are what there is here");
   }
   const Json links = Json::array(
-      {link("/", "self", kJson, "this page"),
-       link("/api", "service-desc", "application/vnd.oai.openapi+json;version=3.0", "the API"),
+      {link("/", "self", kJson, "this page"), link("/api", "service-desc", kOpenApiType, "the API"),
        link("/collections", "data", kJson, "collections of solids"),
        link("/validate", "validate", kJson, "POST a document to validate it"),
        link("/healthz", "status", kJson, "is the process alive"),
@@ -225,7 +225,6 @@ Response get_landing(const RoutedRequest& request) {
 
 Response get_api(const RoutedRequest& request) {
   const std::string* format = request.target.parameter("f");
-  constexpr std::string_view kOpenApi = "application/vnd.oai.openapi+json;version=3.0";
   const bool is_acceptable =
       format != nullptr
           ? *format == "json"
@@ -234,7 +233,7 @@ Response get_api(const RoutedRequest& request) {
   if (!is_acceptable) {
     return refuse(406, "not-acceptable", "the API description is OpenAPI 3 in JSON");
   }
-  return Response{200, std::string(kOpenApi), openapi_text(), {}};
+  return Response{200, std::string(kOpenApiType), std::string(kOpenApi), {}};
 }
 
 Response get_health(const RoutedRequest& /*request*/) {

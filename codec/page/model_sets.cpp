@@ -9,7 +9,7 @@
 
 namespace watertight::codec {
 
-/// The file codec/models/model-1.bin; made by codec/models/embed.cmake.
+/// The file codec/models/model-1.bin, which codec/CMakeLists.txt embeds.
 extern const std::span<const std::uint8_t> kModel1;
 
 namespace {

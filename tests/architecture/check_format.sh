@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Fails, naming the files, if clang-format would change a C++ file of the repository. (The one C file,
-# which sees PostgreSQL's headers, follows PostgreSQL's style.)
+# Fails, naming the files, if clang-format would change a C++ or JavaScript file of the repository. (The
+# one C file, which sees PostgreSQL's headers, follows PostgreSQL's style.)
 #   check_format.sh         checks
 #   check_format.sh --fix   formats in place
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 clang_format=$(command -v clang-format-14 || command -v clang-format)
 mapfile -d '' files < <(find . \( -name .git -o -name 'build*' -o -path ./data \) -prune -o \
-  -type f \( -name '*.h' -o -name '*.cpp' \) -print0)
+  -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.js' \) -print0)
 if [ "${1:-}" = --fix ]; then exec "$clang_format" --style=file -i "${files[@]}"; fi
 wrong=0
 for file in "${files[@]}"; do

@@ -53,9 +53,9 @@ HOMES = [
 ]
 
 SOURCE = re.compile(r"\.(h|cpp|c)$")
-LICENSED = re.compile(r"(\.(h|cpp|c|cmake|sh|py|sql\.in|toml|ya?ml)|CMakeLists\.txt|Dockerfile|"
+LICENSED = re.compile(r"(\.(h|cpp|c|css|js|cmake|sh|py|sql\.in|toml|ya?ml)|CMakeLists\.txt|Dockerfile|"
                       r"^scripts/[a-z-]+|^\.ci/run)$")
-TEXT = re.compile(r"(\.(h|cpp|c|cmake|sh|py|sql|in|toml|ya?ml|md|json|txt)|Dockerfile|^scripts/[a-z-]+|"
+TEXT = re.compile(r"(\.(h|cpp|c|css|js|cmake|sh|py|sql|in|toml|ya?ml|md|json|txt)|Dockerfile|^scripts/[a-z-]+|"
                   r"^\.ci/run)$")
 # Written apart so that this file does not find itself.
 MACHINE = re.compile(r"(?<![\w.])/" + r"(work/(main|shared)|root/|home/[a-z]+/|tmp/build-)"
@@ -372,6 +372,8 @@ BREAKS = [
     ("sql/bridge.cpp", SPDX + "#include <postgres.h>\n", "homes", "PostgreSQL"),
     ("geometry/solid.h", "#pragma once\n", "licence", "geometry/solid.h"),
     ("scripts/test", "#!/bin/sh\necho\n", "licence", "scripts/test"),
+    ("report/page.js", "draw();\n", "licence", "report/page.js"),
+    ("report/page.css", "figure {\n}\n", "licence", "report/page.css"),
     ("scripts/test", "#!/bin/sh\n# SPDX-License-Identifier: X\ncd /" + "work/main\n", "places", "scripts/test:3"),
     ("docs/build.md", "get it from http://" + "deb.example.org\n", "places", "docs/build.md:1"),
     ("geometry/solid.cpp", SPDX + "// TO" + "DO: later\n", "unfinished", "geometry/solid.cpp:2"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "pipeline/container.h"
@@ -48,8 +49,15 @@ const std::string kTwo = samples::sequence({samples::feature("a"), samples::feat
 const std::string kOneOpen =
     samples::sequence({samples::feature("a"), samples::feature("open", samples::kOpenFacets)});
 
+/// What a value of the document is or refers to.
+Json resolved(const Json& document, const Json& value) {
+  if (!value.contains("$ref")) return value;
+  return document.at(Json::json_pointer(value["$ref"].get<std::string>().substr(1)));
+}
+
 TEST_CASE_METHOD(Fixture, "the OpenAPI document describes exactly the routes") {
   const Json api = Json::parse(get("/api").body);
+  CHECK(api["info"]["version"] == WATERTIGHT_VERSION);
   std::size_t operations = 0;
   for (const auto& [path, methods] : api["paths"].items()) operations += methods.size();
   CHECK(operations == server::routes().size());
@@ -61,13 +69,33 @@ TEST_CASE_METHOD(Fixture, "the OpenAPI document describes exactly the routes") {
     REQUIRE(api["paths"][std::string(route.path)].contains(method));
     std::vector<std::string> described;
     const Json operation = api["paths"][std::string(route.path)][method];
-    for (const Json& parameter : operation.value("parameters", Json::array())) {
+    for (const Json& given : operation.value("parameters", Json::array())) {
+      const Json parameter = resolved(api, given);
       if (parameter["in"] == "query") described.push_back(parameter["name"]);
     }
     std::vector<std::string> known(route.parameters.begin(), route.parameters.end());
     std::sort(described.begin(), described.end());
     std::sort(known.begin(), known.end());
     CHECK(described == known);
+  }
+}
+
+TEST_CASE("each reference of the OpenAPI document leads to a part, and each part has a reference") {
+  const Json api = Json::parse(server::kOpenApi);
+  const Json leaves = api.flatten();
+  std::set<std::string> references;
+  for (const auto& [pointer, value] : leaves.items()) {
+    if (pointer.ends_with("/$ref")) references.insert(value.get<std::string>());
+  }
+  for (const std::string& reference : references) {
+    INFO(reference);
+    CHECK(api.contains(Json::json_pointer(reference.substr(1))));
+  }
+  for (const auto& [kind, parts] : api["components"].items()) {
+    for (const auto& [name, part] : parts.items()) {
+      INFO(kind << " " << name);
+      CHECK(references.count("#/components/" + kind + "/" + name) == 1);
+    }
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The encoder without the promise of validity: for tests, fuzzing and benches on dirty meshes. The
-// public encode(ValidSolid) in codec/blob.h calls it; nothing else should.
+// The encoder without the promise of validity: for tests, fuzzing and benches on dirty meshes. In
+// codec/, encode(ValidSolid) calls it, and page files and explain() for solids of decoded blobs,
+// which keep the acceptance that their blob claims. Other folders call encode().
 #pragma once
 
 #include <span>

@@ -12,6 +12,7 @@
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/predicates.h"
+#include "validate/planarity.h"
 #include "validate/solid_overlap.h"
 
 namespace watertight::validate {
@@ -24,31 +25,24 @@ constexpr std::size_t kMostNormals = 64;
 /// Pairs of corners between which a witness is looked for.
 constexpr std::size_t kMostTries = 64;
 
-using Metres = std::array<double, 3>;
+using Metres = Vector;
 
-double dot(const Metres& a, const Metres& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/// The vector times a power of two, so that no product of its parts leaves the doubles.
-Metres near_one(const Metres& a) {
-  int exponent = 0;
-  std::frexp(std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}), &exponent);
-  return {std::ldexp(a[0], -exponent), std::ldexp(a[1], -exponent), std::ldexp(a[2], -exponent)};
+Metres difference(const Metres& a, const Metres& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-Metres unit_normal(const Metres& a, const Metres& b, const Metres& c) {
-  Metres u{};
-  Metres v{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    u[axis] = b[axis] - a[axis];
-    v[axis] = c[axis] - a[axis];
+Metres triangle_normal(const Metres& a, const Metres& b, const Metres& c) {
+  return unit_normal(difference(b, a), difference(c, a));
+}
+
+/// Of boundaries that overlap: the box that both boxes have in common.
+Box common_box(const RegionSurface& first, const RegionSurface& second) {
+  Box common;
+  for (int axis = 0; axis < 3; ++axis) {
+    common.min[axis] = std::max(first.box().min[axis], second.box().min[axis]);
+    common.max[axis] = std::min(first.box().max[axis], second.box().max[axis]);
   }
-  u = near_one(u);
-  v = near_one(v);
-  Metres normal =
-      near_one({u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]});
-  const double length = std::sqrt(dot(normal, normal));
-  for (double& part : normal) part = length > 0 ? part / length : 0;
-  return normal;
+  return common;
 }
 
 /// Where the segment pq meets the triangle, if it crosses its plane.
@@ -60,7 +54,7 @@ std::optional<Point> crossing(const Point& p, const Point& q, const std::array<P
   const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
   if (*least < 0 && *most > 0) return std::nullopt;
   const auto from_p = [&](const Point& r) { return Metres{r.x - p.x, r.y - p.y, r.z - p.z}; };
-  const Metres normal = unit_normal(from_p(t[0]), from_p(t[1]), from_p(t[2]));
+  const Metres normal = triangle_normal(from_p(t[0]), from_p(t[1]), from_p(t[2]));
   const double along = dot(normal, from_p(q));
   const double share = along == 0 ? 0.5 : std::clamp(dot(normal, from_p(t[0])) / along, 0.0, 1.0);
   return Point{p.x + share * (q.x - p.x), p.y + share * (q.y - p.y), p.z + share * (q.z - p.z)};
@@ -70,11 +64,10 @@ class OverlapMeasurer {
  public:
   OverlapMeasurer(const RegionSurface& first, const RegionSurface& second,
                   const StepMetres& step_metres)
-      : surfaces_{&first, &second}, step_metres_(step_metres), parts_(0) {
-    for (int axis = 0; axis < 3; ++axis) {
-      common_.min[axis] = std::max(first.box().min[axis], second.box().min[axis]);
-      common_.max[axis] = std::min(first.box().max[axis], second.box().max[axis]);
-    }
+      : surfaces_{&first, &second},
+        step_metres_(step_metres),
+        common_(common_box(first, second)),
+        parts_(0) {
     for (std::size_t side = 0; side < 2; ++side) {
       triangles_[side] = surfaces_[side]->triangles_in(common_);
     }
@@ -200,7 +193,7 @@ double OverlapMeasurer::depth_of(std::span<const Corner> corners,
   std::vector<Metres> directions{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (std::size_t i = 0; i < members.size() && directions.size() < kMostNormals; ++i) {
     const std::array<Point, 3> t = triangle(members[i]);
-    const Metres normal = unit_normal(metres(t[0]), metres(t[1]), metres(t[2]));
+    const Metres normal = triangle_normal(metres(t[0]), metres(t[1]), metres(t[2]));
     if (dot(normal, normal) < 0.5) continue;
     if (std::find(directions.begin(), directions.end(), normal) == directions.end()) {
       directions.push_back(normal);
@@ -275,10 +268,6 @@ double OverlapMeasurer::largest_depth(OverlapExtent& extent) {
   return largest;
 }
 
-Metres difference(const Metres& a, const Metres& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
 Metres moved(const Metres& a, const Metres& direction, double factor) {
   return {a[0] + factor * direction[0], a[1] + factor * direction[1], a[2] + factor * direction[2]};
 }
@@ -293,7 +282,7 @@ double distance_to_segment(const Metres& p, const Metres& a, const Metres& b) {
 }
 
 double distance_to_triangle(const Metres& p, const std::array<Metres, 3>& t) {
-  const Metres normal = unit_normal(t[0], t[1], t[2]);
+  const Metres normal = triangle_normal(t[0], t[1], t[2]);
   double distance = std::numeric_limits<double>::infinity();
   bool is_above = true;  // the foot of the perpendicular lies in the triangle
   for (std::size_t i = 0; i < 3; ++i) {
@@ -301,9 +290,7 @@ double distance_to_triangle(const Metres& p, const std::array<Metres, 3>& t) {
     const Metres& b = t[(i + 1) % 3];
     distance = std::min(distance, distance_to_segment(p, a, b));
     const Metres along = difference(b, a);
-    const Metres inward{normal[1] * along[2] - normal[2] * along[1],
-                        normal[2] * along[0] - normal[0] * along[2],
-                        normal[0] * along[1] - normal[1] * along[0]};
+    const Metres inward = cross(normal, along);
     is_above = is_above && dot(inward, difference(p, a)) >= 0;
   }
   return is_above ? std::abs(dot(normal, difference(p, t[0]))) : distance;
@@ -316,12 +303,10 @@ class OverlapProver {
  public:
   OverlapProver(const RegionSurface& first, const RegionSurface& second,
                 const StepMetres& step_metres, double rounding)
-      : surfaces_{&first, &second}, step_metres_(step_metres), rounding_(rounding) {
-    for (int axis = 0; axis < 3; ++axis) {
-      common_.min[axis] = std::max(first.box().min[axis], second.box().min[axis]);
-      common_.max[axis] = std::min(first.box().max[axis], second.box().max[axis]);
-    }
-  }
+      : surfaces_{&first, &second},
+        step_metres_(step_metres),
+        rounding_(rounding),
+        common_(common_box(first, second)) {}
 
   bool run() const { return finds_point(0) || finds_point(1); }
 
@@ -353,7 +338,7 @@ class OverlapProver {
 
   /// True if the point behind the middle of a triangle is inside both solids.
   bool is_behind_inside(const std::array<Point, 3>& t) const {
-    const Metres normal = unit_normal(metres(t[0]), metres(t[1]), metres(t[2]));
+    const Metres normal = triangle_normal(metres(t[0]), metres(t[1]), metres(t[2]));
     Point p = centroid(t);
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<std::size_t>(axis);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "delaunay/canonical_delaunay.h"
 
-#include "delaunay/cgal_delaunay.h"
-#include "delaunay/small_delaunay.h"
+#include "delaunay/canonical/cgal_delaunay.h"
+#include "delaunay/canonical/small_delaunay.h"
 
 namespace watertight::delaunay {
 

@@ -14,12 +14,12 @@
 #include <utility>
 
 #include "delaunay/cancellation.h"
+#include "delaunay/canonical/sort_by_vertices.h"
 #include "delaunay/complex.h"
 #include "delaunay/facet_surface.h"
-#include "delaunay/sort_by_vertices.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "tessellate/flatness.h"
 
 namespace watertight::delaunay {

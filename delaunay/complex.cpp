@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "delaunay/sort_by_vertices.h"
-#include "geometry/predicates.h"
+#include "delaunay/canonical/sort_by_vertices.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::delaunay {
 namespace {

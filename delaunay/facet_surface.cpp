@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "delaunay/shell_contacts.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::delaunay {
 namespace {

@@ -17,10 +17,10 @@
 #include <numeric>
 #include <utility>
 
+#include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
-#include "delaunay/follow_delaunay.h"
 #include "tessellate/flatness.h"
 
 namespace watertight::delaunay {

@@ -15,8 +15,8 @@
 #include <set>
 #include <utility>
 
-#include "geometry/box_partition.h"
-#include "geometry/predicates.h"
+#include "geometry/intersection/box_partition.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::delaunay {
 namespace {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::geometry {
 namespace {

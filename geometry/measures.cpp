@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/exact_quotient.h"
-#include "geometry/grid_number.h"
+#include "geometry/lattice/grid_number.h"
+#include "geometry/predicates/exact_quotient.h"
 
 namespace watertight::geometry {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "base/assert.h"
-#include "geometry/big_decimal.h"
-#include "geometry/grid_number.h"
+#include "geometry/lattice/big_decimal.h"
+#include "geometry/lattice/grid_number.h"
 
 namespace watertight::geometry {
 namespace {

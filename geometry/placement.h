@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "geometry/lattice.h"
+#include "geometry/lattice/lattice.h"
 #include "geometry/solid.h"
 
 namespace watertight::geometry {

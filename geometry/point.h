@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points and boxes in lattice coordinates (doubles that are exact, see geometry/lattice.h).
+// Points and boxes in lattice coordinates (doubles that are exact, see geometry/lattice/lattice.h).
 #pragma once
 
 #include <array>

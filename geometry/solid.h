@@ -11,7 +11,7 @@
 
 #include "base/limits.h"
 #include "base/result.h"
-#include "geometry/lattice.h"
+#include "geometry/lattice/lattice.h"
 #include "geometry/point.h"
 
 namespace watertight::geometry {

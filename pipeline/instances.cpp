@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "base/assert.h"
-#include "geometry/crs.h"
+#include "geometry/crs/crs.h"
 #include "pipeline/groups.h"
 
 namespace watertight::pipeline {

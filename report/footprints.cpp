@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/crs.h"
+#include "geometry/crs/crs.h"
 #include "report/html_page.h"
 
 namespace watertight::report {

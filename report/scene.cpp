@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/crs.h"
+#include "geometry/crs/crs.h"
 #include "geometry/divided_rings.h"
 #include "validate/finding_kinds.h"
 

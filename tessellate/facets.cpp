@@ -22,7 +22,7 @@
 #include <CGAL/hilbert_sort.h>
 #include <CGAL/property_map.h>
 
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "tessellate/flatness.h"
 
 namespace watertight::tessellate {

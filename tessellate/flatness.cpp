@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::tessellate {
 namespace {

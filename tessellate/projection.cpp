@@ -6,7 +6,7 @@
 
 #include <CGAL/Exact_rational.h>
 
-#include "geometry/crs.h"
+#include "geometry/crs/crs.h"
 #include "tessellate/facets.h"
 
 namespace watertight::tessellate {

@@ -9,7 +9,7 @@
 #include <CGAL/Exact_rational.h>
 
 #include "geometry/divided_rings.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::tessellate {
 namespace {

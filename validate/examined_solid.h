@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "base/cancel.h"
-#include "geometry/crs.h"
-#include "geometry/triangle_triangle.h"
+#include "geometry/crs/crs.h"
+#include "geometry/intersection/triangle_triangle.h"
 #include "tessellate/facets.h"
 #include "validate/finding_kinds.h"
-#include "validate/metric_map.h"
+#include "validate/overlap/metric_map.h"
 #include "validate/report.h"
 
 namespace watertight::validate {

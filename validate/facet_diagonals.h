@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "geometry/box_partition.h"
+#include "geometry/intersection/box_partition.h"
 #include "tessellate/facets.h"
 
 namespace watertight::validate {

@@ -8,12 +8,12 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/crs.h"
+#include "geometry/crs/crs.h"
 #include "geometry/disjoint_sets.h"
-#include "geometry/shared_grid.h"
+#include "geometry/lattice/shared_grid.h"
 #include "tessellate/facets.h"
 #include "validate/finding_kinds.h"
-#include "validate/solid_overlap.h"
+#include "validate/overlap/solid_overlap.h"
 
 namespace watertight::validate {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "validate/metric_map.h"
-#include "validate/near_vertices.h"
+#include "validate/overlap/metric_map.h"
+#include "validate/overlap/near_vertices.h"
 
 namespace watertight::validate {
 namespace {

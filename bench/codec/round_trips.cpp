@@ -15,7 +15,7 @@
 
 #include "bench/corpus/corpus.h"
 #include "codec/encode_boundary.h"
-#include "round_trip.h"
+#include "tests/generated/round_trip.h"
 
 using namespace watertight;
 

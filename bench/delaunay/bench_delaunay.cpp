@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "delaunay/cgal_delaunay.h"
-#include "delaunay/small_delaunay.h"
+#include "delaunay/canonical/cgal_delaunay.h"
+#include "delaunay/canonical/small_delaunay.h"
 #include "point_sets.h"
 
 namespace watertight {

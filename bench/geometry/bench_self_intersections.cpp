@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "bench/geometry/shapes.h"
-#include "geometry/box_partition.h"
-#include "geometry/predicates.h"
+#include "geometry/intersection/box_partition.h"
+#include "geometry/predicates/predicates.h"
 
 namespace {
 

@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/box_partition.h"
-#include "geometry/predicates.h"
+#include "geometry/intersection/box_partition.h"
+#include "geometry/predicates/predicates.h"
 
 namespace {
 

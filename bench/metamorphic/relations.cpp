@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "bench/metamorphic/oracle.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "tessellate/facets.h"
 #include "tests/solids/builders.h"
 #include "tests/solids/defects.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
-#include "delaunay/follow_delaunay.h"
 #include "tessellate/facets.h"
 
 namespace watertight {

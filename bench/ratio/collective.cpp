@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "bench/corpus/split.h"
+#include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
-#include "delaunay/follow_delaunay.h"
 #include "tessellate/facets.h"
 
 using namespace watertight;

@@ -13,7 +13,7 @@
 
 #include "codec/mode_bitmap/face_marks.h"
 #include "codec/page/coordinates.h"
-#include "delaunay/follow_delaunay.h"
+#include "delaunay/canonical/follow_delaunay.h"
 #include "tessellate/facets.h"
 
 namespace watertight::codec::bitmap {

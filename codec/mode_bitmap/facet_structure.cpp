@@ -6,7 +6,7 @@
 
 #include "codec/mode_bitmap/boundary_surface.h"
 #include "geometry/canonical_form.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::codec::bitmap {
 namespace {

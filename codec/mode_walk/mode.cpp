@@ -11,7 +11,7 @@
 #include "codec/mode_walk/facet_flags.h"
 #include "codec/mode_walk/walk.h"
 #include "codec/page/modes.h"
-#include "delaunay/follow_delaunay.h"
+#include "delaunay/canonical/follow_delaunay.h"
 #include "tessellate/facets.h"
 
 namespace watertight::codec::walk {

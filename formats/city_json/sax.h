@@ -15,7 +15,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "formats/text/json.h"
-#include "geometry/lattice.h"
+#include "geometry/lattice/lattice.h"
 #include "geometry/point.h"
 
 namespace watertight::formats {

@@ -6,7 +6,7 @@
 
 #include "formats/gml/gml.h"
 #include "formats/text/numbers.h"
-#include "geometry/crs.h"
+#include "geometry/crs/crs.h"
 
 namespace watertight::formats {
 namespace {

@@ -13,7 +13,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "formats/gml/model.h"
-#include "geometry/lattice.h"
+#include "geometry/lattice/lattice.h"
 #include "geometry/solid.h"
 
 namespace watertight::formats {

@@ -17,11 +17,13 @@ Rules, one function each:
   places       no file names a path of one machine, or the host of a package registry
   unfinished   no word that marks unfinished work
   length       no source file of the product is longer than 600 lines
+  rooms        no folder holds more than 20 headers and sources
   namespaces   a file of a folder puts its names into the folder's namespace, a file of a mode of the
                codec into the mode's; namespace watertight has base/ and the names that headers
                export to it, which docs/architecture.md lists
   names        no two files of the product define one qualified type, constant or function
 """
+import collections
 import os
 import pathlib
 import re
@@ -32,6 +34,7 @@ import tempfile
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
            "formats", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
+MAX_SOURCES = 20
 
 # header pattern -> (what it is, path patterns it may be included from). First match decides.
 HOMES = [
@@ -226,6 +229,13 @@ def check_length(tree):
             yield f"{name}: length: {lines} lines, at most {MAX_LINES}"
 
 
+def check_rooms(tree):
+    rooms = collections.Counter(os.path.dirname(name) for name in tree.includes)
+    for room, sources in sorted(rooms.items()):
+        if sources > MAX_SOURCES:
+            yield f"{room}: rooms: {sources} headers and sources, at most {MAX_SOURCES}"
+
+
 NAMESPACE = re.compile(r"^(?:inline )?namespace(?: ([\w:]+))? \{")
 EXPORT = re.compile(r"^using ([\w:]+)::(\w+);$")
 FORWARD = re.compile(r"^(class|struct|enum class) \w+;")
@@ -315,7 +325,7 @@ def check_names(tree):
 
 
 RULES = [check_layers, check_modes, check_existence, check_homes, check_cgal, check_licence, check_places,
-         check_unfinished, check_length,
+         check_unfinished, check_length, check_rooms,
          check_namespaces, check_names]
 
 
@@ -352,6 +362,7 @@ GOOD_TREE = {
     "scripts/test": "#!/bin/sh\n# SPDX-License-Identifier: X\n",
 }
 # (file, its text, the rule that must speak, words that must be in the line)
+GOOD_TREE.update({f"tests/unit/base/a{i}.cpp": SPDX for i in range(MAX_SOURCES)})
 BREAKS = [
     ("store/store.cpp", SPDX + '#include "geometry/solid.h"\n', "layers", "does not declare geometry"),
     ("geometry/solid.h", SPDX + '#include "codec/blob.h"\n', "existence", "codec/blob.h"),
@@ -378,6 +389,7 @@ BREAKS = [
     ("docs/build.md", "get it from http://" + "deb.example.org\n", "places", "docs/build.md:1"),
     ("geometry/solid.cpp", SPDX + "// TO" + "DO: later\n", "unfinished", "geometry/solid.cpp:2"),
     ("geometry/solid.cpp", SPDX + "\n" * MAX_LINES, "length", "601 lines"),
+    ("tests/unit/base/b.cpp", SPDX, "rooms", "21 headers"),
     ("geometry/solid.cpp", SPDX + "namespace watertight {\nint f();\n}  // namespace watertight\n",
      "namespaces", "watertight::geometry"),
     ("codec/mode_walk/mode.cpp", SPDX + "namespace watertight::codec {\nint f();\n}  // namespace watertight::codec\n",

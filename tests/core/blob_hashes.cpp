@@ -10,9 +10,9 @@
 
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
-#include "generated_solids.h"
 #include "geometry/canonical_form.h"
-#include "golden_blobs.h"
+#include "tests/generated/generated_solids.h"
+#include "tests/generated/golden_blobs.h"
 
 using namespace watertight;
 

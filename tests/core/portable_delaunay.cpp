@@ -3,8 +3,8 @@
 // In the place of delaunay/canonical_delaunay.cpp where CGAL is not to be linked: whole coordinates
 // in a box below 2^30, which is what our own Delaunay tetrahedralization takes. Only mode bitmap
 // knows others. A linker that finds this definition first leaves cgal_delaunay.cpp out.
+#include "delaunay/canonical/small_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
-#include "delaunay/small_delaunay.h"
 
 namespace watertight::delaunay {
 

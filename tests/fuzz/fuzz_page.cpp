@@ -8,7 +8,7 @@
 
 #include "codec/encode_boundary.h"
 #include "codec/page.h"
-#include "mutated_blobs.h"
+#include "tests/generated/mutated_blobs.h"
 
 namespace {
 

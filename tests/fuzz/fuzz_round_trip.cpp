@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "round_trip.h"
+#include "tests/generated/round_trip.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "base/checksum.h"
 #include "codec/blob.h"
 #include "codec/encode_boundary.h"
-#include "generated_solids.h"
+#include "tests/generated/generated_solids.h"
 #include "tests/random.h"
 #ifdef WATERTIGHT_WITH_VALIDATE
 #include "validate/planarity.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "generated_solids.h"
+#include "tests/generated/generated_solids.h"
 #include "tessellate/facets.h"
 
 namespace watertight::solids {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "tests/solids/builders.h"
 
 namespace watertight::solids {

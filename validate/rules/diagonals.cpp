@@ -9,11 +9,11 @@
 #include <optional>
 #include <tuple>
 
-#include "geometry/predicates.h"
-#include "geometry/triangle_triangle.h"
+#include "geometry/intersection/triangle_triangle.h"
+#include "geometry/predicates/predicates.h"
 #include "tessellate/flatness.h"
-#include "validate/box_tree.h"
 #include "validate/facet_diagonals.h"
+#include "validate/overlap/box_tree.h"
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
 

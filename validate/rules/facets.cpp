@@ -9,10 +9,10 @@
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/fitted_plane.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "tessellate/flatness.h"
 #include "tessellate/ring_problems.h"
-#include "validate/box_tree.h"
+#include "validate/overlap/box_tree.h"
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
 

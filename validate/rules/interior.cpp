@@ -20,11 +20,11 @@
 #include <map>
 #include <optional>
 
-#include "delaunay/sort_by_vertices.h"
-#include "geometry/box_partition.h"
+#include "delaunay/canonical/sort_by_vertices.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/intersection/box_partition.h"
 #include "geometry/measures.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "validate/facet_diagonals.h"
 #include "validate/rules/rules.h"
 

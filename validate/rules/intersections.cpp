@@ -5,7 +5,7 @@
 // touch, in points and along edges, but not cross or share an area.
 #include <algorithm>
 
-#include "geometry/box_partition.h"
+#include "geometry/intersection/box_partition.h"
 #include "validate/facet_diagonals.h"
 #include "validate/rules/rules.h"
 

@@ -8,9 +8,9 @@
 #include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "validate/edge_table.h"
-#include "validate/open_edges.h"
+#include "validate/overlap/wedges.h"
+#include "validate/rules/open_edges.h"
 #include "validate/rules/rules.h"
-#include "validate/wedges.h"
 
 namespace watertight::validate {
 namespace {

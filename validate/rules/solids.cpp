@@ -6,9 +6,9 @@
 #include <map>
 
 #include "geometry/measures.h"
-#include "geometry/point_in_solid.h"
-#include "validate/point_location.h"
-#include "validate/region_relation.h"
+#include "geometry/predicates/point_in_solid.h"
+#include "validate/overlap/point_location.h"
+#include "validate/overlap/region_relation.h"
 #include "validate/rules/rules.h"
 
 namespace watertight::validate {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validate/near_vertices.h"
+#include "validate/overlap/near_vertices.h"
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
 

@@ -11,8 +11,8 @@
 
 #include "codec/mode_parallelogram/axis_places.h"
 #include "codec/page/modes.h"
-#include "generated_solids.h"
 #include "geometry/canonical_form.h"
+#include "tests/generated/generated_solids.h"
 
 namespace watertight {
 namespace {

@@ -3,7 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "codec/mode_bitmap/bit_coder.h"
-#include "generated_solids.h"
+#include "tests/generated/generated_solids.h"
 
 using namespace watertight;
 

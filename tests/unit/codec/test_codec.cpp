@@ -5,8 +5,8 @@
 
 #include "codec/blob.h"
 #include "codec/encode_boundary.h"
-#include "generated_solids.h"
 #include "geometry/canonical_form.h"
+#include "tests/generated/generated_solids.h"
 
 using namespace watertight;
 

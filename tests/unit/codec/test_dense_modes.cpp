@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "codec/page/modes.h"
-#include "generated_solids.h"
 #include "geometry/canonical_form.h"
+#include "tests/generated/generated_solids.h"
 
 namespace watertight {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "codec/page_file.h"
 #include "geometry/canonical_form.h"
-#include "golden_blobs.h"
-#include "golden_pages.h"
+#include "tests/generated/golden_blobs.h"
+#include "tests/generated/golden_pages.h"
 
 using namespace watertight;
 

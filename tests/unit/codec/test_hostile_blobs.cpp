@@ -14,7 +14,7 @@
 #include "codec/page.h"
 #include "codec/page_file.h"
 #include "geometry/canonical_form.h"
-#include "mutated_blobs.h"
+#include "tests/generated/mutated_blobs.h"
 
 using namespace watertight;
 

@@ -9,7 +9,7 @@
 #include "codec/encode_boundary.h"
 #include "codec/page/container.h"
 #include "codec/page_file.h"
-#include "mutated_blobs.h"
+#include "tests/generated/mutated_blobs.h"
 
 namespace watertight {
 namespace {

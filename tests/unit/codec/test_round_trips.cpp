@@ -3,7 +3,7 @@
 // A slice of what bench/codec/round_trips runs on a million solids.
 #include <catch2/catch_test_macros.hpp>
 
-#include "round_trip.h"
+#include "tests/generated/round_trip.h"
 
 using namespace watertight;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "codec/page/source_order.h"
-#include "tests/unit/codec/generated_solids.h"
+#include "tests/generated/generated_solids.h"
 
 namespace watertight {
 namespace {

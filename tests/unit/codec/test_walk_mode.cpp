@@ -6,8 +6,8 @@
 
 #include "codec/mode_walk/walk.h"
 #include "codec/page/modes.h"
-#include "generated_solids.h"
 #include "geometry/canonical_form.h"
+#include "tests/generated/generated_solids.h"
 
 using namespace watertight;
 using generated::Random;

@@ -10,7 +10,7 @@
 
 #include "base/checksum.h"
 #include "delaunay/canonical_delaunay.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
+#include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/certificate.h"
-#include "delaunay/follow_delaunay.h"
 #include "unit/delaunay/sample_solids.h"
 
 namespace watertight {

@@ -11,7 +11,7 @@
 
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/ladder.h"
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "unit/delaunay/sample_solids.h"
 
 namespace watertight {

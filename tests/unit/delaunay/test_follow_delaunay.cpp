@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "delaunay/follow_delaunay.h"
-#include "geometry/predicates.h"
+#include "delaunay/canonical/follow_delaunay.h"
+#include "geometry/predicates/predicates.h"
 #include "unit/delaunay/sample_solids.h"
 
 namespace watertight {

@@ -9,8 +9,8 @@
 
 #include "delaunay/ladder.h"
 #include "delaunay/shell_contacts.h"
+#include "geometry/intersection/triangle_triangle.h"
 #include "geometry/measures.h"
-#include "geometry/triangle_triangle.h"
 #include "unit/delaunay/sample_solids.h"
 
 namespace watertight {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/checksum.h"
-#include "delaunay/cgal_delaunay.h"
-#include "delaunay/small_delaunay.h"
+#include "delaunay/canonical/cgal_delaunay.h"
+#include "delaunay/canonical/small_delaunay.h"
 #include "point_sets.h"
 
 namespace watertight {

@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
-#include "geometry/box_partition.h"
-#include "geometry/predicates.h"
+#include "geometry/intersection/box_partition.h"
+#include "geometry/predicates/predicates.h"
 #include "tests/random.h"
 
 namespace watertight::test {

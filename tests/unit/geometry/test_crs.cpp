@@ -2,8 +2,8 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 
-#include "geometry/crs.h"
-#include "geometry/crs_table.h"
+#include "geometry/crs/crs.h"
+#include "geometry/crs/crs_table.h"
 
 namespace watertight::test {
 

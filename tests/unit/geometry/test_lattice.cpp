@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "geometry/lattice.h"
+#include "geometry/lattice/lattice.h"
 #include "tests/unit/geometry/solids.h"
 
 namespace watertight::test {

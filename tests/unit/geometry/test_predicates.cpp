@@ -2,7 +2,7 @@
 //
 // The predicates where their filter fails: points in one plane or on one line, or next to it, with
 // coordinates on both sides of the sizes at which another arithmetic takes over.
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 
 #include <CGAL/Exact_rational.h>
 

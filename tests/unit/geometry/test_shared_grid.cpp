@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/shared_grid.h"
+#include "geometry/lattice/shared_grid.h"
 
 namespace watertight::test {
 namespace {

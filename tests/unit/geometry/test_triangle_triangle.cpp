@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "geometry/triangle_triangle.h"
+#include "geometry/intersection/triangle_triangle.h"
 #include "tests/unit/geometry/triangle_oracle.h"
 
 namespace watertight::test {

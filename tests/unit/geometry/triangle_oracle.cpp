@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "geometry/box_partition.h"
-#include "geometry/predicates.h"
+#include "geometry/intersection/box_partition.h"
+#include "geometry/predicates/predicates.h"
 
 namespace watertight::test {
 namespace {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "geometry/triangle_triangle.h"
+#include "geometry/intersection/triangle_triangle.h"
 #include "tests/random.h"
 
 namespace watertight::test {

@@ -8,10 +8,10 @@
 #include "codec/encode_boundary.h"
 #include "codec/page_file.h"
 #include "formats/text/packed_text.h"
-#include "generated_solids.h"
 #include "pipeline/container.h"
 #include "pipeline/container_reader.h"
 #include "pipeline/export.h"
+#include "tests/generated/generated_solids.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {

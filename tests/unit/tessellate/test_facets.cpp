@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "geometry/predicates.h"
+#include "geometry/predicates/predicates.h"
 #include "tessellate/facets.h"
 #include "tests/unit/tessellate/facet_solid.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <random>
 
-#include "geometry/point_in_solid.h"
+#include "geometry/predicates/point_in_solid.h"
 #include "tests/unit/validate/solids.h"
 #include "validate/groups.h"
 

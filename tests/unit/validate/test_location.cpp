@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tessellate/facets.h"
 #include "tests/unit/validate/solids.h"
-#include "validate/point_location.h"
+#include "validate/overlap/point_location.h"
 
 using namespace watertight;
 using namespace watertight::test;

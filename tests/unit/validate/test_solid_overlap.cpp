@@ -12,7 +12,7 @@
 #include <random>
 #include <set>
 
-#include "validate/solid_overlap.h"
+#include "validate/overlap/solid_overlap.h"
 
 namespace watertight {
 namespace {

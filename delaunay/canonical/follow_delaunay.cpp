@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A set of triangles whose projections all turn as the facet does, and whose edges cancel to
+// exactly the facet's rings, covers each point of the projection as often as the rings wind around
+// it: once between the rings, never outside. So neither the walk nor the dynamic programme below
+// tests segments for crossing; both only take positive triangles and balance edges.
+//
+// Within a facet, vertices are numbered by their coordinates, which makes every tie independent of
+// the numbering of the input.
+#include "delaunay/canonical/follow_delaunay.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "base/assert.h"
+#include "delaunay/cancellation.h"
+#include "delaunay/canonical/sort_by_vertices.h"
+#include "geometry/predicates/predicates.h"
+
+namespace watertight::delaunay {
+namespace {
+
+/// Rings with more vertices are not given to the cubic dynamic programme.
+constexpr std::size_t kLargestRing = 60;
+/// Flips tried on a facet per vertex before the rest is left as it is.
+constexpr std::size_t kFlipsPerVertex = 3;
+
+using Edge = std::pair<Index, Index>;
+
+/// Faces by edge and faces by vertices.
+class DelaunayFaces {
+ public:
+  DelaunayFaces(const CanonicalDelaunay& delaunay, std::size_t vertex_count)
+      : faces_(delaunay.faces), vertex_count_(vertex_count) {}
+
+  /// Place of a face in the sorted list, or kNone.
+  Index find(Triangle triangle) const {
+    std::sort(triangle.begin(), triangle.end());
+    const auto at = std::lower_bound(faces_.begin(), faces_.end(), triangle);
+    if (at == faces_.end() || *at != triangle) return kNone;
+    return static_cast<Index>(at - faces_.begin());
+  }
+
+  /// (low, high, third) of the faces at an edge. The table is built on first use: solids made of
+  /// triangles never need it.
+  std::span<const Triangle> around(Index a, Index b) {
+    if (by_edge_.empty()) build();
+    const Triangle low{std::min(a, b), std::max(a, b), 0};
+    const Triangle high{low[0], low[1], kNone};
+    const auto begin = std::lower_bound(by_edge_.begin(), by_edge_.end(), low);
+    return {begin, std::lower_bound(begin, by_edge_.end(), high)};
+  }
+
+ private:
+  void build() {
+    by_edge_.reserve(3 * faces_.size());
+    for (const auto& [a, b, c] : faces_) {
+      by_edge_.push_back({a, b, c});
+      by_edge_.push_back({a, c, b});
+      by_edge_.push_back({b, c, a});
+    }
+    sort_by_vertices(by_edge_, vertex_count_, [](const Triangle& face) { return face; });
+  }
+
+  std::span<const Triangle> faces_;
+  std::size_t vertex_count_;
+  std::vector<Triangle> by_edge_;
+};
+
+/// One facet with its vertices numbered 0, 1, ... by coordinates.
+struct LocalFacet {
+  std::vector<Index> global;  // local vertex -> vertex of the solid
+  std::vector<std::vector<Index>> rings;
+  std::vector<Edge> boundary;  // directed: the ring edges, divided where other shells touch them
+  std::vector<Triangle> canonical;
+  std::span<const Point> points;
+  tessellate::Projection projection;
+  std::size_t triangle_count = 0;
+
+  Triangle to_global(const Triangle& t) const { return {global[t[0]], global[t[1]], global[t[2]]}; }
+  /// True if the projected triangle turns as the facet does, and has area.
+  bool is_positive(Index a, Index b, Index c) const {
+    const int turn = geometry::orient2d(points[global[a]], points[global[b]], points[global[c]],
+                                        projection.axis);
+    return projection.is_mirrored ? turn < 0 : turn > 0;
+  }
+};
+
+/// The directed edges that have a triangle on one side only, sorted.
+std::vector<Edge> boundary_of(std::span<const Triangle> triangles) {
+  std::vector<Edge> edges;
+  edges.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<Edge> boundary;
+  std::copy_if(edges.begin(), edges.end(), std::back_inserter(boundary), [&](const Edge& edge) {
+    return !std::binary_search(edges.begin(), edges.end(), Edge{edge.second, edge.first});
+  });
+  return boundary;
+}
+
+LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> canonical,
+                    std::vector<Index>& local_of) {
+  LocalFacet local;
+  local.points = solid.vertices();
+  local.projection = tessellate::facet_projection(solid, facet);
+  local.triangle_count = canonical.size();
+  const IndexRange rings = solid.rings_of(facet);
+  local.global.reserve(3 * canonical.size());
+  for (const Triangle& t : canonical) {
+    local.global.insert(local.global.end(), t.begin(), t.end());
+  }
+  std::sort(local.global.begin(), local.global.end(), [&](Index a, Index b) {
+    return std::pair(local.points[a], a) < std::pair(local.points[b], b);
+  });
+  local.global.erase(std::unique(local.global.begin(), local.global.end()), local.global.end());
+  for (Index i = 0; i < local.global.size(); ++i) local_of[local.global[i]] = i;
+  for (Index ring = rings.begin; ring < rings.end; ++ring) {
+    std::vector<Index>& vertices = local.rings.emplace_back();
+    vertices.reserve(solid.ring(ring).size());
+    for (const Index vertex : solid.ring(ring)) vertices.push_back(local_of[vertex]);
+    std::rotate(vertices.begin(), std::min_element(vertices.begin(), vertices.end()),
+                vertices.end());
+  }
+  local.canonical.reserve(canonical.size());
+  for (const Triangle& t : canonical) {
+    local.canonical.push_back({local_of[t[0]], local_of[t[1]], local_of[t[2]]});
+  }
+  local.boundary = boundary_of(local.canonical);
+  return local;
+}
+
+/// The Delaunay faces on the inner side of each edge, from the rings inward. Nothing if an edge has
+/// none, or has two (possible only in facets that are not exactly planar).
+class Walk {
+ public:
+  Walk(const LocalFacet& facet, DelaunayFaces& faces, const std::vector<Index>& local_of)
+      : facet_(facet), faces_(faces), local_of_(local_of) {}
+
+  std::optional<std::vector<Triangle>> run() {
+    open_.insert(facet_.boundary.begin(), facet_.boundary.end());
+    std::vector<Triangle> triangles;
+    while (!open_.empty()) {
+      if (triangles.size() == facet_.triangle_count) return std::nullopt;
+      const auto [a, b] = *open_.begin();
+      const std::optional<Index> third = third_vertex(a, b);
+      if (!third) return std::nullopt;
+      open_.erase(open_.begin());
+      if (!close({b, *third}) || !close({*third, a})) return std::nullopt;
+      triangles.push_back({a, b, *third});
+    }
+    return triangles;
+  }
+
+ private:
+  std::optional<Index> third_vertex(Index a, Index b) const {
+    std::optional<Index> found;
+    for (const Triangle& face : faces_.around(facet_.global[a], facet_.global[b])) {
+      const Index third = local_of_[face[2]];
+      if (third == kNone || !facet_.is_positive(a, b, third)) continue;
+      if (found) return std::nullopt;
+      found = third;
+    }
+    return found;
+  }
+
+  /// Accounts for an edge of a new triangle: it closes an open edge, or its reverse becomes open.
+  bool close(const Edge& edge) {
+    if (open_.erase(edge) > 0) return true;
+    return open_.insert({edge.second, edge.first}).second;
+  }
+
+  const LocalFacet& facet_;
+  DelaunayFaces& faces_;
+  const std::vector<Index>& local_of_;
+  std::set<Edge> open_;  // directed edges whose left side is not covered yet
+};
+
+/// Klincsek's dynamic programme over the triangulations of one ring: least number of triangles
+/// that are not Delaunay faces, ties by the lowest position of the third vertex.
+std::vector<Triangle> fewest_missing(const LocalFacet& facet, const DelaunayFaces& faces) {
+  const std::vector<Index>& ring = facet.rings[0];
+  const std::size_t n = ring.size();
+  constexpr Index kImpossible = kNone / 4;
+  std::vector<Index> cost(n * n, kImpossible);
+  std::vector<std::size_t> apex(n * n, 0);
+  for (std::size_t i = 0; i + 1 < n; ++i) cost[i * n + i + 1] = 0;
+  for (std::size_t length = 2; length < n; ++length) {
+    for (std::size_t i = 0; i + length < n; ++i) {
+      const std::size_t j = i + length;
+      for (std::size_t k = i + 1; k < j; ++k) {
+        const Index parts = cost[i * n + k] + cost[k * n + j];
+        if (parts >= cost[i * n + j] || !facet.is_positive(ring[i], ring[k], ring[j])) continue;
+        const bool found = faces.find(facet.to_global({ring[i], ring[k], ring[j]})) != kNone;
+        const Index total = parts + (found ? 0 : 1);
+        if (total >= cost[i * n + j]) continue;
+        cost[i * n + j] = total;
+        apex[i * n + j] = k;
+      }
+    }
+  }
+  std::vector<Triangle> triangles;
+  if (cost[n - 1] >= kImpossible) return triangles;
+  std::vector<std::pair<std::size_t, std::size_t>> pending{{0, n - 1}};
+  while (!pending.empty()) {
+    const auto [i, j] = pending.back();
+    pending.pop_back();
+    if (j - i < 2) continue;
+    const std::size_t k = apex[i * n + j];
+    triangles.push_back({ring[i], ring[k], ring[j]});
+    pending.push_back({i, k});
+    pending.push_back({k, j});
+  }
+  return triangles;
+}
+
+/// Flips diagonals of the canonical triangulation while that makes more Delaunay faces.
+class Flips {
+ public:
+  Flips(const LocalFacet& facet, const DelaunayFaces& faces)
+      : facet_(facet), faces_(faces), triangles_(facet.canonical) {
+    // Numbering of triangles is the caller's; sort so that the flips come in a defined order.
+    for (Triangle& t : triangles_)
+      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    std::sort(triangles_.begin(), triangles_.end());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) connect(t);
+  }
+
+  std::vector<Triangle> run() {
+    std::set<Edge> pending;
+    for (const auto& [edge, triangle] : side_) {
+      if (edge.first < edge.second && side_.contains({edge.second, edge.first}))
+        pending.insert(edge);
+    }
+    std::size_t left = kFlipsPerVertex * facet_.global.size();
+    while (!pending.empty() && left > 0) {
+      const Edge edge = *pending.begin();
+      pending.erase(pending.begin());
+      if (!flip_if_better(edge)) continue;
+      --left;
+      // Other diagonals of the four outer edges may have become worth a flip.
+      for (const std::size_t t :
+           {side_.at(flipped_), side_.at({flipped_.second, flipped_.first})}) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto [low, high] = std::minmax(triangles_[t][k], triangles_[t][(k + 1) % 3]);
+          if (Edge{low, high} != flipped_ && side_.contains({low, high}) &&
+              side_.contains({high, low})) {
+            pending.insert({low, high});
+          }
+        }
+      }
+    }
+    return std::move(triangles_);
+  }
+
+ private:
+  void connect(std::size_t t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      side_[{triangles_[t][k], triangles_[t][(k + 1) % 3]}] = t;
+    }
+  }
+  Index opposite(std::size_t t, const Edge& edge) const {
+    for (const Index vertex : triangles_[t]) {
+      if (vertex != edge.first && vertex != edge.second) return vertex;
+    }
+    return kNone;
+  }
+  int is_face(Index a, Index b, Index c) const {
+    return faces_.find(facet_.to_global({a, b, c})) != kNone ? 1 : 0;
+  }
+
+  bool flip_if_better(const Edge& edge) {
+    const auto [a, b] = edge;
+    const std::size_t left = side_.at(edge);
+    const std::size_t right = side_.at({b, a});
+    const Index c = opposite(left, edge);
+    const Index d = opposite(right, edge);
+    if (is_face(a, d, c) + is_face(d, b, c) <= is_face(a, b, c) + is_face(b, a, d)) return false;
+    if (!facet_.is_positive(a, d, c) || !facet_.is_positive(d, b, c)) return false;
+    side_.erase({a, b});
+    side_.erase({b, a});
+    triangles_[left] = {a, d, c};
+    triangles_[right] = {d, b, c};
+    connect(left);
+    connect(right);
+    flipped_ = std::minmax(c, d);
+    return true;
+  }
+
+  const LocalFacet& facet_;
+  const DelaunayFaces& faces_;
+  std::vector<Triangle> triangles_;
+  std::map<Edge, std::size_t> side_;  // directed edge -> the triangle on its left
+  Edge flipped_{};
+};
+
+std::vector<Triangle> follow_locally(const LocalFacet& facet, DelaunayFaces& faces,
+                                     const std::vector<Index>& local_of) {
+  if (auto found = Walk(facet, faces, local_of).run()) return std::move(*found);
+  if (facet.rings.size() == 1 && facet.rings[0].size() <= kLargestRing) {
+    std::vector<Triangle> found = fewest_missing(facet, faces);
+    if (found.size() == facet.canonical.size()) return found;
+  }
+  return Flips(facet, faces).run();
+}
+
+/// Requires `local_of` to hold kNone everywhere, and leaves it so.
+std::vector<Triangle> follow_facet(const Solid& merged, Index facet,
+                                   std::span<const Triangle> canonical, DelaunayFaces& faces,
+                                   std::vector<Index>& local_of) {
+  if (canonical.size() < 2) return {canonical.begin(), canonical.end()};
+  const LocalFacet local = localize(merged, facet, canonical, local_of);
+  std::vector<Triangle> triangles = follow_locally(local, faces, local_of);
+  for (Triangle& t : triangles) t = local.to_global(t);
+  for (const Index vertex : local.global) local_of[vertex] = kNone;
+  return triangles;
+}
+
+}  // namespace
+
+Result<FollowingTriangles> follow_delaunay(const Solid& merged,
+                                           const tessellate::FacetTriangles& canonical,
+                                           const CanonicalDelaunay& delaunay,
+                                           const std::vector<bool>& is_kept,
+                                           const CancelPoll& is_cancelled) {
+  WATERTIGHT_ASSERT(canonical.first.size() == std::size_t{merged.facet_count()} + 1);
+  FollowingTriangles result;
+  Cancellation cancellation(is_cancelled);
+  DelaunayFaces faces(delaunay, merged.vertex_count());
+  std::vector<Index> local_of(merged.vertex_count(), kNone);
+  for (Index facet = 0; facet < merged.facet_count(); ++facet) {
+    const auto own =
+        std::span(canonical.triangles)
+            .subspan(canonical.first[facet], canonical.first[facet + 1] - canonical.first[facet]);
+    // A facet of k <= kLargestRing vertices may take k^3 steps, a larger one about k log k.
+    if (cancellation.is_due_and_wanted(1 + 16 * own.size())) {
+      return Error{ErrorCode::cancelled, "cancelled by the caller"};
+    }
+    const bool is_own = !is_kept.empty() && is_kept[facet];
+    std::vector<Triangle> triangles = is_own ? std::vector<Triangle>(own.begin(), own.end())
+                                             : follow_facet(merged, facet, own, faces, local_of);
+    for (Triangle& t : triangles)
+      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    std::sort(triangles.begin(), triangles.end());
+    Index missing = 0;
+    for (const Triangle& t : triangles) {
+      result.delaunay_face.push_back(faces.find(t));
+      if (result.delaunay_face.back() == kNone) ++missing;
+    }
+    result.triangles.insert(result.triangles.end(), triangles.begin(), triangles.end());
+    result.facet_of.resize(result.triangles.size(), facet);
+    result.first.push_back(static_cast<Index>(result.triangles.size()));
+    result.missing.push_back(missing);
+    result.missing_total += missing;
+  }
+  return result;
+}
+
+FollowingTriangles follow_delaunay(const Solid& merged, const tessellate::FacetTriangles& canonical,
+                                   const CanonicalDelaunay& delaunay) {
+  Result<FollowingTriangles> result = follow_delaunay(merged, canonical, delaunay, {}, {});
+  WATERTIGHT_ASSERT(result.has_value());  // nobody cancels
+  return *std::move(result);
+}
+
+}  // namespace watertight::delaunay

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Metres per unit of a coordinate reference system's axes, for tolerances and measures only, which
+// systems are geographic, and which put latitude first.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "geometry/lattice/lattice.h"
+#include "geometry/point.h"
+
+namespace watertight::geometry {
+
+struct AxisUnits {
+  std::array<double, 3> metres_per_unit{1, 1, 1};
+  std::string note;  // non-empty when something was assumed, e.g. "no CRS stated: metres assumed"
+};
+
+/// Units of the axes of EPSG code `srid` at the centre of a box (world coordinates), from a table
+/// of all codes of the EPSG data set (crs_table.cpp). Unknown and unstated systems count as metres,
+/// with a note. Geographic systems: metres per degree on the WGS 84 ellipsoid at the centre; x is
+/// longitude, as in most files whatever the authority's order, unless y is beyond 90 degrees and x
+/// is not. A geographic code over coordinates that cannot be degrees (|value| above 360) counts as
+/// metres, with a note. Cost: logarithmic.
+AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre);
+
+/// Of a geographic system, the largest coordinate that can be an angle: a full turn, 360 (degrees)
+/// or 400 (grads). 0 for other systems and for unknown codes. Cost: logarithmic.
+double largest_angle(std::uint32_t srid);
+
+/// Where the authority's first axis is latitude: the angle of the pole, 90 (degrees) or 100
+/// (grads). 0 for other systems, among them the geographic ones of France that EPSG names
+/// "(lon-lat)", and for unknown codes. Cost: logarithmic.
+double pole_of_first_axis(std::uint32_t srid);
+
+}  // namespace watertight::geometry

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Normal forms: from integers under a transform, exact decimals or doubles to lattice points.
+// World coordinates and the way back are in lattice_world.cpp.
+#include "geometry/lattice/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/assert.h"
+#include "geometry/lattice/grid_number.h"
+
+namespace watertight::geometry {
+namespace {
+
+constexpr std::int32_t kDecimal = 10;
+constexpr std::int32_t kBinary = 2;
+/// Coordinates that doubles hold exactly.
+constexpr UnsignedWide kCoordinateEnd = UnsignedWide{1} << 53U;
+/// Mode walk of the codec takes relative coordinates below this (docs/format-walk.md).
+constexpr UnsignedWide kCompactEnd = UnsignedWide{1} << 30U;
+
+/// One axis of a point set: values are origin + offset * radix^exponent, exactly.
+struct AxisValues {
+  std::vector<UnsignedWide> offsets;  // the smallest is 0
+  std::int32_t exponent = 0;
+  GridNumber origin;
+  UnsignedWide largest = 0;
+  UnsignedWide unit = 1;  // divides all offsets; a grid number holds it
+  bool is_origin_rounded = false;
+};
+
+/// A step for each axis: offsets are multiples of divisor, or must be multiplied by factor.
+struct AxisGrid {
+  GridNumber step{1, 0};
+  UnsignedWide divisor = 1;
+  UnsignedWide factor = 1;
+};
+
+using Axes = std::array<AxisValues, 3>;
+using Grids = std::array<AxisGrid, 3>;
+constexpr AxisGrid kNoGrid{{1, 0}, 1, 0};  // a factor of 0 never fits
+constexpr Grids kNoGrids{kNoGrid, kNoGrid, kNoGrid};
+
+UnsignedWide power(std::int32_t radix, std::int32_t exponent) {
+  const auto value = scaled_up(1, radix, exponent);
+  return value ? static_cast<UnsignedWide>(*value) : 0;
+}
+
+/// The largest count such that radix^count divides all offsets; requires a non-zero offset.
+std::int32_t common_zeros(const AxisValues& axis, std::int32_t radix) {
+  std::int32_t count = 0;
+  while (power(radix, count + 1) != 0 && power(radix, count + 1) <= axis.largest) ++count;
+  UnsignedWide divisor = power(radix, count);
+  for (const UnsignedWide offset : axis.offsets) {
+    while (count > 0 && offset % divisor != 0) {
+      --count;
+      divisor /= static_cast<UnsignedWide>(radix);
+    }
+    if (count == 0) break;
+  }
+  return count;
+}
+
+UnsignedWide greatest_common_divisor(UnsignedWide a, UnsignedWide b) {
+  while (b != 0) {
+    a %= b;
+    std::swap(a, b);
+  }
+  return a;
+}
+
+UnsignedWide common_divisor(const AxisValues& axis) {
+  UnsignedWide divisor = 0;
+  for (const UnsignedWide offset : axis.offsets) {
+    divisor = greatest_common_divisor(offset, divisor);
+    if (divisor == 1) break;
+  }
+  return divisor;
+}
+
+/// Largest coordinate of an axis on a grid, or kCoordinateEnd if not below it.
+UnsignedWide largest_coordinate(const AxisValues& axis, const AxisGrid& grid) {
+  const UnsignedWide reduced = axis.largest / grid.divisor;
+  if (grid.factor == 0 || reduced >= kCoordinateEnd) return kCoordinateEnd;
+  if (reduced != 0 && grid.factor > kCoordinateEnd / reduced) return kCoordinateEnd;
+  return std::min(kCoordinateEnd, reduced * grid.factor);
+}
+
+bool fits(const Axes& axes, const Grids& grids, UnsignedWide end) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (largest_coordinate(axes[axis], grids[axis]) >= end) return false;
+  }
+  return true;
+}
+
+/// One step for the three axes: the largest power of the radix that divides all offsets.
+Grids common_power_grid(const Axes& axes, std::int32_t radix) {
+  std::optional<std::int32_t> exponent;
+  std::array<std::int32_t, 3> zeros{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axes[axis].largest == 0) continue;
+    zeros[axis] = common_zeros(axes[axis], radix);
+    const std::int32_t own = axes[axis].exponent + zeros[axis];
+    exponent = exponent ? std::min(*exponent, own) : own;
+  }
+  Grids grids;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grids[axis].step = {1, exponent.value_or(0)};
+    if (axes[axis].largest == 0) continue;
+    const std::int32_t raise = axes[axis].exponent - *exponent;
+    // A factor beyond 128 bits is 0 and never fits.
+    if (raise >= 0) {
+      grids[axis].factor = power(radix, raise);
+    } else {
+      grids[axis].divisor = power(radix, -raise);
+    }
+  }
+  return grids;
+}
+
+/// The largest power of the radix for each axis by itself.
+Grids own_power_grid(const Axes& axes, std::int32_t radix) {
+  Grids grids;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axes[axis].largest == 0) continue;
+    const std::int32_t zeros = common_zeros(axes[axis], radix);
+    grids[axis].step = {1, axes[axis].exponent + zeros};
+    grids[axis].divisor = power(radix, zeros);
+  }
+  return grids;
+}
+
+/// A step for each axis: the greatest common divisor of its offsets, or their unit where a grid
+/// number does not hold that divisor.
+Grids own_divisor_grid(const Axes& axes) {
+  Grids grids;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axes[axis].largest == 0) continue;
+    grids[axis] = kNoGrid;
+    for (const UnsignedWide divisor : {common_divisor(axes[axis]), axes[axis].unit}) {
+      const auto step = normalized({static_cast<Wide>(divisor), axes[axis].exponent}, kDecimal);
+      if (!step) continue;
+      grids[axis] = {*step, divisor, 1};
+      break;
+    }
+  }
+  return grids;
+}
+
+/// One step for the three axes: the greatest common divisor of all offsets. Only for axes on one
+/// exponent, as a transform with equal scales gives them; else nothing fits.
+Grids common_divisor_grid(const Axes& axes) {
+  Grids grids = own_divisor_grid(axes);
+  std::optional<std::int32_t> exponent;
+  UnsignedWide divisor = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axes[axis].largest == 0) continue;
+    if (exponent.value_or(axes[axis].exponent) != axes[axis].exponent) return kNoGrids;
+    exponent = axes[axis].exponent;
+    divisor = greatest_common_divisor(divisor, grids[axis].divisor);
+  }
+  const auto step = normalized({static_cast<Wide>(divisor), exponent.value_or(0)}, kDecimal);
+  if (!step) return kNoGrids;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grids[axis] = {*step, axes[axis].largest == 0 ? 1 : divisor, 1};
+  }
+  return grids;
+}
+
+LatticePoints points_on(const Axes& axes, const Grids& grids, LatticeKind kind) {
+  LatticePoints result;
+  result.lattice.kind = kind;
+  result.points.resize(axes[0].offsets.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.lattice.step[axis] = grids[axis].step;
+    result.lattice.origin[axis] = axes[axis].origin;
+    result.is_origin_rounded = result.is_origin_rounded || axes[axis].is_origin_rounded;
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+      const UnsignedWide reduced = axes[axis].offsets[i] / grids[axis].divisor;
+      result.points[i][static_cast<int>(axis)] =
+          static_cast<double>(static_cast<std::uint64_t>(reduced * grids[axis].factor));
+    }
+  }
+  return result;
+}
+
+/// The normal form on a decimal grid, if there is one; a function of the values alone. Forms with
+/// one step for all axes keep the shape of the solid, so a step of its own that is no power of ten
+/// comes last.
+std::optional<LatticePoints> on_decimal_grid(const Axes& axes) {
+  const Grids common = common_power_grid(axes, kDecimal);
+  if (fits(axes, common, kCompactEnd)) return points_on(axes, common, LatticeKind::decimal);
+  const Grids own = own_power_grid(axes, kDecimal);
+  if (fits(axes, own, kCompactEnd)) return points_on(axes, own, LatticeKind::decimal);
+  const Grids divisor = common_divisor_grid(axes);
+  if (fits(axes, divisor, kCompactEnd)) return points_on(axes, divisor, LatticeKind::decimal);
+  for (const Grids& grids : {common, own, divisor, own_divisor_grid(axes)}) {
+    if (fits(axes, grids, kCoordinateEnd)) return points_on(axes, grids, LatticeKind::decimal);
+  }
+  return std::nullopt;
+}
+
+std::optional<LatticePoints> on_binary_grid(const Axes& axes) {
+  const Grids common = common_power_grid(axes, kBinary);
+  if (fits(axes, common, kCoordinateEnd)) return points_on(axes, common, LatticeKind::binary);
+  return std::nullopt;
+}
+
+/// Offsets of grid numbers from the smallest. Nothing if they do not fit 128 bits; such values
+/// spread over more than 10^19 (2^64) steps of any grid, so no grid holds them.
+std::optional<AxisValues> axis_values(std::span<const std::array<GridNumber, 3>> points,
+                                      std::size_t axis, std::int32_t radix) {
+  AxisValues values;
+  std::optional<std::int32_t> exponent;
+  for (const auto& point : points) {
+    const GridNumber& number = point[axis];
+    if (number.mantissa == 0) continue;
+    exponent = exponent ? std::min(*exponent, number.exponent) : number.exponent;
+  }
+  values.exponent = exponent.value_or(0);
+  std::vector<Wide> aligned;
+  aligned.reserve(points.size());
+  constexpr Wide kBound = Wide{1} << 125U;  // differences of two stay within 128 bits
+  for (const auto& point : points) {
+    const GridNumber& number = point[axis];
+    const auto raised =
+        scaled_up(number.mantissa, radix, std::int64_t{number.exponent} - values.exponent);
+    if (!raised || *raised > kBound || *raised < -kBound) return std::nullopt;
+    aligned.push_back(*raised);
+  }
+  if (aligned.empty()) return values;
+  const auto smallest = std::min_element(aligned.begin(), aligned.end());
+  values.origin = points[static_cast<std::size_t>(smallest - aligned.begin())][axis];
+  const Wide minimum = *smallest;
+  values.offsets.reserve(points.size());
+  for (const Wide value : aligned) {
+    values.offsets.push_back(static_cast<UnsignedWide>(value - minimum));
+    values.largest = std::max(values.largest, values.offsets.back());
+  }
+  return values;
+}
+
+std::optional<Axes> axes_of(std::span<const std::array<GridNumber, 3>> points, std::int32_t radix) {
+  Axes axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto values = axis_values(points, axis, radix);
+    if (!values) return std::nullopt;
+    axes[axis] = std::move(*values);
+  }
+  return axes;
+}
+
+/// value = mantissa * 2^exponent with an odd mantissa.
+GridNumber binary_number(double value) {
+  if (value == 0) return {};
+  int exponent = 0;
+  const double fraction = std::frexp(value, &exponent);
+  auto mantissa = static_cast<std::int64_t>(std::ldexp(fraction, 53));
+  exponent -= 53;
+  while (mantissa % 2 == 0) {
+    mantissa /= 2;
+    ++exponent;
+  }
+  return {mantissa, exponent};
+}
+
+GridNumber renormalized(const GridNumber& number) {
+  return normalized({number.mantissa, number.exponent}, kDecimal).value_or(GridNumber{});
+}
+
+/// One axis of integers under a transform. |scale * (integer - smallest)| < 10^19 * 2^64 < 2^128.
+/// Nothing if there is no grid_origin().
+std::optional<AxisValues> transformed_values(std::span<const std::array<std::int64_t, 3>> vertices,
+                                             std::size_t axis, const GridNumber& scale,
+                                             const GridNumber& translate) {
+  AxisValues values;
+  values.exponent = scale.exponent;
+  if (vertices.empty()) return values;
+  std::int64_t smallest = vertices[0][axis];
+  for (const auto& vertex : vertices) smallest = std::min(smallest, vertex[axis]);
+  const auto origin = grid_origin(scale, smallest, translate);
+  if (!origin) return std::nullopt;
+  values.origin = origin->number;
+  values.is_origin_rounded = origin->is_rounded;
+  const auto factor = static_cast<UnsignedWide>(scale.mantissa);
+  values.unit = factor;
+  values.offsets.reserve(vertices.size());
+  for (const auto& vertex : vertices) {
+    values.offsets.push_back(factor * static_cast<UnsignedWide>(Wide{vertex[axis]} - smallest));
+    values.largest = std::max(values.largest, values.offsets.back());
+  }
+  return values;
+}
+
+Status check_transform(const Transform& transform) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (transform.scale[axis].mantissa <= 0) {
+      return Error{ErrorCode::malformed, "a transform's scale must be positive"};
+    }
+    for (const GridNumber* number : {&transform.scale[axis], &transform.translate[axis]}) {
+      if (std::abs(std::int64_t{number->exponent}) > kLargestExponent) {
+        return Error{ErrorCode::limit_exceeded, "a transform's exponent is out of range"};
+      }
+    }
+  }
+  return Done{};
+}
+
+/// Measures and boxes are doubles: a solid beyond them has none.
+Status check_world(const LatticePoints& points) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto less = [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; };
+    const auto [least, most] =
+        std::minmax_element(points.points.begin(), points.points.end(), less);
+    if (least == points.points.end()) break;
+    if (!std::isfinite(points.lattice.world((*least)[axis], axis)) ||
+        !std::isfinite(points.lattice.world((*most)[axis], axis))) {
+      return Error{ErrorCode::limit_exceeded, "a transformed coordinate exceeds the doubles"};
+    }
+  }
+  return Done{};
+}
+
+/// The transformed integers as nearest doubles: for origins that no decimal of 18 digits tells from
+/// their neighbours.
+Result<LatticePoints> rounded_transform(std::span<const std::array<std::int64_t, 3>> vertices,
+                                        const Transform& transform) {
+  std::vector<std::array<double, 3>> doubles(vertices.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const GridNumber& scale = transform.scale[axis];
+    const GridNumber& translate = transform.translate[axis];
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const auto exact = wide_sum({Wide{scale.mantissa} * vertices[i][axis], scale.exponent},
+                                  {translate.mantissa, translate.exponent}, kDecimal);
+      doubles[i][axis] =
+          exact ? nearest_double(*exact)
+                : nearest_double({Wide{scale.mantissa} * vertices[i][axis], scale.exponent}) +
+                      nearest_double({translate.mantissa, translate.exponent});
+      if (!std::isfinite(doubles[i][axis])) {
+        return Error{ErrorCode::limit_exceeded, "a transformed coordinate exceeds the doubles"};
+      }
+    }
+  }
+  auto result = lattice_of_doubles(doubles);
+  if (!result) return result;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    result->rounded.push_back(static_cast<Index>(i));
+  return result;
+}
+
+}  // namespace
+
+Result<LatticePoints> lattice_of_integers(std::span<const std::array<std::int64_t, 3>> vertices,
+                                          const Transform& transform) {
+  if (auto status = check_transform(transform); !status) return status.error();
+  Axes axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto values = transformed_values(vertices, axis, renormalized(transform.scale[axis]),
+                                     renormalized(transform.translate[axis]));
+    if (!values) return rounded_transform(vertices, transform);
+    axes[axis] = std::move(*values);
+  }
+  if (auto points = on_decimal_grid(axes)) {
+    if (auto status = check_world(*points); !status) return status.error();
+    return *std::move(points);
+  }
+  return Error{ErrorCode::limit_exceeded,
+               "the vertices spread over more than 2^53 steps of the transform"};
+}
+
+Result<LatticePoints> lattice_of_decimals(std::span<const std::array<GridNumber, 3>> vertices) {
+  std::vector<std::array<GridNumber, 3>> normal(vertices.begin(), vertices.end());
+  for (auto& vertex : normal) {
+    for (GridNumber& number : vertex) {
+      if (std::abs(std::int64_t{number.exponent}) > kLargestExponent) {
+        return Error{ErrorCode::limit_exceeded, "a coordinate's exponent is out of range"};
+      }
+      number = renormalized(number);
+    }
+  }
+  if (const auto axes = axes_of(normal, kDecimal)) {
+    if (auto points = on_decimal_grid(*axes)) return *std::move(points);
+  }
+  std::vector<std::array<double, 3>> doubles(normal.size());
+  std::vector<Index> rounded;
+  for (std::size_t i = 0; i < normal.size(); ++i) {
+    bool has_changed = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = nearest_double({normal[i][axis].mantissa, normal[i][axis].exponent});
+      if (!std::isfinite(value)) {
+        return Error{ErrorCode::limit_exceeded, "a coordinate exceeds the doubles"};
+      }
+      doubles[i][axis] = value;
+      has_changed = has_changed || shortest_decimal(value) != normal[i][axis];
+    }
+    if (has_changed) rounded.push_back(static_cast<Index>(i));
+  }
+  auto result = lattice_of_doubles(doubles);
+  if (result) result->rounded = std::move(rounded);
+  return result;
+}
+
+Result<LatticePoints> lattice_of_doubles(std::span<const std::array<double, 3>> vertices) {
+  std::vector<std::array<GridNumber, 3>> numbers(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(vertices[i][axis])) {
+        return Error{ErrorCode::malformed,
+                     "a coordinate of vertex " + std::to_string(i) + " is not a finite number"};
+      }
+      numbers[i][axis] = shortest_decimal(vertices[i][axis]);
+    }
+  }
+  if (const auto axes = axes_of(numbers, kDecimal)) {
+    if (auto points = on_decimal_grid(*axes)) return *std::move(points);
+  }
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      numbers[i][axis] = binary_number(vertices[i][axis]);
+    }
+  }
+  if (const auto axes = axes_of(numbers, kBinary)) {
+    if (auto points = on_binary_grid(*axes)) return *std::move(points);
+  }
+  LatticePoints result;
+  result.lattice.kind = LatticeKind::float64;
+  result.points.reserve(vertices.size());
+  for (const auto& v : vertices) result.points.push_back({v[0] + 0.0, v[1] + 0.0, v[2] + 0.0});
+  return result;
+}
+
+}  // namespace watertight::geometry

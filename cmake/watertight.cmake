@@ -13,7 +13,8 @@ add_library(watertight_options INTERFACE)
 target_include_directories(watertight_options INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_options(watertight_options INTERFACE
   -ffp-contract=off
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror>)
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>
+  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${WATERTIGHT_WERROR}>>:-Werror>)
 target_compile_definitions(watertight_options INTERFACE $<$<CONFIG:Debug>:WATERTIGHT_CHECKED=1>)
 if(WATERTIGHT_SANITIZE)
   target_compile_options(watertight_options INTERFACE

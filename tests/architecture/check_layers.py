@@ -38,7 +38,7 @@ MAX_SOURCES = 20
 
 # header pattern -> (what it is, path patterns it may be included from). First match decides.
 HOMES = [
-    (r"boost/(?!multiprecision)", "Boost", [r"server/", r"tests/one_definition/"]),
+    (r"boost/(?!multiprecision)", "Boost", [r"server/", r"tests/builds/"]),
     (r"spdlog/", "spdlog", [r"server/"]),
     (r"(postgresql/)?(libpq-fe|libpq-events)\.h", "libpq",
      [r"store/", r"tests/unit/store/", r"tests/integration/", r"bench/"]),

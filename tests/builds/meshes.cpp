@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Prints size and checksum of 200 meshes in mode parallelogram, whose predictions depend on every
-// rounding, after decoding them. With WATERTIGHT_WITH_VALIDATE the validator is in the program.
+// Size and checksum of 200 meshes in mode parallelogram, whose predictions depend on every rounding,
+// after decoding them.
 #include <array>
 #include <cstdio>
 
 #include "base/checksum.h"
 #include "codec/blob.h"
 #include "codec/encode_boundary.h"
+#include "tests/builds/fingerprint.h"
 #include "tests/generated/generated_solids.h"
 #include "tests/random.h"
-#ifdef WATERTIGHT_WITH_VALIDATE
-#include "validate/planarity.h"
-#endif
 
-namespace watertight {
+namespace watertight::builds {
 namespace {
 
 /// A closed block under a surface of random heights over a grid of n x n squares, in triangles.
@@ -56,25 +54,19 @@ OrientedBoundary block(test::Random& random) {
   return generated::boundary_of(arrays);
 }
 
-int print_meshes() {
+}  // namespace
+
+bool print_meshes() {
   constexpr std::uint64_t kMeshes = 200;
   for (std::uint64_t seed = 1; seed <= kMeshes; ++seed) {
     test::Random random(seed);
     const auto blob = codec::encode_boundary(block(random), {}, {.mode = Mode::parallelogram});
     const bool is_decoded = blob && decode(*blob);
-    std::printf("%u %zu %08x\n", static_cast<unsigned>(seed), blob ? blob->size() : 0,
+    std::printf("mesh %u %zu %08x\n", static_cast<unsigned>(seed), blob ? blob->size() : 0,
                 blob ? crc32c(*blob) : 0);
-    if (!is_decoded) return 1;
+    if (!is_decoded) return false;
   }
-  return 0;
+  return true;
 }
 
-}  // namespace
-}  // namespace watertight
-
-int main() {
-#ifdef WATERTIGHT_WITH_VALIDATE
-  if (watertight::validate::unit_normal({1, 0, 0}, {0, 1, 0})[2] != 1) return 1;
-#endif
-  return watertight::print_meshes();
-}
+}  // namespace watertight::builds

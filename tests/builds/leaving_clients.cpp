@@ -9,14 +9,15 @@
 
 #include "server/listener.h"
 #include "store/connection.h"
+#include "tests/builds/fingerprint.h"
 
+namespace watertight::builds {
 namespace {
 
-using watertight::CancelPoll;
-using watertight::server::HttpServer;
-using watertight::server::Lane;
-using watertight::server::Request;
-using watertight::server::Response;
+using server::HttpServer;
+using server::Lane;
+using server::Request;
+using server::Response;
 
 /// The first line of the answer to GET /, "" if none came.
 std::string status_line(std::uint16_t port) {
@@ -31,20 +32,20 @@ std::string status_line(std::uint16_t port) {
   return answer.substr(0, answer.find("\r\n"));
 }
 
-int fail(const std::string& message) {
+bool fail(const std::string& message) {
   std::fprintf(stderr, "%s\n", message.c_str());
-  return 1;
+  return false;
 }
 
 }  // namespace
 
-int main() {
+bool serve_leaving_clients() {
   // So that the linker takes the database's connections into this program.
-  if (watertight::store::connection_option("host", "h") != "host='h'")
+  if (store::connection_option("host", "h") != "host='h'")
     return fail("no libpq options");
-  watertight::server::ServerOptions options;
+  server::ServerOptions options;
   options.port = 0;
-  watertight::server::Application application;
+  server::Application application;
   application.lane = [](const Request&) { return Lane::quick; };
   application.respond = [](const Request&, const CancelPoll&) { return Response{}; };
   auto server = HttpServer::start(options, application, [](const std::string&) {});
@@ -54,5 +55,7 @@ int main() {
     if (line != "HTTP/1.1 200 OK") return fail("answer " + std::to_string(i) + ": " + line);
   }
   (*server)->stop();
-  return 0;
+  return true;
 }
+
+}  // namespace watertight::builds

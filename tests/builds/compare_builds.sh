@@ -1,0 +1,69 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# Builds the whole program in several ways and compares the fingerprints: hashes of blobs, reports
+# and verdicts of generated solids and of the documents named.
+# usage: compare_builds.sh SOURCE_DIRECTORY RELEASE_BUILD_DIRECTORY [DOCUMENT...]
+# exit status: 0 equal, 1 different or a build failed, 77 clang++ is missing
+set -eu
+
+source_directory=$1
+release=$2
+work_directory=$2/builds
+shift 2
+
+if ! command -v clang++ >/dev/null 2>&1; then
+  echo "clang++ is not installed: nothing to compare with"
+  exit 77
+fi
+mkdir -p "$work_directory"
+export ASAN_OPTIONS=detect_leaks=0 # seconds at exit; the tests of that build look for leaks
+
+# print_fingerprint NAME BUILD_DIRECTORY DOCUMENT...: into WORK_DIRECTORY/NAME.txt
+print_fingerprint() {
+  name=$1
+  program=$2/bin/build_fingerprint
+  shift 2
+  if ! "$program" "$@" >"$work_directory/$name.txt" 2>"$work_directory/$name.log"; then
+    echo "$name: the program failed"
+    tail -n 40 "$work_directory/$name.log"
+    exit 1
+  fi
+}
+
+# build NAME BUILD_DIRECTORY CMAKE_OPTION...
+build() {
+  name=$1
+  directory=$2
+  shift 2
+  if ! {
+    cmake -S "$source_directory" -B "$directory" -G Ninja -DWATERTIGHT_BENCH=OFF "$@" &&
+      cmake --build "$directory" --target build_fingerprint --parallel 2
+  } >"$work_directory/$name.log" 2>&1; then
+    echo "$name: the build failed"
+    tail -n 40 "$work_directory/$name.log"
+    exit 1
+  fi
+}
+
+build gxx-O0 "$work_directory/gxx-O0" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0
+build gxx-Os "$work_directory/gxx-Os" -DCMAKE_BUILD_TYPE=MinSizeRel
+build gxx-LTO "$work_directory/gxx-LTO" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON
+build clang-O3 "$work_directory/clang-O3" -DCMAKE_BUILD_TYPE=Release -DWATERTIGHT_SERVER=OFF \
+  -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
+build gxx-checked "$source_directory/build/checked" --preset checked
+
+print_fingerprint gxx-O3 "$release" "$@"
+print_fingerprint gxx-checked "$source_directory/build/checked" "$@"
+status=0
+for other in gxx-O0 gxx-Os gxx-LTO clang-O3; do
+  print_fingerprint "$other" "$work_directory/$other" "$@"
+done
+for other in gxx-checked gxx-O0 gxx-Os gxx-LTO clang-O3; do
+  if ! diff "$work_directory/gxx-O3.txt" "$work_directory/$other.txt"; then
+    echo "the fingerprints of gxx-O3 and $other differ"
+    status=1
+  fi
+done
+echo "$(wc -l <"$work_directory/gxx-O3.txt") lines compared between six builds"
+exit "$status"

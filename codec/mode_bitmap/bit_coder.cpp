@@ -7,15 +7,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
-
-#include "base/assert.h"
 
 namespace watertight::codec::bitmap {
 namespace {
 
-constexpr std::uint32_t kHalf = 32768;
 constexpr std::uint32_t kLeast =
     32;  // no bit is ever cheaper than 2^-11 of a bit, nor dearer than 11
 constexpr std::uint32_t kLongestMemory = 30;
@@ -106,23 +102,6 @@ void BitEncoder::bit(bool value, AdaptiveBit& model) {
   model.learn(value);
 }
 
-void BitEncoder::uniform(std::uint64_t value, std::uint64_t size) {
-  WATERTIGHT_ASSERT(value < size);
-  // Truncated binary: the first `shorts` values take one bit less than the others.
-  const int width = static_cast<int>(std::bit_width(size)) - 1;
-  const std::uint64_t shorts = (std::uint64_t{2} << width) - size;
-  const bool is_short = value < shorts;
-  const std::uint64_t word = is_short ? value : value + shorts;
-  for (int i = is_short ? width - 1 : width; i >= 0; --i) {
-    const bool next = ((word >> i) & 1U) != 0;
-    if (coding_ == BitCoding::plain) {
-      raw_bit(next);
-    } else {
-      narrow(next, kHalf);
-    }
-  }
-}
-
 void BitEncoder::unary(std::uint64_t value, AdaptiveBit& model) {
   for (std::uint64_t i = 0; i < value; ++i) bit(true, model);
   bit(false, model);
@@ -185,16 +164,6 @@ bool BitDecoder::bit(AdaptiveBit& model) {
   const bool value = narrow(model.ones_of_65536());
   model.learn(value);
   return value;
-}
-
-std::uint64_t BitDecoder::uniform(std::uint64_t size) {
-  const int width = static_cast<int>(std::bit_width(size)) - 1;
-  const std::uint64_t shorts = (std::uint64_t{2} << width) - size;
-  const auto next = [this] { return coding_ == BitCoding::plain ? raw_bit() : narrow(kHalf); };
-  std::uint64_t word = 0;
-  for (int i = 0; i < width; ++i) word = (word << 1) | static_cast<std::uint64_t>(next());
-  if (word < shorts) return word;
-  return ((word << 1) | static_cast<std::uint64_t>(next())) - shorts;
 }
 
 std::uint64_t BitDecoder::unary(std::uint64_t limit, AdaptiveBit& model) {

@@ -2,8 +2,8 @@
 //
 // One bit at a time, either packed eight to a byte (plain) or through an adaptive binary arithmetic
 // coder whose models and arithmetic are integers only, so that every compiler and machine writes
-// the same bytes. For the bitmap, the facet section and the order section of a blob. Source: the
-// carry-less coder of M. Mahoney's lpaq (32-bit interval, 16-bit probabilities).
+// the same bytes. For the marks and the facets of mode bitmap. Source: the carry-less coder of
+// M. Mahoney's lpaq (32-bit interval, 16-bit probabilities).
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,6 @@ class BitEncoder {
   explicit BitEncoder(BitCoding coding) : coding_(coding) {}
   /// One bit under a model; a plain encoder ignores the model.
   void bit(bool value, AdaptiveBit& model);
-  /// A number in [0, size) with all values equally likely. Requires value < size.
-  void uniform(std::uint64_t value, std::uint64_t size);
   /// The number of ones before a zero, each under `model`.
   void unary(std::uint64_t value, AdaptiveBit& model);
   /// Ends the stream.
@@ -61,8 +59,6 @@ class BitDecoder {
  public:
   BitDecoder(ByteView bytes, BitCoding coding);
   bool bit(AdaptiveBit& model);
-  /// Requires size > 0.
-  std::uint64_t uniform(std::uint64_t size);
   /// At most `limit`; fails beyond.
   std::uint64_t unary(std::uint64_t limit, AdaptiveBit& model);
   bool failed() const { return failed_; }

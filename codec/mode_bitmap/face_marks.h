@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The bitmap: one mark per face of the Delaunay tetrahedralization in the order of sorted vertex
-// triples, plain or arithmetic coded under what the marks before say (docs/format-0.md, "Mode
-// bitmap"). And the list of unrecovered faces.
+// triples, plain or arithmetic coded under what the marks before say (docs/format-plain.md,
+// "Bitmap"). And the list of unrecovered faces.
 #pragma once
 
 #include <span>

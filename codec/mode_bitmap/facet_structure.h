@@ -2,7 +2,7 @@
 //
 // The compact facet section of mode bitmap: one flag per edge between two boundary triangles says
 // whether the edge lies inside a facet; orientation and exterior marks take a few bits more
-// (docs/format-0.md, "Mode bitmap"). Where this cannot tell the solid, the caller lists facets.
+// (docs/format-plain.md, "Facets"). Where this cannot tell the solid, the caller lists facets.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The vertex section and the Steiner section of a blob (docs/format-0.md): integer coordinates as
-// differences of sorted vertices, anything else as IEEE doubles.
+// The vertex section and the Steiner section of modes raw and bitmap (docs/format-plain.md):
+// integer coordinates as differences of sorted vertices, anything else as IEEE doubles.
 #pragma once
 
 #include <span>

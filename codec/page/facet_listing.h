@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Shells, facets and rings listed with plain vertex indices: the facet section of mode raw, and of
-// mode bitmap where the marked faces alone do not tell the facets (docs/format-0.md).
+// mode bitmap where the marked faces alone do not tell the facets (docs/format-plain.md).
 #pragma once
 
 #include "base/bytes.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Based on: M. Mahoney, lpaq1 (2007), the carry-less binary arithmetic coder.
-// Departures: 16-bit probabilities; the final flush writes the shortest byte string inside the
-// interval; a decoder that runs past the end says so.
+// Departures: probabilities have 16 bits; the last bytes are the shortest ones inside the interval;
+// a decoder that runs past the end fails.
 #include "codec/mode_bitmap/bit_coder.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace watertight::codec::bitmap {
 namespace {
 
 constexpr std::uint32_t kLeast =
-    32;  // no bit is ever cheaper than 2^-11 of a bit, nor dearer than 11
+    32;  // of 65536: a bit costs at least about 1/1400 of a bit, at most 11 bits
 constexpr std::uint32_t kLongestMemory = 30;
 
-// 65536 / (count + 1.6): the first observation moves the estimate by 0.62 of the error, the 31st
-// and all later ones by 1/32.
+// The rate is 65536 / (count + 1.6): the first observation moves the estimate by 0.62 of the error,
+// the 31st and all later ones by 1/32.
 constexpr std::array<std::uint32_t, kLongestMemory + 1> make_rates() {
   std::array<std::uint32_t, kLongestMemory + 1> rates{};
   for (std::uint32_t count = 0; count <= kLongestMemory; ++count) {
@@ -35,8 +35,8 @@ std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones_of
   return low + static_cast<std::uint32_t>((range * ones_of_65536) >> 16);
 }
 
-/// The last bytes of an arithmetic stream: the decoder reads zeros past the end, so these are the
-/// shortest bytes b with low <= b000 <= high, and the smallest of them.
+/// The last bytes of an arithmetic stream: the shortest ones that, followed by zeros, lie in
+/// [low, high], and of those the smallest. (The decoder reads zeros past the end.)
 struct Tail {
   std::array<std::uint8_t, kLookahead> bytes{};
   std::ptrdiff_t size = 0;

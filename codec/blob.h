@@ -46,7 +46,7 @@ Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options = {})
 /// What a blob is made of, for `info` and `bench/ratio`.
 struct BlobInfo {
   std::uint8_t version = 0;
-  std::uint8_t models = 0;  // number of the set of priors; 0 for none
+  std::uint8_t models = 0;  // number of the set of priors; 0: neutral
   Mode mode = Mode::raw;
   Acceptance acceptance;
   std::uint32_t srid = 0;
@@ -69,7 +69,7 @@ struct BlobInfo {
 };
 
 struct Decoded {
-  Solid solid;  // in source order if the blob has an order section, else canonical
+  Solid solid;  // in source order if the blob holds that, else canonical
   BlobInfo info;
 };
 

@@ -3,19 +3,10 @@
 
 #include "codec/page.h"
 #include "codec/page/container.h"
-#include "codec/version_0/version_0.h"
 
 namespace watertight::codec {
-namespace {
-
-constexpr std::size_t kVersionAt = 2;
-
-}  // namespace
 
 Result<Decoded> decode(ByteView blob, const Limits& limits) {
-  if (blob.size() > kVersionAt && blob[kVersionAt] == 0 && blob.size() <= limits.bytes) {
-    return decode_version_0(blob, limits);
-  }
   const auto page = read_page_bytes(blob, PageKind::blob, limits);
   if (!page) return page.error();
   return decoded_of(*page, 0);

@@ -10,7 +10,7 @@
 namespace watertight::codec {
 namespace {
 
-/// What is to be encoded, and how.
+/// A boundary to be encoded, and what it was accepted under.
 struct Source {
   const OrientedBoundary* boundary;
   Acceptance acceptance;
@@ -24,7 +24,7 @@ constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
                            .rings = kNone,
                            .shells = kNone};
 
-/// The number of the first solid that does not come back, or all of them.
+/// The number of the first solid that does not come back, or the number of solids if all do.
 Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
                                      const std::vector<Source>& sources,
                                      const std::vector<PageSolid>& stored,
@@ -42,7 +42,7 @@ Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
   return sources.size();
 }
 
-/// Automatic mode will try another mode than the one that it took.
+/// Makes automatic mode take another mode than the one that it has taken.
 void decline_mode(PageSolid& solid) {
   if (solid.mode == Mode::raw) return;
   solid.declined |= 1U << static_cast<unsigned>(solid.mode);
@@ -50,10 +50,10 @@ void decline_mode(PageSolid& solid) {
   solid.plain = {};
 }
 
-/// In automatic mode each solid takes the mode that codes it in fewest bytes after the solids
+/// In automatic mode each solid takes the mode that codes it in the fewest bytes, after the solids
 /// before it. A solid that does not decode to itself is stored raw. If the bytes are so few that
-/// decoders reject them as a decompression bomb (docs/format.md, "Limits"), all take their next
-/// best mode.
+/// decoders refuse them as a decompression bomb (docs/format.md, "Limits"), all solids take their
+/// next best mode.
 Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
                            const EncodeOptions& options) {
   PageContents page;
@@ -85,9 +85,10 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
   return Error{ErrorCode::not_encodable, "no mode brings the solid back"};
 }
 
-/// Automatic mode looks no further than the next solid, while models learn from those before. Where
-/// little is to be coded, one mode for the whole page can therefore be smaller: each is tried too.
-/// Larger pages win next to nothing (The Hague: 2 bytes of 20,717) for a third of the time.
+/// Automatic mode chooses for one solid at a time, but models learn from the solids before. A small
+/// page can therefore be smaller in one mode for all its solids: pages up to this size are tried in
+/// each mode too. Larger pages would win next to nothing (The Hague: 2 bytes of 20,717) for a third
+/// of the time.
 constexpr std::size_t kFewBytes = 2048;
 
 Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The encoder without the promise of validity: for tests, fuzzing and benches on dirty meshes. In
-// codec/, encode(ValidSolid) calls it, and page files and explain() for solids of decoded blobs,
-// which keep the acceptance that their blob claims. Other folders call encode().
+// The encoder for boundaries that were not proven valid: for tests, fuzzing and benches on dirty
+// meshes. In codec/, encode(ValidSolid) calls it; so do page files and explain() for solids of
+// decoded blobs, which keep the acceptance that their blob claims. Other folders call encode().
 #pragma once
 
 #include <span>
@@ -11,12 +11,12 @@
 
 namespace watertight::codec {
 
-/// Encodes, decodes, compares, and only then returns. In source order with `keep_order`, else the
-/// canonical form. Errors: not_encodable.
+/// Encodes, decodes, compares, and only then returns. The blob holds the source order if the
+/// options have `keep_order`, else the canonical form. Errors: not_encodable.
 Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
                               const EncodeOptions& options = {});
 
-/// The same for a page (codec/page.h) of 1 to kMaxPageSolids boundaries on one grid, in one
+/// Does the same for a page (codec/page.h) of 1 to kMaxPageSolids boundaries on one grid, in one
 /// reference system. Errors: not_encodable; invalid_argument.
 Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundaries,
                                 const Acceptance& acceptance, const EncodeOptions& options = {});

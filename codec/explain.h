@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a solid takes in each mode, and what of it goes where: for `encode --explain`.
+// How many bytes a solid takes in each mode, and for which parts: for `encode --explain`.
 #pragma once
 
 #include <vector>
@@ -11,11 +11,12 @@ namespace watertight::codec {
 
 struct ModeSize {
   Mode mode = Mode::raw;
-  std::size_t bytes = 0;              // of the whole blob; 0: the mode cannot hold the solid
-  std::vector<BlobInfo::Part> parts;  // of those bytes
+  std::size_t bytes = 0;              // size of the blob; 0 if the mode cannot hold the solid
+  std::vector<BlobInfo::Part> parts;  // the parts of these bytes
 };
 
-/// Encodes what `blob` holds anew in every mode. Errors: as decode(). Cost: that of all modes.
+/// Encodes the solid of `blob` anew in every mode. Errors: those of decode(). Cost: encoding in all
+/// modes.
 Result<std::vector<ModeSize>> explain(ByteView blob, const Limits& limits = {});
 
 }  // namespace watertight::codec

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint8_t kMagic[4] = {'W', 'T', 'P', 'F'};
 constexpr std::size_t kHeadBytes = 5;
 constexpr std::size_t kTailBytes = 12;
-// At most this many pages, one for each frame, wait for more solids.
+// The most pages, one for each frame, that wait for more solids at a time.
 constexpr std::size_t kMaxOpenPages = 16;
 
 bool has_magic(ByteView bytes) {
@@ -93,7 +93,7 @@ Result<Bytes> PageFileWriter::finish() && {
   for (const Entry& entry : index_) {
     index.varint(entry.bytes);
     index.varint(entry.numbers.size());
-    // Gaps between the numbers: almost always 0.
+    // The gaps between the numbers are almost always 0.
     std::uint64_t next = 0;
     for (const std::uint64_t number : entry.numbers) {
       index.varint(number - next);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A file of pages with an index: solids in the order they were given, packed into pages of those
-// that share one, and each found again without reading the others (docs/format.md, "Container").
+// A file of pages with an index (docs/format.md, "Container"). Solids are numbered in the order in
+// which they were added, and packed into pages of solids on one grid. A reader finds a solid by its
+// number and decodes only its page.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +13,23 @@
 
 namespace watertight::codec {
 
-/// Collects solids and writes a page whenever one is full. Memory: the open pages, at most
+/// Collects solids and writes a page whenever one is full. Memory: the open pages, with fewer than
 /// `page_solids` solids for each grid, reference system and acceptance that occurs.
 class PageFileWriter {
  public:
-  /// `page_solids` from 1 to kMaxPageSolids: fewer make random access faster, more make the file
-  /// smaller.
+  /// `page_solids`, from 1 to kMaxPageSolids, is the number of solids of a full page: fewer make
+  /// random access faster, more make the file smaller.
   explicit PageFileWriter(std::size_t page_solids = kMaxPageSolids, EncodeOptions options = {});
 
   /// Errors: not_encodable.
   Status add(const ValidSolid& solid);
-  /// The solid of a blob, accepted as the blob says; without Steiner vertices. For stores, which
-  /// keep blobs of valid solids only. Errors: not_encodable; those of decode().
+  /// Adds the solid of a blob, with the acceptance that the blob states and without its Steiner
+  /// vertices. For stores, which keep blobs of valid solids only. Errors: not_encodable; those of
+  /// decode().
   Status add_blob(ByteView blob, const Limits& limits = {});
-  /// What was written since the last call, to be appended to the file.
+  /// Returns the bytes written since the last call; the caller appends them to the file.
   Bytes take();
-  /// The last pages and the index. Errors: not_encodable.
+  /// Returns the last bytes: the pages that are still open, and the index. Errors: not_encodable.
   Result<Bytes> finish() &&;
 
  private:
@@ -59,13 +61,14 @@ class PageFileReader {
 
   std::uint64_t size() const { return place_.size(); }
   std::size_t page_count() const { return pages_.size(); }
-  /// The solid of this number, below size(). Decodes its page. Errors: as decode_page().
+  /// The solid of this number, which is below size(). Decodes its page. Errors: invalid_argument;
+  /// those of decode_page().
   Result<Decoded> solid(std::uint64_t number) const;
-  /// All solids of one page and their numbers. Errors: as decode_page().
   struct NumberedSolid {
     std::uint64_t number = 0;
     Decoded decoded;
   };
+  /// All solids of one page and their numbers. Errors: those of decode_page().
   Result<std::vector<NumberedSolid>> page(std::size_t page) const;
 
  private:
@@ -77,11 +80,11 @@ class PageFileReader {
 
   Limits limits_;
   std::vector<ByteView> pages_;
-  std::vector<std::vector<std::uint64_t>> numbers_;  // of each page
-  std::vector<Place> place_;                         // of each solid
+  std::vector<std::vector<std::uint64_t>> numbers_;  // page -> the numbers of its solids
+  std::vector<Place> place_;                         // solid -> its page and slot
 };
 
-/// True for what PageFileWriter writes.
+/// True if the bytes begin as those of a page file.
 bool is_page_file(ByteView bytes);
 
 }  // namespace watertight::codec

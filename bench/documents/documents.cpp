@@ -10,7 +10,6 @@
 #include <string>
 
 #include "codec/page/source_order.h"
-#include "codec/version_0/order_section.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/container.h"
 
@@ -29,8 +28,7 @@ struct Sizes {
   double order = 0;  // order sections
   std::size_t solids = 0;
   std::size_t closed = 0;           // solids whose order was measured
-  std::size_t order_bytes = 0;      // of version 0
-  std::uint64_t order_alone = 0;    // of version 1 with a neutral bank per solid, 1/65536 bit
+  std::uint64_t order_alone = 0;    // with a neutral bank per solid, 1/65536 bit
   std::uint64_t order_in_page = 0;  // with a bank for 128 solids
 };
 
@@ -68,7 +66,7 @@ void add_blobs(const pipeline::StoredDocument& document, Sizes& sizes) {
   }
 }
 
-/// The order of every closed solid, in both versions of the format.
+/// The order of every closed solid.
 void add_orders(const Document& document, Sizes& sizes) {
   constexpr std::size_t kPage = 128;
   const codec::ModelLayout layout{codec::order_families(), {}};
@@ -79,7 +77,6 @@ void add_orders(const Document& document, Sizes& sizes) {
       if (!boundary) continue;
       geometry::CanonicalSolid canonical = geometry::canonical_form(*boundary);
       const Solid& solid = canonical.boundary.solid();
-      sizes.order_bytes += codec::write_order(solid, canonical.order).size();
       codec::ModelBank neutral(layout);
       codec::EntropyStream alone = codec::EntropyStream::meter();
       codec::code_order(alone, neutral, solid, canonical.order);
@@ -121,8 +118,8 @@ int main(int argc, char** argv) {
   std::printf(
       "| file | bytes | same text | same by file | layout | skeletons | alone | together | "
       "file bytes | paged | blobs | order | solids "
-      "| closed | order v0 | v1 alone | v1 in pages "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| closed | order alone | in pages "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   const bool texts_only = argc > 1 && std::string_view(argv[1]) == "--texts";
   for (int i = texts_only ? 2 : 1; i < argc; ++i) {
     const std::string name = argv[i];
@@ -149,12 +146,11 @@ int main(int argc, char** argv) {
     if (!same_text || same_file.starts_with("no:") || same_file == "no") ++failures;
     std::printf(
         "| %s | %zu | %s | %s | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %.0f | %zu "
-        "| %zu | %.2f | %.2f | %.2f |\n",
+        "| %zu | %.2f | %.2f |\n",
         file.c_str(), text.size(), same_text ? "yes" : "NO", same_file.c_str(), sizes.layout,
         sizes.texts, sizes.alone, sizes.together, sizes.container, sizes.paged, sizes.blobs,
-        sizes.order, sizes.solids, sizes.closed,
-        bytes_each(sizes.order_bytes * 8 * 65536, sizes.closed),
-        bytes_each(sizes.order_alone, sizes.closed), bytes_each(sizes.order_in_page, sizes.closed));
+        sizes.order, sizes.solids, sizes.closed, bytes_each(sizes.order_alone, sizes.closed),
+        bytes_each(sizes.order_in_page, sizes.closed));
     std::fflush(stdout);
   }
   return failures == 0 ? 0 : 1;

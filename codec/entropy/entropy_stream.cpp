@@ -19,7 +19,8 @@ constexpr std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32
   return low + static_cast<std::uint32_t>((static_cast<std::uint64_t>(high - low) * ones) >> 16);
 }
 
-/// The shortest bytes that, with zeros after them, lie in [low, high]; of those the smallest.
+/// The last bytes of a stream: the shortest ones that, followed by zeros, lie in [low, high]; of
+/// those the smallest.
 struct Tail {
   std::array<std::uint8_t, kWindow> bytes{};
   std::size_t size = 0;
@@ -60,7 +61,8 @@ constexpr std::uint32_t cost_of(std::uint32_t ones) {
   return (static_cast<std::uint32_t>(whole) << kCostBits) - fraction;
 }
 
-/// By the probability's upper 12 bits, at the middle of what shares them.
+/// Costs by the upper 12 bits of a probability, computed for the middle of the 16 probabilities
+/// that share these bits.
 constexpr auto kCosts = [] {
   std::array<std::uint32_t, 4096> costs{};
   for (std::uint32_t i = 0; i < costs.size(); ++i) costs[i] = cost_of(16 * i + 8);

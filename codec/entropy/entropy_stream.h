@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One stream of binary decisions through an arithmetic coder, in one of three directions: written,
-// read, or only measured. A part of the format is one function for all three: it codes each
-// decision with the value it has when writing, and goes on with the value that comes back.
-// Integers only. Source: the carry-less coder of M. Mahoney's lpaq (32-bit interval).
+// One stream of binary decisions through an arithmetic coder, in one of three directions: it is
+// written, read, or only measured. Each part of the format is one function for all three
+// directions. The function hands each decision to the stream, with the true value unless it reads,
+// and goes on with the value that the stream returns. All arithmetic is on integers. Source: the
+// carry-less coder of M. Mahoney's lpaq (32-bit interval).
 #pragma once
 
 #include <algorithm>
@@ -14,11 +15,11 @@
 
 namespace watertight::codec {
 
-/// What decisions are about, for reports on sizes.
+/// The parts that a report on sizes tells apart.
 enum class StreamPart : std::uint8_t { frame, position, connectivity, facets, coordinates, order };
 inline constexpr std::size_t kStreamParts = 6;
 
-/// log2 of the cost unit of a measuring stream: costs are in 1/65536 bit.
+/// Costs are in units of 2^-kCostBits bit: in 1/65536 bit.
 inline constexpr int kCostBits = 16;
 
 class EntropyStream {
@@ -33,25 +34,28 @@ class EntropyStream {
   /// Codes one decision whose probability of being 1 is `ones_of_65536` / 65536, 1 to 65535.
   /// Returns `value` when writing or measuring, else what was read.
   bool code(bool value, std::uint32_t ones_of_65536);
-  /// A number below `size` with all values equally likely (truncated binary). Requires size > 0
-  /// and, unless reading, value < size.
+  /// Codes a number below `size` with all values equally likely (truncated binary). Requires size >
+  /// 0 and, unless reading, value < size.
   std::uint64_t code_uniform(std::uint64_t value, std::uint64_t size);
-  /// The `count` low bits of a number, high ones first, all equally likely. Requires count <= 64.
+  /// Codes the `count` low bits of a number, high ones first, all equally likely. Requires count <=
+  /// 64.
   std::uint64_t code_bits(std::uint64_t value, int count);
 
-  /// What was read cannot be: reading yields zeros from now on. A reader that runs past the end of
-  /// its bytes fails by itself. Callers bound their loops and ask wherever one could be long.
+  /// Says that what was read cannot be. Reading yields zeros from then on. A reader that runs past
+  /// the end of its bytes fails by itself. Callers bound their loops, and ask failed() in every
+  /// loop that could be long.
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
 
-  /// Reading: how many bytes were looked at, with the few that the coder reads ahead.
+  /// When reading: how many bytes were looked at, including the few that the coder reads ahead.
   std::size_t position() const { return std::min(position_, source_.size()); }
-  /// What the decisions so far take, in 1/65536 bit; within 0.1 % of the bytes.
+  /// The cost of the decisions so far, in 1/65536 bit; within 0.1 % of the bytes.
   std::uint64_t cost() const;
   std::uint64_t cost(StreamPart part) const { return costs_[static_cast<std::size_t>(part)]; }
-  /// The decisions from here on belong to `part`. Changes nothing but the account of the costs.
+  /// Books the costs of the decisions from here on under `part`. Changes nothing else.
   void enter(StreamPart part) { part_ = static_cast<std::size_t>(part); }
-  /// Ends a written stream: the shortest bytes, and of those the smallest.
+  /// Ends a written stream. Returns the shortest bytes that a reader takes for it, and of those the
+  /// smallest.
   Bytes finish() &&;
   /// True if nothing failed and the bytes end exactly as a writer would have ended them.
   bool is_finished() const;

@@ -9,7 +9,8 @@
 namespace watertight::codec {
 namespace {
 
-// The logistic domain: x stands for ln(p / (1 - p)) = x / 256, from -2047 to 2047.
+// In the logistic domain an integer x from -2047 to 2047 stands for the probability p with
+// ln(p / (1 - p)) = x / 256.
 constexpr std::int32_t kDomain = 2047;
 constexpr std::uint32_t kLeastProbability = 32;  // of 65536; the greatest likewise
 
@@ -29,7 +30,8 @@ constexpr std::int32_t squash(std::int32_t x) {
   return (kSquash[i] * (64 - rest) + kSquash[i + 1] * rest) >> 6;
 }
 
-/// By the upper 12 bits of a probability: the least x whose squash() is not below it.
+/// The inverse of squash() by the upper 12 bits of a probability: the least x whose squash() is not
+/// below that probability.
 constexpr auto kStretch = [] {
   std::array<std::int16_t, 4096> table{};
   std::int32_t x = -kDomain;
@@ -40,7 +42,7 @@ constexpr auto kStretch = [] {
   return table;
 }();
 
-// A counter: 22 bits of probability above 10 bits of observations.
+// A counter has 22 bits for its probability, and below them 10 bits for the number of observations.
 constexpr std::uint32_t kMaxCount = 250;
 constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, never observed
 
@@ -53,7 +55,7 @@ constexpr auto kRates = [] {
   return rates;
 }();
 
-/// How far a counter that observed n decisions is to be believed, of 256: n / (n + 0.4).
+/// How much a counter that has observed n decisions counts, of 256: n / (n + 0.4).
 constexpr auto kConfidence = [] {
   std::array<std::int32_t, kMaxCount + 1> table{};
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(table.size()); ++n) {
@@ -74,7 +76,8 @@ std::int32_t input_of(std::uint32_t counter) {
   return (kStretch[counter >> 20] * kConfidence[counter & 1023U]) >> 8;
 }
 
-// Weights: 16.16. A bias comes after the weights of the inputs.
+// Weights are fixed-point numbers, 16.16. The weight of a constant input follows those of the
+// inputs.
 constexpr std::int32_t kBiasInput = 64;
 constexpr std::int64_t kWeightLimit = 8 << 16;
 constexpr std::uint32_t kMaxMixed = 1000;
@@ -199,7 +202,8 @@ void ModelBank::undo(const Change& change) {
 
 BankTrial::BankTrial(ModelBank& bank, std::size_t vertices)
     : bank_(bank), begin_(bank.changes_.size()) {
-  // A vertex changes some hundred numbers, each noted for several times the cost of copying one.
+  // Coding a vertex changes some hundred numbers, and noting a change costs several times as much
+  // as copying a number.
   constexpr std::size_t kCountersPerVertex = 1000;
   if (vertices > bank.counter_count() / kCountersPerVertex) {
     before_ = bank;
@@ -239,7 +243,7 @@ std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number
   WATERTIGHT_ASSERT(contexts.size() == lengths.inputs);
   std::array<std::uint32_t, kMaxInputs> at{};
 
-  // The length of the number, 0 for 0: that many zeros, a one.
+  // The bit length of the number (0 for 0) in unary: that many zeros, then a one.
   const auto true_length = static_cast<int>(std::bit_width(value));
   int length = 0;
   while (true) {
@@ -254,7 +258,7 @@ std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number
   }
   if (length <= 1) return static_cast<std::uint64_t>(length);
 
-  // The bits after the first: some under models, the others plain.
+  // The bits after the first: the next three under models, the others plain.
   std::uint64_t result = 1;
   const int modelled = std::min(length - 1, kModelledBits);
   for (int bit = 0; bit < modelled; ++bit) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The adaptive models of a part of the format: for each family of decisions some tables of counters
-// indexed by context, mixed in the logistic domain by weights that learn too. Integers only, so
-// that every machine computes the same probabilities. A bank starts neutral or from a prior, the
-// state that training left behind (docs/format.md, "Models").
+// The adaptive models of a part of the format. Each family of decisions has tables of counters,
+// indexed by contexts; weights, which learn too, mix the counters in the logistic domain. All
+// arithmetic is on integers, so that every machine computes the same probabilities. A bank starts
+// neutral or from a prior, the state that training left behind (docs/format.md, "Models").
 // Source: M. Mahoney, "Adaptive weighing of context models for lossless data compression" (2005).
 #pragma once
 
@@ -19,35 +19,36 @@
 
 namespace watertight::codec {
 
-/// At most this many contexts of a decision are mixed.
+/// The most inputs that a family may have.
 inline constexpr std::size_t kMaxInputs = 24;
 
-/// The shape of a family: one weight set per selector, one table of `contexts[i]` counters per
-/// input; inputs end at the first 0.
+/// The shape of a family: it has one set of weights for each selector, and input i has a table of
+/// `contexts[i]` counters. Inputs end at the first 0.
 struct FamilyShape {
   std::uint32_t selectors = 1;
   std::array<std::uint32_t, kMaxInputs> contexts{};
 };
 
-/// The shape of a family of numbers (code_number), with at most kMaxInputs - 1 inputs. Takes about
-/// 160 counters per context.
+/// The shape of a family of numbers (code_number), with at most kMaxInputs - 1 inputs. Each context
+/// takes about 160 counters.
 struct NumberShape {
   std::uint32_t selectors = 1;
   std::array<std::uint32_t, kMaxInputs> contexts{};
 };
 
-/// Families and numbers are each numbered in the order of the layout.
+/// The models of a bank. A family is named by its place in `families`, a number by its place in
+/// `numbers`.
 struct ModelLayout {
   std::span<const FamilyShape> families;
   std::span<const NumberShape> numbers;
   bool is_agile = false;  // weights begin at the mean of the inputs and move twice as fast
 };
 
-/// What of a trained bank a prior keeps.
+/// Says how much of a trained bank a prior keeps.
 struct PriorShape {
-  std::uint32_t max_count = 10;   // confidence in counters: a bank still adapts
-  std::uint32_t least_count = 1;  // counters seen less often are as good as new
-  bool has_weights = true;        // else the inputs count alike, and the weights adapt fast
+  std::uint32_t max_count = 10;   // observations that a counter keeps: so a bank still adapts
+  std::uint32_t least_count = 1;  // counters with fewer observations are stored as new ones
+  bool has_weights = true;        // else all inputs of a family start with the same weight
 };
 
 class ModelBank {
@@ -62,26 +63,27 @@ class ModelBank {
             std::initializer_list<std::uint32_t> contexts, bool value) {
     return code(stream, family, selector, std::span(contexts.begin(), contexts.size()), value);
   }
-  /// The probability of 65536 that code() would code this decision with.
+  /// The probability, of 65536, with which code() would code this decision.
   std::uint32_t probability(std::uint32_t family, std::uint32_t selector,
                             std::span<const std::uint32_t> contexts) const;
 
-  /// A number from 0 on: its bit length in unary and the three bits after the first by mixed
-  /// models, the rest plain. Requires value < 2^62. Bit lengths above `max_length` fail the stream.
+  /// Codes a number that is not negative: its bit length in unary and the three bits after the
+  /// first under mixed models, the rest in plain bits. Requires value < 2^62. A bit length above
+  /// `max_length` fails the stream.
   std::uint64_t code_number(EntropyStream& stream, std::uint32_t number, std::uint32_t selector,
                             std::initializer_list<std::uint32_t> contexts, std::uint64_t value,
                             int max_length = 62);
-  /// The same for magnitude and sign, the sign under the same contexts.
+  /// Codes the magnitude in the same way, then the sign under the same contexts.
   std::int64_t code_signed(EntropyStream& stream, std::uint32_t number, std::uint32_t selector,
                            std::initializer_list<std::uint32_t> contexts, std::int64_t value,
                            int max_length = 62);
 
-  /// The state as bytes, and back. load() is false (and the bank neutral) if the bytes are
-  /// no state of this layout.
+  /// save() returns the state as bytes, load() sets it. load() returns false and leaves the bank
+  /// neutral if the bytes are no state of this layout.
   Bytes save(const PriorShape& shape) const;
   bool load(ByteView state);
 
-  /// Sizes, for reports.
+  /// For reports on sizes.
   std::size_t counter_count() const { return counters_.size(); }
 
  private:
@@ -93,16 +95,17 @@ class ModelBank {
     std::array<std::uint32_t, kMaxInputs> first_counter{};
     std::array<std::uint32_t, kMaxInputs> sizes{};
   };
-  /// What a decision is coded with: the counters' opinions and their weighted sum. Only as many as
-  /// the family has inputs are ever set: clearing the rest took a third of the time of mix().
+  /// The inputs of one decision and the probability that their weighted sum gives. Only as many
+  /// elements are set as the family has inputs: clearing the rest took a third of the time of
+  /// mix().
   struct Mix {
     Mix() {}  // NOLINT(modernize-use-equals-default, cppcoreguidelines-pro-type-member-init)
     std::array<std::uint32_t, kMaxInputs> counter;
     std::array<std::int32_t, kMaxInputs + 1> input;
     std::uint32_t ones;
   };
-  /// A change of a trial: the place (counters, then weights, then decisions seen) and what was
-  /// there.
+  /// A change that a trial made: its place (counters, then weights, then decisions seen) and the
+  /// value before.
   struct Change {
     std::uint32_t place = 0;
     std::uint32_t before = 0;
@@ -123,13 +126,13 @@ class ModelBank {
   std::vector<std::uint32_t> counters_;  // 22 bits of probability, 10 of count
   std::vector<std::int32_t> weights_;    // 16.16
   std::vector<std::uint32_t> mixed_;     // decisions seen by each weight set
-  std::vector<Change> changes_;          // since the first trial that goes on
-  int trials_ = 0;                       // that go on
+  std::vector<Change> changes_;          // since the beginning of the outermost trial
+  int trials_ = 0;                       // trials that live now
 };
 
-/// While it lives, the bank may code what is only measured; then the bank is as before. Trials may
-/// be nested. Cost: for a solid of few vertices that of noting each change, else a copy of the
-/// bank.
+/// While a trial lives, the bank may code what is only measured; when the trial ends, the bank is
+/// as it was before. Trials may be nested. Cost: for a solid of few vertices each change is noted,
+/// for one of many the bank is copied.
 class BankTrial {
  public:
   BankTrial(ModelBank& bank, std::size_t vertices);
@@ -139,8 +142,8 @@ class BankTrial {
 
  private:
   ModelBank& bank_;
-  std::optional<ModelBank> before_;  // of many vertices
-  std::size_t begin_;                // of few: in the changes
+  std::optional<ModelBank> before_;  // for many vertices: the copy
+  std::size_t begin_;                // for few: where the changes of this trial begin
 };
 
 }  // namespace watertight::codec

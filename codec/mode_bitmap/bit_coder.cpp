@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Based on: M. Mahoney, lpaq1 (2007), the carry-less binary arithmetic coder.
-// Departures: 16-bit probabilities; the final flush writes the shortest byte string inside the
-// interval; a decoder that runs past the end says so.
+// Departures: probabilities have 16 bits; the last bytes are the shortest ones inside the interval;
+// a decoder that runs past the end fails.
 #include "codec/mode_bitmap/bit_coder.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
-
-#include "base/assert.h"
 
 namespace watertight::codec::bitmap {
 namespace {
 
-constexpr std::uint32_t kHalf = 32768;
 constexpr std::uint32_t kLeast =
-    32;  // no bit is ever cheaper than 2^-11 of a bit, nor dearer than 11
+    32;  // of 65536: a bit costs at least about 1/1400 of a bit, at most 11 bits
 constexpr std::uint32_t kLongestMemory = 30;
 
-// 65536 / (count + 1.6): the first observation moves the estimate by 0.62 of the error, the 31st
-// and all later ones by 1/32.
+// The rate is 65536 / (count + 1.6): the first observation moves the estimate by 0.62 of the error,
+// the 31st and all later ones by 1/32.
 constexpr std::array<std::uint32_t, kLongestMemory + 1> make_rates() {
   std::array<std::uint32_t, kLongestMemory + 1> rates{};
   for (std::uint32_t count = 0; count <= kLongestMemory; ++count) {
@@ -39,8 +35,8 @@ std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones_of
   return low + static_cast<std::uint32_t>((range * ones_of_65536) >> 16);
 }
 
-/// The last bytes of an arithmetic stream: the decoder reads zeros past the end, so these are the
-/// shortest bytes b with low <= b000 <= high, and the smallest of them.
+/// The last bytes of an arithmetic stream: the shortest ones that, followed by zeros, lie in
+/// [low, high], and of those the smallest. (The decoder reads zeros past the end.)
 struct Tail {
   std::array<std::uint8_t, kLookahead> bytes{};
   std::ptrdiff_t size = 0;
@@ -106,23 +102,6 @@ void BitEncoder::bit(bool value, AdaptiveBit& model) {
   model.learn(value);
 }
 
-void BitEncoder::uniform(std::uint64_t value, std::uint64_t size) {
-  WATERTIGHT_ASSERT(value < size);
-  // Truncated binary: the first `shorts` values take one bit less than the others.
-  const int width = static_cast<int>(std::bit_width(size)) - 1;
-  const std::uint64_t shorts = (std::uint64_t{2} << width) - size;
-  const bool is_short = value < shorts;
-  const std::uint64_t word = is_short ? value : value + shorts;
-  for (int i = is_short ? width - 1 : width; i >= 0; --i) {
-    const bool next = ((word >> i) & 1U) != 0;
-    if (coding_ == BitCoding::plain) {
-      raw_bit(next);
-    } else {
-      narrow(next, kHalf);
-    }
-  }
-}
-
 void BitEncoder::unary(std::uint64_t value, AdaptiveBit& model) {
   for (std::uint64_t i = 0; i < value; ++i) bit(true, model);
   bit(false, model);
@@ -185,16 +164,6 @@ bool BitDecoder::bit(AdaptiveBit& model) {
   const bool value = narrow(model.ones_of_65536());
   model.learn(value);
   return value;
-}
-
-std::uint64_t BitDecoder::uniform(std::uint64_t size) {
-  const int width = static_cast<int>(std::bit_width(size)) - 1;
-  const std::uint64_t shorts = (std::uint64_t{2} << width) - size;
-  const auto next = [this] { return coding_ == BitCoding::plain ? raw_bit() : narrow(kHalf); };
-  std::uint64_t word = 0;
-  for (int i = 0; i < width; ++i) word = (word << 1) | static_cast<std::uint64_t>(next());
-  if (word < shorts) return word;
-  return ((word << 1) | static_cast<std::uint64_t>(next())) - shorts;
 }
 
 std::uint64_t BitDecoder::unary(std::uint64_t limit, AdaptiveBit& model) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One bit at a time, either packed eight to a byte (plain) or through an adaptive binary arithmetic
-// coder whose models and arithmetic are integers only, so that every compiler and machine writes
-// the same bytes. For the bitmap, the facet section and the order section of a blob. Source: the
-// carry-less coder of M. Mahoney's lpaq (32-bit interval, 16-bit probabilities).
+// Writes and reads bits for the marks and the facets of mode bitmap: either plain, eight to a byte,
+// or through an adaptive binary arithmetic coder. Its models and arithmetic use integers only, so
+// that every compiler and machine writes the same bytes. Source: the carry-less coder of
+// M. Mahoney's lpaq (32-bit interval, 16-bit probabilities).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@ namespace watertight::codec::bitmap {
 
 enum class BitCoding : std::uint8_t { plain = 0, arithmetic = 1 };
 
-/// The probability of a 1, learned from the bits seen. Fast at first, then a moving average.
+/// The probability of a 1, learned from the bits so far. It moves fast at first, and becomes a
+/// moving average later.
 class AdaptiveBit {
  public:
   /// `ones_of_65536` is the first estimate, 32 to 65504; `confidence` counts the observations it is
@@ -34,11 +35,9 @@ class AdaptiveBit {
 class BitEncoder {
  public:
   explicit BitEncoder(BitCoding coding) : coding_(coding) {}
-  /// One bit under a model; a plain encoder ignores the model.
+  /// Writes one bit under a model. A plain encoder ignores the model.
   void bit(bool value, AdaptiveBit& model);
-  /// A number in [0, size) with all values equally likely. Requires value < size.
-  void uniform(std::uint64_t value, std::uint64_t size);
-  /// The number of ones before a zero, each under `model`.
+  /// Writes a number in unary: that many ones, then a zero, each under `model`.
   void unary(std::uint64_t value, AdaptiveBit& model);
   /// Ends the stream.
   Bytes finish() &&;
@@ -55,15 +54,13 @@ class BitEncoder {
   int pending_count_ = 0;
 };
 
-/// Reads what a BitEncoder wrote. Past the end it yields zeros and failed() turns true; callers
-/// bound their loops themselves and check failed() at the end and wherever a loop could be long.
+/// Reads what a BitEncoder wrote. Past the end it yields zeros, and failed() becomes true. Callers
+/// bound their loops themselves, and ask failed() at the end and in every loop that could be long.
 class BitDecoder {
  public:
   BitDecoder(ByteView bytes, BitCoding coding);
   bool bit(AdaptiveBit& model);
-  /// Requires size > 0.
-  std::uint64_t uniform(std::uint64_t size);
-  /// At most `limit`; fails beyond.
+  /// Reads a number in unary. Fails if it is above `limit`.
   std::uint64_t unary(std::uint64_t limit, AdaptiveBit& model);
   bool failed() const { return failed_; }
   /// True if no read failed and the bytes end exactly as an encoder would have ended them.

@@ -24,7 +24,7 @@ Index other_of(const Joint& joint, Index triangle) {
   return joint.triangles[0] == triangle ? joint.triangles[1] : joint.triangles[0];
 }
 
-/// True if the edge from -> to runs along the triangle's own turn.
+/// True if the triangle, in its own direction, has the edge from -> to.
 bool runs_forward(const Triangle& t, Index from, Index to) {
   return (t[0] == from && t[1] == to) || (t[1] == from && t[2] == to) ||
          (t[2] == from && t[0] == to);
@@ -148,7 +148,7 @@ Status BoundarySurface::orient(const std::vector<bool>& is_flipped) {
 
 Index BoundarySurface::half_edge_of(Index triangle, Index corner_vertex) const {
   const Triangle& t = turned_[triangle];
-  // The half-edge opposite a corner starts at the next one.
+  // The half-edge opposite a corner starts at the next corner.
   const Index corner = t[0] == corner_vertex ? 0 : t[1] == corner_vertex ? 1 : 2;
   return triangle * 3 + (corner + 1) % 3;
 }
@@ -178,9 +178,10 @@ std::vector<std::vector<VertexRing>> BoundarySurface::rings_of_facets() const {
   return rings;
 }
 
-/// Follows the boundary of a facet from one of its half-edges until it closes. At a vertex the walk
-/// turns through the facet's triangles to the next half-edge that has no twin; it cannot turn for
-/// ever, because the half-edge after one without twin is no twin's successor.
+/// Follows the edge of a facet from one of its half-edges until the walk closes. At a vertex the
+/// walk turns through the facet's triangles to the next half-edge that has no twin. It cannot turn
+/// for ever: each step of a turn can be undone, and undoing them leads back to the half-edge
+/// without twin at which the turn began.
 void BoundarySurface::walk_rings(Index start, const std::vector<Index>& twin,
                                  std::vector<bool>& is_done, std::vector<VertexRing>& rings) const {
   std::vector<Index> walk;
@@ -192,7 +193,8 @@ void BoundarySurface::walk_rings(Index start, const std::vector<Index>& twin,
     while (twin[half_edge] != kNone) half_edge = next_of(twin[half_edge]);
   } while (half_edge != start);
 
-  // Split at vertices that come twice: a loop that closes on the stack is a ring of its own.
+  // The walk is split at vertices that come twice: a loop that closes on the stack is a ring of its
+  // own.
   std::vector<Index> sorted = walk;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// From the triangulated boundary of a solid, known as a set of triangles, back to its polygons:
-// which edges lie inside a facet, how the triangles turn, and the rings that remain. Composition
-// steps 5 and 7 of the paper end here. For the facet section of mode bitmap.
+// Brings the polygons of a solid back from the set of triangles of its boundary, once it is known
+// which edges lie inside facets and how the triangles turn: the rings are the edges that remain.
+// Composition steps 5 and 7 of the paper end here. For the facet section of mode bitmap.
 #pragma once
 
 #include <span>
@@ -32,26 +32,28 @@ class BoundarySurface {
 
   /// Sorted by (from, to).
   std::span<const Joint> joints() const { return joints_; }
-  /// Parts connected through joints, numbered by their smallest triangle.
+  /// Components are connected through joints and numbered by their smallest triangle.
   Index component_count() const { return static_cast<Index>(component_first_.size()); }
   Index component_of(Index triangle) const { return component_of_[triangle]; }
 
-  /// Sets which joints lie inside a facet; facets are the parts connected through those, numbered
+  /// Sets which joints lie inside a facet. Facets are connected through those joints and numbered
   /// by their smallest triangle.
   void set_interior(std::vector<bool> is_interior);
   Index facet_count() const { return static_cast<Index>(facet_first_.size()); }
   Index first_triangle_of(Index facet) const { return facet_first_[facet]; }
 
-  /// Turns every component so that its smallest triangle is as sorted, or the other way round where
-  /// `is_flipped`. Errors: malformed if a component cannot be oriented.
+  /// Orients every component by its smallest triangle, which turns as its sorted vertices do, or
+  /// the other way round if `is_flipped` of the component is true. Errors: malformed if a component
+  /// cannot be oriented.
   Status orient(const std::vector<bool>& is_flipped);
 
-  /// The rings of each facet, sorted. Requires set_interior() and orient(). Where a boundary walk
-  /// visits a vertex twice it is split there, so that holes that touch come apart. Cost: linear.
+  /// The rings of each facet, sorted. Requires set_interior() and orient(). A walk along the edge
+  /// of a facet that visits a vertex twice is split there, so that holes that touch come apart.
+  /// Cost: linear.
   std::vector<std::vector<VertexRing>> rings_of_facets() const;
 
-  /// The arrays (without vertices) of the solid: each component a shell, `exterior_component`
-  /// first; in facets of several rings, that numbered `exterior_ring[facet]` first.
+  /// The arrays of the solid, without vertices. Each component is a shell, and `exterior_component`
+  /// comes first; of the rings of a facet, that numbered `exterior_ring[facet]` comes first.
   SolidArrays assemble(const std::vector<std::vector<VertexRing>>& rings, Index exterior_component,
                        const std::vector<Index>& exterior_ring) const;
 

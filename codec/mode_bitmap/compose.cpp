@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Based on: Verbree & Si 2008, section 4.1, composition steps 1-7.
-// Departures: as the decomposition's (codec/mode_bitmap/decompose.cpp).
+// Departures: those of the decomposition (codec/mode_bitmap/decompose.cpp).
 #include "codec/mode_bitmap/compose.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The composition of a polyhedron from its nodes, the bitmap and the unrecovered faces: mode
-// bitmap's side of the decoder, step by step as in the paper. Trusts nothing.
-// Source: Verbree & Si 2008, section 4.1, composition steps 1-7.
+// Composes a polyhedron from its nodes, the bitmap and the unrecovered faces, step by step as in
+// the paper. This is how the decoder reads mode bitmap; it trusts nothing. Source: Verbree & Si
+// 2008, section 4.1, composition steps 1-7.
 #pragma once
 
 #include <vector>
@@ -15,13 +15,13 @@
 
 namespace watertight::codec::bitmap {
 
-/// The sections of a bitmap blob; views into it.
+/// The sections of a solid in mode bitmap, as views.
 struct BitmapSections {
   ByteView vertices;
-  ByteView steiner;  // may be absent: empty
+  ByteView steiner;  // empty if there is none
   BitCoding bitmap_coding = BitCoding::plain;
   ByteView bitmap;
-  ByteView unrecovered;  // may be absent: empty
+  ByteView unrecovered;  // empty if there is none
   BitCoding facet_coding = BitCoding::plain;
   bool lists_facets = false;
   ByteView facets;
@@ -48,12 +48,12 @@ Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits);
 /// Errors: malformed where an encoder would not have chosen mode bitmap.
 Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes);
 
-/// 3. Read the bitmap. Errors: malformed.
+/// 3. Read the bitmap: the marks. Errors: malformed.
 Result<std::vector<bool>> read_bitmap(const BitmapSections& sections,
                                       const delaunay::CanonicalDelaunay& delaunay);
 
-/// 4. Order the Delaunay faces (they come ordered) and set each according to the bitmap.
-/// 5. Create the polygonal surface out of the marked Delaunay faces: the marked ones, sorted.
+/// 4. Order the Delaunay faces (they come ordered) and mark each as the bitmap says.
+/// 5. Create the polygonal surface out of the marked Delaunay faces. Returns them sorted.
 std::vector<Triangle> create_surface(const delaunay::CanonicalDelaunay& delaunay,
                                      const std::vector<bool>& marks);
 
@@ -61,8 +61,8 @@ std::vector<Triangle> create_surface(const delaunay::CanonicalDelaunay& delaunay
 Result<std::vector<Triangle>> read_unrecovered_faces(const BitmapSections& sections,
                                                      std::size_t point_count);
 
-/// 7. Create a watertight boundary by completing the surface with the unrecovered faces; rings,
-/// holes and shells by the facet section. Errors: malformed; limit_exceeded.
+/// 7. Complete the surface with the unrecovered faces, and make rings, holes and shells of it as
+/// the facet section says. Errors: malformed; limit_exceeded.
 Result<SolidArrays> complete_boundary(const BitmapSections& sections, const Nodes& nodes,
                                       std::vector<Triangle> surface,
                                       const std::vector<Triangle>& unrecovered,

@@ -2,9 +2,10 @@
 //
 // Based on: Verbree & Si 2008, "Validation and storage of polyhedra through constrained Delaunay
 // tetrahedralization", section 4.1, decomposition steps 1-7.
-// Departures: without a certificate step 1 takes the facet triangulation that has most Delaunay
-// faces instead of a CDT, so that no Steiner vertex is stored; coordinates are stored as integers
-// of the lattice where they are; the bitmap may be arithmetic coded; facets come back as polygons.
+// Departures: without a certificate, step 1 takes a triangulation of the facets with as many
+// Delaunay faces as it finds instead of a CDT, so that no Steiner vertex is stored; coordinates
+// that are integers of the lattice are stored as integers; the bitmap may be arithmetic coded;
+// facets come back as polygons.
 #include "codec/mode_bitmap/decompose.h"
 
 #include <algorithm>
@@ -30,7 +31,8 @@ Triangle sorted(Triangle t) {
   return t;
 }
 
-/// Triangles of all facets: the following ones, or the canonical ones where told.
+/// Collects the triangles of all facets: the canonical ones of the facets that `takes_canonical`
+/// names, of the others those that follow the Delaunay tetrahedralization.
 void collect_triangles(const delaunay::FollowingTriangles& following,
                        const tessellate::FacetTriangles& facets,
                        const std::vector<bool>& takes_canonical, BoundaryComplex& complex) {
@@ -46,7 +48,7 @@ void collect_triangles(const delaunay::FollowingTriangles& following,
   }
 }
 
-/// Adds the facets that have a triangle in common with another to `takes_canonical`.
+/// Adds each facet that has a triangle in common with another facet to `takes_canonical`.
 /// Returns false if there is none to add.
 bool part_equal_triangles(const BoundaryComplex& complex, std::vector<bool>& takes_canonical) {
   std::vector<std::pair<Triangle, Index>> uses;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The decomposition of a polyhedron into vertices, Steiner vertices, a bitmap of Delaunay faces and
-// a list of unrecovered faces: mode bitmap's side of the encoder, step by step as in the paper.
+// Decomposes a polyhedron into vertices, Steiner vertices, a bitmap of Delaunay faces and a list of
+// unrecovered faces, step by step as in the paper. This is how the encoder writes mode bitmap.
 // Source: Verbree & Si 2008, section 4.1, decomposition steps 1-7.
 #pragma once
 
@@ -20,40 +20,41 @@ namespace watertight::codec::bitmap {
 struct BoundaryComplex {
   std::vector<Point> points;  // canonical vertices, then Steiner vertices, sorted
   Index vertex_count = 0;
-  std::vector<Triangle> triangles;  // vertices of each increasing; in no particular order
+  std::vector<Triangle> triangles;  // increasing vertices in each; in no particular order
   std::vector<Index> facet_of;      // canonical facet of each triangle
-  /// Where step 1 had to make it already, for step 4.
+  /// For step 4, if step 1 had to make it already.
   std::optional<delaunay::CanonicalDelaunay> delaunay;
 };
 
-/// What the decomposition stores.
+/// The sections that the decomposition makes.
 struct Decomposition {
   Bytes vertices;
   Bytes steiner;  // empty without Steiner vertices
   BitCoding bitmap_coding = BitCoding::plain;
   Bytes bitmap;
   Bytes unrecovered;                  // empty if every boundary face is a Delaunay face
-  std::optional<CodedFacets> facets;  // nothing: the caller lists them
+  std::optional<CodedFacets> facets;  // if nothing, the caller lists the facets
 };
 
 /// True if the canonical Delaunay tetrahedralization of these points may be part of a blob: each
 /// coordinate is 0 or of a magnitude in [2^-100, 2^100], integers or not.
 bool has_storable_delaunay(std::span<const Point> points);
 
-/// At most this many tetrahedra: the decoder's time stays in proportion to the blob.
+/// The most tetrahedra that a decoder accepts for so many points, so that its time stays in
+/// proportion to the blob.
 std::uint64_t storable_tetrahedra(std::size_t point_count);
 
-/// 1. Create a CDT of the polyhedron. With a certificate: its tetrahedralization. Without, no
-/// Steiner vertex is needed: the facets' triangulation that follows the Delaunay
-/// tetrahedralization. Errors: not_encodable if a facet has no triangulation or the certificate is
-/// not of this solid.
+/// 1. Create a CDT of the polyhedron. With a certificate, this is the certified tetrahedralization.
+/// Without one, the facets are triangulated along the Delaunay tetrahedralization, which needs no
+/// Steiner vertex. Errors: not_encodable if a facet has no triangulation or the certificate is not
+/// of this solid.
 Result<BoundaryComplex> create_cdt(const geometry::CanonicalSolid& solid,
                                    const delaunay::Certificate* certificate);
 
 /// 2. Store the CDT's nodes: vertices and Steiner vertices.
 void store_nodes(const BoundaryComplex& complex, Decomposition& result);
 
-/// 3. Mark the CDT's faces on the boundary: the marked ones, sorted.
+/// 3. Mark the CDT's faces on the boundary. Returns the marked ones, sorted.
 /// Errors: not_encodable if two boundary triangles coincide.
 Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex);
 
@@ -65,11 +66,11 @@ Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& compl
 std::vector<bool> mark_delaunay_faces(const MarkedFaces& marked,
                                       const delaunay::CanonicalDelaunay& delaunay);
 
-/// 6. Store the bitmap of marked and non-marked Delaunay faces: the shorter coding.
+/// 6. Store the bitmap of marked and non-marked Delaunay faces, in the shorter of the two codings.
 void store_bitmap(const delaunay::CanonicalDelaunay& delaunay, const std::vector<bool>& marks,
                   Decomposition& result);
 
-/// 7. Store the marked CDT faces without a Delaunay face.
+/// 7. Store the marked CDT faces that are no Delaunay faces.
 void store_unrecovered_faces(const MarkedFaces& marked, const delaunay::CanonicalDelaunay& delaunay,
                              Decomposition& result);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Based on: Verbree & Si 2008, section 4.1: one bit per face, faces ordered by their nodes.
-// Departures: the bits may be arithmetic coded. Around each edge an even number of faces is marked,
-// nearly always none or two, so that the marks before often decide the next one.
+// Departures: the bits may be arithmetic coded. An even number of the faces around each edge is
+// marked, nearly always none or two, so that the marks before often decide the next one.
 #include "codec/mode_bitmap/face_marks.h"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ FaceEdges number_edges(std::span<const Triangle> faces) {
   return result;
 }
 
-/// The state around every edge while the marks are coded, and the models it selects.
+/// The models of the marks, and for each edge the counts that choose among them.
 class MarkModels {
  public:
   explicit MarkModels(const delaunay::CanonicalDelaunay& delaunay)
@@ -84,10 +84,10 @@ class MarkModels {
   }
 
   AdaptiveBit& model(std::size_t face) {
-    bool is_forced = false;   // an edge with one marked face, and this is its last
-    bool is_blocked = false;  // an edge with two marked faces already
-    bool is_alone = false;    // an edge without marked faces, and this is its last
-    std::size_t open = 0;     // edges with one marked face
+    bool is_forced = false;   // an edge has one marked face, and this face is its last
+    bool is_blocked = false;  // an edge has two marked faces already
+    bool is_alone = false;    // an edge has no marked face, and this face is its last
+    std::size_t open = 0;     // number of edges with one marked face
     for (const Index edge : edges_.edges_of[face]) {
       const bool is_last = to_come_[edge] == 1;
       const bool is_open = marked_[edge] == 1;
@@ -122,8 +122,8 @@ class MarkModels {
 
   FaceEdges edges_;
   std::vector<bool> is_hull_;
-  std::vector<Index> to_come_;  // faces around the edge whose mark is not coded yet
-  std::vector<Index> marked_;   // marked faces around the edge so far
+  std::vector<Index> to_come_;  // edge -> faces around it whose mark is not coded yet
+  std::vector<Index> marked_;   // edge -> marked faces around it so far
   std::array<AdaptiveBit, 64> models_;
 };
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bitmap: one mark per face of the Delaunay tetrahedralization in the order of sorted vertex
-// triples, plain or arithmetic coded under what the marks before say (docs/format-0.md, "Mode
-// bitmap"). And the list of unrecovered faces.
+// Writes and reads the bitmap, one mark for each face of the Delaunay tetrahedralization in the
+// order of sorted vertex triples, and the list of unrecovered faces (docs/format-plain.md, "Mode
+// bitmap"). The marks are plain bits, or arithmetic coded with models that look at the marks
+// before.
 #pragma once
 
 #include <span>
@@ -14,11 +15,11 @@
 
 namespace watertight::codec::bitmap {
 
-/// Requires one mark per face. Cost: O(n log n).
+/// Requires one mark for each face. Cost: O(n log n).
 Bytes write_marks(BitCoding coding, const delaunay::CanonicalDelaunay& delaunay,
                   const std::vector<bool>& marks);
 
-/// Errors: malformed if the section is not exactly one mark per face.
+/// Errors: malformed if the section has not exactly one mark for each face.
 Result<std::vector<bool>> read_marks(ByteView section, BitCoding coding,
                                      const delaunay::CanonicalDelaunay& delaunay);
 

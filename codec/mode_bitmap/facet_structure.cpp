@@ -11,9 +11,9 @@
 namespace watertight::codec::bitmap {
 namespace {
 
-/// How two triangles meet, as far as it helps to guess whether they are one facet. The squared
-/// cosines are IEEE products and sums in a fixed order, the first class is an exact predicate: the
-/// same on every machine.
+/// Classes of the angle at which two triangles meet, by which the models guess whether they belong
+/// to one facet. Class 0 is an exact predicate, the others compare IEEE products and sums in a
+/// fixed order: every machine finds the same.
 constexpr int kBendClasses = 6;
 
 std::array<double, 3> difference(const Point& p, const Point& q) {
@@ -47,12 +47,12 @@ int bend_class(std::span<const Point> points, const Joint& joint) {
   return 4;
 }
 
-/// What the section says, beside the triangles.
+/// The contents of the section.
 struct Structure {
-  std::vector<bool> is_interior;  // per joint
-  std::vector<bool> is_flipped;   // per component
+  std::vector<bool> is_interior;  // joint -> it lies inside a facet
+  std::vector<bool> is_flipped;   // component -> its smallest triangle turns the other way
   Index exterior_component = 0;
-  std::vector<Index> exterior_ring;  // per facet; of those with several rings
+  std::vector<Index> exterior_ring;  // facet -> its exterior ring; 0 if it has one ring
 };
 
 struct Models {
@@ -102,8 +102,8 @@ bool facet_has_edge(const Solid& solid, Index facet, Index from, Index to) {
   return false;
 }
 
-/// Finds the turn of each component by its rings: built with all components as sorted, a ring whose
-/// edges run against those of its facet tells that the component is flipped.
+/// Finds which components are flipped. Requires a surface none of whose components is flipped: a
+/// component is flipped if a ring of one of its facets then runs against that of the solid.
 std::vector<bool> find_flips(const BoundarySurface& surface, const MarkedFaces& faces,
                              const Solid& solid) {
   std::vector<bool> is_flipped(surface.component_count(), false);
@@ -147,7 +147,7 @@ std::vector<Index> find_exterior_rings(const BoundarySurface& surface,
   return exterior;
 }
 
-/// True if the arrays, arranged canonically, are those of `canonical`.
+/// True if the canonical form of the arrays is `canonical`.
 bool tells(SolidArrays arrays, const Solid& canonical) {
   arrays.vertices.assign(canonical.vertices().begin(), canonical.vertices().end());
   const Limits none{.vertices = kNone, .facets = kNone, .rings = kNone, .shells = kNone};

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The compact facet section of mode bitmap: one flag per edge between two boundary triangles says
-// whether the edge lies inside a facet; orientation and exterior marks take a few bits more
-// (docs/format-0.md, "Mode bitmap"). Where this cannot tell the solid, the caller lists facets.
+// Writes and reads the compact facet section of mode bitmap (docs/format-plain.md, "Mode bitmap"):
+// one bit for each joint says whether it lies inside a facet; a few more bits say how components
+// turn, and which components and rings are exterior. If the section cannot bring the solid back,
+// the caller lists facets.
 #pragma once
 
 #include <optional>
@@ -22,13 +23,14 @@ struct MarkedFaces {
   std::vector<Index> facet_of;
 };
 
-/// The shorter of the plain and the arithmetic coding, or nothing if the section would not bring
-/// `canonical` back. `points` are its vertices and the Steiner vertices after them.
-/// Cost: O(n log n).
 struct CodedFacets {
   BitCoding coding = BitCoding::plain;
   Bytes bytes;
 };
+
+/// The section in the shorter of the two codings, or nothing if it would not bring `canonical`
+/// back. `points` are the vertices of the solid, and after them the Steiner vertices. Cost: O(n log
+/// n).
 std::optional<CodedFacets> write_facet_structure(std::span<const Point> points,
                                                  const MarkedFaces& faces, const Solid& canonical);
 

@@ -10,9 +10,9 @@
 #include "base/checksum.h"
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/page.h"
-#include "codec/page/blob_header.h"
 #include "codec/page/coordinates.h"
 #include "codec/page/facet_listing.h"
+#include "codec/page/solid_checksum.h"
 
 namespace watertight::codec {
 namespace {
@@ -128,7 +128,7 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
   if ((version & 0x7FU) != kFormatVersion) {
     return Error{ErrorCode::unsupported,
                  "format version " + std::to_string(version & 0x7FU) +
-                     "; this program reads versions 0 and 1",
+                     "; this program reads version " + std::to_string(kFormatVersion),
                  2};
   }
   if (((version & kPageFlag) != 0) != (kind == PageKind::page)) {

@@ -12,7 +12,7 @@ constexpr std::int64_t kLargest = std::int64_t{1} << 53;  // doubles hold every 
 
 enum class Coordinates : std::uint8_t { integers = 0, doubles = 1 };
 
-// The smallest vertex of a section takes three bytes: as many differences of one byte each.
+// A vertex takes at least three bytes: three differences of one byte each.
 constexpr std::size_t kLeastVertexBytes = 3;
 
 bool is_integer(double value) {
@@ -36,7 +36,7 @@ Status check_count(std::uint64_t count, std::size_t remaining, const Limits& lim
   return Done{};
 }
 
-/// -0 is no coordinate, nor is anything infinite.
+/// True unless the value is infinite, no number, or -0.
 bool is_coordinate(double value) {
   return std::isfinite(value) && !(value == 0 && std::signbit(value));
 }
@@ -98,7 +98,7 @@ Bytes write_vertices(std::span<const Point> points) {
       }
       const auto value = static_cast<std::int64_t>(points[i][axis]);
       const std::int64_t delta = value - last[axis];
-      // Sorted: x never falls after the first vertex.
+      // Vertices are sorted, so that x never falls: its difference needs no sign.
       if (i > 0 && axis == 0) {
         writer.varint(static_cast<std::uint64_t>(delta));
       } else {
@@ -132,7 +132,7 @@ Result<std::vector<Point>> read_vertices(ByteView section, const Limits& limits)
     if (i > 0 && !(points[i - 1] < p)) return malformed_vertices("is not sorted");
   }
   if (reader.remaining() != 0) return malformed_vertices("is longer than its vertices");
-  // One solid, one form: integers are never written as doubles.
+  // Each solid has one form only: integers are never written as doubles.
   if (kind == static_cast<std::uint8_t>(Coordinates::doubles) && are_integers(points)) {
     return malformed_vertices("writes integers as doubles");
   }

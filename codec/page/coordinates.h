@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The vertex section and the Steiner section of a blob (docs/format-0.md): integer coordinates as
-// differences of sorted vertices, anything else as IEEE doubles.
+// Writes and reads the sections of vertices and of Steiner vertices of modes raw and bitmap
+// (docs/format-plain.md). Integer coordinates are stored as differences of sorted vertices, all
+// others as IEEE doubles.
 #pragma once
 
 #include <span>

@@ -18,8 +18,8 @@ std::size_t ring_size(const SolidArrays& arrays, Index ring) {
   return arrays.ring_offsets[ring + 1] - arrays.ring_offsets[ring];
 }
 
-/// One facet: the size of the exterior ring with a flag for interior ones, their number and sizes,
-/// then the vertices of all rings.
+/// Writes one facet: the size of the exterior ring with a flag that there are interior ones, the
+/// number and sizes of those, then the vertices of all rings.
 void write_facet(ByteWriter& writer, const SolidArrays& arrays, Index facet) {
   const Index begin = arrays.facet_offsets[facet];
   const Index end = arrays.facet_offsets[facet + 1];
@@ -58,7 +58,7 @@ class ListingReader {
  private:
   bool is_good() const { return is_good_ && !reader_.failed(); }
 
-  /// A count of things of which each takes at least one more byte.
+  /// Reads a number of things, each of which takes at least one byte of the rest.
   std::uint64_t count() {
     const std::uint64_t value = reader_.varint();
     if (value > reader_.remaining()) is_good_ = false;

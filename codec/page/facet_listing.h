@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shells, facets and rings listed with plain vertex indices: the facet section of mode raw, and of
-// mode bitmap where the marked faces alone do not tell the facets (docs/format-0.md).
+// Writes and reads lists of shells, facets and rings with plain vertex numbers: the facet section
+// of mode raw, and of mode bitmap where marks and joints do not bring the facets back
+// (docs/format-plain.md).
 #pragma once
 
 #include "base/bytes.h"

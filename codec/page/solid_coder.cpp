@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "codec/page/blob_header.h"
 #include "codec/page/coordinates.h"
 #include "codec/page/facet_listing.h"
 #include "codec/page/source_order.h"
@@ -37,6 +36,9 @@ constexpr NumberShape kNumbers[] = {
     {1, {1}},  // kSection: its length
 };
 constexpr ModelLayout kLayout{kFamilies, kNumbers};
+
+// What a solid whose tolerances are not stated was accepted under. Part of the format.
+constexpr Tolerances kImpliedTolerances{0.01, 20.0, 0.0};
 
 constexpr std::uint32_t kNoMode = 7;
 constexpr int kModeBits = 3;
@@ -122,7 +124,7 @@ Result<bitmap::Composition> compose_plain(Mode mode, const PlainSections& plain,
     result.arrays.vertices = std::move(vertices).value();
     return result;
   }
-  const auto has = [&](BlobFlag flag) { return (plain.flags & flag) != 0; };
+  const auto has = [&](BitmapFlag flag) { return (plain.flags & flag) != 0; };
   bitmap::BitmapSections parts;
   std::size_t next = 0;
   parts.vertices = plain.sections[next++];

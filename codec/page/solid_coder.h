@@ -31,9 +31,18 @@ const ModelLayout& order_layout();
 /// Errors, when reading: malformed.
 Status code_frame(EntropyStream& stream, ModelBank& models, Frame& frame);
 
+/// The flags of mode bitmap. All other bits are 0.
+enum BitmapFlag : std::uint8_t {
+  kHasSteiner = 4,      // there is a section of Steiner vertices
+  kHasUnrecovered = 8,  // there is a section of unrecovered faces
+  kCodedBitmap = 16,    // the marks are arithmetic coded, not plain bits
+  kCodedFacets = 32,    // likewise the facet section
+  kExplicitFacets = 64  // the facet section lists rings as mode raw does
+};
+
 /// The bytes of mode raw or bitmap.
 struct PlainSections {
-  std::uint8_t flags = 0;  // BlobFlag, of mode bitmap
+  std::uint8_t flags = 0;  // BitmapFlag; 0 in mode raw
   std::vector<Bytes> sections;
 };
 

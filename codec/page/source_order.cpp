@@ -13,7 +13,7 @@ namespace {
 
 enum Family : std::uint32_t { kStraight, kCandidate, kScan, kStart };
 
-/// Where a candidate for the next facet comes from.
+/// The rule by which a candidate for the next facet was found.
 enum Habit : std::uint32_t { kNextEdge, kLastEdge, kNeighbour, kSuccessor, kFirstLeft, kNoHabit };
 constexpr std::uint32_t kHabits = 6;
 constexpr std::uint32_t kFacings = 5;    // of facets: up, down, upright, slanting up, slanting down
@@ -36,7 +36,7 @@ std::vector<Index> inverse_of(const std::vector<Index>& order) {
   return inverse;
 }
 
-/// Elements that are left, with the successor of each in O(log n) amortized.
+/// A set of elements that only loses elements. Finds the next one left in O(log n) amortized.
 class Left {
  public:
   Left(Index begin, Index end)
@@ -53,7 +53,7 @@ class Left {
     next_[element - begin_] = element - begin_ + 1;
     --left_;
   }
-  /// The first one left from `element` on; the end when there is none.
+  /// The first element that is left, from `element` on; the end if there is none.
   Index from(Index element) {
     Index root = element - begin_;
     while (next_[root] != root) root = next_[root];
@@ -72,7 +72,7 @@ class Left {
   Index left_ = 0;
 };
 
-/// Sign of each difference, 0 to 2.
+/// 0, 1 or 2: the second number is less, equal or greater.
 std::uint32_t sign_of(double from, double to) { return to < from ? 0U : to > from ? 2U : 1U; }
 
 class OrderCoder {
@@ -116,7 +116,7 @@ class OrderCoder {
     measure_facets();
   }
 
-  /// The facet across each corner's edge (from the corner to the next of its ring).
+  /// Finds for each corner the facet on the other side of the edge from this corner to the next.
   void link_corners() {
     struct Edge {
       Index from, to, corner;
@@ -152,7 +152,8 @@ class OrderCoder {
     }
   }
 
-  /// Facing and twice the projected area, by Newell's sums over the exterior ring.
+  /// Finds the facing of each facet and its size, twice the projected area, by Newell's sums over
+  /// the exterior ring.
   void measure_facets() {
     facing_.resize(solid_.facet_count());
     size_.resize(solid_.facet_count());
@@ -188,8 +189,8 @@ class OrderCoder {
     return source;
   }
 
-  /// A permutation of 0 .. size-1 whose first `fixed` elements stay: one decision when it is the
-  /// identity, else plain.
+  /// Codes a permutation of 0 .. size-1 whose first `fixed` elements stay: as one decision if it is
+  /// the identity, else in plain bits.
   void code_arrangement(std::vector<Index>& sequence, Index fixed, std::uint32_t context) {
     if (sequence.size() < std::size_t{fixed} + 2) return;
     const bool is_straight =
@@ -198,7 +199,8 @@ class OrderCoder {
       std::iota(sequence.begin(), sequence.end(), Index{0});
       return;
     }
-    // As the exchanges that sort it: each element with one of those from it on.
+    // The permutation is coded as the exchanges that make it: for each place, the present place of
+    // the element that belongs there.
     std::vector<Index> rest(sequence.size());
     std::iota(rest.begin(), rest.end(), Index{0});
     std::vector<Index> place = rest;  // of each element in `rest`
@@ -235,7 +237,7 @@ class OrderCoder {
     Habit habit;
   };
 
-  /// Facets that habits would take next, each once.
+  /// Lists the facets that a habit would take next, each once.
   void collect_candidates(Left& left, IndexRange facets) {
     candidates_.clear();
     if (last_ == kNone) return;
@@ -286,7 +288,8 @@ class OrderCoder {
       ++index;
       if (!is_it) continue;
       habits_ = {candidate.habit, habits_[0]};
-      // Neighbours of the old reference were asked first: it changes only if none of them is next.
+      // The neighbours of the old reference were asked about first: the reference changes only if
+      // none of them is next.
       reference_ = candidate.reference;
       place_ = candidate.place;
       return candidate.facet;
@@ -301,14 +304,15 @@ class OrderCoder {
                        [facet](const Candidate& candidate) { return candidate.facet == facet; });
   }
 
-  /// A facet that follows no habit: looked for among those left, by facing and size.
+  /// Codes a facet that follows no habit: it is looked for among the facets that are left, by
+  /// facing and size.
   Index scanned_facet(Left& left, IndexRange facets, Index wanted, std::uint32_t last_facing) {
     scanned_.clear();
     for (Index facet = left.from(facets.begin);
          facet < facets.end && scanned_.size() <= kMostScanned; facet = left.from(facet + 1)) {
       if (!is_candidate(facet)) scanned_.push_back(facet);
     }
-    if (scanned_.empty()) {  // read: all candidates were refused
+    if (scanned_.empty()) {  // only when reading: all facets left were candidates and denied
       stream_.fail();
       return left.from(facets.begin);
     }
@@ -358,7 +362,9 @@ class OrderCoder {
     }
   }
 
-  /// How the edge before or after a corner lies to the facets that came before.
+  /// A class of the facets across the edges after and before a corner. Each counts 1 if it is the
+  /// facet of the ring that was placed last, 2 if another placed one, else 0 (so do none and the
+  /// facet at hand).
   std::uint32_t relation(Index across_this, Index across_last) const {
     const auto of = [this](Index facet) {
       if (facet == kNone || facet == last_) return 0U;
@@ -432,7 +438,7 @@ class OrderCoder {
     before_last_ = facet;
   }
 
-  /// Vertices against the order of their first use.
+  /// Codes the permutation of the vertices relative to the order of their first use.
   void code_vertices() {
     for (Index vertex = 0; vertex < solid_.vertex_count(); ++vertex) {
       if (!is_seen_[vertex]) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A hash of every blob of a fixed set: generated solids in every mode with every set of priors,
-// alone and in pages, and what the golden files of each version decode to and encode to again.
+// alone and in pages, and what the golden files decode to and encode to again.
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
@@ -102,9 +102,6 @@ bool print_blob_hashes() {
         codec::encode_boundary(generated::schoenhardt(), {},
                                {.mode = Mode::bitmap, .certificate = &certificate}));
   bool has_all = true;
-  for (const auto& golden : generated::version_0_goldens()) {
-    has_all = print_golden("version-0", golden.name) && has_all;
-  }
   for (const auto& golden : generated::goldens()) {
     has_all = print_golden("version-1", golden.name) && has_all;
     print("version-1 encoded " + golden.name, generated::encode_golden(golden));

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mode bitmap, from docs/format-0.md."""
+"""Mode bitmap, from docs/format-plain.md."""
 import itertools
 
 from delaunay import minus, orient, whole
@@ -9,7 +9,7 @@ BENDS = [(62000, 2), (50000, 1), (40000, 0), (20000, 0), (4000, 2), (1000, 4)]
 
 
 class Model:
-    """A probability and a count, of version 0."""
+    """A probability and a count."""
 
     def __init__(self, p=32768, c=0):
         self.p, self.c = p, c
@@ -110,7 +110,7 @@ def bend(points, exact, a, b, p, q):
     if orient(exact[a], exact[b], exact[p], exact[q]) == 0:
         return 0
     for k, t in ((1, 0.999999), (2, 0.9998), (3, 0.98)):
-        if s * s > t * dot(n, n) * dot(m, m):
+        if s * s > t * (dot(n, n) * dot(m, m)):
             return k
     return 4
 

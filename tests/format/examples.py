@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The worked examples and the table of model files of docs/format.md, and the traces of golden files.
+"""The worked examples and the table of model files of the specification, and the traces of golden files.
 
-  examples.py MODELS GOLDENS DOCUMENT           checks that they are up to date
-  examples.py MODELS GOLDENS DOCUMENT --write   writes them
+  examples.py MODELS GOLDENS DOCUMENTS           checks that they are up to date
+  examples.py MODELS GOLDENS DOCUMENTS --write   writes them
+
+DOCUMENTS is the folder of format.md and format-plain.md.
 
 A trace lists what a decoder reads, item by item: what it is, its value, and the decisions that say
 so, each as its bit and the p it was read with. All files traced have the neutral set of priors, so
@@ -15,10 +17,12 @@ import sys
 
 from entropy import crc32c
 from page import BLOB, PAGE, Page
+from sections import Section
 
 TRACED = ["box-neutral.blob", "box-walk-neutral.blob", "schoenhardt-parallelogram-neutral.blob",
           "houses-neutral.page"]
 EXAMPLES = {"box-neutral.blob": 44, "houses-neutral.page": 24}  # items shown of each
+SECTIONS = "box-bitmap.blob"  # its sections are shown
 BYTES_IN_ROW = 8
 
 
@@ -74,6 +78,24 @@ def example_of(path, page, items):
     return "\n".join(lines) + "\n"
 
 
+def sections_of(page):
+    """The block of the document: the sections of a blob in mode bitmap, integers, and no more."""
+    vertices, bitmap, facets = page.sections
+    head = f"vertices, {len(vertices.data)} bytes: integers, {vertices.data[1]} vertices"
+    rows = [(vertices.data[:2], head)]
+    reader, point = Section(vertices.data), (0, 0, 0)
+    reader.at = 2
+    for i in range(vertices.data[1]):
+        begin = reader.at
+        x = reader.varint() if i else reader.zigzag()
+        point = point[0] + x, point[1] + reader.zigzag(), point[2] + reader.zigzag()
+        rows.append((vertices.data[begin:reader.at], "  " + " ".join(map(str, point))))
+    rows.append((bitmap.data, "bitmap"))
+    rows.append((facets.data, "facets"))
+    lines = [f"{hex_row(data):<{3 * BYTES_IN_ROW}} {what}" for data, what in rows]
+    return "\n".join(["```"] + lines + ["```"]) + "\n"
+
+
 def model_table(models):
     """The files of priors."""
     lines = ["| set | file | bytes | CRC-32C |", "|---|---|---|---|"]
@@ -93,7 +115,8 @@ def with_example(text, name, block):
 
 def main(arguments):
     """Writes or checks."""
-    models, goldens, document = (pathlib.Path(name) for name in arguments[:3])
+    models, goldens, documents = (pathlib.Path(name) for name in arguments[:3])
+    document, plain = documents / "format.md", documents / "format-plain.md"
     text = document.read_text(encoding="utf-8")
     wanted, changed = with_example(text, "models", model_table(models)), []
     contents = {}
@@ -104,6 +127,8 @@ def main(arguments):
         if name in EXAMPLES:
             wanted = with_example(wanted, name, example_of(path, page, EXAMPLES[name]))
     contents[document] = wanted
+    contents[plain] = with_example(plain.read_text(encoding="utf-8"), SECTIONS,
+                                   sections_of(read(models, goldens / SECTIONS)))
     for path, content in contents.items():
         if path.exists() and path.read_text(encoding="utf-8") == content:
             continue

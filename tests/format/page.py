@@ -63,7 +63,7 @@ class Page:
         self.models = ModelSet(models, data[3], self.stream)
         self.mode, self.last_origin, self.origin_habit, self.order_kept = 7, (0, 0, 0), 0, 0
         self.last_position, self.columns = (0, 0, 0), []
-        self.names, self.solids, self.checksums = [], [], []
+        self.names, self.solids, self.checksums, self.sections = [], [], [], []
 
     def read(self):
         """All solids; checks ending and checksum."""
@@ -134,7 +134,8 @@ class Page:
     def read_section(self):
         """The bytes of a section."""
         size = self.models["frame"].number("section", 0, bits=40)
-        return Section(bytes(self.models["frame"].plain(8) for _ in range(size)))
+        self.sections.append(Section(bytes(self.models["frame"].plain(8) for _ in range(size))))
+        return self.sections[-1]
 
     def read_raw(self):
         """Mode raw."""

@@ -36,7 +36,7 @@ class Surface:
         self.ring_begin, self.ring_end = [], []
         self.facet_level, self.facet_rings, self.facet_exterior = [], [], []
         self.shell_begin = []
-        self.last_degree, self.gate = 3, None
+        self.last_degree, self.gate, self.turn = 3, None, 0
 
     def next(self, h):
         """The half-edge after h in its ring."""
@@ -70,12 +70,13 @@ class Surface:
 
     def component(self):
         """One connected surface."""
-        turn = len(self.origin)
+        self.turn = len(self.origin)
         self.facet(None, 0)
-        while turn < len(self.origin):
-            if self.twin[turn] is None:
-                self.facet(turn, cap(self.facet_level[self.facet_of[turn]] + 1, 3))
-            turn += 1
+        while self.turn < len(self.origin):
+            gate = self.turn
+            if self.twin[gate] is None:
+                self.facet(gate, cap(self.facet_level[self.facet_of[gate]] + 1, 3))
+            self.turn += 1
 
     def facet(self, gate, level):
         """One facet with all its rings."""
@@ -143,8 +144,7 @@ class Ring:
             return self.add_new()
         if self.m.decide("RingStart", 1):
             steps = self.m.number("GateSteps", 0, bits=9)
-            first = 0 if w.gate is None else w.gate
-            for h in range(first, len(w.origin)):
+            for h in range(w.turn, min(w.turn + 4096, len(w.origin))):
                 if w.twin[h] is None:
                     if steps == 0:
                         return self.begin_at_gate(h)

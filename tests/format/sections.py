@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sections of modes raw and bitmap, from docs/format-0.md."""
+"""The sections of modes raw and bitmap, from docs/format-plain.md."""
 import math
 import struct
 

@@ -96,36 +96,36 @@ OrientedBoundary varied(std::uint64_t seed) {
   return random_solid(random, size).boundary;
 }
 
-}  // namespace
-
-std::vector<Golden> version_0_goldens() {
+/// Solids in mode raw or bitmap.
+std::vector<Golden> plain_goldens() {
   Random random(1);
   const Acceptance stated{{0.001, 5, 0.0005}, Proof::boundary, 1};
   const OrientedBoundary terrain = random_terrain(random, 4);
   const OrientedBoundary doubles = random_doubles(random, 2);
-  return {{"box-raw", 105, box(), {}, Mode::raw},
-          {"box-bitmap", 76, box(), {}, Mode::bitmap},
-          {"box-canonical", 70, box(), {}, Mode::bitmap, false},
-          {"holes-in-facets", 492, pierced_block(3), {}, Mode::bitmap},
-          {"hole-touches-ring", 99, block_with_touching_hole(), {}, Mode::bitmap},
-          {"cavity", 168, box_with_cavities(2), {}, Mode::bitmap},
-          {"shells-touch-at-edge", 101, boxes_touching_at_edge(), {}, Mode::bitmap},
-          {"schoenhardt-steiner", 124, schoenhardt(), {}, Mode::bitmap, true, true},
-          {"schoenhardt-unrecovered", 96, schoenhardt(), {}, Mode::bitmap},
-          {"terrain-unrecovered", 358, terrain, {}, Mode::bitmap, false},
-          {"terrain-shuffled", 419, shuffled(terrain, random), {}, Mode::automatic},
-          {"doubles-raw", 530, doubles, {}, Mode::raw},
-          {"doubles-bitmap", 471, doubles, {}, Mode::bitmap},
-          {"stated-tolerances", 329, torus(8, 4), stated, Mode::bitmap, false}};
+  return {{"box-raw", box(), {}, Mode::raw},
+          {"box-bitmap", box(), {}, Mode::bitmap},
+          {"box-canonical", box(), {}, Mode::bitmap, false},
+          {"holes-in-facets", pierced_block(3), {}, Mode::bitmap},
+          {"hole-touches-ring", block_with_touching_hole(), {}, Mode::bitmap},
+          {"cavity", box_with_cavities(2), {}, Mode::bitmap},
+          {"shells-touch-at-edge", boxes_touching_at_edge(), {}, Mode::bitmap},
+          {"schoenhardt-steiner", schoenhardt(), {}, Mode::bitmap, true, true},
+          {"schoenhardt-unrecovered", schoenhardt(), {}, Mode::bitmap},
+          {"terrain-unrecovered", terrain, {}, Mode::bitmap, false},
+          {"terrain-shuffled", shuffled(terrain, random), {}, Mode::automatic},
+          {"doubles-raw", doubles, {}, Mode::raw},
+          {"doubles-bitmap", doubles, {}, Mode::bitmap},
+          {"stated-tolerances", torus(8, 4), stated, Mode::bitmap, false}};
 }
 
+}  // namespace
+
 std::vector<Golden> goldens() {
-  std::vector<Golden> all = version_0_goldens();
-  for (Golden& golden : all) golden.size = 0;
+  std::vector<Golden> all = plain_goldens();
   Random random(2);
   const auto add = [&](const std::string& name, const OrientedBoundary& boundary) {
     for (const Mode mode : {Mode::walk, Mode::polygon, Mode::parallelogram}) {
-      Golden golden{name + "-" + std::string(codec::to_string(mode)), 0, boundary, {}, mode};
+      Golden golden{name + "-" + std::string(codec::to_string(mode)), boundary, {}, mode};
       if (encode_golden(golden)) all.push_back(std::move(golden));
     }
   };
@@ -138,7 +138,7 @@ std::vector<Golden> goldens() {
   add("spire", spire());
   // What the others leave out of a decoder, found by its lines that they did not run.
   const auto add_one = [&](const std::string& name, const OrientedBoundary& boundary, Mode mode) {
-    all.push_back({name + "-" + std::string(codec::to_string(mode)), 0, boundary, {}, mode});
+    all.push_back({name + "-" + std::string(codec::to_string(mode)), boundary, {}, mode});
   };
   add_one("nested", tetrahedron_with_cavities(), Mode::parallelogram);
   add_one("coarse-torus", torus_on_coarse_steps(), Mode::parallelogram);
@@ -153,7 +153,7 @@ std::vector<Golden> goldens() {
   }
   // Traced in docs/format.md: with the neutral set of priors they never change.
   const auto add_neutral = [&](const char* name, const OrientedBoundary& boundary, Mode mode) {
-    all.push_back({name, 0, boundary, {}, mode});
+    all.push_back({name, boundary, {}, mode});
     all.back().models = 0;
   };
   add_neutral("box-neutral", box(), Mode::polygon);

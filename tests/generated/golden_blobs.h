@@ -13,7 +13,6 @@ namespace watertight::generated {
 
 struct Golden {
   std::string name;
-  std::size_t size = 0;  // bytes of the file of version 0
   OrientedBoundary boundary;
   Acceptance acceptance;
   Mode mode = Mode::bitmap;
@@ -22,9 +21,7 @@ struct Golden {
   std::uint8_t models = codec::kModelNumber;
 };
 
-/// Files that are only decoded.
-std::vector<Golden> version_0_goldens();
-/// Of the present version: every mode that can hold each of some solids.
+/// Some solids, each in every mode that can hold it.
 std::vector<Golden> goldens();
 Result<Bytes> encode_golden(const Golden& golden);
 

@@ -190,6 +190,7 @@ void refuse_damaged(std::vector<Refused>& all) {
   const auto bad = ErrorCode::malformed;
   all.push_back({"nothing", "blob", bad, {}});
   all.push_back({"another magic", "blob", bad, with(box, 0, 'w')});
+  all.push_back({"version 0", "blob", ErrorCode::unsupported, with(box, 2, 0)});
   all.push_back({"version 2", "blob", ErrorCode::unsupported, with(box, 2, 2)});
   all.push_back({"a page for a blob", "blob", bad, with(box, 2, 0x81)});
   all.push_back({"a blob for a page", "page", bad, box});

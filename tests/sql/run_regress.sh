@@ -71,7 +71,7 @@ if [ -n "$program" ]; then
 fi
 
 # The extension writes the very bytes that the library writes, of every solid of these files, finds
-# the same ones invalid, and gives back what came in. Blobs of all versions decode to the same.
+# the same ones invalid, and gives back what came in. Golden blobs decode to the same.
 if [ -x "$build/bin/encode_documents" ]; then
   query() { run "$bin/psql" -X -q -At -v ON_ERROR_STOP=1 "${connect[@]}" -d regression "$@"; }
   (cd "$source" && find examples tests/data tests/golden/solids tests/golden/blobs -type f |

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Files of every format version. A change of theirs is a change of the format: see CONTRIBUTING.
+// The golden files. A change of theirs is a change of the format: see CONTRIBUTING.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <fstream>
@@ -17,11 +17,9 @@ using namespace watertight;
 
 namespace {
 
-std::string path_of(const std::string& name, const char* version = "version-1") {
-  return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + version + "/" + name + ".blob";
-}
-
 std::string folder_of_goldens() { return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/version-1/"; }
+
+std::string path_of(const std::string& name) { return folder_of_goldens() + name + ".blob"; }
 
 Bytes file_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -85,21 +83,8 @@ Bytes example_of(const std::string& document) {
 
 }  // namespace
 
-TEST_CASE("the worked example of docs/format-0.md is the golden box of version 0") {
-  CHECK(example_of("format-0.md") == file_of(path_of("box-bitmap", "version-0")));
-}
-
 TEST_CASE("the worked example of docs/format.md is a golden box") {
   CHECK(example_of("format.md") == file_of(path_of("box-neutral")));
-}
-
-TEST_CASE("golden blobs of version 0 decode to their solids") {
-  for (const auto& golden : generated::version_0_goldens()) {
-    INFO(golden.name);
-    const Bytes bytes = file_of(path_of(golden.name, "version-0"));
-    CHECK(bytes.size() == golden.size);
-    check_decoded(golden, bytes);
-  }
 }
 
 TEST_CASE("golden blobs decode to their solids") {

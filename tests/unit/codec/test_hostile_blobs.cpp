@@ -227,6 +227,7 @@ TEST_CASE("other versions, models and modes are unsupported") {
     return decoded ? std::string("decoded") : std::string(to_string(decoded.error().code));
   };
   CHECK(code_with(0, 'X') == "malformed");
+  CHECK(code_with(2, 0) == "unsupported");
   CHECK(code_with(2, 2) == "unsupported");
   CHECK(code_with(2, 0x81) == "malformed");  // a page
   CHECK(code_with(3, 0xFF) == "unsupported");

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "delaunay/ladder.h"
+#include "delaunay/rung.h"
 #include "geometry/measures.h"
 #include "geometry/valid_solid.h"
 

@@ -8,6 +8,7 @@
 #include "geometry/canonical_form.h"
 #include "tests/generated/generated_solids.h"
 
+#include "delaunay/certificate.h"
 using namespace watertight;
 
 namespace {

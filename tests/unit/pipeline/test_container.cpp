@@ -7,6 +7,7 @@
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "codec/page_file.h"
+#include "delaunay/certificate.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/container.h"
 #include "pipeline/container_reader.h"

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "formats/city_json/city_json.h"
 #include "formats/text/packed_text.h"
 #include "geometry/parallel.h"
 #include "pipeline/groups.h"

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <string_view>
 
+#include "formats/city_json/city_json.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/merged_vertices.h"
 #include "pipeline/outcome_json.h"

@@ -109,8 +109,12 @@ void check_solid(const SolidKey& key, const ValidSolid& solid, Totals& totals) {
 /// differs.
 std::string round_trip(const std::string& file, const pipeline::InspectedFeature& feature,
                        const Document& document, SolidStore* store) {
-  auto stored = pipeline::to_stored(feature, document, file);
-  if (!stored) return "encode: " + to_string(stored.error());
+  pipeline::IngestOptions options;
+  options.collection = file;
+  auto encoded = pipeline::encode_feature(feature, document, options);
+  if (!encoded) return "encode: " + to_string(encoded.error());
+  auto stored = pipeline::pack(*std::move(encoded));
+  if (!stored) return "pack: " + to_string(stored.error());
   StoredFeature returned = *stored;
   if (store != nullptr) {
     if (auto put = store->put({&*stored, 1}); !put) return "put: " + to_string(put.error());

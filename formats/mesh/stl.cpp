@@ -12,6 +12,7 @@
 #include <compare>
 #include <optional>
 #include <utility>
+#include "base/ascii.h"
 
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
@@ -125,11 +126,10 @@ Result<Document> read_binary_stl(ByteView bytes, const Limits& limits) {
   return document;
 }
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 bool is_keyword(std::string_view word, std::string_view keyword) {
-  return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
-                                                     [](char a, char b) { return lower(a) == b; });
+  return word.size() == keyword.size() &&
+         std::equal(word.begin(), word.end(), keyword.begin(),
+                    [](char a, char b) { return lower_case(a) == b; });
 }
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }

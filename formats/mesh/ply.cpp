@@ -338,8 +338,8 @@ class PlyReader {
   }
 
   Result<Document> finish() {
-    return one_shell_document(std::move(document_), Format::ply, "Mesh", std::move(arrays_),
-                              vertices_, limits_);
+    document_.format = Format::ply;
+    return one_shell_document(std::move(document_), "Mesh", std::move(arrays_), vertices_, limits_);
   }
 
   const PlyHeader& header_;

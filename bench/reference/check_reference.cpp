@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/input.h"
 #include "pipeline/pipeline.h"
 
 using namespace watertight;
@@ -195,11 +196,7 @@ void print_totals(const std::string& file, const Totals& totals) {
 std::optional<Totals> check_file(const std::filesystem::path& path_to_file,
                                  const Reference& reference, const Path& path) {
   const std::string file = path_to_file.filename().string();
-  std::ifstream stream(path_to_file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto format = formats::detect_format(file, as_bytes(text));
-  auto document =
-      format ? formats::read_document(as_bytes(text), *format) : Result<Document>(format.error());
+  auto document = bench::read_file(path_to_file);
   if (!document) {
     std::fprintf(stderr, "%s: %s\n", file.c_str(), to_string(document.error()).c_str());
     return std::nullopt;

@@ -161,17 +161,20 @@ class Examination {
     }
     constraint_of_.assign(complex_.faces.size(), kNone);
     FacetSurfaces surfaces(solid_, canonical_, data_, unit_);
-    FacetSurface surface;
+    std::size_t steps = 0;
     auto begin = faces.begin();
     for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
       auto end = begin;
-      if (cancellation_.is_due_and_wanted(1 + surface.faces.size())) return cancelled();
+      if (cancellation_.is_due_and_wanted(1 + steps)) return cancelled();
       while (end != faces.end() && end->facet == facet) ++end;
-      if (auto wrong = surfaces.check(facet, {begin, end}, surface)) {
+      const auto checked = surfaces.check(facet, {begin, end});
+      if (const auto* fault = std::get_if<FacetFault>(&checked)) {
         return refuse(CertificateRefusal::facet_not_conforming,
-                      "facet " + std::to_string(facet) + ": " + *wrong, facet);
+                      "facet " + std::to_string(facet) + ": " + fault->reason, facet);
       }
+      const auto& surface = std::get<FacetSurface>(checked);
       if (Checked refused = take(facet, surface)) return refused;
+      steps = surface.faces.size();
       begin = end;
     }
     return std::nullopt;

@@ -12,6 +12,8 @@
 #include <utility>
 #include <variant>
 
+#include "base/assert.h"
+
 namespace watertight {
 
 enum class ErrorCode : std::uint8_t {
@@ -53,18 +55,30 @@ class [[nodiscard]] Result {
   explicit operator bool() const { return has_value(); }
 
   /// Requires has_value().
-  Value& operator*() & { return *std::get_if<Value>(&state_); }
-  const Value& operator*() const& { return *std::get_if<Value>(&state_); }
-  Value&& operator*() && { return std::move(*std::get_if<Value>(&state_)); }
-  Value* operator->() { return std::get_if<Value>(&state_); }
-  const Value* operator->() const { return std::get_if<Value>(&state_); }
+  Value& operator*() & { return *operator->(); }
+  const Value& operator*() const& { return *operator->(); }
+  Value&& operator*() && { return std::move(*operator->()); }
+  Value* operator->() {
+    WATERTIGHT_ASSERT(has_value());
+    return std::get_if<Value>(&state_);
+  }
+  const Value* operator->() const {
+    WATERTIGHT_ASSERT(has_value());
+    return std::get_if<Value>(&state_);
+  }
   Value& value() & { return **this; }
   const Value& value() const& { return **this; }
   Value&& value() && { return std::move(**this); }
 
   /// Requires !has_value().
-  const Error& error() const& { return *std::get_if<Error>(&state_); }
-  Error&& error() && { return std::move(*std::get_if<Error>(&state_)); }
+  const Error& error() const& {
+    WATERTIGHT_ASSERT(!has_value());
+    return *std::get_if<Error>(&state_);
+  }
+  Error&& error() && {
+    WATERTIGHT_ASSERT(!has_value());
+    return std::move(*std::get_if<Error>(&state_));
+  }
 
  private:
   std::variant<Value, Error> state_;

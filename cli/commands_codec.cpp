@@ -83,7 +83,7 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::StoredDocument&
   }
   std::size_t solids = 0;
   const Bytes* blob = nullptr;
-  for (const StoredFeature& feature : document.features) {
+  for (const pipeline::EncodedFeature& feature : document.features) {
     solids += feature.solids.size();
     if (!feature.solids.empty()) blob = &feature.solids.front().blob;
   }
@@ -226,9 +226,9 @@ struct ModeTotal {
   std::map<std::string, double> parts;
 };
 
-Status explain_features(const std::vector<StoredFeature>& features, std::FILE* out) {
+Status explain_features(const std::vector<pipeline::EncodedFeature>& features, std::FILE* out) {
   std::map<Mode, ModeTotal> totals;
-  for (const StoredFeature& feature : features) {
+  for (const pipeline::EncodedFeature& feature : features) {
     for (const StoredSolid& solid : feature.solids) {
       const auto sizes = codec::explain(solid.blob);
       if (!sizes) return sizes.error();

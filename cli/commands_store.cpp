@@ -94,28 +94,36 @@ void tell_replaced(const pipeline::IngestOutcome& outcome, const std::string& fi
   }
 }
 
-Result<pipeline::IngestOutcome> ingest_file(const IngestCommand& command, const std::string& file,
-                                            const Bytes& bytes, SolidStore& store,
-                                            delaunay::EngineWorkers& workers,
-                                            const FilesOfFeatures& files) {
-  const auto contract = formats::contract_named(command.contract);
-  if (!contract) return contract.error();
-  formats::ReadOptions read_options;
-  read_options.keep_text = *contract == formats::Contract::exact;
-  auto input = load_input(file, bytes, read_options);
+/// The document of a file, with names for features that have none.
+Result<Document> read_named(const std::string& file, const Bytes& bytes, formats::Contract contract,
+                            const FilesOfFeatures& files) {
+  formats::ReadOptions options;
+  options.keep_text = contract == formats::Contract::exact;
+  auto input = load_input(file, bytes, options);
   if (!input) return std::move(input).error();
   if (Status named = name_features(input->document, file, files); !named) return named.error();
+  return std::move(input->document);
+}
+
+pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Contract contract) {
   pipeline::IngestOptions options;
   options.collection = command.collection;
   options.threads = command.jobs;
-  options.contract = *contract;
+  options.contract = contract;
   options.invalid_features = command.invalid == "skip" ? pipeline::InvalidFeatures::skip
                                                        : pipeline::InvalidFeatures::refuse_document;
+  return options;
+}
+
+Result<pipeline::IngestOutcome> ingest_file(const std::string& file, Result<Document> document,
+                                            SolidStore& store, delaunay::EngineWorkers& workers,
+                                            pipeline::IngestOptions options) {
+  if (!document) return std::move(document).error();
   ProgressBar bar(file);
   options.progress = [&bar](std::size_t done, std::size_t total) {
     bar.show(done, static_cast<double>(done) / static_cast<double>(total));
   };
-  return pipeline::ingest(std::move(input->document), store, &workers, options);
+  return pipeline::ingest(*std::move(document), store, &workers, options);
 }
 
 Result<Bytes> read_and_close(Result<OpenedFile> file) {
@@ -147,6 +155,12 @@ Exit run(const ServeCommand& command) {
 
 Exit run(const IngestCommand& command) {
   const auto start = std::chrono::steady_clock::now();
+  const auto contract = formats::contract_named(command.contract);
+  if (!contract) {
+    complain("--contract", contract.error());
+    return Exit::error;
+  }
+  const pipeline::IngestOptions options = ingest_options(command, *contract);
   // Before the store: as root, opening that gives up the right to open other users' files.
   auto opened_files = open_files(command.files);
   auto opened = open_store(command.store);
@@ -163,8 +177,8 @@ Exit run(const IngestCommand& command) {
   for (std::size_t i = 0; i < command.files.size(); ++i) {
     const std::string& file = command.files[i];
     const auto bytes = read_and_close(std::move(opened_files[i]));
-    const auto outcome = bytes ? ingest_file(command, file, *bytes, **store, workers, files)
-                               : Result<pipeline::IngestOutcome>(bytes.error());
+    auto document = bytes ? read_named(file, *bytes, *contract, files) : bytes.error();
+    const auto outcome = ingest_file(file, std::move(document), **store, workers, options);
     if (!outcome) {
       complain(file, outcome.error());
       exit = Exit::error;

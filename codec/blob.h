@@ -11,8 +11,11 @@
 
 #include "base/bytes.h"
 #include "base/limits.h"
-#include "delaunay/certificate.h"
 #include "geometry/valid_solid.h"
+
+namespace watertight::delaunay {
+struct Certificate;
+}  // namespace watertight::delaunay
 
 namespace watertight::codec {
 

@@ -11,6 +11,7 @@
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "codec/page/container.h"
+#include "codec/page/solid_coder.h"
 
 namespace watertight::codec {
 namespace {
@@ -31,6 +32,12 @@ Error malformed(const char* what) {
 
 }  // namespace
 
+struct PageFileWriter::OpenPage {
+  Frame frame;
+  std::vector<OrientedBoundary> solids;
+  std::vector<std::uint64_t> numbers;
+};
+
 PageFileWriter::PageFileWriter(std::size_t page_solids, EncodeOptions options)
     : page_solids_(std::clamp<std::size_t>(page_solids, 1, kMaxPageSolids)), options_(options) {
   ByteWriter writer;
@@ -38,6 +45,10 @@ PageFileWriter::PageFileWriter(std::size_t page_solids, EncodeOptions options)
   writer.u8(kFormatVersion);
   written_ = std::move(writer).bytes();
 }
+
+PageFileWriter::~PageFileWriter() = default;
+PageFileWriter::PageFileWriter(PageFileWriter&&) noexcept = default;
+PageFileWriter& PageFileWriter::operator=(PageFileWriter&&) noexcept = default;
 
 Status PageFileWriter::close(OpenPage& page) {
   std::vector<const OrientedBoundary*> solids;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "codec/page.h"
-#include "codec/page/solid_coder.h"
 
 namespace watertight::codec {
 
@@ -20,6 +19,9 @@ class PageFileWriter {
   /// `page_solids`, from 1 to kMaxPageSolids, is the number of solids of a full page: fewer make
   /// random access faster, more make the file smaller.
   explicit PageFileWriter(std::size_t page_solids = kMaxPageSolids, EncodeOptions options = {});
+  ~PageFileWriter();
+  PageFileWriter(PageFileWriter&&) noexcept;
+  PageFileWriter& operator=(PageFileWriter&&) noexcept;
 
   /// Errors: not_encodable.
   Status add(const ValidSolid& solid);
@@ -33,11 +35,7 @@ class PageFileWriter {
   Result<Bytes> finish() &&;
 
  private:
-  struct OpenPage {
-    Frame frame;
-    std::vector<OrientedBoundary> solids;
-    std::vector<std::uint64_t> numbers;
-  };
+  struct OpenPage;
   struct Entry {
     std::uint64_t bytes = 0;
     std::vector<std::uint64_t> numbers;

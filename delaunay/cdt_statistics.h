@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "delaunay/ladder.h"
+#include "delaunay/rung.h"
 
 namespace watertight::delaunay {
 

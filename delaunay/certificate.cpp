@@ -161,17 +161,20 @@ class Examination {
     }
     constraint_of_.assign(complex_.faces.size(), kNone);
     FacetSurfaces surfaces(solid_, canonical_, data_, unit_);
-    FacetSurface surface;
+    std::size_t steps = 0;
     auto begin = faces.begin();
     for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
       auto end = begin;
-      if (cancellation_.is_due_and_wanted(1 + surface.faces.size())) return cancelled();
+      if (cancellation_.is_due_and_wanted(1 + steps)) return cancelled();
       while (end != faces.end() && end->facet == facet) ++end;
-      if (auto wrong = surfaces.check(facet, {begin, end}, surface)) {
+      const auto checked = surfaces.check(facet, {begin, end});
+      if (const auto* fault = std::get_if<FacetFault>(&checked)) {
         return refuse(CertificateRefusal::facet_not_conforming,
-                      "facet " + std::to_string(facet) + ": " + *wrong, facet);
+                      "facet " + std::to_string(facet) + ": " + fault->reason, facet);
       }
+      const auto& surface = std::get<FacetSurface>(checked);
       if (Checked refused = take(facet, surface)) return refused;
+      steps = surface.faces.size();
       begin = end;
     }
     return std::nullopt;
@@ -439,56 +442,6 @@ class Examination {
 };
 
 }  // namespace
-
-std::string_view to_string(Rung rung) {
-  switch (rung) {
-    case Rung::none:
-      return "none";
-    case Rung::delaunay:
-      return "delaunay";
-    case Rung::patch:
-      return "patch";
-    case Rung::patch_scaled:
-      return "patch-scaled";
-    case Rung::triangles_scaled:
-      return "triangles-scaled";
-    case Rung::tetgen:
-      return "tetgen";
-  }
-  return "";
-}
-
-std::string_view to_string(CertificateRefusal refusal) {
-  switch (refusal) {
-    case CertificateRefusal::none:
-      return "none";
-    case CertificateRefusal::not_a_complex:
-      return "not-a-complex";
-    case CertificateRefusal::not_convex:
-      return "not-convex";
-    case CertificateRefusal::vertex_missing:
-      return "vertex-missing";
-    case CertificateRefusal::not_a_boundary:
-      return "not-a-boundary";
-    case CertificateRefusal::interior_disconnected:
-      return "interior-disconnected";
-    case CertificateRefusal::cavity_mismatch:
-      return "cavity-mismatch";
-    case CertificateRefusal::facet_not_conforming:
-      return "facet-not-conforming";
-    case CertificateRefusal::not_a_manifold:
-      return "not-a-manifold";
-    case CertificateRefusal::foreign_face:
-      return "foreign-face";
-    case CertificateRefusal::wrong_orientation:
-      return "wrong-orientation";
-    case CertificateRefusal::volume_mismatch:
-      return "volume-mismatch";
-    case CertificateRefusal::cancelled:
-      return "cancelled";
-  }
-  return "";
-}
 
 CertificateResult check_certificate(const Solid& solid, const tessellate::FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,

@@ -9,22 +9,12 @@
 #include <vector>
 
 #include "base/cancel.h"
+#include "delaunay/rung.h"
 #include "delaunay/tetrahedralization.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
 
 namespace watertight::delaunay {
-
-/// Which rung of the ladder produced the tetrahedralization.
-enum class Rung : std::uint8_t {
-  none = 255,
-  delaunay = 0,      // the canonical DT itself
-  patch = 1,         // CGAL, facets as patches
-  patch_scaled = 2,  // the same after power-of-two scaling per axis
-  triangles_scaled = 3,
-  tetgen = 4
-};
-std::string_view to_string(Rung rung);
 
 /// The accepted tetrahedralization with its proof data.
 struct Certificate {
@@ -38,23 +28,6 @@ struct Certificate {
 };
 
 /// Outcome of the check. Not accepted = `refusal` names the first failed item and the place.
-enum class CertificateRefusal : std::uint8_t {
-  none,
-  not_a_complex,          // tetrahedra do not pair into a manifold, or one is not positive
-  not_convex,             // the outer surface is not the convex hull
-  vertex_missing,         // an input vertex is absent, moved or doubled
-  not_a_boundary,         // a constrained face has one region on both sides, or parity conflicts
-  interior_disconnected,  // more than one interior region (a property of the solid)
-  cavity_mismatch,        // cavities and declared inner shells differ (a property of the solid)
-  facet_not_conforming,   // a facet's faces are no disc with its rings as boundary
-  not_a_manifold,         // faces of one shell meet at more edges or vertices than neighbours do
-  foreign_face,           // a constrained face that belongs to no facet
-  wrong_orientation,      // a declared normal points inward (a property of the solid)
-  volume_mismatch,
-  cancelled  // the caller did not want to know; says nothing
-};
-std::string_view to_string(CertificateRefusal refusal);
-
 struct CertificateResult {
   CertificateRefusal refusal = CertificateRefusal::none;
   std::string detail;

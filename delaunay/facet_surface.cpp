@@ -54,7 +54,7 @@ struct FacetSurfaces::Plane {
   std::array<double, 3> normal{};
   std::array<double, 3> centre{};
   double half_width = 0;
-  double arithmetic = 0;    // rounding of a height, at most
+  double slack = 0;         // rounding of the height of a Steiner point, at most
   double world_length = 0;  // of the normal that measures in world units
 };
 
@@ -297,55 +297,63 @@ FacetSurfaces::Plane FacetSurfaces::plane_of(Index facet) const {
     }
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    plane.arithmetic += kArithmetic * terms[axis] * reach[axis];
+    plane.slack += kArithmetic * terms[axis] * reach[axis];
     const double scale = unit_[axis] * solid_.lattice().scale(static_cast<int>(axis));
     plane.world_length += (plane.normal[axis] / scale) * (plane.normal[axis] / scale);
   }
   plane.world_length = std::sqrt(plane.world_length);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    plane.slack += std::fabs(plane.normal[axis]) * (rounding_[axis] / unit_[axis] + kArithmetic);
+  }
   return plane;
 }
 
-std::optional<std::string> FacetSurfaces::check_vertices(Index facet, const Plane& plane,
-                                                         const Mesh& mesh, FacetSurface& surface) {
+double FacetSurfaces::height(const Plane& plane, Index vertex) const {
+  double height = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    height += plane.normal[axis] *
+              (data_.points[vertex][static_cast<int>(axis)] / unit_[axis] - plane.centre[axis]);
+  }
+  return height;
+}
+
+std::optional<FacetFault> FacetSurfaces::check_vertices(Index facet, const Plane& plane,
+                                                        const Mesh& mesh) {
   const IndexRange rings = solid_.rings_of(facet);
   for (Index ring = rings.begin; ring < rings.end; ++ring) {
     for (const Index v : solid_.ring(ring)) facet_stamp_[v] = facet;
   }
-  double slack = plane.arithmetic;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    slack += std::fabs(plane.normal[axis]) * (rounding_[axis] / unit_[axis] + kArithmetic);
-  }
-  surface.volume_slack = 6 * (plane.half_width + slack);
   for (const Index v : mesh.vertices()) {
     if (!is_steiner(v)) {
       if (facet_stamp_[v] != facet && !is_contact(facet, v)) {
-        return "its faces use vertex " + std::to_string(v) +
-               ", which is neither on its rings nor "
-               "exactly on the facet";
+        return FacetFault{"its faces use vertex " + std::to_string(v) +
+                          ", which is neither on its rings nor exactly on the facet"};
       }
       continue;
     }
-    double height = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      height += plane.normal[axis] *
-                (data_.points[v][static_cast<int>(axis)] / unit_[axis] - plane.centre[axis]);
-    }
-    // Not "<=": a height that is not a number must fail.
-    if (!(std::fabs(height) <= plane.half_width + slack)) {
-      return "Steiner point " + std::to_string(v) + " is off its plane";
-    }
-    if (plane.world_length > 0) {
-      surface.largest_deviation =
-          std::max(surface.largest_deviation, std::fabs(height) / plane.world_length);
+    // Not ">": a height that is not a number must fail.
+    if (!(std::fabs(height(plane, v)) <= plane.half_width + plane.slack)) {
+      return FacetFault{"Steiner point " + std::to_string(v) + " is off its plane"};
     }
   }
   return std::nullopt;
 }
 
-/// `place` is how far along the segment the point is, 0 to 1. Measured along the axis in which the
-/// segment is longest in terms of the rounding, so that the rounding of `place` moves the foot
-/// point by no more than one rounding in any axis.
-bool FacetSurfaces::is_near_segment(Index vertex, Index from, Index to, double& place) const {
+/// Of a Steiner point from the plane, in world units.
+double FacetSurfaces::largest_deviation(const Plane& plane, const Mesh& mesh) const {
+  double largest = 0;
+  if (!(plane.world_length > 0)) return largest;
+  for (const Index v : mesh.vertices()) {
+    if (!is_steiner(v)) continue;
+    largest = std::max(largest, std::fabs(height(plane, v)) / plane.world_length);
+  }
+  return largest;
+}
+
+/// How far along the segment the point is, between 0 and 1; nothing if it is not near the segment.
+/// Measured along the axis in which the segment is longest in terms of the rounding, so that the
+/// rounding of the place moves the foot point by no more than one rounding in any axis.
+std::optional<double> FacetSurfaces::place_near_segment(Index vertex, Index from, Index to) const {
   const Point& p = data_.points[vertex];
   const Point& a = data_.points[from];
   const Point& b = data_.points[to];
@@ -359,13 +367,13 @@ bool FacetSurfaces::is_near_segment(Index vertex, Index from, Index to, double& 
       along = axis;
     }
   }
-  if (!(longest > 0)) return false;
-  place = (p[along] - a[along]) / (b[along] - a[along]);
+  if (!(longest > 0)) return std::nullopt;
+  const double place = (p[along] - a[along]) / (b[along] - a[along]);
   for (int axis = 0; axis < 3; ++axis) {
     const double off = std::fabs(p[axis] - a[axis] - place * (b[axis] - a[axis]));
-    if (!(off <= 2 * rounding_[static_cast<std::size_t>(axis)])) return false;
+    if (!(off <= 2 * rounding_[static_cast<std::size_t>(axis)])) return std::nullopt;
   }
-  return place > 0 && place < 1;
+  return place > 0 && place < 1 ? std::optional(place) : std::nullopt;
 }
 
 /// True for an input vertex that lies exactly on the facet: on one of its canonical triangles.
@@ -377,15 +385,17 @@ bool FacetSurfaces::is_contact(Index facet, Index vertex) const {
   });
 }
 
-/// Whether a chain along the segment may pass the vertex: a Steiner point near it, or another
-/// shell's vertex exactly on it. Requires stamped ring vertices.
-bool FacetSurfaces::may_pass(Index facet, Index vertex, Index from, Index to, double& place) const {
+/// Where a chain along the segment passes the vertex, as place_near_segment(); nothing if it may
+/// not pass it: it may pass a Steiner point near the segment, or another shell's vertex exactly on
+/// it. Requires stamped ring vertices.
+std::optional<double> FacetSurfaces::place_on_chain(Index facet, Index vertex, Index from,
+                                                    Index to) const {
   if (!is_steiner(vertex)) {
-    if (facet_stamp_[vertex] == facet) return false;
+    if (facet_stamp_[vertex] == facet) return std::nullopt;
     const auto& p = data_.points;
-    if (!geometry::is_on_segment(p[from], p[to], p[vertex])) return false;
+    if (!geometry::is_on_segment(p[from], p[to], p[vertex])) return std::nullopt;
   }
-  return is_near_segment(vertex, from, to, place);
+  return place_near_segment(vertex, from, to);
 }
 
 /// The edge of the boundary on which a chain along the segment goes on from `current`, as a place
@@ -407,13 +417,12 @@ std::size_t FacetSurfaces::boundary_step(Index facet, const Mesh& mesh, Index cu
   const auto straight = std::lower_bound(begin, end, std::pair(current, to));
   if (straight != end && straight->second == to) return place_of(straight);
   const auto step = std::find_if(begin, end, [&](const std::pair<Index, Index>& edge) {
-    double place = 0;
-    return may_pass(facet, edge.second, from, to, place);
+    return place_on_chain(facet, edge.second, from, to).has_value();
   });
   return step == end ? boundary.size() : place_of(step);
 }
 
-std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& mesh) const {
+std::optional<FacetFault> FacetSurfaces::check_rings(Index facet, const Mesh& mesh) const {
   const auto& boundary = mesh.boundary();
   std::vector<char> is_used(boundary.size(), 0);
   std::size_t used = 0;
@@ -427,27 +436,28 @@ std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& m
       while (current != to) {
         const std::size_t step = boundary_step(facet, mesh, current, ring[i], to);
         if (step == boundary.size() || is_used[step] != 0) {
-          return "ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
-                 ") is missing";
+          return FacetFault{"ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
+                            ") is missing"};
         }
         is_used[step] = 1;
         ++used;
         current = boundary[step].second;
-        double place = 1;
-        if (current != to && (!may_pass(facet, current, ring[i], to, place) || place <= last)) {
-          return "ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
-                 ") is not straight";
+        if (current == to) break;
+        const auto place = place_on_chain(facet, current, ring[i], to);
+        if (!place || *place <= last) {
+          return FacetFault{"ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
+                            ") is not straight"};
         }
-        last = place;
+        last = *place;
       }
     }
   }
-  if (used != boundary.size()) return "its faces have a boundary beside its rings";
+  if (used != boundary.size()) return FacetFault{"its faces have a boundary beside its rings"};
   return std::nullopt;
 }
 
-std::optional<std::string> FacetSurfaces::check_area(Index facet,
-                                                     const FacetSurface& surface) const {
+std::optional<FacetFault> FacetSurfaces::check_area(Index facet,
+                                                    std::span<const Triangle> faces) const {
   const auto axis = static_cast<std::size_t>(tessellate::facet_projection(solid_, facet).axis);
   const std::size_t u = (axis + 1) % 3;
   const std::size_t v = (axis + 2) % 3;
@@ -471,9 +481,9 @@ std::optional<std::string> FacetSurfaces::check_area(Index facet,
   double expected = 0;
   double covered = 0;
   for (const Triangle& t : canonical_of(facet)) expected += area(t);
-  for (const Triangle& t : surface.faces) covered += area(t);
+  for (const Triangle& t : faces) covered += area(t);
   // Not ">": areas that are no numbers must fail.
-  if (!(covered <= expected + slack)) return "its faces fold over each other";
+  if (!(covered <= expected + slack)) return FacetFault{"its faces fold over each other"};
   return std::nullopt;
 }
 
@@ -486,9 +496,9 @@ bool FacetSurfaces::has_chain(Index facet, const Mesh& mesh, Index from, Index t
     Index next = kNone;
     double nearest = 1;
     for (const auto& [own, candidate] : mesh.neighbours(current)) {
-      double place = 0;
-      if (may_pass(facet, candidate, from, to, place) && place > reached && place < nearest) {
-        nearest = place;
+      const auto place = place_on_chain(facet, candidate, from, to);
+      if (place && *place > reached && *place < nearest) {
+        nearest = *place;
         next = candidate;
       }
     }
@@ -499,28 +509,30 @@ bool FacetSurfaces::has_chain(Index facet, const Mesh& mesh, Index from, Index t
   return false;
 }
 
-std::optional<std::string> FacetSurfaces::check(Index facet, std::span<const ConstrainedFace> faces,
-                                                FacetSurface& surface) {
-  surface = FacetSurface{};
-  if (canonical_of(facet).empty()) return "it has no canonical triangulation";
-  if (faces.empty()) return "it has no faces";
+std::variant<FacetSurface, FacetFault> FacetSurfaces::check(
+    Index facet, std::span<const ConstrainedFace> faces) {
+  if (canonical_of(facet).empty()) return FacetFault{"it has no canonical triangulation"};
+  if (faces.empty()) return FacetFault{"it has no faces"};
   Mesh mesh(faces);
-  if (const char* wrong = mesh.turn()) return wrong;
-  if (!mesh.is_disc(solid_.rings_of(facet).size())) return "its faces are no disc";
+  if (const char* wrong = mesh.turn()) return FacetFault{wrong};
+  if (!mesh.is_disc(solid_.rings_of(facet).size())) return FacetFault{"its faces are no disc"};
   const Plane plane = plane_of(facet);
-  if (auto wrong = check_vertices(facet, plane, mesh, surface)) return wrong;
-  if (auto wrong = check_rings(facet, mesh)) {
+  if (auto fault = check_vertices(facet, plane, mesh)) return *std::move(fault);
+  if (auto fault = check_rings(facet, mesh)) {
     mesh.reverse();
-    if (check_rings(facet, mesh)) return wrong;
+    if (check_rings(facet, mesh)) return *std::move(fault);
   }
+  if (auto fault = check_area(facet, mesh.faces())) return *std::move(fault);
+  FacetSurface surface;
   surface.faces = mesh.faces();
-  if (auto wrong = check_area(facet, surface)) return wrong;
+  surface.largest_deviation = largest_deviation(plane, mesh);
+  surface.volume_slack = 6 * (plane.half_width + plane.slack);
   for (const Triangle& t : canonical_of(facet)) {
     for (std::size_t k = 0; k < 3 && surface.follows_canonical; ++k) {
       surface.follows_canonical = has_chain(facet, mesh, t[k], t[(k + 1) % 3]);
     }
   }
-  return std::nullopt;
+  return surface;
 }
 
 }  // namespace watertight::delaunay

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "delaunay/tetrahedralization.h"
@@ -37,6 +38,11 @@ struct FacetSurface {
                                  // triangles, at most; coordinates divided by `unit`
 };
 
+/// Why faces are not their facet, as a clause about the facet.
+struct FacetFault {
+  std::string reason;
+};
+
 /// Works on one facet after the other. Not thread-safe; cheap to make for each solid.
 class FacetSurfaces {
  public:
@@ -44,9 +50,8 @@ class FacetSurfaces {
   FacetSurfaces(const Solid& solid, const tessellate::FacetTriangles& canonical,
                 const Tetrahedralization& tetrahedralization, const std::array<double, 3>& unit);
 
-  /// `faces` are all faces of `facet`. Returns what is wrong, or nothing. Cost: O(k log k).
-  std::optional<std::string> check(Index facet, std::span<const ConstrainedFace> faces,
-                                   FacetSurface& surface);
+  /// `faces` are all faces of `facet`. Cost: O(k log k).
+  std::variant<FacetSurface, FacetFault> check(Index facet, std::span<const ConstrainedFace> faces);
 
  private:
   struct Plane;
@@ -55,15 +60,16 @@ class FacetSurfaces {
   Plane plane_of(Index facet) const;
   bool is_steiner(Index vertex) const { return vertex >= data_.input_count; }
   bool has_chain(Index facet, const Mesh& mesh, Index from, Index to) const;
-  bool is_near_segment(Index vertex, Index from, Index to, double& place) const;
+  double height(const Plane& plane, Index vertex) const;
+  std::optional<double> place_near_segment(Index vertex, Index from, Index to) const;
   bool is_contact(Index facet, Index vertex) const;
-  bool may_pass(Index facet, Index vertex, Index from, Index to, double& place) const;
-  std::optional<std::string> check_vertices(Index facet, const Plane& plane, const Mesh& mesh,
-                                            FacetSurface& surface);
+  std::optional<double> place_on_chain(Index facet, Index vertex, Index from, Index to) const;
+  std::optional<FacetFault> check_vertices(Index facet, const Plane& plane, const Mesh& mesh);
+  double largest_deviation(const Plane& plane, const Mesh& mesh) const;
   std::size_t boundary_step(Index facet, const Mesh& mesh, Index current, Index from,
                             Index to) const;
-  std::optional<std::string> check_rings(Index facet, const Mesh& mesh) const;
-  std::optional<std::string> check_area(Index facet, const FacetSurface& surface) const;
+  std::optional<FacetFault> check_rings(Index facet, const Mesh& mesh) const;
+  std::optional<FacetFault> check_area(Index facet, std::span<const Triangle> faces) const;
   std::span<const Triangle> canonical_of(Index facet) const;
 
   const Solid& solid_;

@@ -22,6 +22,7 @@
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
 #include "tessellate/flatness.h"
+#include "workers/worker_pool.h"
 
 namespace watertight::delaunay {
 namespace {
@@ -463,38 +464,16 @@ double default_ladder_seconds(std::size_t triangles) {
   return 20 + static_cast<double>(triangles) * 2.5e-3;
 }
 
-std::string_view to_string(RungOutcome outcome) {
-  switch (outcome) {
-    case RungOutcome::accepted:
-      return "accepted";
-    case RungOutcome::refused_by_certificate:
-      return "refused-by-certificate";
-    case RungOutcome::not_delaunay:
-      return "not-delaunay";
-    case RungOutcome::engine_error:
-      return "engine-error";
-    case RungOutcome::crashed:
-      return "crashed";
-    case RungOutcome::timed_out:
-      return "timed-out";
-    case RungOutcome::memory_limit:
-      return "memory-limit";
-    case RungOutcome::garbage:
-      return "garbage";
-    case RungOutcome::cancelled:
-      return "cancelled";
-    case RungOutcome::not_started:
-      return "not-started";
-  }
-  return "";
-}
-
 EngineWorkers::EngineWorkers(const Options& options)
     : cgal_(make_pool(options.cgal_executable, "watertight-worker", options.processes, 500)),
       // TetGen keeps tables in globals and frees twice on errors: one job a process.
       tetgen_(make_pool(options.tetgen_executable, "watertight-tetgen", options.processes, 1)) {}
 
 EngineWorkers::EngineWorkers() : EngineWorkers(Options{}) {}
+
+EngineWorkers::~EngineWorkers() = default;
+EngineWorkers::EngineWorkers(EngineWorkers&&) noexcept = default;
+EngineWorkers& EngineWorkers::operator=(EngineWorkers&&) noexcept = default;
 
 workers::WorkerPool* EngineWorkers::cgal() { return cgal_.get(); }
 

@@ -4,14 +4,19 @@
 // in worker processes, each rung's result accepted only by the certificate.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/cancel.h"
 #include "delaunay/certificate.h"
+#include "delaunay/rung.h"
 #include "delaunay/shell_contacts.h"
-#include "workers/worker_pool.h"
+
+namespace watertight::workers {
+class WorkerPool;
+}  // namespace watertight::workers
 
 namespace watertight::delaunay {
 
@@ -28,6 +33,9 @@ class EngineWorkers {
   };
   explicit EngineWorkers(const Options& options);
   EngineWorkers();
+  ~EngineWorkers();
+  EngineWorkers(EngineWorkers&&) noexcept;
+  EngineWorkers& operator=(EngineWorkers&&) noexcept;
   workers::WorkerPool* cgal();    // null when the executable does not exist
   workers::WorkerPool* tetgen();  // null when the executable does not exist
 
@@ -59,36 +67,6 @@ struct LadderOptions {
 /// certificates) is near linear and not counted. Wall-clock time is at most twenty times that and
 /// 10 s a rung, and a worker that uses no CPU time is ended after WorkerLimits::sleep_seconds.
 double default_ladder_seconds(std::size_t triangles);
-
-/// What became of one rung's attempt: the classes that statistics count.
-enum class RungOutcome : std::uint8_t {
-  accepted,                // by the certificate: the solid is decided
-  refused_by_certificate,  // RungAttempt::refusal names the reason
-  not_delaunay,            // rung 0: facets are not unions of Delaunay faces
-  engine_error,            // the engine said that it has no answer
-  crashed,                 // the worker process ended by itself
-  timed_out,
-  memory_limit,
-  garbage,  // bytes that are no answer
-  cancelled,
-  not_started  // no engine executable, no process, or no time left
-};
-inline constexpr std::size_t kRungOutcomes = 10;
-std::string_view to_string(RungOutcome outcome);
-
-/// One rung's attempt, for the report and for statistics.
-struct RungAttempt {
-  Rung rung = Rung::none;
-  std::string outcome;  // for people: "accepted", "refused: ...", "crashed: ...", "timed-out", ...
-  double seconds = 0;   // wall
-  RungOutcome result = RungOutcome::not_started;
-  CertificateRefusal refusal = CertificateRefusal::none;  // when refused_by_certificate
-  /// CPU times: of the calling thread, of the worker process, and of the engine's own call within
-  /// that (0 when it did not answer).
-  double cpu_seconds = 0;
-  double worker_seconds = 0;
-  double engine_seconds = 0;
-};
 
 struct LadderResult {
   std::optional<Certificate> certificate;  // the accepted one

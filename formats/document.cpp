@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "formats/city_json/model.h"
+#include "formats/city_json/city_json.h"
 #include "formats/ewkb.h"
 #include "formats/gml/gml.h"
 #include "formats/json_fg.h"

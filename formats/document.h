@@ -4,10 +4,7 @@
 // geometry in a skeleton, so that writing returns the same document (docs/formats.md).
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -124,12 +121,6 @@ std::string_view to_string(Contract contract);
 /// The inverse. Errors: invalid_argument.
 Result<Contract> contract_named(std::string_view name);
 
-/// The skeleton of a feature of a city model for its solids in canonical form. Contract lattice or
-/// boundary. Errors: malformed when a solid is no oriented boundary or the skeleton does not fit.
-Result<std::string> canonical_skeleton(const Feature& feature, Contract contract);
-/// The header for skeletons of contract boundary. Errors: malformed.
-Result<std::string> boundary_header(std::string_view header);
-
 struct ReadOptions {
   Limits limits;
   /// false: a CityJSON document becomes one feature whose skeleton returns the whole document
@@ -139,30 +130,6 @@ struct ReadOptions {
   /// byte as they were read. The features of a document that is split have no text of their own.
   bool keep_text = false;
 };
-
-/// What all features of a city model share, as stated by the first line of a CityJSONSeq.
-struct CityHeader {
-  std::string text;  // as Document::header
-  std::string version;
-  std::optional<geometry::Transform>
-      transform;  // absent: vertices are coordinates (an error in a sequence)
-  std::uint32_t srid = 0;
-  std::uint64_t template_count = 0;  // geometry templates that features may refer to
-};
-
-/// For streams: the first line of a CityJSONSeq (or a Document::header), then one call per line, so
-/// that memory is bounded by the longest line. Errors: as read_document; the JSON Pointer and byte
-/// offset are within the line. Cost: linear.
-Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits = {});
-Result<Feature> read_city_json_feature(const CityHeader& header, std::string_view line,
-                                       const ReadOptions& options = {});
-/// The solids of the header's geometry templates (Document::templates), each template on a lattice
-/// of its own; none for most headers, at no cost. Errors: malformed with JSON Pointer. Cost:
-/// linear.
-Result<std::vector<SubmittedSolid>> read_geometry_templates(const CityHeader& header,
-                                                            const Limits& limits = {});
-/// write_feature() without reading the header again.
-Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature);
 
 /// Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or JSON Pointer
 /// (content). Cost: linear; CityJSON is read by SAX, boundaries never become JSON values.

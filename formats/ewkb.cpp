@@ -29,7 +29,7 @@ class EwkbReader {
   EwkbReader(ByteView bytes, const Limits& limits) : reader_(bytes), limits_(limits) {}
 
   std::size_t position() const { return reader_.position(); }
-  std::size_t remaining() const { return reader_.remaining(); }
+  bool is_at_end() const { return reader_.remaining() == 0; }
 
   Result<SubmittedSolid> read() {
     arrays_ = {};
@@ -217,25 +217,14 @@ Result<SubmittedSolid> read_ewkb(ByteView bytes, const Limits& limits) {
   }
   EwkbReader reader(bytes, limits);
   auto solid = reader.read();
-  if (solid && reader.remaining() > 0) {
+  if (solid && !reader.is_at_end()) {
     return Error{ErrorCode::malformed, "bytes after the geometry", reader.position(), {}};
   }
   return solid;
 }
 
 Result<Document> read_ewkb_document(ByteView bytes, const Limits& limits) {
-  Document document;
-  document.format = Format::ewkb;
-  EwkbReader reader(bytes, limits);
-  do {
-    auto solid = reader.read();
-    if (!solid) return std::move(solid).error();
-    Feature feature;
-    feature.srid = solid->solid.srid();
-    feature.solids.push_back(std::move(*solid));
-    document.features.push_back(std::move(feature));
-  } while (reader.remaining() > 0);
-  return document;
+  return document_of_geometries(EwkbReader(bytes, limits), Format::ewkb);
 }
 
 Bytes write_ewkb(const Solid& solid) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 
+#include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "formats/text/text_layout.h"
 

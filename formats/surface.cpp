@@ -8,12 +8,9 @@
 namespace watertight::formats {
 namespace {
 
-Result<SubmittedSolid> submitted(SolidArrays arrays, std::span<const Index> vertex_of,
-                                 const geometry::LatticePoints& points, SolidSource source,
+Result<SubmittedSolid> submitted(SolidArrays arrays, const Lattice& lattice, SolidSource source,
                                  std::uint32_t srid, const Limits& limits) {
-  arrays.vertices.reserve(vertex_of.size());
-  for (const Index vertex : vertex_of) arrays.vertices.push_back(points.points[vertex]);
-  auto solid = Solid::make(std::move(arrays), points.lattice, srid, limits);
+  auto solid = Solid::make(std::move(arrays), lattice, srid, limits);
   if (!solid) return std::move(solid).error();
   return SubmittedSolid{std::move(*solid), std::move(source), {}};
 }
@@ -59,9 +56,8 @@ Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertic
 
   std::vector<bool> is_rounded(used.size(), false);
   for (const Index vertex : points->rounded) is_rounded[vertex] = true;
-  std::vector<Index> all(used.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  auto solid = submitted(std::move(arrays), all, *points, std::move(source), 0, limits);
+  arrays.vertices = std::move(points->points);
+  auto solid = submitted(std::move(arrays), points->lattice, std::move(source), 0, limits);
   if (!solid) return solid;
   for (Index i = 0; i < used.size(); ++i) {
     if (is_rounded[i] || vertices.is_rounded[used[i]]) solid->rounded.push_back(i);
@@ -70,7 +66,7 @@ Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertic
   return solid;
 }
 
-Result<Document> one_shell_document(Document document, Format format, std::string geometry_type,
+Result<Document> one_shell_document(Document document, std::string geometry_type,
                                     SolidArrays arrays, DecimalVertices& vertices,
                                     const Limits& limits) {
   if (arrays.facet_offsets.size() == 1) document.notes.push_back("the file has no faces");
@@ -78,7 +74,6 @@ Result<Document> one_shell_document(Document document, Format format, std::strin
   auto solid = indexed_solid(std::move(arrays), vertices,
                              SolidSource{"", std::move(geometry_type), "", 0, 0, ""}, limits);
   if (!solid) return std::move(solid).error();
-  document.format = format;
   document.features.emplace_back();
   document.features.back().solids.push_back(std::move(*solid));
   return document;
@@ -105,7 +100,9 @@ Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const geometry::Latti
 
   std::vector<bool> is_rounded(points.points.size(), false);
   for (const Index vertex : points.rounded) is_rounded[first[vertex]] = true;
-  auto solid = submitted(std::move(arrays), used, points, std::move(source), srid, limits);
+  arrays.vertices.reserve(used.size());
+  for (const Index vertex : used) arrays.vertices.push_back(points.points[vertex]);
+  auto solid = submitted(std::move(arrays), points.lattice, std::move(source), srid, limits);
   if (!solid) return solid;
   for (Index i = 0; i < used.size(); ++i) {
     if (is_rounded[used[i]]) solid->rounded.push_back(i);

@@ -7,6 +7,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/limits.h"
@@ -31,9 +32,9 @@ struct DecimalVertices {
 Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertices,
                                      SolidSource source, const Limits& limits);
 
-/// The document of a file that is one shell: `document`, which may have notes, with one feature of
-/// one solid. `arrays` has facets and no shell yet.
-Result<Document> one_shell_document(Document document, Format format, std::string geometry_type,
+/// The document of a file that is one shell: `document`, which has its format and may have notes,
+/// with one feature of one solid. `arrays` has facets and no shell yet.
+Result<Document> one_shell_document(Document document, std::string geometry_type,
                                     SolidArrays arrays, DecimalVertices& vertices,
                                     const Limits& limits);
 
@@ -42,5 +43,21 @@ Result<Document> one_shell_document(Document document, Format format, std::strin
 Result<SubmittedSolid> solid_of_points(SolidArrays arrays, const geometry::LatticePoints& points,
                                        SolidSource source, std::uint32_t srid,
                                        const Limits& limits);
+
+/// The document of a reader of WKT or EWKB: one geometry after the other, each a feature in its own
+/// reference system. Reads at least one. Errors: those of Reader::read().
+template <class Reader>
+Result<Document> document_of_geometries(Reader reader, Format format) {
+  Document document;
+  document.format = format;
+  do {
+    auto solid = reader.read();
+    if (!solid) return std::move(solid).error();
+    Feature& feature = document.features.emplace_back();
+    feature.srid = solid->solid.srid();
+    feature.solids.push_back(*std::move(solid));
+  } while (!reader.is_at_end());
+  return document;
+}
 
 }  // namespace watertight::formats

@@ -64,15 +64,13 @@ Result<Paged> pages_if_smaller(const std::vector<const Bytes*>& blobs,
   return paged;
 }
 
-Status write_feature(ByteWriter& writer, std::uint64_t document, const StoredFeature& feature,
-                     const std::vector<bool>& is_paged, std::size_t first_solid) {
-  const auto skeleton = unpacked_skeleton(feature);
-  if (!skeleton) return skeleton.error();
+void write_feature(ByteWriter& writer, std::uint64_t document, const EncodedFeature& feature,
+                   const std::vector<bool>& is_paged, std::size_t first_solid) {
   writer.varint(document);
   write_text(writer, feature.id);
   write_text(writer, feature.type);
   writer.varint(feature.srid);
-  write_text(writer, *skeleton);
+  write_text(writer, feature.skeleton);
   writer.varint(feature.solids.size());
   for (std::size_t i = 0; i < feature.solids.size(); ++i) {
     const StoredSolid& solid = feature.solids[i];
@@ -82,16 +80,15 @@ Status write_feature(ByteWriter& writer, std::uint64_t document, const StoredFea
     writer.varint(solid.ordinal);
     writer.varint(is_paged[first_solid + i] ? 0 : solid.blob.size());
   }
-  return Done{};
 }
 
 /// The feature's solids have been decoded: the document of it alone.
 Result<Feature> restored(ContainerFeature& feature, const std::string& format,
                          const Limits& limits) {
-  feature.stored.format = format;
+  feature.encoded.format = format;
   std::vector<Solid> solids;
   for (Decoded& decoded : feature.solids) solids.push_back(std::move(decoded.solid));
-  auto document = from_stored(feature.stored, std::move(solids), limits);
+  auto document = decode_feature(feature.encoded, std::move(solids), limits);
   if (!document) return std::move(document).error();
   return std::move(document->features.front());
 }
@@ -123,11 +120,12 @@ void ContainerWriter::add_document(const std::string& format, const SharedText& 
   write_text(new_document_texts_, ByteView(framing));
 }
 
-Status ContainerWriter::add(const StoredFeature& feature) {
+Status ContainerWriter::add(EncodedFeature feature) {
   add_document(feature.format, feature.header);
-  features_.emplace_back(documents_.at({feature.format, feature.header}), feature);
   part_bytes_ += feature.skeleton.size();
   for (const StoredSolid& solid : feature.solids) part_bytes_ += solid.blob.size();
+  const std::uint64_t document = documents_.at({feature.format, feature.header});
+  features_.emplace_back(document, std::move(feature));
   if (features_.size() < kPartFeatures && part_bytes_ < kPartBytes) return Done{};
   return close_part();
 }
@@ -145,14 +143,13 @@ Status ContainerWriter::close_part() {
   texts.varint(features_.size());
   std::size_t solids = 0;
   for (const auto& [document, feature] : features_) {
-    Status status = write_feature(texts, document, feature, paged->is_in_file, solids);
-    if (!status) return status;
+    write_feature(texts, document, feature, paged->is_in_file, solids);
     solids += feature.solids.size();
   }
   const auto packed = formats::pack_text(as_text(texts.bytes()));
   if (!packed) return packed.error();
   ByteWriter part;
-  write_text(part, ByteView(*packed));
+  write_text(part, ByteView(packed->bytes));
   write_text(part, ByteView(paged->file));
   for (std::size_t i = 0; i < blobs.size(); ++i) {
     if (!paged->is_in_file[i]) part.append(*blobs[i]);
@@ -182,7 +179,7 @@ Result<Bytes> ContainerWriter::finish() && {
 Result<Bytes> write_container(const StoredDocument& document, const EncodeOptions& pages) {
   ContainerWriter writer(pages);
   writer.add_document(document.format, document.header, document.framing);
-  for (const StoredFeature& feature : document.features) {
+  for (const EncodedFeature& feature : document.features) {
     if (feature.format != document.format || feature.header != document.header) {
       return Error{ErrorCode::invalid_argument, "the features are of several documents"};
     }

@@ -25,9 +25,9 @@ class ContainerWriter {
   /// The document that features of this format and header belong to; without one, their first
   /// feature makes it. Cost: linear in the number of documents.
   void add_document(const std::string& format, const SharedText& header, Bytes framing = {});
-  /// Features of a document keep their order. Errors: malformed (what is stored is damaged);
-  /// limit_exceeded; not_encodable.
-  Status add(const StoredFeature& feature);
+  /// Features of a document keep their order. Errors: malformed (a blob is
+  /// damaged); limit_exceeded; not_encodable.
+  Status add(EncodedFeature feature);
   /// What was written since the last call, to be appended to the file.
   Bytes take();
   /// The rest of the file. Errors: as add().
@@ -41,7 +41,7 @@ class ContainerWriter {
   std::map<std::pair<std::string, SharedText>, std::uint64_t> documents_;  // format, header
   std::uint64_t new_documents_ = 0;
   ByteWriter new_document_texts_;
-  std::vector<std::pair<std::uint64_t, StoredFeature>> features_;  // of the part, with document
+  std::vector<std::pair<std::uint64_t, EncodedFeature>> features_;  // of the part, with document
   std::size_t part_bytes_ = 0;
   std::uint32_t checksum_ = 0;
   Bytes written_;

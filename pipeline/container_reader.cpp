@@ -48,14 +48,14 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& it
   bool is_in_range = true;
   ContainerFeature& feature = texts.part.features.emplace_back();
   feature.document = reader.varint();
-  feature.stored.id = read_text(reader);
-  feature.stored.type = read_text(reader);
-  feature.stored.srid = read_index(reader, is_in_range);
-  feature.stored.skeleton = read_text(reader);
+  feature.encoded.id = read_text(reader);
+  feature.encoded.type = read_text(reader);
+  feature.encoded.srid = read_index(reader, is_in_range);
+  feature.encoded.skeleton = read_text(reader);
   const std::uint64_t count = reader.varint();
   if (!take_items(count, items_left)) return false;
   for (std::uint64_t i = 0; i < count && !reader.failed() && is_in_range; ++i) {
-    StoredSolid& solid = feature.stored.solids.emplace_back();
+    StoredSolid& solid = feature.encoded.solids.emplace_back();
     solid.object_id = read_text(reader);
     solid.lod = read_text(reader);
     solid.geometry = read_index(reader, is_in_range);
@@ -167,7 +167,7 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
   std::size_t number = 0;
   std::size_t next_paged = 0;
   for (ContainerFeature& feature : part.features) {
-    for (std::size_t i = 0; i < feature.stored.solids.size(); ++i) {
+    for (std::size_t i = 0; i < feature.encoded.solids.size(); ++i) {
       const std::uint64_t size = texts.sizes[number++];
       if (size == 0) {
         if (next_paged == paged.size()) return malformed("a solid that no page has");

@@ -9,7 +9,7 @@
 
 #include "base/limits.h"
 #include "codec/blob.h"
-#include "store/solid_store.h"
+#include "pipeline/pipeline.h"
 
 namespace watertight::pipeline {
 
@@ -26,8 +26,8 @@ struct ContainerDocument {
 
 struct ContainerFeature {
   std::uint64_t document = 0;   // counted over the file
-  StoredFeature stored;         // its blobs are empty
-  std::vector<Decoded> solids;  // one per stored.solids
+  EncodedFeature encoded;       // its blobs are empty
+  std::vector<Decoded> solids;  // one per encoded.solids
 };
 
 struct ContainerPart {

@@ -93,7 +93,9 @@ Result<Bytes> CollectionExport::next() {
 
 Status CollectionExport::add(const StoredFeature& feature, Bytes& bytes) {
   if (!container_) return add_line(feature, bytes);
-  if (Status status = container_->add(feature); !status) return status;
+  auto encoded = unpack(feature);
+  if (!encoded) return std::move(encoded).error();
+  if (Status status = container_->add(*std::move(encoded)); !status) return status;
   append(bytes, container_->take());
   return Done{};
 }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "codec/blob.h"
+#include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "pipeline/container.h"
 #include "store/solid_store.h"

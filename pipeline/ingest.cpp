@@ -4,7 +4,7 @@
 #include <optional>
 #include <set>
 
-#include "formats/text/packed_text.h"
+#include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
 #include "pipeline/groups.h"
 #include "pipeline/instances.h"
@@ -32,7 +32,7 @@ Error cancelled() {
 /// A feature validated, and encoded if it is valid and will be stored.
 struct Processed {
   FeatureOutcome outcome;
-  std::optional<StoredFeature> stored;
+  std::optional<EncodedFeature> encoded;
   std::optional<Error> error;
 };
 
@@ -44,12 +44,11 @@ Processed process(Feature feature, const Document& document, delaunay::EngineWor
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   if (processed.outcome.verdict == Verdict::valid) {
-    auto stored = to_stored(inspected, document, options.collection, options.encode,
-                            options.steiner, options.contract);
-    if (stored) {
-      processed.stored = *std::move(stored);
+    auto encoded = encode_feature(inspected, document, options);
+    if (encoded) {
+      processed.encoded = *std::move(encoded);
     } else {
-      processed.error = std::move(stored).error();
+      processed.error = std::move(encoded).error();
     }
   }
   for (std::size_t i = 0; i < inspected.solids.size(); ++i) {
@@ -62,7 +61,7 @@ Processed process(Feature feature, const Document& document, delaunay::EngineWor
     outcome.report_json =
         validate::report_json(outcome.report, inspected.feature.solids[i].solid, json);
     outcome.source_bytes = plain_bytes(inspected.feature.solids[i].solid);
-    if (processed.stored) outcome.blob_bytes = processed.stored->solids[i].blob.size();
+    if (processed.encoded) outcome.blob_bytes = processed.encoded->solids[i].blob.size();
     processed.outcome.solids.push_back(std::move(outcome));
   }
   processed.outcome.groups = std::move(inspected.groups);
@@ -140,12 +139,11 @@ Status store_all(std::vector<Processed>& processed, SolidStore& store, IngestOut
   std::vector<StoredFeature> features;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < processed.size(); ++i) {
-    if (!processed[i].stored) continue;
-    features.push_back(*std::move(processed[i].stored));
-    places.push_back(i);
-    auto packed = formats::pack_text(features.back().skeleton);
+    if (!processed[i].encoded) continue;
+    auto packed = pack(*std::move(processed[i].encoded));
     if (!packed) return std::move(packed).error();
-    features.back().skeleton = as_text(*packed);
+    features.push_back(*std::move(packed));
+    places.push_back(i);
   }
   if (features.empty()) return Done{};
   auto versions = store.put(features);
@@ -223,7 +221,7 @@ Result<EncodedDocument> encode_document(Document document, delaunay::EngineWorke
   encoded.document.framing = std::move(document.framing);
   for (Processed& feature : *processed) {
     if (feature.error) return *std::move(feature.error);
-    if (feature.stored) encoded.document.features.push_back(*std::move(feature.stored));
+    if (feature.encoded) encoded.document.features.push_back(*std::move(feature.encoded));
   }
   encoded.outcome = summarize(*processed);
   if (encoded.outcome.verdict != Verdict::valid) encoded.document.features.clear();

@@ -66,35 +66,6 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups = {},
                          TemplateInspector* templates = nullptr);
 
-/// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
-enum class SteinerVertices : std::uint8_t { leave_out, keep };
-
-/// A document with its solids encoded: what the features share, as Document has it, and they.
-struct StoredDocument {
-  std::string format;  // to_string(Format)
-  SharedText header;
-  Bytes framing;
-  std::vector<StoredFeature> features;
-};
-
-/// Encodes a feature whose verdict is valid into what the store keeps. For contract boundary,
-/// document.header must be a boundary_header().
-/// Errors: invalid_argument when a solid is not valid; those of encode().
-Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
-                                const std::string& collection, const EncodeOptions& options = {},
-                                SteinerVertices steiner = SteinerVertices::leave_out,
-                                formats::Contract contract = formats::Contract::exact);
-
-/// The skeleton as to_stored() made it; stores keep it compressed. Errors: those of unpack_text().
-Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits& limits = {});
-
-/// Decodes a stored feature: the document (with one feature) that came in.
-/// Errors: malformed when what is stored is not what to_stored() made; those of decode().
-Result<Document> from_stored(const StoredFeature& stored, const Limits& limits = {});
-/// The same of solids that are decoded already, one per stored.solids; its blobs are not looked at.
-Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> solids,
-                             const Limits& limits = {});
-
 /// What became of one solid of a document.
 struct SolidOutcome {
   SolidSource source;
@@ -120,6 +91,9 @@ enum class InvalidFeatures : std::uint8_t { refuse_document, skip };
 /// Called with features done and features in all; from one thread at a time.
 using Progress = std::function<void(std::size_t, std::size_t)>;
 
+/// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
+enum class SteinerVertices : std::uint8_t { leave_out, keep };
+
 struct IngestOptions {
   std::string collection;
   CertifyOptions certify;
@@ -132,6 +106,40 @@ struct IngestOptions {
   CancelPoll is_cancelled = {};
   Progress progress = {};
 };
+
+/// A feature with its solids encoded.
+struct EncodedFeature : store::FeatureRecord {
+  std::string skeleton;
+};
+
+/// A document with its solids encoded: what the features share, as Document has it, and they.
+struct StoredDocument {
+  std::string format;  // to_string(Format)
+  SharedText header;
+  Bytes framing;
+  std::vector<EncodedFeature> features;
+};
+
+/// Encodes a feature whose verdict is valid. For contract boundary, document.header must be a
+/// boundary_header(). Of the options only collection, encode, steiner and contract count.
+/// Errors: invalid_argument when a solid is not valid; those of encode().
+Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
+                                      const IngestOptions& options);
+
+/// The document (with one feature) that encode_feature() was given.
+/// Errors: malformed when the feature is not as encode_feature() makes them; those of decode().
+Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits = {});
+/// The same of solids that are decoded already, one per feature.solids; its blobs are not looked
+/// at.
+Result<Document> decode_feature(const EncodedFeature& feature, std::vector<Solid> solids,
+                                const Limits& limits = {});
+
+/// What the store keeps of a feature. Errors: those of pack_text().
+Result<StoredFeature> pack(EncodedFeature feature);
+/// The feature that pack() was given. Errors: those of unpack_text().
+Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {});
+/// The document of a stored feature: unpack(), then decode_feature().
+Result<Document> from_stored(const StoredFeature& stored, const Limits& limits = {});
 
 struct IngestOutcome {
   std::vector<FeatureOutcome> features;  // in document order

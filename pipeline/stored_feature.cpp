@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Features to stored features and back. What the store keeps as skeleton is the feature's and, if
+// Features to stored features and back. The skeleton of an EncodedFeature is the feature's and, if
 // it has a layout, a line feed and the layout; all preceded by one line "merged <solid> <line of
-// describe_merge>" for each solid with equal vertices. It may be compressed.
+// describe_merge>" for each solid with equal vertices.
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
 
+#include "formats/city_json/city_json.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/merged_vertices.h"
 #include "pipeline/outcome_json.h"
@@ -77,86 +78,80 @@ Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleto
 
 }  // namespace
 
-Result<StoredFeature> to_stored(const InspectedFeature& feature, const Document& document,
-                                const std::string& collection, const EncodeOptions& options,
-                                SteinerVertices steiner, formats::Contract contract) {
-  StoredFeature stored;
-  stored.collection = collection;
-  stored.id = feature.feature.id;
-  stored.type = feature.feature.type;
-  stored.srid = feature.feature.srid;
-  stored.format = std::string(formats::to_string(document.format));
-  stored.header = document.header;
-  EncodeOptions encode_options = options;
-  if (contract != formats::Contract::exact) encode_options.keep_order = false;
+Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
+                                      const IngestOptions& options) {
+  const bool is_exact = options.contract == formats::Contract::exact;
+  EncodedFeature encoded;
+  encoded.collection = options.collection;
+  encoded.id = feature.feature.id;
+  encoded.type = feature.feature.type;
+  encoded.srid = feature.feature.srid;
+  encoded.format = std::string(formats::to_string(document.format));
+  encoded.header = document.header;
+  EncodeOptions encode_options = options.encode;
+  if (!is_exact) encode_options.keep_order = false;
   for (std::size_t i = 0; i < feature.solids.size(); ++i) {
     const InspectedSolid& inspected = feature.solids[i];
-    auto solid = store_solid(inspected, feature.feature.solids[i].solid, encode_options, steiner);
+    auto solid =
+        store_solid(inspected, feature.feature.solids[i].solid, encode_options, options.steiner);
     if (!solid) {
       Error error = std::move(solid).error();
       if (error.pointer.empty()) error.pointer = inspected.source.pointer;
       return error;
     }
-    stored.solids.push_back(*std::move(solid));
+    encoded.solids.push_back(*std::move(solid));
     const Solid& certified = inspected.inspection.certified->solid.solid();
-    include(stored.box, certified);
+    include(encoded.box, certified);
     auto merge = describe_merge(feature.feature.solids[i].solid, certified);
     if (!merge) return std::move(merge).error();
-    if (contract != formats::Contract::exact || merge->empty()) continue;
-    stored.skeleton += std::string(kMergedLine) + std::to_string(i) + ' ' + *merge + '\n';
+    if (!is_exact || merge->empty()) continue;
+    encoded.skeleton += std::string(kMergedLine) + std::to_string(i) + ' ' + *merge + '\n';
   }
-  if (contract != formats::Contract::exact) {
-    if (feature.feature.skeleton.empty()) return stored;
-    auto skeleton = formats::canonical_skeleton(feature.feature, contract);
+  if (!is_exact) {
+    if (feature.feature.skeleton.empty()) return encoded;
+    auto skeleton = formats::canonical_skeleton(feature.feature, options.contract);
     if (!skeleton) return std::move(skeleton).error();
-    stored.skeleton = *std::move(skeleton);
-    return stored;
+    encoded.skeleton = *std::move(skeleton);
+    return encoded;
   }
-  stored.skeleton += feature.feature.skeleton;
+  encoded.skeleton += feature.feature.skeleton;
   if (!feature.feature.layout.empty()) {
-    stored.skeleton += '\n';
-    stored.skeleton += as_text(feature.feature.layout);
+    encoded.skeleton += '\n';
+    encoded.skeleton += as_text(feature.feature.layout);
   }
-  return stored;
+  return encoded;
 }
 
-Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits& limits) {
-  if (!formats::is_packed_text(as_bytes(stored.skeleton))) return stored.skeleton;
-  return formats::unpack_text(as_bytes(stored.skeleton), limits.bytes);
-}
-
-Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) {
+Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits) {
   std::vector<Solid> solids;
-  for (const StoredSolid& solid : stored.solids) {
+  for (const StoredSolid& solid : feature.solids) {
     auto decoded = decode(solid.blob, limits);
     if (!decoded) return std::move(decoded).error();
     solids.push_back(std::move(decoded->solid));
   }
-  return from_stored(stored, std::move(solids), limits);
+  return decode_feature(feature, std::move(solids), limits);
 }
 
-Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> solids,
-                             const Limits& limits) {
-  if (solids.size() != stored.solids.size()) {
+Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid> solids,
+                                const Limits& limits) {
+  if (solids.size() != encoded.solids.size()) {
     return Error{ErrorCode::malformed, "a stored feature of another number of solids"};
   }
-  auto format = formats::format_named(stored.format);
+  auto format = formats::format_named(encoded.format);
   if (!format) return std::move(format).error();
-  auto unpacked = unpacked_skeleton(stored, limits);
-  if (!unpacked) return std::move(unpacked).error();
-  std::string_view skeleton = *unpacked;
-  auto merges = take_merge_lines(skeleton, stored.solids.size());
+  std::string_view skeleton = encoded.skeleton;
+  auto merges = take_merge_lines(skeleton, encoded.solids.size());
   if (!merges) return std::move(merges).error();
   Feature feature;
-  feature.id = stored.id;
-  feature.type = stored.type;
-  feature.srid = stored.srid;
+  feature.id = encoded.id;
+  feature.type = encoded.type;
+  feature.srid = encoded.srid;
   const std::size_t end = std::min(skeleton.find('\n'), skeleton.size());
   feature.skeleton = std::string(skeleton.substr(0, end));
   const ByteView layout = as_bytes(skeleton.substr(std::min(end + 1, skeleton.size())));
   feature.layout.assign(layout.begin(), layout.end());
-  for (std::size_t i = 0; i < stored.solids.size(); ++i) {
-    const StoredSolid& solid = stored.solids[i];
+  for (std::size_t i = 0; i < encoded.solids.size(); ++i) {
+    const StoredSolid& solid = encoded.solids[i];
     SolidSource source;
     source.object_id = solid.object_id;
     source.lod = solid.lod;
@@ -170,9 +165,32 @@ Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> sol
   }
   Document document;
   document.format = *format;
-  document.header = stored.header;
+  document.header = encoded.header;
   document.features.push_back(std::move(feature));
   return document;
+}
+
+Result<StoredFeature> pack(EncodedFeature feature) {
+  auto skeleton = formats::pack_text(feature.skeleton);
+  if (!skeleton) return std::move(skeleton).error();
+  store::FeatureRecord& record = feature;
+  return StoredFeature{std::move(record), *std::move(skeleton)};
+}
+
+Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits) {
+  const ByteView bytes = stored.skeleton.bytes;
+  // The first databases have plain skeletons, which never begin like a packed text.
+  auto skeleton = formats::is_packed_text(bytes) ? formats::unpack_text(bytes, limits.bytes)
+                                                 : Result<std::string>(std::string(as_text(bytes)));
+  if (!skeleton) return std::move(skeleton).error();
+  store::FeatureRecord& record = stored;
+  return EncodedFeature{std::move(record), *std::move(skeleton)};
+}
+
+Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) {
+  const auto feature = unpack(stored, limits);
+  if (!feature) return feature.error();
+  return decode_feature(*feature, limits);
 }
 
 }  // namespace watertight::pipeline

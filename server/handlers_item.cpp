@@ -92,7 +92,9 @@ Result<Bytes> represent(const StoredFeature& feature, const ItemFormat& format,
                         const RoutedRequest& request) {
   if (format.parameter == "blob") return blob_of(feature, request.target);
   if (format.parameter == "wt") {
-    return pipeline::write_container({feature.format, feature.header, {}, {feature}});
+    auto encoded = pipeline::unpack(feature);
+    if (!encoded) return std::move(encoded).error();
+    return pipeline::write_container({feature.format, feature.header, {}, {*std::move(encoded)}});
   }
   auto document = pipeline::from_stored(feature, request.service.options.limits);
   if (!document) {

@@ -5,14 +5,14 @@
 #include <array>
 #include <charconv>
 
+#include "base/ascii.h"
+
 namespace watertight::server {
 namespace {
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 int hex_value(char c) {
   if (c >= '0' && c <= '9') return c - '0';
-  c = lower(c);
+  c = lower_case(c);
   return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
@@ -174,8 +174,9 @@ std::string percent_encode(std::string_view text) {
   constexpr std::string_view kHex = "0123456789ABCDEF";
   std::string encoded;
   for (const char c : text) {
-    const bool is_unreserved = (lower(c) >= 'a' && lower(c) <= 'z') || (c >= '0' && c <= '9') ||
-                               c == '-' || c == '.' || c == '_' || c == '~';
+    const bool is_unreserved = (lower_case(c) >= 'a' && lower_case(c) <= 'z') ||
+                               (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '_' ||
+                               c == '~';
     if (is_unreserved) {
       encoded.push_back(c);
       continue;
@@ -245,9 +246,7 @@ Result<Target> parse_target(std::string_view target) {
 }
 
 std::string media_type(std::string_view content_type) {
-  std::string type(trim(cut(content_type, ';')));
-  std::transform(type.begin(), type.end(), type.begin(), lower);
-  return type;
+  return lower_case(trim(cut(content_type, ';')));
 }
 
 std::optional<std::size_t> negotiate(const std::string* accept,

@@ -14,6 +14,7 @@
 #include <new>
 #include <optional>
 
+#include "base/ascii.h"
 #include "server/problem.h"
 
 namespace watertight::server {
@@ -75,11 +76,7 @@ std::optional<Response> answer_to(const error_code& error, const ServerOptions& 
 }
 
 std::string lower(beast::string_view text) {
-  std::string result(text.data(), text.size());
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
+  return lower_case(std::string_view(text.data(), text.size()));
 }
 
 /// What is wrong with a header before its body is read.

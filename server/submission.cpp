@@ -5,6 +5,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "formats/city_json/city_json.h"
+
 namespace watertight::server {
 namespace {
 

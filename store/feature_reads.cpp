@@ -79,7 +79,8 @@ std::vector<StoredFeature> features_of(const Rows& rows, const std::string& coll
     feature.format = rows.text(row, 3);
     feature.srid = static_cast<std::uint32_t>(rows.int8(row, 4));
     feature.header = std::string(rows.text(row, 5));  // its digest, until fill_headers()
-    feature.skeleton = rows.text(row, 6);
+    const ByteView skeleton = as_bytes(rows.text(row, 6));
+    feature.skeleton.bytes.assign(skeleton.begin(), skeleton.end());
     feature.box = box_of(rows, row, 7);
   }
   return features;

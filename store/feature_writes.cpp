@@ -172,7 +172,7 @@ struct FeatureColumns {
     type.push_back(feature.type);
     format.push_back(feature.format);
     header.push_back(digest);
-    skeleton.push_back(as_bytes(feature.skeleton));
+    skeleton.push_back(feature.skeleton.bytes);
     srid.push_back(feature.srid);
     solids.push_back(static_cast<std::int64_t>(feature.solids.size()));
     std::size_t blobs = 0;
@@ -183,7 +183,7 @@ struct FeatureColumns {
       box[axis].push_back(feature.box ? std::optional(feature.box->min[axis]) : std::nullopt);
       box[axis + 3].push_back(feature.box ? std::optional(feature.box->max[axis]) : std::nullopt);
     }
-    bytes += feature.id.size() + feature.skeleton.size() + 256;
+    bytes += feature.id.size() + feature.skeleton.bytes.size() + 256;
   }
   Parameters parameters() const {
     Parameters p;
@@ -345,7 +345,7 @@ Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin;
     for (std::size_t bytes = 0; end < order.size() && bytes < kStatementBytes; ++end) {
-      bytes += features[order[end]].skeleton.size() + 512;
+      bytes += features[order[end]].skeleton.bytes.size() + 512;
     }
     const auto places = std::span(order).subspan(begin, end - begin);
     if (Status done = write_feature_rows(connection, features, places, *digests, versions); !done) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/bytes.h"
+#include "base/packed_text.h"
 #include "base/result.h"
 #include "base/shared_text.h"
 
@@ -44,17 +45,21 @@ struct StoredSolid {
   std::string report;    // JSON
 };
 
-struct StoredFeature {
+/// A feature but for its skeleton.
+struct FeatureRecord {
   std::string collection;
   std::string id;
   std::string type;
   std::uint32_t srid = 0;  // EPSG code, 0 when not stated; one for all features of a collection
   std::string format;      // to_string(Format) of the document it came in
   SharedText header;       // document header it needs (may differ from the collection's)
-  std::string skeleton;
   std::optional<StoredBox> box;  // world coordinates, over its solids
   std::vector<StoredSolid> solids;
   std::uint64_t version = 0;  // set by the store, never used twice; the ETag
+};
+
+struct StoredFeature : FeatureRecord {
+  PackedText skeleton;
 };
 
 struct FeatureQuery {

@@ -310,10 +310,9 @@ Inspection examine(const Solid& solid, delaunay::EngineWorkers* workers,
 Inspection flattened(const CertifyOptions& options) {
   FindingCollector findings(options.limits.findings);
   for (const int code : {kShellSelfIntersection, kZeroVolume}) {
-    Finding finding;
-    finding.code = code;
-    finding.detail = "the determinant of the transformation is zero: it flattens the solid";
-    findings.add(std::move(finding));
+    findings.add(
+        {.code = code,
+         .detail = "the determinant of the transformation is zero: it flattens the solid"});
   }
   findings.skip({kSolidInteriorDisconnected}, "the solid is flat in its place");
   Inspection inspection;

@@ -9,7 +9,6 @@
 
 #include "base/cancel.h"
 #include "base/limits.h"
-#include "delaunay/ladder.h"
 #include "geometry/placement.h"
 #include "geometry/valid_solid.h"
 #include "validate/report.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "delaunay/ladder.h"
+#include "delaunay/rung.h"
 #include "geometry/measures.h"
 #include "geometry/valid_solid.h"
 
@@ -33,14 +33,14 @@ struct Place {
 struct Finding {
   int code = 0;  // see docs/findings.md; val3dity's numbers, ours from 800
   Severity severity = Severity::error;
-  Place place;
-  std::optional<Place> other;                    // the other member of a pair
-  std::optional<std::array<double, 3>> witness;  // world coordinates, correctly rounded
-  std::optional<double> measured;
-  std::optional<double> limit;
-  std::string unit;        // of measured and limit: "m", "degree", "facets", ...
-  std::string detail;      // one clause, lower case, for a person
-  bool uncertain = false;  // a finding of a lower level makes this one unreliable
+  Place place = {};
+  std::optional<Place> other = {};                    // the other member of a pair
+  std::optional<std::array<double, 3>> witness = {};  // world coordinates, correctly rounded
+  std::optional<double> measured = {};
+  std::optional<double> limit = {};
+  std::string unit = {};    // of measured and limit: "m", "degree", "facets", ...
+  std::string detail = {};  // one clause, lower case, for a person
+  bool uncertain = false;   // a finding of a lower level makes this one unreliable
 };
 
 /// A rule that could not be evaluated, and why.

@@ -10,13 +10,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include "bench/input.h"
 #include "delaunay/cdt_statistics.h"
-#include "formats/document.h"
 #include "validate/certify.h"
 
 using namespace watertight;
@@ -88,12 +87,8 @@ void decide(const std::string& name, const SubmittedSolid& submitted,
 
 void decide_file(const std::string& file, delaunay::EngineWorkers& workers,
                  const Settings& settings, Totals& totals) {
-  std::ifstream stream(file, std::ios::binary);
-  const Bytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   ++totals.files;
-  const auto format = formats::detect_format(file, bytes);
-  const auto document =
-      format ? formats::read_document(bytes, *format) : Result<Document>(format.error());
+  const auto document = bench::read_file(file);
   if (!document) {
     ++totals.unreadable;
     std::printf("unreadable %s: %s\n", file.c_str(), to_string(document.error()).c_str());

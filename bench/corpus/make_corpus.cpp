@@ -9,7 +9,7 @@
 #include <string>
 
 #include "bench/corpus/corpus.h"
-#include "formats/document.h"
+#include "bench/input.h"
 #include "validate/certify.h"
 
 using namespace watertight;
@@ -36,12 +36,8 @@ int main(int count, char** arguments) {
   }
   std::ofstream out(arguments[1], std::ios::binary);
   for (int i = 2; i < count; ++i) {
-    std::ifstream stream(arguments[i], std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string name = std::filesystem::path(arguments[i]).filename().string();
-    const auto format = formats::detect_format(name, as_bytes(text));
-    if (!format) continue;
-    const auto document = formats::read_document(as_bytes(text), *format);
+    const auto document = bench::read_file(arguments[i]);
     if (!document) {
       std::fprintf(stderr, "%s: %s\n", arguments[i], to_string(document.error()).c_str());
       continue;

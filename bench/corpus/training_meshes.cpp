@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <utility>
 
 #include "bench/dense/quantized_mesh.h"
-#include "formats/document.h"
+#include "bench/input.h"
 
 namespace watertight {
 namespace {
@@ -26,12 +25,7 @@ std::vector<std::string> files_under(const std::string& folder) {
 }
 
 void add_meshes(const std::string& path, std::vector<codec::IntegerSolid>& meshes) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto format =
-      formats::detect_format(std::filesystem::path(path).filename().string(), as_bytes(text));
-  if (!format) return;
-  const auto document = formats::read_document(as_bytes(text), *format);
+  const auto document = bench::read_file(path);
   if (!document) return;
   for (const Feature& feature : document->features) {
     for (const SubmittedSolid& submitted : feature.solids) {

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -21,8 +20,8 @@
 #include "bench/dense/quantized_mesh.h"
 #include "bench/dense/summary.h"
 #include "bench/dense/whole_blob.h"
+#include "bench/input.h"
 #include "codec/page/container.h"
-#include "formats/document.h"
 #include "validate/certify.h"
 
 namespace {
@@ -73,11 +72,7 @@ void report(const std::string& grid, const std::vector<std::filesystem::path>& f
   print_heading(grid);
   for (std::size_t number = 0; number < files.size(); ++number) {
     const auto& path = files[number];
-    std::ifstream stream(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
-    if (!format) continue;
-    const auto document = formats::read_document(as_bytes(text), *format);
+    const auto document = bench::read_file(path);
     if (!document) continue;
     for (const Feature& feature : document->features) {
       for (const SubmittedSolid& submitted : feature.solids) {

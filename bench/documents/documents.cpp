@@ -43,17 +43,17 @@ void add_texts(const Document& document, Sizes& sizes) {
     std::string skeleton = feature.skeleton + '\n';
     skeleton += as_text(feature.layout);
     const auto packed = formats::pack_text(skeleton);
-    if (packed) sizes.alone += packed->size();
+    if (packed) sizes.alone += packed->bytes.size();
     sizes.texts += skeleton.size();
     sizes.layout += feature.layout.size();
     all += skeleton;
   }
   const auto packed = formats::pack_text(all);
-  if (packed) sizes.together = packed->size();
+  if (packed) sizes.together = packed->bytes.size();
 }
 
 void add_blobs(const pipeline::StoredDocument& document, Sizes& sizes) {
-  for (const StoredFeature& feature : document.features) {
+  for (const pipeline::EncodedFeature& feature : document.features) {
     for (const StoredSolid& solid : feature.solids) {
       ++sizes.solids;
       sizes.blobs += solid.blob.size();

@@ -9,7 +9,6 @@
 // (user), and wall seconds; the ratio is of user times on one thread. Exit status 1 if the pairs
 // differ from PMP's or between numbers of threads.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/IO/polygon_soup_io.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 
 #include <sys/resource.h>
@@ -20,12 +19,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/geometry/read_soup.h"
 #include "bench/geometry/shapes.h"
 #include "geometry/intersection/box_partition.h"
-#include "geometry/predicates/predicates.h"
 
 namespace {
 
@@ -73,33 +73,6 @@ Seconds median(const std::vector<Seconds>& times) {
     return values.empty() ? 0 : values[values.size() / 2];
   };
   return {middle(&Seconds::user), middle(&Seconds::wall)};
-}
-
-/// Polygons as fans over merged vertices; degenerate triangles left out.
-bool read_mesh(const std::string& file, Soup& soup) {
-  std::vector<Kernel::Point_3> points;
-  std::vector<std::vector<std::size_t>> polygons;
-  if (!CGAL::IO::read_polygon_soup(file, points, polygons)) return false;
-  std::vector<Point> source;
-  for (const auto& p : points) source.push_back({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0});
-  soup.name = file.substr(file.find_last_of('/') + 1);
-  soup.points = source;
-  std::sort(soup.points.begin(), soup.points.end());
-  soup.points.erase(std::unique(soup.points.begin(), soup.points.end()), soup.points.end());
-  const auto merged = [&](std::size_t vertex) {
-    return static_cast<Index>(
-        std::lower_bound(soup.points.begin(), soup.points.end(), source[vertex]) -
-        soup.points.begin());
-  };
-  for (const auto& polygon : polygons) {
-    for (std::size_t i = 2; i < polygon.size(); ++i) {
-      const Triangle t{merged(polygon[0]), merged(polygon[i - 1]), merged(polygon[i])};
-      if (geometry::are_collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]]))
-        continue;
-      soup.triangles.push_back(t);
-    }
-  }
-  return true;
 }
 
 /// The triangles as PMP takes them.
@@ -204,12 +177,12 @@ int main(int argc, char** argv) {
       options.threads, options.threads);
   bool all_equal = true;
   for (const std::string& file : options.files) {
-    Soup soup;
-    if (!read_mesh(file, soup)) {
+    const std::optional<Soup> soup = bench::read_soup(file);
+    if (!soup) {
       std::fprintf(stderr, "%s: cannot be read\n", file.c_str());
       return 2;
     }
-    all_equal = run(soup, true, options) && all_equal;
+    all_equal = run(*soup, true, options) && all_equal;
   }
   if (options.set == "dense" || options.set == "all") {
     for (const std::size_t count : {100'000, 300'000, 1'000'000}) {

@@ -8,7 +8,6 @@
 //   - PMP::triangle_soup_self_intersections (without classes and without equal triangles),
 // with the seconds of each. Exit status 1 if any differs.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/IO/polygon_soup_io.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/box_intersection_d.h>
 
@@ -18,48 +17,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/geometry/read_soup.h"
 #include "geometry/intersection/box_partition.h"
-#include "geometry/predicates/predicates.h"
 
 namespace {
 
 using namespace watertight;
+using bench::Soup;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Pair = std::pair<Index, Index>;
-
-struct Mesh {
-  std::vector<Point> points;
-  std::vector<Triangle> triangles;
-};
-
-/// Polygons as fans over merged vertices; degenerate triangles left out.
-bool read_mesh(const std::string& file, Mesh& mesh) {
-  std::vector<Kernel::Point_3> points;
-  std::vector<std::vector<std::size_t>> polygons;
-  if (!CGAL::IO::read_polygon_soup(file, points, polygons)) return false;
-  std::vector<Point> source;
-  for (const auto& p : points) source.push_back({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0});
-  mesh.points = source;
-  std::sort(mesh.points.begin(), mesh.points.end());
-  mesh.points.erase(std::unique(mesh.points.begin(), mesh.points.end()), mesh.points.end());
-  const auto merged = [&](std::size_t vertex) {
-    return static_cast<Index>(
-        std::lower_bound(mesh.points.begin(), mesh.points.end(), source[vertex]) -
-        mesh.points.begin());
-  };
-  for (const auto& polygon : polygons) {
-    for (std::size_t i = 2; i < polygon.size(); ++i) {
-      const Triangle t{merged(polygon[0]), merged(polygon[i - 1]), merged(polygon[i])};
-      if (geometry::are_collinear(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]))
-        continue;
-      mesh.triangles.push_back(t);
-    }
-  }
-  return true;
-}
 
 std::vector<Pair> names(const std::vector<geometry::IntersectingPair>& pairs) {
   std::vector<Pair> result;
@@ -67,7 +37,7 @@ std::vector<Pair> names(const std::vector<geometry::IntersectingPair>& pairs) {
   return result;
 }
 
-std::vector<Pair> by_all_pairs(const Mesh& mesh) {
+std::vector<Pair> by_all_pairs(const Soup& mesh) {
   std::vector<Pair> pairs;
   for (Index i = 0; i < mesh.triangles.size(); ++i) {
     for (Index j = i + 1; j < mesh.triangles.size(); ++j) {
@@ -80,7 +50,7 @@ std::vector<Pair> by_all_pairs(const Mesh& mesh) {
   return pairs;
 }
 
-std::vector<Pair> by_box_intersection(const Mesh& mesh) {
+std::vector<Pair> by_box_intersection(const Soup& mesh) {
   using BoxD = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Index>;
   std::vector<BoxD> boxes;
   for (Index i = 0; i < mesh.triangles.size(); ++i) {
@@ -107,7 +77,7 @@ std::vector<Pair> by_box_intersection(const Mesh& mesh) {
   return pairs;
 }
 
-std::vector<Pair> by_pmp(const Mesh& mesh) {
+std::vector<Pair> by_pmp(const Soup& mesh) {
   std::vector<Kernel::Point_3> points;
   for (const Point& p : mesh.points) points.emplace_back(p.x, p.y, p.z);
   std::vector<std::array<std::size_t, 3>> triangles;
@@ -132,7 +102,7 @@ auto timed(Function function, double& seconds) {
   return result;
 }
 
-void print_classes(const Mesh& mesh, const std::vector<geometry::IntersectingPair>& pairs) {
+void print_classes(const Soup& mesh, const std::vector<geometry::IntersectingPair>& pairs) {
   const auto with_common_vertex = std::count_if(pairs.begin(), pairs.end(), [&](const auto& pair) {
     const Triangle& second = mesh.triangles[pair.second];
     return std::find_first_of(second.begin(), second.end(), mesh.triangles[pair.first].begin(),
@@ -154,11 +124,12 @@ void print_classes(const Mesh& mesh, const std::vector<geometry::IntersectingPai
 
 /// True if all methods agree on the mesh.
 bool compare(const std::string& file, int repeat) {
-  Mesh mesh;
-  if (!read_mesh(file, mesh)) {
+  const std::optional<Soup> read = bench::read_soup(file);
+  if (!read) {
     std::printf("%s: cannot be read\n", file.c_str());
     return false;
   }
+  const Soup& mesh = *read;
   double own = 1e9;
   double boxes = 1e9;
   double pmp = 1e9;

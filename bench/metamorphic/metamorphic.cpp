@@ -11,9 +11,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -21,8 +18,8 @@
 #include <thread>
 #include <vector>
 
+#include "bench/input.h"
 #include "bench/metamorphic/relations.h"
-#include "formats/document.h"
 
 using namespace watertight;
 
@@ -62,14 +59,7 @@ Arguments arguments_of(int argc, char** argv) {
 std::vector<Solid> read_solids(const Arguments& arguments) {
   std::vector<Solid> solids;
   for (const std::string& file : arguments.files) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(stream)),
-                           std::istreambuf_iterator<char>());
-    const ByteView bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    const auto format =
-        formats::detect_format(std::filesystem::path(file).filename().string(), bytes);
-    const auto document =
-        format ? formats::read_document(bytes, *format) : Result<Document>(format.error());
+    const auto document = bench::read_file(file);
     if (!document) {
       std::fprintf(stderr, "%s is left out: %s\n", file.c_str(),
                    to_string(document.error()).c_str());

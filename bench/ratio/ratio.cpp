@@ -5,15 +5,14 @@
 // real, decodable files beside the peers (bench/ratio/peers.h), all on the same grid.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include "bench/input.h"
 #include "bench/ratio/accounting.h"
 #include "bench/ratio/peers.h"
 #include "codec/blob.h"
-#include "formats/document.h"
 #include "tessellate/facets.h"
 #include "validate/certify.h"
 
@@ -150,15 +149,8 @@ void print_tables(const std::string& name, const FileSums& sums) {
 int main(int argc, char** argv) {
   delaunay::EngineWorkers workers;
   for (int i = 1; i < argc; ++i) {
-    std::ifstream stream(argv[i], std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string name = std::filesystem::path(argv[i]).filename().string();
-    const auto format = formats::detect_format(name, as_bytes(text));
-    if (!format) {
-      std::fprintf(stderr, "%s: %s\n", argv[i], to_string(format.error()).c_str());
-      return 2;
-    }
-    const auto document = formats::read_document(as_bytes(text), *format);
+    const auto document = bench::read_file(argv[i]);
     if (!document) {
       std::fprintf(stderr, "%s: %s\n", argv[i], to_string(document.error()).c_str());
       return 2;

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/input.h"
 #include "formats/mesh/interior_shells.h"
 #include "pipeline/pipeline.h"
 
@@ -100,16 +101,6 @@ std::string text_of(const Codes& codes) {
   return text.empty() ? "valid" : text;
 }
 
-Result<Document> read_file(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return Error{ErrorCode::not_found, "cannot be opened"};
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
-  if (!format) return format.error();
-  formats::ReadOptions options;
-  return formats::read_document(as_bytes(text), *format, options);
-}
-
 /// val3dity's suite gives these files together with a second cavity, a file that the data set lacks
 /// and that 402_in_1.poly repeats (code 402: duplicated shells).
 bool needs_twin(const std::string& name) {
@@ -119,13 +110,13 @@ bool needs_twin(const std::string& name) {
 /// The file's document; with `exterior`, its solids become the cavity of that file's solid.
 Result<Document> read_row(const std::filesystem::path& file,
                           const std::filesystem::path& exterior) {
-  auto document = read_file(file);
+  auto document = bench::read_file(file);
   if (!document || exterior.empty()) return document;
-  auto outside = read_file(exterior);
+  auto outside = bench::read_file(exterior);
   if (!outside) return outside;
   std::vector<SubmittedSolid> interior = document->features.at(0).solids;
   if (needs_twin(file.filename().string())) {
-    const auto twin = read_file(file.parent_path() / "402_in_1.poly");
+    const auto twin = bench::read_file(file.parent_path() / "402_in_1.poly");
     if (!twin) return twin.error();
     interior.push_back(twin->features.at(0).solids.at(0));
   }

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/input.h"
 #include "pipeline/pipeline.h"
 
 using namespace watertight;
@@ -109,8 +110,12 @@ void check_solid(const SolidKey& key, const ValidSolid& solid, Totals& totals) {
 /// differs.
 std::string round_trip(const std::string& file, const pipeline::InspectedFeature& feature,
                        const Document& document, SolidStore* store) {
-  auto stored = pipeline::to_stored(feature, document, file);
-  if (!stored) return "encode: " + to_string(stored.error());
+  pipeline::IngestOptions options;
+  options.collection = file;
+  auto encoded = pipeline::encode_feature(feature, document, options);
+  if (!encoded) return "encode: " + to_string(encoded.error());
+  auto stored = pipeline::pack(*std::move(encoded));
+  if (!stored) return "pack: " + to_string(stored.error());
   StoredFeature returned = *stored;
   if (store != nullptr) {
     if (auto put = store->put({&*stored, 1}); !put) return "put: " + to_string(put.error());
@@ -191,11 +196,7 @@ void print_totals(const std::string& file, const Totals& totals) {
 std::optional<Totals> check_file(const std::filesystem::path& path_to_file,
                                  const Reference& reference, const Path& path) {
   const std::string file = path_to_file.filename().string();
-  std::ifstream stream(path_to_file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto format = formats::detect_format(file, as_bytes(text));
-  auto document =
-      format ? formats::read_document(as_bytes(text), *format) : Result<Document>(format.error());
+  auto document = bench::read_file(path_to_file);
   if (!document) {
     std::fprintf(stderr, "%s: %s\n", file.c_str(), to_string(document.error()).c_str());
     return std::nullopt;

@@ -8,15 +8,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bench/input.h"
 #include "bench/reference/pmp_oracle.h"
-#include "formats/document.h"
 #include "tessellate/facets.h"
 
 using namespace watertight;
@@ -87,15 +86,8 @@ int main(int argc, char** argv) {
       "intersecting_pairs,"
       "verdict\n");
   for (int i = 1; i < argc; ++i) {
-    std::ifstream stream(argv[i], std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string name = std::filesystem::path(argv[i]).filename().string();
-    const auto format = formats::detect_format(name, as_bytes(text));
-    if (!format) {
-      std::fprintf(stderr, "%s: %s\n", argv[i], to_string(format.error()).c_str());
-      return 2;
-    }
-    const auto document = formats::read_document(as_bytes(text), *format);
+    const auto document = bench::read_file(argv[i]);
     if (!document) {
       std::fprintf(stderr, "%s: %s\n", argv[i], to_string(document.error()).c_str());
       return 2;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // CityJSON and CityJSONSeq between text and features. Internal to formats/; the public face is
-// formats/document.h.
+// formats/city_json/city_json.h.
 //
 // Skeleton of a feature: its CityJSONFeature (or the whole CityJSON) as compact JSON in which
 //   - the boundaries of a Solid are {"solid": k} and those of a MultiSolid or CompositeSolid
@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/city_json/city_json.h"
 #include "formats/city_json/sax.h"
-#include "formats/document.h"
 #include "formats/text/json.h"
 
 namespace watertight::formats {
@@ -141,14 +141,5 @@ Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex
 std::string skeleton_vertices(const CityModel& model, std::size_t count,
                               std::span<const std::vector<Index>> vertex_of,
                               std::span<const Index> others);
-
-Result<Document> read_city_json(std::string_view text, const ReadOptions& options);
-Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& options);
-Result<std::string> write_city_json(const Document& document);
-Result<std::string> write_city_json_seq(const Document& document);
-
-/// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the
-/// finest decimal grid among them. Errors: unsupported for coordinates on no decimal grid.
-Result<Document> as_city_model(const Document& document);
 
 }  // namespace watertight::formats

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <cstdint>
-#include <optional>
-#include <utility>
 
-#include "formats/mesh/mesh_text.h"
-#include "formats/surface.h"
+#include "formats/mesh/one_shell_text.h"
 
 namespace watertight::formats {
 namespace {
 
-class OffReader {
+class OffReader : private OneShellText {
  public:
   OffReader(std::string_view text, const Limits& limits)
-      : size_(text.size()), lines_(text), limits_(limits) {}
+      : OneShellText(Format::off, text, limits) {}
 
   Result<Document> read() {
     if (auto status = head(); !status) return status.error();
@@ -27,7 +23,7 @@ class OffReader {
       if (auto status = facet(); !status) return status.error();
     }
     if (lines_.next()) document_.notes.push_back("text after the last face skipped");
-    return finish();
+    return finish("Mesh");
   }
 
  private:
@@ -47,29 +43,18 @@ class OffReader {
   }
 
   Status counts() {
-    std::span<const std::string_view> words = lines_.words().subspan(1);
-    if (!words.empty() && words.front() == "BINARY") {
+    std::size_t first = 1;  // word of the line
+    if (first < lines_.words().size() && lines_.words()[first] == "BINARY") {
       return Error{ErrorCode::unsupported, "binary OFF is not read", lines_.line().offset, {}};
     }
-    if (words.empty()) {
+    if (first == lines_.words().size()) {
       if (!lines_.next()) return lines_.ended("the counts");
-      words = lines_.words();
+      first = 0;
     }
-    const auto vertices = unsigned_word(words[0]);
-    const auto facets = words.size() > 1 ? unsigned_word(words[1]) : std::nullopt;
-    if (!vertices || !facets) {
-      return error_at(lines_.line(), words[0], "the numbers of vertices and faces are missing");
-    }
-    // Every vertex and every face has a line of its own.
-    if (*vertices > size_ || *facets > size_) {
-      return error_at(lines_.line(), words[0], "more vertices or faces than the file has bytes");
-    }
-    if (*vertices > limits_.vertices || *facets > limits_.facets) {
-      return Error{ErrorCode::limit_exceeded,
-                   "more vertices or faces than the limit",
-                   lines_.line().offset,
-                   {}};
-    }
+    const auto vertices = count(first, "vertices", limits_.vertices);
+    if (!vertices) return vertices.error();
+    const auto facets = count(first + 1, "faces", limits_.facets);
+    if (!facets) return facets.error();
     vertex_count_ = *vertices;
     facet_count_ = *facets;
     return Done{};
@@ -79,14 +64,13 @@ class OffReader {
   Status facet() {
     const auto corners = unsigned_word(lines_.words()[0]);
     if (!corners || *corners > lines_.words().size() - 1) {
-      return error_at(lines_.line(), lines_.words()[0], "the face has fewer vertices than it says");
+      return wrong(0, "the face has fewer vertices than it says");
     }
     for (std::uint64_t i = 1; i <= *corners; ++i) {
       const auto vertex = unsigned_word(lines_.words()[i]);
       if (!vertex || *vertex >= vertex_count_) {
-        return error_at(
-            lines_.line(), lines_.words()[i],
-            "vertex index is out of range (" + std::to_string(vertex_count_) + " vertices)");
+        return wrong(
+            i, "vertex index is out of range (" + std::to_string(vertex_count_) + " vertices)");
       }
       arrays_.ring_vertices.push_back(static_cast<Index>(*vertex));
     }
@@ -95,19 +79,8 @@ class OffReader {
     return Done{};
   }
 
-  Result<Document> finish() {
-    return one_shell_document(std::move(document_), Format::off, "Mesh", std::move(arrays_),
-                              vertices_, limits_);
-  }
-
-  std::size_t size_;  // of the file
-  TextLines lines_;
-  const Limits& limits_;
   std::uint64_t vertex_count_ = 0;
   std::uint64_t facet_count_ = 0;
-  DecimalVertices vertices_;
-  SolidArrays arrays_;
-  Document document_;
 };
 
 }  // namespace

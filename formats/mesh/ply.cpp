@@ -18,17 +18,6 @@
 namespace watertight::formats {
 namespace {
 
-template <class Float>
-GridNumber shortest_decimal_of(Float value) {
-  std::array<char, 32> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific)
-          .ptr;
-  const auto parsed =
-      geometry::parse_decimal({text.data(), static_cast<std::size_t>(end - text.data())});
-  return parsed ? *parsed : GridNumber{};
-}
-
 /// The values of a text, one word each.
 class TextValues {
  public:
@@ -132,11 +121,11 @@ class BinaryValues {
     if (type == PlyType::float32) {
       const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(*bits));
       if (!std::isfinite(value)) return not_finite(offset);
-      return ExactNumber{shortest_decimal_of(value), false};
+      return ExactNumber{geometry::shortest_decimal(value), false};
     }
     const auto value = std::bit_cast<double>(*bits);
     if (!std::isfinite(value)) return not_finite(offset);
-    return ExactNumber{shortest_decimal_of(value), false};
+    return ExactNumber{geometry::shortest_decimal(value), false};
   }
 
  private:
@@ -349,8 +338,8 @@ class PlyReader {
   }
 
   Result<Document> finish() {
-    return one_shell_document(std::move(document_), Format::ply, "Mesh", std::move(arrays_),
-                              vertices_, limits_);
+    document_.format = Format::ply;
+    return one_shell_document(std::move(document_), "Mesh", std::move(arrays_), vertices_, limits_);
   }
 
   const PlyHeader& header_;

@@ -4,20 +4,17 @@
 // points of the volume. As in the validator val3dity, the first polygon of a facet is its exterior
 // ring and the others are interior rings; TetGen itself would take them for segments and needs a
 // point in each hole.
-#include <array>
 #include <cstdint>
-#include <utility>
 
-#include "formats/mesh/mesh_text.h"
-#include "formats/surface.h"
+#include "formats/mesh/one_shell_text.h"
 
 namespace watertight::formats {
 namespace {
 
-class PolyReader {
+class PolyReader : private OneShellText {
  public:
   PolyReader(std::string_view text, const Limits& limits)
-      : size_(text.size()), lines_(text), limits_(limits) {}
+      : OneShellText(Format::poly, text, limits) {}
 
   Result<Document> read() {
     if (auto status = nodes(); !status) return status.error();
@@ -25,27 +22,14 @@ class PolyReader {
     if (auto status = points("hole"); !status) return status.error();
     if (auto status = points("region"); !status) return status.error();
     if (lines_.next()) document_.notes.push_back("text after the last section skipped");
-    return finish();
+    return finish("Polyhedron");
   }
 
  private:
-  Error wrong(std::size_t word, std::string message) const {
-    return error_at(lines_.line(), lines_.words()[word], std::move(message));
-  }
-
-  // Word `word` of the line as a count of things that take at least two bytes each.
-  Result<std::uint64_t> count(std::size_t word, const std::string& what) const {
-    if (word >= lines_.words().size()) return wrong(0, "the number of " + what + " is missing");
-    const auto value = unsigned_word(lines_.words()[word]);
-    if (!value) return wrong(word, "not a number of " + what);
-    if (*value > size_) return wrong(word, "more " + what + " than the file has bytes");
-    return *value;
-  }
-
   // "COUNT 3 ATTRIBUTES MARKERS", then "NUMBER X Y Z ..." for each node.
   Status nodes() {
     if (!lines_.next()) return lines_.ended("the number of nodes");
-    const auto node_count = count(0, "nodes");
+    const auto node_count = count(0, "nodes", limits_.vertices);
     if (!node_count) return node_count.error();
     if (lines_.words().size() > 1 && lines_.words()[1] != "3") {
       return wrong(1, "the nodes must have three dimensions");
@@ -55,7 +39,6 @@ class PolyReader {
                    "the nodes are in a separate .node file, which is not read",
                    lines_.line().offset};
     }
-    if (*node_count > limits_.vertices) return beyond(*node_count, "nodes", limits_.vertices);
     for (std::uint64_t i = 0; i < *node_count; ++i) {
       if (!lines_.next()) return lines_.ended("node " + std::to_string(i));
       const auto number = unsigned_word(lines_.words()[0]);
@@ -69,17 +52,10 @@ class PolyReader {
     return Done{};
   }
 
-  Error beyond(std::uint64_t value, const std::string& what, std::uint64_t limit) const {
-    return Error{ErrorCode::limit_exceeded,
-                 std::to_string(value) + ' ' + what + "; the limit is " + std::to_string(limit),
-                 lines_.line().offset};
-  }
-
   Status facets() {
     if (!lines_.next()) return lines_.ended("the number of facets");
-    const auto facet_count = count(0, "facets");
+    const auto facet_count = count(0, "facets", limits_.facets);
     if (!facet_count) return facet_count.error();
-    if (*facet_count > limits_.facets) return beyond(*facet_count, "facets", limits_.facets);
     for (std::uint64_t i = 0; i < *facet_count; ++i) {
       if (auto status = facet(i); !status) return status;
     }
@@ -153,18 +129,7 @@ class PolyReader {
     return Done{};
   }
 
-  Result<Document> finish() {
-    return one_shell_document(std::move(document_), Format::poly, "Polyhedron", std::move(arrays_),
-                              vertices_, limits_);
-  }
-
-  std::size_t size_;  // of the file
-  TextLines lines_;
-  const Limits& limits_;
   std::uint64_t first_node_ = 0;
-  DecimalVertices vertices_;
-  SolidArrays arrays_;
-  Document document_;
 };
 
 }  // namespace

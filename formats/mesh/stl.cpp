@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <compare>
 #include <optional>
 #include <utility>
 
+#include "base/ascii.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 #include "formats/text/numbers.h"
@@ -61,14 +61,6 @@ void note_welding(Document& document) {
 // Three floats as a key; -0 is 0.
 using FloatKey = std::array<std::uint32_t, 3>;
 
-GridNumber shortest_decimal_of_float(float value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  const auto parsed =
-      geometry::parse_decimal({text.data(), static_cast<std::size_t>(end - text.data())});
-  return parsed ? *parsed : GridNumber{};
-}
-
 Result<Document> read_binary_stl(ByteView bytes, const Limits& limits) {
   const std::size_t count = (bytes.size() - kHeader) / kTriangle;
   if (count > limits.facets || count > (kNone - 1) / 3) {
@@ -108,7 +100,7 @@ Result<Document> read_binary_stl(ByteView bytes, const Limits& limits) {
   for (const Index corner : used) {
     std::array<GridNumber, 3> position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      position[axis] = shortest_decimal_of_float(std::bit_cast<float>(keys[corner][axis]));
+      position[axis] = geometry::shortest_decimal(std::bit_cast<float>(keys[corner][axis]));
     }
     vertices.positions.push_back(position);
   }
@@ -125,11 +117,10 @@ Result<Document> read_binary_stl(ByteView bytes, const Limits& limits) {
   return document;
 }
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 bool is_keyword(std::string_view word, std::string_view keyword) {
-  return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
-                                                     [](char a, char b) { return lower(a) == b; });
+  return word.size() == keyword.size() &&
+         std::equal(word.begin(), word.end(), keyword.begin(),
+                    [](char a, char b) { return lower_case(a) == b; });
 }
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }

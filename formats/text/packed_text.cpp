@@ -25,7 +25,7 @@ Error malformed(std::string message) {
 
 }  // namespace
 
-Result<Bytes> pack_text(std::string_view text) {
+Result<PackedText> pack_text(std::string_view text) {
   Bytes packed(ZSTD_compressBound(text.size()));
   const std::size_t size =
       ZSTD_compress(packed.data(), packed.size(), text.data(), text.size(), kLevel);
@@ -34,7 +34,7 @@ Result<Bytes> pack_text(std::string_view text) {
   }
   packed.resize(size);
   packed.shrink_to_fit();
-  return packed;
+  return PackedText{std::move(packed)};
 }
 
 bool is_packed_text(ByteView bytes) {

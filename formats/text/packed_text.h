@@ -8,12 +8,13 @@
 #include <string_view>
 
 #include "base/bytes.h"
+#include "base/packed_text.h"
 #include "base/result.h"
 
 namespace watertight::formats {
 
 /// One Zstandard frame. Errors: limit_exceeded when there is no memory for it. Cost: linear.
-Result<Bytes> pack_text(std::string_view text);
+Result<PackedText> pack_text(std::string_view text);
 
 /// True if the bytes start like pack_text()'s; no JSON text does.
 bool is_packed_text(ByteView bytes);

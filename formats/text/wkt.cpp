@@ -20,7 +20,7 @@ class WktReader {
  public:
   WktReader(std::string_view text, const Limits& limits) : text_(text), limits_(limits) {}
 
-  bool at_end() {
+  bool is_at_end() {
     while (at_ < text_.size() && (is_space(text_[at_]) || text_[at_] == ';')) ++at_;
     return at_ == text_.size();
   }
@@ -224,26 +224,16 @@ Result<SubmittedSolid> read_wkt(std::string_view text, const Limits& limits) {
   }
   WktReader reader(text, limits);
   auto solid = reader.read();
-  if (solid && !reader.at_end()) {
+  if (solid && !reader.is_at_end()) {
     return Error{ErrorCode::malformed, "text after the geometry", reader.position(), {}};
   }
   return solid;
 }
 
 Result<Document> read_wkt_document(std::string_view text, const Limits& limits) {
-  Document document;
-  document.format = Format::wkt;
   WktReader reader(text, limits);
-  while (!reader.at_end()) {
-    auto solid = reader.read();
-    if (!solid) return std::move(solid).error();
-    Feature feature;
-    feature.srid = solid->solid.srid();
-    feature.solids.push_back(std::move(*solid));
-    document.features.push_back(std::move(feature));
-  }
-  if (document.features.empty()) return Error{ErrorCode::malformed, "the text is empty", 0, {}};
-  return document;
+  if (reader.is_at_end()) return Error{ErrorCode::malformed, "the text is empty", 0, {}};
+  return document_of_geometries(std::move(reader), Format::wkt);
 }
 
 std::string write_wkt(const Solid& solid) {

@@ -206,7 +206,10 @@ std::string plain_decimal(std::string digits, std::int64_t exponent) {
 
 Result<GridNumber> parse_decimal(std::string_view text) { return DecimalReader(text).read(); }
 
-GridNumber shortest_decimal(double value) {
+namespace {
+
+template <class Float>
+GridNumber shortest_of(Float value) {
   WATERTIGHT_ASSERT(std::isfinite(value));
   std::array<char, 32> text{};
   const auto [end, code] =
@@ -215,5 +218,11 @@ GridNumber shortest_decimal(double value) {
   const auto parsed = parse_decimal({text.data(), static_cast<std::size_t>(end - text.data())});
   return parsed ? *parsed : GridNumber{};
 }
+
+}  // namespace
+
+GridNumber shortest_decimal(double value) { return shortest_of(value); }
+
+GridNumber shortest_decimal(float value) { return shortest_of(value); }
 
 }  // namespace watertight::geometry

@@ -46,9 +46,10 @@ struct GridNumber {
 /// shortest_decimal() of the nearest double and report it.
 Result<GridNumber> parse_decimal(std::string_view text);
 
-/// The shortest decimal that reads back as `value` (at most 17 digits).
+/// The shortest decimal that reads back as `value` (at most 17 digits, of a float 9).
 /// Requires a finite value.
 GridNumber shortest_decimal(double value);
+GridNumber shortest_decimal(float value);
 
 enum class LatticeKind : std::uint8_t {
   decimal = 0,  // steps and origin are decimals; coordinates are integers in [0, 2^53)

@@ -175,6 +175,11 @@ std::optional<Point> inside_doubles(const std::array<double, 3>& p) {
 
 }  // namespace
 
+struct SharedGrid::World {
+  std::vector<std::array<WorldAxis, 3>> axes;  // of each solid
+  std::array<WorldGrid, 3> grid;
+};
+
 SharedGrid::SharedGrid(std::vector<StandingSolid> solids)
     : solids_(std::move(solids)), boxes_(solids_.size()), rounded_axes_(solids_.size()) {}
 
@@ -223,6 +228,8 @@ bool SharedGrid::put_in_world() {
     binary_exponents.push_back(least_binary_exponent(*standing.solid));
   }
   lattice_ = {};
+  World world;
+  world.axes.resize(solids_.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<WorldAxis> axes;
     std::vector<Range> ranges;
@@ -244,8 +251,11 @@ bool SharedGrid::put_in_world() {
         return false;
       }
       rounded_axes_[i][axis] = axes[i].exponent < grid.exponent;
+      world.axes[i][axis] = std::move(axes[i]);
     }
+    world.grid[axis] = grid;
   }
+  world_ = std::make_shared<const World>(std::move(world));
   return true;
 }
 
@@ -266,21 +276,11 @@ std::optional<std::vector<Point>> SharedGrid::vertices(std::size_t index) const 
     }
     return points;
   }
-  const int binary_exponent = least_binary_exponent(solid);
-  std::array<WorldAxis, 3> axes;
-  std::array<WorldGrid, 3> grids;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    axes[axis] = world_axis(solids_[index], axis, binary_exponent);
-    const BigDecimal origin = decimal(lattice_.origin[axis]);
-    grids[axis].exponent = lattice_.step[axis].exponent;
-    if (origin.mantissa != 0) {
-      grids[axis].origin = big_mantissa_at(origin, grids[axis].exponent);
-    }
-  }
+  const std::array<WorldAxis, 3>& axes = world_->axes[index];
   for (const Point& p : solid.vertices()) {
     std::array<double, 3> moved{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      moved[axis] = grids[axis].coordinate(axes[axis].at(p), axes[axis].exponent);
+      moved[axis] = world_->grid[axis].coordinate(axes[axis].at(p), axes[axis].exponent);
     }
     const auto point = inside_doubles(moved);
     if (!point) return std::nullopt;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -50,6 +51,7 @@ class SharedGrid {
   const std::array<bool, 3>& rounded_axes(std::size_t solid) const { return rounded_axes_[solid]; }
 
  private:
+  struct World;
   explicit SharedGrid(std::vector<StandingSolid> solids);
   bool share_frame();
   bool put_in_world();
@@ -57,6 +59,7 @@ class SharedGrid {
   std::vector<StandingSolid> solids_;
   Lattice lattice_;
   std::optional<CommonLattice> common_;  // of one frame
+  std::shared_ptr<const World> world_;   // of other grids: from each solid to the grid
   const Placement* frame_ = nullptr;
   std::vector<Box> boxes_;
   std::vector<std::array<bool, 3>> rounded_axes_;

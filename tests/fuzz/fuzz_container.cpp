@@ -34,8 +34,8 @@ Bytes around(ByteView data) {
   constexpr std::uint8_t kStart[] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n', 1};
   ByteWriter writer;
   writer.append(kStart);
-  writer.varint(packed->size());
-  writer.append(*packed);
+  writer.varint(packed->bytes.size());
+  writer.append(packed->bytes);
   writer.append(reader.take(reader.remaining()));
   writer.u8(0);  // no more parts
   writer.u32(0);

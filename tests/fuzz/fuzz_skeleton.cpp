@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "formats/city_json/city_json.h"
 #include "fuzz_formats.h"
 
 namespace {

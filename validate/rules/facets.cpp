@@ -65,15 +65,13 @@ bool check_distance(ExaminedSolid& examined, Index facet, const std::vector<Corn
   const geometry::PlaneDistance measured = geometry::distance_to_fitted_plane(points, limit);
   if (measured.distance <= limit) return true;
   const Corner& corner = corners[measured.point];
-  Finding finding;
-  finding.code = kNonPlanarDistance;
-  finding.place = examined.at_corner(facet, corner.ring, corner.position);
-  finding.witness = examined.world(corner.vertex);
-  finding.measured = measured.distance;
-  finding.limit = limit;
-  finding.unit = std::string(1, 'm');
-  finding.detail = "the point is off the plane fitted through the facet";
-  examined.findings.add(std::move(finding));
+  examined.findings.add({.code = kNonPlanarDistance,
+                         .place = examined.at_corner(facet, corner.ring, corner.position),
+                         .witness = examined.world(corner.vertex),
+                         .measured = measured.distance,
+                         .limit = limit,
+                         .unit = std::string(1, 'm'),
+                         .detail = "the point is off the plane fitted through the facet"});
   examined.mark_faulty(facet);
   return false;
 }
@@ -219,11 +217,9 @@ void check_turns(ExaminedSolid& examined, Index facet) {
   const int exterior = projection.is_mirrored ? -1 : 1;
   for (Index r = rings.begin + 1; r < rings.end; ++r) {
     if (tessellate::ring_turn(solid, r, projection.axis) != exterior) continue;
-    Finding finding;
-    finding.code = kOrientationRingsSame;
-    finding.place = examined.at_ring(facet, r - rings.begin);
-    finding.detail = "the interior ring turns the same way as the exterior ring";
-    examined.findings.add(std::move(finding));
+    examined.findings.add({.code = kOrientationRingsSame,
+                           .place = examined.at_ring(facet, r - rings.begin),
+                           .detail = "the interior ring turns the same way as the exterior ring"});
     examined.mark_faulty(facet);
   }
 }

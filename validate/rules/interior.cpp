@@ -195,13 +195,12 @@ class InteriorExaminer {
 
  private:
   void report(const InteriorParts& parts) {
-    Finding finding;
-    finding.code = kSolidInteriorDisconnected;
-    finding.place = examined_.at_facet(parts.facet);
-    finding.witness = examined_.world(solid_.ring(solid_.rings_of(parts.facet).begin).front());
-    finding.detail = "the interior has " + std::to_string(parts.count) +
-                     " parts; this facet bounds the smallest";
-    examined_.findings.add(std::move(finding));
+    examined_.findings.add(
+        {.code = kSolidInteriorDisconnected,
+         .place = examined_.at_facet(parts.facet),
+         .witness = examined_.world(solid_.ring(solid_.rings_of(parts.facet).begin).front()),
+         .detail = "the interior has " + std::to_string(parts.count) +
+                   " parts; this facet bounds the smallest"});
   }
 
   /// Warning 804 where one other diagonal of a facet that is not flat makes or undoes 404.

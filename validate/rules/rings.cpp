@@ -18,38 +18,32 @@ bool check_points(ExaminedSolid& examined, Index facet) {
   const IndexRange rings = solid.rings_of(facet);
   bool is_good = true;
   if (rings.size() == 0) {
-    Finding finding;
-    finding.code = kTooFewPoints;
-    finding.place = examined.at_facet(facet);
-    finding.measured = 0;
-    finding.limit = 3;
-    finding.unit = "points";
-    finding.detail = "the facet has no ring";
-    examined.findings.add(std::move(finding));
+    examined.findings.add({.code = kTooFewPoints,
+                           .place = examined.at_facet(facet),
+                           .measured = 0,
+                           .limit = 3,
+                           .unit = "points",
+                           .detail = "the facet has no ring"});
     return false;
   }
   for (Index number = 0; number < rings.size(); ++number) {
     const std::span<const Index> ring = solid.ring(rings.begin + number);
     if (ring.size() < 3) {
-      Finding finding;
-      finding.code = kTooFewPoints;
-      finding.place = examined.at_ring(facet, number);
-      finding.measured = static_cast<double>(ring.size());
-      finding.limit = 3;
-      finding.unit = "points";
-      finding.detail = "the ring has " + std::to_string(ring.size()) + " points";
-      examined.findings.add(std::move(finding));
+      examined.findings.add({.code = kTooFewPoints,
+                             .place = examined.at_ring(facet, number),
+                             .measured = static_cast<double>(ring.size()),
+                             .limit = 3,
+                             .unit = "points",
+                             .detail = "the ring has " + std::to_string(ring.size()) + " points"});
       is_good = false;
       continue;
     }
     for (std::size_t i = 0; i < ring.size(); ++i) {
       if (ring[i] != ring[(i + 1) % ring.size()]) continue;
-      Finding finding;
-      finding.code = kConsecutivePointsSame;
-      finding.place = examined.at_corner(facet, number, i + 1);
-      finding.witness = examined.world(ring[i]);
-      finding.detail = "the point equals the one before it";
-      examined.findings.add(std::move(finding));
+      examined.findings.add({.code = kConsecutivePointsSame,
+                             .place = examined.at_corner(facet, number, i + 1),
+                             .witness = examined.world(ring[i]),
+                             .detail = "the point equals the one before it"});
       is_good = false;
     }
   }
@@ -98,12 +92,11 @@ Finding finding_of(const ExaminedSolid& examined, Index facet,
 
 /// What is known of a facet without a triangulation before the reason is looked for.
 void report_no_region(ExaminedSolid& examined, Index facet) {
-  Finding finding;
-  finding.code =
-      examined.solid().rings_of(facet).size() == 1 ? kRingSelfIntersection : kIntersectionRings;
-  finding.place = examined.at_facet(facet);
-  finding.detail = "the rings bound no region in the facet's projection";
-  examined.findings.add(std::move(finding));
+  examined.findings.add({.code = examined.solid().rings_of(facet).size() == 1
+                                     ? kRingSelfIntersection
+                                     : kIntersectionRings,
+                         .place = examined.at_facet(facet),
+                         .detail = "the rings bound no region in the facet's projection"});
 }
 
 void check_shape(ExaminedSolid& examined, Index facet) {
@@ -120,10 +113,7 @@ void check_shape(ExaminedSolid& examined, Index facet) {
 
 void check_not_empty(ExaminedSolid& examined) {
   if (examined.solid().facet_count() > 0) return;
-  Finding finding;
-  finding.code = kEmptyPrimitive;
-  finding.detail = "the solid has no facets";
-  examined.findings.add(std::move(finding));
+  examined.findings.add({.code = kEmptyPrimitive, .detail = "the solid has no facets"});
 }
 
 void check_closed_rings(ExaminedSolid& examined, std::span<const Index> unclosed) {

@@ -95,14 +95,12 @@ class ShellExaminer {
 
 void ShellExaminer::check_facet_count() {
   if (facets_.size() >= 4 || solid_.facet_count() == 0) return;
-  Finding finding;
-  finding.code = kTooFewPolygons;
-  finding.place = examined_.at_shell(shell_);
-  finding.measured = static_cast<double>(facets_.size());
-  finding.limit = 4;
-  finding.unit = "facets";
-  finding.detail = "the shell has " + std::to_string(facets_.size()) + " facets";
-  examined_.findings.add(std::move(finding));
+  examined_.findings.add({.code = kTooFewPolygons,
+                          .place = examined_.at_shell(shell_),
+                          .measured = static_cast<double>(facets_.size()),
+                          .limit = 4,
+                          .unit = "facets",
+                          .detail = "the shell has " + std::to_string(facets_.size()) + " facets"});
 }
 
 void ShellExaminer::sort_edges() {
@@ -122,17 +120,15 @@ void ShellExaminer::sort_edges() {
 }
 
 void ShellExaminer::report_crowded_edge(EdgeSpan edge) {
-  Finding finding;
-  finding.code = kNonManifold;
-  finding.place = place_of(edge[0]);
-  finding.other = place_of(edge[edge.size() - 1]);
-  finding.witness = examined_.world(edge[0].low);
-  finding.measured = static_cast<double>(edge.size());
-  finding.limit = 2;
-  finding.unit = "facets";
-  finding.detail = "an edge is used by " + std::to_string(edge.size()) + " facets";
-  finding.uncertain = is_faulty(edge);
-  examined_.findings.add(std::move(finding));
+  examined_.findings.add({.code = kNonManifold,
+                          .place = place_of(edge[0]),
+                          .other = place_of(edge[edge.size() - 1]),
+                          .witness = examined_.world(edge[0].low),
+                          .measured = static_cast<double>(edge.size()),
+                          .limit = 2,
+                          .unit = "facets",
+                          .detail = "an edge is used by " + std::to_string(edge.size()) + " facets",
+                          .uncertain = is_faulty(edge)});
 }
 
 void ShellExaminer::report_junction(const TJunction& junction) {
@@ -153,17 +149,16 @@ void ShellExaminer::report_junction(const TJunction& junction) {
 
 void ShellExaminer::report_border(const Border& border) {
   const EdgeUse& first = border.edges.front();
-  Finding finding;
-  finding.code = kShellNotClosed;
-  finding.place = place_of(first);
-  finding.witness = examined_.world(first.low);
-  finding.measured = static_cast<double>(border.edges.size());
-  finding.limit = 0;
-  finding.unit = "edges";
-  finding.detail = "a border of " + std::to_string(border.edges.size()) +
-                   (border.edges.size() == 1 ? " edge" : " edges") + " that only one facet uses";
-  finding.uncertain = is_faulty(border.edges);
-  examined_.findings.add(std::move(finding));
+  examined_.findings.add({.code = kShellNotClosed,
+                          .place = place_of(first),
+                          .witness = examined_.world(first.low),
+                          .measured = static_cast<double>(border.edges.size()),
+                          .limit = 0,
+                          .unit = "edges",
+                          .detail = "a border of " + std::to_string(border.edges.size()) +
+                                    (border.edges.size() == 1 ? " edge" : " edges") +
+                                    " that only one facet uses",
+                          .uncertain = is_faulty(border.edges)});
 }
 
 void ShellExaminer::check_open() {
@@ -368,14 +363,13 @@ void ShellExaminer::check_orientation() {
       report_turned(members, turn);
       continue;
     }
-    Finding finding;
-    finding.code = kNotValid2Manifold;
-    finding.place = examined_.at_facet(facets_.begin + start);
-    finding.measured = static_cast<double>(members.size());
-    finding.unit = "facets";
-    finding.detail = "the facets cannot be turned alike: the surface has only one side";
-    finding.uncertain = is_shell_faulty_;
-    examined_.findings.add(std::move(finding));
+    examined_.findings.add(
+        {.code = kNotValid2Manifold,
+         .place = examined_.at_facet(facets_.begin + start),
+         .measured = static_cast<double>(members.size()),
+         .unit = "facets",
+         .detail = "the facets cannot be turned alike: the surface has only one side",
+         .uncertain = is_shell_faulty_});
   }
 }
 
@@ -390,12 +384,10 @@ void ShellExaminer::report_turned(const std::vector<Index>& members,
   std::sort(sorted.begin(), sorted.end());
   for (const Index facet : sorted) {
     if (turn[facet] != turned) continue;
-    Finding finding;
-    finding.code = kPolygonWrongOrientation;
-    finding.place = examined_.at_facet(facets_.begin + facet);
-    finding.detail = "the facet is turned over against most of its neighbours";
-    finding.uncertain = is_shell_faulty_;
-    examined_.findings.add(std::move(finding));
+    examined_.findings.add({.code = kPolygonWrongOrientation,
+                            .place = examined_.at_facet(facets_.begin + facet),
+                            .detail = "the facet is turned over against most of its neighbours",
+                            .uncertain = is_shell_faulty_});
   }
 }
 

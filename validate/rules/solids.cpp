@@ -106,14 +106,12 @@ void SolidExaminer::skip(std::vector<int> codes, const std::string& reason) {
 /// A shell without volume has another finding, always: a closed 2-manifold that does not meet
 /// itself encloses some.
 void SolidExaminer::report_no_volume(Index shell) {
-  Finding finding;
-  finding.code = kZeroVolume;
-  finding.place = examined_.at_shell(shell);
-  finding.measured = 0;
-  finding.unit = "cubic units";
-  finding.detail = "the closed shell encloses a volume of exactly zero";
-  finding.uncertain = is_uncertain();
-  examined_.findings.add(std::move(finding));
+  examined_.findings.add({.code = kZeroVolume,
+                          .place = examined_.at_shell(shell),
+                          .measured = 0,
+                          .unit = "cubic units",
+                          .detail = "the closed shell encloses a volume of exactly zero",
+                          .uncertain = is_uncertain()});
 }
 
 void SolidExaminer::check_orientation() {
@@ -133,14 +131,13 @@ void SolidExaminer::check_orientation() {
       report_no_volume(shell);
       continue;
     }
-    Finding finding;
-    finding.code = kWrongOrientationShell;
-    finding.place = examined_.at_shell(shell);
-    finding.detail = shell == 0 ? "the normals of the exterior shell point inward (or the axes are "
-                                  "in north, east order)"
-                                : "the normals of the inner shell point out of the cavity";
-    finding.uncertain = is_uncertain();
-    examined_.findings.add(std::move(finding));
+    examined_.findings.add(
+        {.code = kWrongOrientationShell,
+         .place = examined_.at_shell(shell),
+         .detail = shell == 0 ? "the normals of the exterior shell point inward (or the axes are "
+                                "in north, east order)"
+                              : "the normals of the inner shell point out of the cavity",
+         .uncertain = is_uncertain()});
   }
 }
 
@@ -198,14 +195,12 @@ SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
 }
 
 void SolidExaminer::report(int code, Index shell, Index other, std::string detail) {
-  Finding finding;
-  finding.code = code;
-  finding.place = examined_.at_shell(shell);
-  finding.other = examined_.at_shell(other);
-  finding.witness = examined_.world(triangles_of(examined_, shell).front()[0]);
-  finding.detail = std::move(detail);
-  finding.uncertain = is_uncertain();
-  examined_.findings.add(std::move(finding));
+  examined_.findings.add({.code = code,
+                          .place = examined_.at_shell(shell),
+                          .other = examined_.at_shell(other),
+                          .witness = examined_.world(triangles_of(examined_, shell).front()[0]),
+                          .detail = std::move(detail),
+                          .uncertain = is_uncertain()});
 }
 
 /// True if the shells touch and both are surfaces without a defect of their own, so that the
@@ -359,13 +354,11 @@ std::vector<Index> check_duplicate_shells(ExaminedSolid& examined) {
   }
   std::sort(pairs.begin(), pairs.end());
   for (const auto& [shell, original] : pairs) {
-    Finding finding;
-    finding.code = kDuplicatedShells;
-    finding.place = examined.at_shell(shell);
-    finding.other = examined.at_shell(original);
-    finding.detail = "the shells have the same faces";
-    finding.uncertain = examined.is_shell_faulty(shell);
-    examined.findings.add(std::move(finding));
+    examined.findings.add({.code = kDuplicatedShells,
+                           .place = examined.at_shell(shell),
+                           .other = examined.at_shell(original),
+                           .detail = "the shells have the same faces",
+                           .uncertain = examined.is_shell_faulty(shell)});
   }
   return result;
 }

@@ -101,15 +101,13 @@ void check_slivers(ExaminedSolid& examined) {
           {extent, length(a), length(b), length(examined.metres(triangle[1], triangle[2]))});
     }
     if (!(extent > 0) || doubled_area >= kSliverMetres * extent || extent < kSliverMetres) continue;
-    Finding finding;
-    finding.code = kSliverFacet;
-    finding.place = examined.at_facet(facet);
-    finding.witness = examined.world(all.triangles[all.first[facet]][0]);
-    finding.measured = doubled_area / extent;
-    finding.limit = kSliverMetres;
-    finding.unit = std::string(1, 'm');
-    finding.detail = "the facet is very narrow for its length";
-    examined.findings.add(std::move(finding));
+    examined.findings.add({.code = kSliverFacet,
+                           .place = examined.at_facet(facet),
+                           .witness = examined.world(all.triangles[all.first[facet]][0]),
+                           .measured = doubled_area / extent,
+                           .limit = kSliverMetres,
+                           .unit = std::string(1, 'm'),
+                           .detail = "the facet is very narrow for its length"});
   }
 }
 
@@ -137,11 +135,9 @@ void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded) {
 }
 
 void report_rounded_origin(ExaminedSolid& examined) {
-  Finding finding;
-  finding.code = kCoordinatesRounded;
-  finding.detail =
-      "the place of the whole needs more than 18 digits and was rounded to 18; the shape is exact";
-  examined.findings.add(std::move(finding));
+  examined.findings.add({.code = kCoordinatesRounded,
+                         .detail = "the place of the whole needs more than 18 digits and was "
+                                   "rounded to 18; the shape is exact"});
 }
 
 }  // namespace watertight::validate

@@ -266,7 +266,7 @@ std::string two_documents() {
     REQUIRE(document);
     const auto encoded = pipeline::encode_document(*std::move(document), nullptr, {});
     REQUIRE(encoded);
-    for (const StoredFeature& feature : encoded->document.features) REQUIRE(writer.add(feature));
+    for (const auto& feature : encoded->document.features) REQUIRE(writer.add(feature));
   }
   const auto file = std::move(writer).finish();
   REQUIRE(file);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "codec/blob.h"
 #include "codec/encode_boundary.h"
+#include "delaunay/certificate.h"
 #include "geometry/canonical_form.h"
 #include "tests/generated/generated_solids.h"
 
@@ -23,14 +27,28 @@ Bytes encoded(const OrientedBoundary& boundary, const EncodeOptions& options) {
   return *blob;
 }
 
+constexpr std::array kModes{Mode::raw,     Mode::bitmap,        Mode::walk,
+                            Mode::polygon, Mode::parallelogram, Mode::automatic};
+
+/// Nothing where the mode cannot hold the solid; raw, bitmap and automatic hold all of solids().
+std::optional<Bytes> blob_if_held(const OrientedBoundary& boundary, const EncodeOptions& options) {
+  auto blob = codec::encode_boundary(boundary, Acceptance{}, options);
+  if (blob) return *std::move(blob);
+  const Mode mode = options.mode;
+  CHECK(blob.error().code == ErrorCode::not_encodable);
+  CHECK((mode == Mode::walk || mode == Mode::polygon || mode == Mode::parallelogram));
+  return std::nullopt;
+}
+
 }  // namespace
 
-TEST_CASE("every mode brings every solid back in source order") {
+TEST_CASE("every mode that holds a solid brings it back in source order") {
   for (const auto& [name, boundary] : solids()) {
-    for (const Mode mode : {Mode::raw, Mode::bitmap, Mode::automatic}) {
+    for (const Mode mode : kModes) {
       INFO(name << ", " << codec::to_string(mode));
-      const Bytes blob = encoded(boundary, {.mode = mode});
-      const auto decoded = decode(blob);
+      const auto blob = blob_if_held(boundary, {.mode = mode});
+      if (!blob) continue;
+      const auto decoded = decode(*blob);
       REQUIRE(decoded);
       CHECK(decoded->solid == boundary.solid());
       CHECK(decoded->info.facets == boundary.solid().facet_count());
@@ -41,12 +59,13 @@ TEST_CASE("every mode brings every solid back in source order") {
 TEST_CASE("without source order a blob is the same for every arrangement of the source") {
   generated::Random random(7);
   for (const auto& [name, boundary] : solids()) {
-    for (const Mode mode : {Mode::raw, Mode::bitmap}) {
+    for (const Mode mode : kModes) {
       INFO(name << ", " << codec::to_string(mode));
-      const Bytes blob = encoded(boundary, {.mode = mode, .keep_order = false});
+      const auto blob = blob_if_held(boundary, {.mode = mode, .keep_order = false});
+      if (!blob) continue;
       const OrientedBoundary other = generated::shuffled(boundary, random);
-      CHECK(encoded(other, {.mode = mode, .keep_order = false}) == blob);
-      const auto decoded = decode(blob);
+      CHECK(encoded(other, {.mode = mode, .keep_order = false}) == *blob);
+      const auto decoded = decode(*blob);
       REQUIRE(decoded);
       CHECK_FALSE(decoded->info.has_order);
       CHECK(decoded->solid == geometry::canonical_form(boundary).boundary.solid());
@@ -58,22 +77,21 @@ TEST_CASE("automatic takes the smallest blob") {
   for (const auto& [name, boundary] : solids()) {
     INFO(name);
     const std::size_t automatic = encoded(boundary, {.mode = Mode::automatic}).size();
-    for (const Mode mode :
-         {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
-      const auto blob = codec::encode_boundary(boundary, {}, {.mode = mode});
+    for (const Mode mode : kModes) {
+      const auto blob = blob_if_held(boundary, {.mode = mode});
       // Costs are estimated to the bit, sizes are whole bytes.
       if (blob) CHECK(automatic <= blob->size() + 1);
     }
   }
 }
 
-TEST_CASE("acceptance, SRID and lattice come back") {
+TEST_CASE("acceptance, SRID and lattice come back in every mode for polygons") {
   const OrientedBoundary boundary = generated::box();
   Acceptance acceptance;
   acceptance.tolerances = {0.25, 7.5, 0.001};
   acceptance.proof = Proof::boundary;
   acceptance.rule_set = 300;
-  for (const Mode mode : {Mode::raw, Mode::bitmap}) {
+  for (const Mode mode : {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon}) {
     const auto blob = codec::encode_boundary(boundary, acceptance, {.mode = mode});
     REQUIRE(blob);
     const auto info = codec::describe(*blob);
@@ -119,7 +137,7 @@ TEST_CASE("the parts of a blob add up to its size") {
     for (const auto& part : info->parts) sum += part.bytes;
     CHECK(std::abs(sum - static_cast<double>(blob.size())) < 3);
     CHECK(info->marked_faces > 0);
-    CHECK(info->delaunay_faces > info->marked_faces - 1);
+    CHECK(info->delaunay_faces >= info->marked_faces);
   }
 }
 
@@ -191,7 +209,7 @@ TEST_CASE("a certificate of another solid is refused") {
   CHECK(blob.error().code == ErrorCode::not_encodable);
 }
 
-TEST_CASE("integers of more than 30 bits are encoded in every mode") {
+TEST_CASE("modes raw and bitmap hold integers of more than 30 bits") {
   for (const double size : {0x1p30, 0x1p53}) {
     SolidArrays arrays;
     generated::add_box(arrays, {0, 0, 0}, {size, 1, 5});

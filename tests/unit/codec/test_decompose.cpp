@@ -10,6 +10,7 @@
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/mode_bitmap/face_marks.h"
 #include "codec/page/coordinates.h"
+#include "delaunay/certificate.h"
 #include "tests/generated/generated_solids.h"
 
 using namespace watertight;

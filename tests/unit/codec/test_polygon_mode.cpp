@@ -1,71 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <utility>
 #include <vector>
 
-#include "codec/page/modes.h"
 #include "geometry/canonical_form.h"
-#include "tests/generated/generated_solids.h"
+#include "tests/unit/codec/integer_modes.h"
 
 using namespace watertight;
 
 namespace {
 
-struct Coded {
-  Bytes bytes;
-  codec::GriddedSolid gridded;
-};
+using test::integers_of;
+using test::kPolygon;
+using test::read;
+using test::write;
 
-std::optional<codec::GriddedSolid> gridded(const OrientedBoundary& boundary) {
-  return codec::grid_solid(geometry::canonical_form(boundary).boundary.solid());
-}
-
-Coded write(const OrientedBoundary& boundary, const codec::PageMemory& memory = {}) {
-  Coded result;
-  const auto on_grid = gridded(boundary);
-  REQUIRE(on_grid);
-  result.gridded = *on_grid;
-  codec::EntropyStream stream = codec::EntropyStream::writer();
-  codec::ModelBank models(codec::polygon::model_layout());
-  codec::IntegerSolid solid = on_grid->solid;
-  codec::WriterChoice unused;
-  const Status status = codec::polygon::code_solid(stream, models, memory, solid, unused, Limits{});
-  REQUIRE(status);
-  result.bytes = std::move(stream).finish();
-  return result;
-}
-
-Status read(ByteView bytes, codec::IntegerSolid& solid, bool& is_finished,
-            const Limits& limits = {}, const codec::PageMemory& memory = {}) {
-  codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
-  codec::ModelBank models(codec::polygon::model_layout());
-  codec::WriterChoice unused;
-  const Status status = codec::polygon::code_solid(stream, models, memory, solid, unused, limits);
-  is_finished = stream.is_finished();
-  return status;
-}
-
-/// The solid that `bytes` hold, in canonical form.
-Solid canonical_of(const Coded& coded, codec::IntegerSolid solid) {
-  codec::GriddedSolid gridded = coded.gridded;
-  gridded.solid = std::move(solid);
-  auto ungridded = codec::ungrid_solid(gridded, 0, Limits{});
-  REQUIRE(ungridded);
-  auto boundary = OrientedBoundary::make(std::move(*ungridded));
-  REQUIRE(boundary);
-  return geometry::canonical_form(*boundary).boundary.solid();
-}
-
-void check_round_trip(const OrientedBoundary& boundary, const codec::PageMemory& memory = {}) {
-  const Coded coded = write(boundary, memory);
-  codec::IntegerSolid solid;
-  bool is_finished = false;
-  const Status status = read(coded.bytes, solid, is_finished, {}, memory);
-  REQUIRE(status);
-  CHECK(is_finished);
-  CHECK(canonical_of(coded, std::move(solid)).arrays() ==
-        geometry::canonical_form(boundary).boundary.solid().arrays());
+void check_round_trip(const OrientedBoundary& boundary) {
+  const auto solid = integers_of(boundary);
+  REQUIRE(solid);
+  test::check_round_trip(kPolygon, *solid);
 }
 
 /// A box with a chimney: a facet with a hole whose ring begins at a new vertex.
@@ -113,12 +66,11 @@ OrientedBoundary cavity_touching_at_edge() {
 
 }  // namespace
 
-TEST_CASE("mode polygon gives back every generated solid") {
+TEST_CASE("mode polygon gives back every generated solid that is on a grid") {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     for (const generated::NamedBoundary& named : generated::all(seed)) {
-      if (!gridded(named.boundary)) continue;
       INFO(named.name);
-      check_round_trip(named.boundary);
+      if (const auto solid = integers_of(named.boundary)) test::check_round_trip(kPolygon, *solid);
     }
   }
 }
@@ -138,98 +90,59 @@ TEST_CASE("mode polygon gives back facets with holes, cavities and touching shel
 TEST_CASE("mode polygon holds coordinates up to its bound, and refuses those beyond") {
   constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;
   generated::Random random(3);
-  const auto on_grid = gridded(generated::random_prism(random, 7));
-  REQUIRE(on_grid);
+  const auto prism = integers_of(generated::random_prism(random, 7));
+  REQUIRE(prism);
   for (const std::int64_t bound : {most, most + 1}) {
-    codec::IntegerSolid solid = on_grid->solid;
+    codec::IntegerSolid solid = *prism;
     // Every other vertex at one end of an axis, so that all predictions are far off.
     for (std::size_t i = 0; i < solid.vertices.size(); ++i) {
       solid.vertices[i][i % 3] = i % 2 == 0 ? bound : -bound;
     }
-    const codec::IntegerSolid truth = solid;
-    codec::EntropyStream writer = codec::EntropyStream::writer();
-    codec::ModelBank models(codec::polygon::model_layout());
-    codec::WriterChoice unused;
-    const Status written = codec::polygon::code_solid(writer, models, {}, solid, unused, Limits{});
-    CHECK(written.has_value() == (bound == most));
-    if (!written) continue;
-    const Bytes bytes = std::move(writer).finish();
-    codec::IntegerSolid again;
-    bool is_finished = false;
-    REQUIRE(read(bytes, again, is_finished));
-    CHECK(is_finished);
-    std::vector<codec::GridPoint> expected = truth.vertices;
-    std::sort(expected.begin(), expected.end());
-    std::sort(again.vertices.begin(), again.vertices.end());
-    CHECK(again.vertices == expected);
+    if (bound == most) {
+      test::check_round_trip(kPolygon, solid);
+    } else {
+      CHECK_FALSE(write(kPolygon, solid));
+    }
   }
 }
 
 TEST_CASE("mode polygon codes a solid the better for the page around it") {
   generated::Random random(5);
+  const auto prism = integers_of(generated::random_prism(random, 9));
+  REQUIRE(prism);
   codec::PageMemory memory;
-  const OrientedBoundary prism = generated::random_prism(random, 9);
-  const std::size_t alone = write(prism).bytes.size();
-  const auto on_grid = gridded(prism);
-  REQUIRE(on_grid);
-  memory.add(on_grid->solid);
-  check_round_trip(prism, memory);
-  CHECK(write(prism, memory).bytes.size() < alone);
+  memory.add(*prism);
+  test::check_round_trip(kPolygon, *prism, memory);
+  CHECK(write(kPolygon, *prism, memory)->size() < write(kPolygon, *prism)->size());
 }
 
 TEST_CASE("mode polygon writes the same bytes for the same solid") {
   generated::Random random(9);
   for (const generated::NamedBoundary& named : generated::all(4)) {
-    if (!gridded(named.boundary)) continue;
+    const auto solid = integers_of(named.boundary);
+    const auto shuffled = integers_of(generated::shuffled(named.boundary, random));
+    if (!solid) continue;
     INFO(named.name);
-    CHECK(write(named.boundary).bytes == write(generated::shuffled(named.boundary, random)).bytes);
+    CHECK(*write(kPolygon, *solid) == *write(kPolygon, *shuffled));
   }
 }
 
 TEST_CASE("mode polygon holds to the limits when it reads") {
-  const Coded coded = write(generated::grid_cube(5));
-  Limits limits;
-  limits.vertices = 20;
-  codec::IntegerSolid solid;
-  bool is_finished = false;
-  const Status status = read(coded.bytes, solid, is_finished, limits);
-  REQUIRE_FALSE(status);
-  CHECK(status.error().code == ErrorCode::limit_exceeded);
-
-  limits = {};
-  limits.facets = 20;
-  const Status facets = read(coded.bytes, solid, is_finished, limits);
-  REQUIRE_FALSE(facets);
-  CHECK(facets.error().code == ErrorCode::limit_exceeded);
+  const auto bytes = write(kPolygon, *integers_of(generated::grid_cube(5)));
+  REQUIRE(bytes);
+  Limits few;
+  few.vertices = 20;
+  CHECK(read(kPolygon, *bytes, {}, few).error().code == ErrorCode::limit_exceeded);
+  few = {};
+  few.facets = 20;
+  CHECK(read(kPolygon, *bytes, {}, few).error().code == ErrorCode::limit_exceeded);
 }
 
 TEST_CASE("mode polygon reads hostile bytes without harm") {
   generated::Random random(17);
-  std::vector<Bytes> blobs{write(box_with_chimney()).bytes, write(cavity_touching_at_edge()).bytes,
-                           write(generated::pierced_block(2)).bytes,
-                           write(generated::torus(6, 5)).bytes,
-                           write(generated::random_prism(random, 12)).bytes};
-  Limits limits;
-  limits.vertices = limits.facets = limits.rings = 2000;
-  limits.shells = 20;
-  for (const Bytes& blob : blobs) {
-    for (std::size_t size = 0; size < blob.size(); ++size) {
-      codec::IntegerSolid solid;
-      bool is_finished = false;
-      const Status status = read(ByteView(blob).first(size), solid, is_finished, limits);
-      CHECK((!status || solid.vertices.size() <= limits.vertices));
-    }
-    for (int i = 0; i < 400; ++i) {
-      Bytes mutated = blob;
-      for (std::uint64_t k = 0; k <= random.below(3); ++k) {
-        mutated[random.below(mutated.size())] = static_cast<std::uint8_t>(random.next());
-      }
-      codec::IntegerSolid solid;
-      bool is_finished = false;
-      const Status status = read(mutated, solid, is_finished, limits);
-      if (!status) continue;
-      CHECK(solid.ring_offsets.back() == solid.ring_vertices.size());
-      for (const Index vertex : solid.ring_vertices) REQUIRE(vertex < solid.vertices.size());
-    }
+  for (const OrientedBoundary& boundary :
+       {box_with_chimney(), cavity_touching_at_edge(), generated::pierced_block(2),
+        generated::torus(6, 5), generated::random_prism(random, 12)}) {
+    test::check_damaged(kPolygon, *integers_of(boundary), 400);
   }
 }

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <random>
 #include <set>
 #include <string>
 
 #include "delaunay/canonical_delaunay.h"
+#include "tests/random.h"
 #include "unit/delaunay/sample_solids.h"
 #include "validate/certify.h"
 
@@ -20,27 +20,18 @@ namespace watertight {
 namespace {
 
 using samples::Shape;
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : generator_(seed) {}
-  int below(int limit) { return int(generator_() % std::uint64_t(limit)); }
-  double between(int low, int high) { return low + below(high - low + 1); }
-
- private:
-  std::mt19937_64 generator_;
-};
+using test::Random;
 
 /// A prism over a polygon that is star-shaped around the origin, with integer corners.
 Shape random_prism(Random& random) {
-  const int corners = 3 + random.below(14);
+  const int corners = 3 + int(random.below(14));
   std::vector<std::array<double, 2>> polygon;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * 3.14159265358979 * i / corners;
-    const double radius = random.between(60, 1000);
+    const double radius = random.within(60, 1000);
     polygon.push_back({std::round(radius * std::cos(angle)), std::round(radius * std::sin(angle))});
   }
-  return samples::prism(polygon, random.between(1, 900));
+  return samples::prism(polygon, random.within(1, 900));
 }
 
 /// Triangles of a grid of around x across vertices that closes both ways (a torus) or, with caps,
@@ -61,9 +52,9 @@ void add_grid(Shape& shape, int around, int across, bool is_torus) {
 }
 
 Shape random_torus(Random& random) {
-  const int around = 3 + random.below(8);
-  const int across = 3 + random.below(5);
-  const int tube = 300 + random.below(800);  // more than 1000: it meets itself
+  const int around = 3 + int(random.below(8));
+  const int across = 3 + int(random.below(5));
+  const int tube = 300 + int(random.below(800));  // more than 1000: it meets itself
   Shape shape;
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < across; ++j) {
@@ -71,7 +62,7 @@ Shape random_torus(Random& random) {
       const double v = 2 * 3.14159265358979 * j / across;
       const double radius = 1000 + tube * std::cos(v);
       shape.vertices.push_back({std::round(radius * std::cos(u)), std::round(radius * std::sin(u)),
-                                std::round(tube * std::sin(v)) + random.between(-40, 40)});
+                                std::round(tube * std::sin(v)) + random.within(-40, 40)});
     }
   }
   add_grid(shape, around, across, true);
@@ -80,31 +71,31 @@ Shape random_torus(Random& random) {
 
 /// Star-shaped around the origin, spiky.
 Shape random_star(Random& random) {
-  const int around = 3 + random.below(7);
-  const int across = 1 + random.below(5);
+  const int around = 3 + int(random.below(7));
+  const int across = 1 + int(random.below(5));
   Shape shape;
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < across; ++j) {
       const double u = 2 * 3.14159265358979 * i / around;
       const double v = 3.14159265358979 * ((j + 1.0) / (across + 1) - 0.5);
-      const double radius = random.between(300, 3000);
+      const double radius = random.within(300, 3000);
       shape.vertices.push_back({std::round(radius * std::cos(u) * std::cos(v)),
                                 std::round(radius * std::sin(u) * std::cos(v)),
                                 std::round(radius * std::sin(v))});
     }
   }
-  shape.vertices.push_back({0, 0, -random.between(300, 3000)});
-  shape.vertices.push_back({0, 0, random.between(300, 3000)});
+  shape.vertices.push_back({0, 0, -random.within(300, 3000)});
+  shape.vertices.push_back({0, 0, random.within(300, 3000)});
   add_grid(shape, around, across, false);
   return shape;
 }
 
 /// The boundary of some tetrahedra of a Delaunay tetrahedralization of points on a small lattice:
 /// many cospherical and coplanar points. Vertices that no facet uses are left out.
-Shape random_union(Random& random, int extent) {
+Shape random_union(Random& random, std::uint64_t extent) {
   std::set<Point> chosen;
-  const int count = 5 + random.below(14);
-  for (int i = 0; i < count; ++i) {
+  const auto count = 5 + random.below(14);
+  for (std::uint64_t i = 0; i < count; ++i) {
     chosen.insert(
         {double(random.below(extent)), double(random.below(extent)), double(random.below(extent))});
   }
@@ -117,7 +108,7 @@ Shape random_union(Random& random, int extent) {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     if (boundary.erase({face[0], face[2], face[1]}) == 0) boundary.insert(face);
   };
-  const int share = 2 + random.below(4);
+  const auto share = 2 + random.below(4);
   for (const auto& [a, b, c, d] : delaunay->tetrahedra) {
     if (random.below(share) == 0) continue;
     // The normals of these turn away from the fourth corner.
@@ -160,18 +151,16 @@ Shape random_shape(Random& random) {
       break;
   }
   // Some meet themselves, or nearly.
-  for (int moves = random.below(3); moves > 0 && !shape.vertices.empty(); --moves) {
+  for (auto moves = random.below(3); moves > 0 && !shape.vertices.empty(); --moves) {
     if (random.below(3) != 0) continue;
-    const int vertex = random.below(int(shape.vertices.size()));
-    const int target = random.below(int(shape.vertices.size()));
-    Point& p = shape.vertices[std::size_t(vertex)];
-    const Point& q = shape.vertices[std::size_t(target)];
+    Point& p = shape.vertices[random.below(shape.vertices.size())];
+    const Point& q = shape.vertices[random.below(shape.vertices.size())];
     // Half the way to another vertex, or a step.
     if (random.below(2) == 0) {
       p = {std::floor((p.x + q.x) / 2), std::floor((p.y + q.y) / 2), std::floor((p.z + q.z) / 2)};
     } else {
-      p.x += random.between(-3, 3);
-      p.z += random.between(-300, 300);
+      p.x += random.within(-3, 3);
+      p.z += random.within(-300, 300);
     }
   }
   return shape;

@@ -2,6 +2,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <nlohmann/json.hpp>
 
+#include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "samples.h"
 

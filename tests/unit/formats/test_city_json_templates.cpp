@@ -4,6 +4,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 
+#include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "samples.h"
 

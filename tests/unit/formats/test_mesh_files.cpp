@@ -92,6 +92,28 @@ TEST_CASE("a binary STL is welded and its floats are their shortest decimals") {
   CHECK_FALSE(read(binary_stl(), Format::stl)->notes.empty());
 }
 
+TEST_CASE("a float that is a large integer counts as its shortest decimal, in STL as in PLY") {
+  const std::array<Corner, 3> corners{Corner{123456792, 0, 0}, Corner{0, 8, 0}, Corner{0, 0, 8}};
+  std::string stl(80, ' ');
+  append(stl, std::uint32_t{1});
+  for (int axis = 0; axis < 3; ++axis) append(stl, 0.0F);
+  std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list uchar uchar vertex_index\nend_header\n";
+  for (const Corner& corner : corners) {
+    for (const float value : corner) {
+      append(stl, value);
+      append(ply, value);
+    }
+  }
+  append(stl, std::uint16_t{0});
+  for (const int byte : {3, 0, 1, 2}) append(ply, static_cast<std::uint8_t>(byte));
+  const Solid solid = only_solid(stl, Format::stl);
+  CHECK(solid.world(0) == std::array<double, 3>{123456790, 0, 0});
+  CHECK(solid == only_solid(ply, Format::ply));
+}
+
 TEST_CASE("a text STL is welded; keywords have any case") {
   CHECK(only_solid(text_stl("part one"), Format::stl) == tetrahedron());
   std::string upper = text_stl("X");

@@ -7,6 +7,7 @@
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "codec/page_file.h"
+#include "delaunay/certificate.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/container.h"
 #include "pipeline/container_reader.h"
@@ -62,8 +63,13 @@ void put(samples::MemoryStore& store, const std::string& text) {
   pipeline::IngestOptions options;
   options.collection = "town";
   pipeline::StoredDocument document = encoded(text, options);
-  for (StoredFeature& feature : document.features) feature.collection = "town";
-  REQUIRE(store.put(document.features));
+  std::vector<StoredFeature> features;
+  for (pipeline::EncodedFeature& feature : document.features) {
+    auto packed = pipeline::pack(std::move(feature));
+    REQUIRE(packed);
+    features.push_back(*std::move(packed));
+  }
+  REQUIRE(store.put(features));
 }
 
 /// All bytes of an export; the first error.
@@ -89,8 +95,8 @@ Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
   ByteWriter writer;
   writer.append(pipeline::kContainerMagic);
   writer.u8(pipeline::kContainerVersion);
-  writer.varint(packed->size());
-  writer.append(*packed);
+  writer.varint(packed->bytes.size());
+  writer.append(packed->bytes);
   writer.varint(page_file.size());
   writer.append(page_file);
   writer.append(blobs);
@@ -132,7 +138,7 @@ TEST_CASE("a Watertight file has its solids in pages when that is smaller") {
   const std::string text = row_of_boxes(300);
   const pipeline::StoredDocument document = encoded(text);
   std::size_t blob_bytes = 0;
-  for (const StoredFeature& feature : document.features) {
+  for (const pipeline::EncodedFeature& feature : document.features) {
     for (const StoredSolid& solid : feature.solids) blob_bytes += solid.blob.size();
   }
   const Bytes container = container_of(text);
@@ -158,7 +164,7 @@ TEST_CASE("a file of several parts has its features in order") {
   pipeline::StoredDocument document;
   document.format = "off";
   for (int i = 0; i < 9000; ++i) {
-    StoredFeature& feature = document.features.emplace_back();
+    pipeline::EncodedFeature& feature = document.features.emplace_back();
     feature.format = "off";
     feature.id = std::to_string(i);
     if (i % 100 == 0) feature.solids.emplace_back().blob = *blob;
@@ -188,7 +194,7 @@ TEST_CASE("solids in pages have the mode that is asked for, and those with Stein
                                              {.mode = Mode::bitmap, .certificate = &certificate});
   REQUIRE(box);
   REQUIRE(proven);
-  StoredFeature feature;
+  pipeline::EncodedFeature feature;
   feature.format = "off";
   for (int i = 0; i < 40; ++i) feature.solids.emplace_back().blob = i == 7 ? *proven : *box;
   const auto file = pipeline::write_container({"off", {}, {}, {feature}}, {.mode = Mode::raw});

@@ -154,12 +154,26 @@ TEST_CASE("a store gives a line of a sequence back byte for byte, and keeps it c
   REQUIRE(pipeline::ingest(read_kept(text, Format::city_json_seq), store, nullptr, options));
   const auto stored = store.get("town", "a");
   REQUIRE(stored);
-  CHECK(formats::is_packed_text(as_bytes(stored->skeleton)));
+  CHECK(formats::is_packed_text(stored->skeleton.bytes));
   const auto document = pipeline::from_stored(*stored);
   REQUIRE(document);
   const auto written = formats::write_feature(*document, document->features[0]);
   REQUIRE(written);
   CHECK(*written == line);
+}
+
+TEST_CASE("a skeleton that an old database has as plain text is read") {
+  auto encoded = pipeline::encode_document(read_kept(kBox, Format::city_json), nullptr, {});
+  REQUIRE(encoded);
+  const pipeline::EncodedFeature& feature = encoded->document.features.at(0);
+  auto stored = pipeline::pack(feature);
+  REQUIRE(stored);
+  const ByteView plain = as_bytes(feature.skeleton);
+  stored->skeleton.bytes.assign(plain.begin(), plain.end());
+  const auto unpacked = pipeline::unpack(*stored);
+  REQUIRE(unpacked);
+  CHECK(unpacked->skeleton == feature.skeleton);
+  CHECK(pipeline::from_stored(*stored));
 }
 
 TEST_CASE("contract lattice keeps values, and semantics and textures with their facets") {
@@ -208,7 +222,7 @@ TEST_CASE("contract boundary keeps solids, types and families only") {
 TEST_CASE("a stored document with another hash is an error") {
   auto encoded = pipeline::encode_document(read_kept(kBox, Format::city_json), nullptr, {});
   REQUIRE(encoded);
-  StoredFeature& feature = encoded->document.features.at(0);
+  pipeline::EncodedFeature& feature = encoded->document.features.at(0);
   const std::size_t place = feature.skeleton.find("BuildingPart");
   REQUIRE(place != std::string::npos);
   feature.skeleton[place] = 'X';
@@ -224,11 +238,11 @@ TEST_CASE("a stored document with another hash is an error") {
 TEST_CASE("a compressed text cannot make more than the limit") {
   const auto bomb = formats::pack_text(std::string(50'000'000, 'a'));
   REQUIRE(bomb);
-  CHECK(bomb->size() < 10'000);
-  CHECK(formats::unpack_text(*bomb, 1'000'000).error().code == ErrorCode::limit_exceeded);
+  CHECK(bomb->bytes.size() < 10'000);
+  CHECK(formats::unpack_text(bomb->bytes, 1'000'000).error().code == ErrorCode::limit_exceeded);
   StoredFeature feature;
   feature.format = "city-json";
-  feature.skeleton = as_text(*bomb);
+  feature.skeleton = *bomb;
   Limits limits;
   limits.bytes = 1'000'000;
   const auto document = pipeline::from_stored(feature, limits);
@@ -239,17 +253,18 @@ TEST_CASE("a compressed text cannot make more than the limit") {
 TEST_CASE(
     "a compressed text that is cut, changed or followed by more is an error or another text") {
   const std::string text = kBox;
-  const auto packed = formats::pack_text(text);
-  REQUIRE(packed);
-  REQUIRE(formats::unpack_text(*packed, 1U << 20U));
-  for (std::size_t size = 0; size < packed->size(); ++size) {
-    CHECK_FALSE(formats::unpack_text(ByteView(*packed).first(size), 1U << 20U));
+  const auto frame = formats::pack_text(text);
+  REQUIRE(frame);
+  const Bytes& packed = frame->bytes;
+  REQUIRE(formats::unpack_text(packed, 1U << 20U));
+  for (std::size_t size = 0; size < packed.size(); ++size) {
+    CHECK_FALSE(formats::unpack_text(ByteView(packed).first(size), 1U << 20U));
   }
-  Bytes longer = *packed;
+  Bytes longer = packed;
   longer.push_back(0);
   CHECK_FALSE(formats::unpack_text(longer, 1U << 20U));
-  for (std::size_t i = 0; i < packed->size(); ++i) {
-    Bytes changed = *packed;
+  for (std::size_t i = 0; i < packed.size(); ++i) {
+    Bytes changed = packed;
     changed[i] ^= 0x55U;
     const auto result = formats::unpack_text(changed, 1U << 20U);
     if (!result) CHECK_FALSE(result.error().message.empty());

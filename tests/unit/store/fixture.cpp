@@ -107,7 +107,7 @@ StoredFeature sample_feature(const std::string& id) {
   feature.format = "city_json";
   feature.srid = 7415;
   feature.header = "{\"type\":\"CityJSON\"}";
-  feature.skeleton = std::string("{\"a\":\"\\u0000\"}\0\xFF\n", 17);
+  feature.skeleton.bytes = {0x28, 0xB5, 0x2F, 0xFD, 0, 0xFF, '\\', '\n'};
   feature.box = store::StoredBox{{0, 0, 0}, {1, 1.5, 1e9}};
   for (std::uint32_t ordinal = 0; ordinal < 2; ++ordinal) {
     StoredSolid solid;

@@ -80,7 +80,7 @@ TEST_CASE("a feature without solids, box or texts comes back so") {
   REQUIRE(got);
   CHECK(!got->box);
   CHECK(got->solids.empty());
-  CHECK(got->skeleton.empty());
+  CHECK(got->skeleton.bytes.empty());
   CHECK(got->header.empty());
   const auto collection = store->collection("c");
   REQUIRE(collection);
@@ -352,7 +352,7 @@ TEST_CASE("concurrent writers of the same features neither fail nor mix") {
         std::vector<StoredFeature> batch;
         for (int i = 0; i < 8; ++i) {
           batch.push_back(sample_feature("f" + std::to_string(i)));
-          batch.back().skeleton = std::to_string(t);
+          batch.back().skeleton.bytes = {static_cast<std::uint8_t>(t)};
           for (StoredSolid& solid : batch.back().solids) {
             solid.blob = {static_cast<std::uint8_t>(t)};
           }
@@ -371,7 +371,7 @@ TEST_CASE("concurrent writers of the same features neither fail nor mix") {
   for (const StoredFeature& feature : page->features) {
     CHECK(feature.skeleton == page->features.front().skeleton);  // one batch was the last
     REQUIRE(feature.solids.size() == 2);
-    CHECK(std::to_string(feature.solids[0].blob[0]) == feature.skeleton);
+    CHECK(feature.solids[0].blob == feature.skeleton.bytes);
   }
 }
 

@@ -388,9 +388,9 @@ bool FacetSurfaces::may_pass(Index facet, Index vertex, Index from, Index to, do
   return is_near_segment(vertex, from, to, place);
 }
 
-/// The edge of the boundary on which a chain along the segment goes on from `current`, as a place
-/// in the list, or the list's end. Where rings touch, several edges leave a vertex: the one that
-/// follows the segment. Only there does the choice ask for more than a start.
+/// The edge of the boundary on which a chain along the segment goes on from `current`, as an index
+/// into the list, or the list's size. Where rings touch, several edges leave a vertex: the one that
+/// follows the segment is taken. Only there does the choice ask for more than a start.
 std::size_t FacetSurfaces::boundary_step(Index facet, const Mesh& mesh, Index current, Index from,
                                          Index to) const {
   const auto& boundary = mesh.boundary();

@@ -48,7 +48,7 @@ class Certifier {
     apply_exact_rules();
     return exact_verdict();
   }
-  /// What the exact rules said, whatever the tetrahedralization said later.
+  /// The verdict of the exact rules, whatever the tetrahedralization shows later.
   TolerantVerdict exact_verdict() const { return exact_; }
 
   void add_note(std::string note) { inspection_.report.notes.push_back(std::move(note)); }
@@ -70,7 +70,7 @@ class Certifier {
   std::string incomplete_;  // why the exact tests did not finish
   std::optional<delaunay::ContactTriangles>
       divided_;                     // the triangles where shells touch, for several shells
-  bool is_interior_known_ = false;  // the exact tests say whether it is in parts
+  bool is_interior_known_ = false;  // the exact tests show whether it is connected
   TolerantVerdict exact_;
   Verdict verdict_ = Verdict::undecided;
   Inspection inspection_;
@@ -124,7 +124,7 @@ void Certifier::examine_interior(const ShellContacts& contacts) {
   is_interior_known_ = check_interior(examined_, *divided_);
 }
 
-/// What the absence of findings means, asked of the facts themselves.
+/// Checks the facts that must hold when there are no findings.
 bool Certifier::is_sound() const {
   const auto& states = examined_.triangles().state;
   return !shells_.empty() &&
@@ -203,7 +203,8 @@ void Certifier::climb(delaunay::EngineWorkers* workers) {
 }
 
 /// The certificate speaks of the canonical triangles here, as the exact tests do. Where these know
-/// the interior, one that says otherwise shows a defect of this program, not of the solid.
+/// the interior, a certificate that says otherwise shows a defect of this program, not of the
+/// solid.
 void Certifier::report_property(const delaunay::LadderResult& result) {
   if (is_interior_known_) {
     inspection_.report.undecided_reason = "the exact tests and the tetrahedralization disagree (";
@@ -261,8 +262,8 @@ namespace {
 constexpr Tolerances kTolerant{
     .planarity_metres = 0.01, .planarity_degrees = 20, .snap_metres = 0.001};
 
-/// `exact` is what the exact rules say under `options`, which hold for the tolerant verdict too
-/// when nothing but the snapping differs and that moves nothing.
+/// `exact` is the verdict of the exact rules under `options`. It is the tolerant verdict too when
+/// nothing but the snapping differs and that moves nothing.
 TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& options,
                                  const TolerantVerdict& exact) {
   CertifyOptions tolerant = options;

@@ -96,7 +96,7 @@ Finding finding_of(const ExaminedSolid& examined, Index facet,
   return finding;
 }
 
-/// What is known of a facet without a triangulation before the reason is looked for.
+/// Reports a facet without a triangulation for which the search found no closer reason.
 void report_no_region(ExaminedSolid& examined, Index facet) {
   Finding finding;
   finding.code =

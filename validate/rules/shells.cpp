@@ -262,8 +262,8 @@ void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t umbrella
   examined_.findings.add(std::move(finding));
 }
 
-/// For a closed shell that touches itself in vertices: parts that hang together over edges each
-/// bound a region. One part leaves the interior connected; several do when all but one are turned
+/// For a closed shell that touches itself in vertices: each part that is connected over edges
+/// bounds a region. One part leaves the interior connected; several do when all but one are turned
 /// inward (cavities that touch the outside in a vertex).
 std::string_view ShellExaminer::interior_connected() {
   if (!interior_connected_.empty()) return interior_connected_;
@@ -288,7 +288,7 @@ std::string_view ShellExaminer::interior_connected() {
 void ShellExaminer::check_components() {
   geometry::DisjointSets vertices(edges_.vertices().size());
   for (const EdgeUse& use : uses_) vertices.join(number_of(use.low), number_of(use.high));
-  // A ring of a facet may hang together with the exterior ring by the facet alone.
+  // Only the facet may connect an interior ring of a facet to its exterior ring.
   std::vector<Index> anchor(facets_.size(), kNone);
   for (const EdgeUse& use : uses_) {
     Index& first = anchor[local(use.facet)];

@@ -12,7 +12,7 @@
 namespace watertight::validate {
 namespace {
 
-/// Closer vertices are worth a warning: the snap tolerance that val3dity takes by default.
+/// Vertices that are closer than val3dity's default snap tolerance are worth a warning.
 constexpr double kNearMetres = 0.001;
 /// Facets narrower than that are worth a warning: the same length, across the facet.
 constexpr double kSliverMetres = 0.001;

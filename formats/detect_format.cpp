@@ -75,8 +75,8 @@ std::string_view json_type(std::string_view text) {
   return {};
 }
 
-// By the type, which CityJSON, its sequences and (JSON-FG as) GeoJSON have. A sequence has a second
-// JSON text after the line that ends the first.
+// Decides by the type, which CityJSON, its sequences and (JSON-FG as) GeoJSON have. A sequence has
+// a second JSON text after the line that ends the first.
 Format json_format(std::string_view text) {
   const std::string_view type = json_type(text);
   if (type == "Feature" || type == "FeatureCollection") return Format::json_fg;
@@ -116,7 +116,7 @@ bool is_text_stl_head(std::string_view text) {
   return word.starts_with("facet") || word == "endsolid";
 }
 
-// By the first bytes of the first line that is neither blank nor a comment.
+// Decides by the first bytes of the first line that is neither blank nor a comment.
 Result<Format> format_of_text(std::string_view text) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t start = text.find_first_not_of(" \t\r\n\x1E");

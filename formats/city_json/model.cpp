@@ -114,7 +114,7 @@ Index parent_of(const Json& object, const std::unordered_map<std::string_view, I
   return kNone;
 }
 
-// A child that the document does not hold is a solid that nobody would miss.
+// A child that the document does not hold may be a solid, and nobody would miss it.
 Status check_children(const Json& object, std::string_view id,
                       const std::unordered_map<std::string_view, Index>& by_id) {
   const Json* children = find_member(object, "children");

@@ -159,8 +159,8 @@ class GmlReader {
     return node == kNone ? "" : std::string(model_.name(model_.nodes[node].id));
   }
 
-  // Objects of one feature that have no gml:id, or the same, are counted on together, so that id
-  // and number name one geometry.
+  // Objects of one feature that have no gml:id, or the same, share one count, so that id and number
+  // name one geometry.
   std::uint32_t next_geometry(bool is_template, const std::string& object_id) {
     return is_template ? templates_++ : geometries_of_[object_id]++;
   }

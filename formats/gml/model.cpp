@@ -93,7 +93,7 @@ class GmlBuilder : public XmlHandler {
     return Done{};
   }
 
-  /// malformed for XML of something else, as a page of HTML that was saved instead of the data.
+  /// Errors: malformed for XML that is not GML, such as a page of HTML saved instead of the data.
   Result<GmlModel> take() {
     if (is_of_ogc_) return std::move(model_);
     return error_at(root_.place, ErrorCode::malformed,
@@ -135,7 +135,7 @@ class GmlBuilder : public XmlHandler {
     Index feature = kNone;  // top-level: its number in model_.objects; kNone until needed
   };
 
-  // What the coordinates element being read says about itself.
+  // The attributes of the coordinates element that is being read.
   struct Numbers {
     std::string_view element;  // "pos", "posList", "coordinates"
     std::uint64_t at = 0;

@@ -102,7 +102,7 @@ class ObjReader {
     return error_at(line, keyword, "not a statement of an OBJ file");
   }
 
-  // An object without faces gives way to the next one.
+  // The next object replaces an object without faces.
   void begin_object(std::string name) {
     ObjObject& last = objects_.back();
     if (!last.arrays.ring_vertices.empty()) {

@@ -65,7 +65,7 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& it
   return !reader.failed() && is_in_range && feature.document < documents;
 }
 
-/// False when the texts are none of a part that follows so many documents.
+/// False when the texts do not fit a part that follows so many documents.
 bool read_texts(ByteView bytes, std::uint64_t documents, std::uint64_t& items_left, Texts& texts) {
   ByteReader reader(bytes);
   const std::uint64_t added = reader.varint();

@@ -69,7 +69,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };
 
-/// A document with its solids encoded: what the features share, as Document has it, and they.
+/// A document with its solids encoded: its features, and what they share (see Document).
 struct StoredDocument {
   std::string format;  // to_string(Format)
   SharedText header;
@@ -91,20 +91,20 @@ Result<std::string> unpacked_skeleton(const StoredFeature& stored, const Limits&
 /// Decodes a stored feature: the document (with one feature) that came in.
 /// Errors: malformed when what is stored is not what to_stored() made; those of decode().
 Result<Document> from_stored(const StoredFeature& stored, const Limits& limits = {});
-/// The same of solids that are decoded already, one per stored.solids; its blobs are not looked at.
+/// The same for solids that are decoded already, one per stored.solids; its blobs are not used.
 Result<Document> from_stored(const StoredFeature& stored, std::vector<Solid> solids,
                              const Limits& limits = {});
 
-/// What became of one solid of a document.
+/// The outcome of one solid of a document.
 struct SolidOutcome {
   SolidSource source;
   Report report;
   std::string report_json;       // of the report, without times
   std::size_t blob_bytes = 0;    // when encoded
-  std::size_t source_bytes = 0;  // 24 a vertex and 4 a ring vertex: what the solid takes plainly
+  std::size_t source_bytes = 0;  // as plain arrays: 24 a vertex, 4 a ring vertex
 };
 
-/// What became of one feature of a document.
+/// The outcome of one feature of a document.
 struct FeatureOutcome {
   std::string id;
   Verdict verdict = Verdict::undecided;
@@ -114,7 +114,7 @@ struct FeatureOutcome {
   std::uint64_t version = 0;  // when stored
 };
 
-/// What happens to a document in which not all features are valid.
+/// The treatment of a document in which not all features are valid.
 enum class InvalidFeatures : std::uint8_t { refuse_document, skip };
 
 /// Called with features done and features in all; from one thread at a time.

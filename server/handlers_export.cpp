@@ -38,7 +38,7 @@ Response refuse_export(const Error& error) {
       return refuse(406, "not-acceptable", error.message);
     case ErrorCode::malformed:
     case ErrorCode::limit_exceeded:
-    case ErrorCode::not_encodable:  // of what is stored, not of the request
+    case ErrorCode::not_encodable:  // a fault of what is stored, not of the request
       return refuse(500, "internal", "the collection cannot be exported: " + error.message);
     default:
       return to_response(to_problem(error));

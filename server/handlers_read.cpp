@@ -26,7 +26,7 @@ Json link(std::string href, std::string_view relation, std::string_view type,
   return {{"href", std::move(href)}, {"rel", relation}, {"type", type}, {"title", title}};
 }
 
-/// Nothing when JSON is what the client wants of a JSON-only resource.
+/// The refusal of a client that does not accept JSON, for resources that have JSON only.
 std::optional<Response> json_only(const RoutedRequest& request) {
   const std::string* format = request.target.parameter("f");
   if (format != nullptr) {

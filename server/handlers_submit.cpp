@@ -97,8 +97,8 @@ std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::Tex
   return report::json_report(std::move(sink), std::move(head));
 }
 
-/// Validates a document and answers with its report: 0 JSON, 1 GeoJSON, 2 HTML. Equal documents
-/// get equal answers, so it says no times.
+/// Validates a document and answers with its report: 0 JSON, 1 GeoJSON, 2 HTML. Equal documents get
+/// equal answers, so the report has no times.
 Response report_of(Document document, const RoutedRequest& request,
                    const pipeline::IngestOptions& options, std::size_t kind) {
   constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};

@@ -12,7 +12,7 @@
 namespace watertight::cli {
 namespace {
 
-/// Enough to tell the kind.
+/// Enough bytes to detect the kind.
 constexpr std::size_t kFirstBytes = 8;
 
 Result<Input> input_of_container(ByteView bytes, const Limits& limits) {

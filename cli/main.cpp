@@ -21,7 +21,7 @@ std::size_t default_jobs() {
   return std::max(1U, std::min(std::thread::hardware_concurrency(), 64U));
 }
 
-/// Like CLI::Range, which takes "nan" for a number in range.
+/// Like CLI::Range, but refuses "nan", which CLI::Range accepts as in range.
 CLI::Validator in_range(double min, double max, const std::string& words) {
   const auto check = [min, max, words](std::string& text) {
     double value = 0;

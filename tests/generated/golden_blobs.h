@@ -24,7 +24,7 @@ struct Golden {
 
 /// Files that are only decoded.
 std::vector<Golden> version_0_goldens();
-/// Of the present version: every mode that can hold each of some solids.
+/// Blobs of the present version: some solids, each in every mode that can hold it.
 std::vector<Golden> goldens();
 Result<Bytes> encode_golden(const Golden& golden);
 

@@ -382,7 +382,7 @@ TEST_CASE("GML: parts of a building, and parts of parts, name the building") {
   CHECK(buildings == std::vector<std::string>{"b:b", "p:b", "q:b", "r:", "t:", "lone:"});
 }
 
-TEST_CASE("GML: the format is told by name and by the first bytes") {
+TEST_CASE("GML: the format is detected by name and by the first bytes") {
   for (const char* name : {"x.gml", "x.XML", "x.citygml"}) {
     CHECK(*formats::detect_format(name, {}) == Format::gml);
   }

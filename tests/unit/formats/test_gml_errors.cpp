@@ -30,7 +30,7 @@ TEST_CASE("GML: two-dimensional positions are refused with their place") {
                                 "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>")),
              "a position of 2 numbers"));
 
-  // Six positions of two numbers are four of three; the Envelope and the ring's end tell.
+  // Six positions of two numbers are four of three; the Envelope and the ring's end decide.
   const std::string envelope = "<g:boundedBy><g:Envelope srsDimension=\"2\"/></g:boundedBy>";
   const std::string flat = building(solid_of(member(polygon("0 0 4 0 4 4 2 5 0 4 0 0"))));
   CHECK(says(gml_error(model(envelope + flat)), "srsDimension 2 of the Envelope"));

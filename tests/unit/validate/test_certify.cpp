@@ -97,7 +97,7 @@ TEST_CASE("a cavity whose edges are diagonals of flat facets cuts a corner off")
   }
 }
 
-TEST_CASE("804 tells where another diagonal would open a corner that a cavity seals off") {
+TEST_CASE("804 reports where another diagonal would open a corner that a cavity seals off") {
   CertifyOptions options;
   options.proof = Proof::boundary;
   const Report report =

@@ -88,8 +88,9 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::StoredDocument&
     if (!feature.solids.empty()) blob = &feature.solids.front().blob;
   }
   if (solids == 1) return *blob;
-  return Error{ErrorCode::invalid_argument,
-               "--bare takes a document with one solid; this one has " + std::to_string(solids)};
+  return Error{
+      ErrorCode::invalid_argument,
+      "--bare needs a document with exactly one solid; this one has " + std::to_string(solids)};
 }
 
 /// The documents of a Watertight file, or that of a blob.

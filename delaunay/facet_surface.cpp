@@ -442,7 +442,8 @@ std::optional<std::string> FacetSurfaces::check_rings(Index facet, const Mesh& m
       }
     }
   }
-  if (used != boundary.size()) return "its faces have a boundary beside its rings";
+  if (used != boundary.size())
+    return "its faces have edges of a boundary that are not on its rings";
   return std::nullopt;
 }
 
@@ -506,7 +507,7 @@ std::optional<std::string> FacetSurfaces::check(Index facet, std::span<const Con
   if (faces.empty()) return "it has no faces";
   Mesh mesh(faces);
   if (const char* wrong = mesh.turn()) return wrong;
-  if (!mesh.is_disc(solid_.rings_of(facet).size())) return "its faces are no disc";
+  if (!mesh.is_disc(solid_.rings_of(facet).size())) return "its faces do not form a disc";
   const Plane plane = plane_of(facet);
   if (auto wrong = check_vertices(facet, plane, mesh, surface)) return wrong;
   if (auto wrong = check_rings(facet, mesh)) {

@@ -328,7 +328,7 @@ class Climb {
       return conclude(RungOutcome::not_delaunay,
                       "refused: " + std::to_string(following.missing_total) + " of " +
                           std::to_string(following.triangles.size()) +
-                          " boundary triangles are no Delaunay faces");
+                          " boundary triangles are not Delaunay faces");
     }
     Tetrahedralization own;
     own.points.assign(solid_.vertices().begin(), solid_.vertices().end());

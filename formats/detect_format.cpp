@@ -139,9 +139,10 @@ Result<Format> format_of_text(std::string_view text) {
     }
     if (is_obj_line(text)) return Format::obj;
   }
-  return Error{ErrorCode::unsupported,
-               "neither the name nor the first bytes tell the format; known are CityJSON, "
-               "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, WKT and EWKB"};
+  return Error{
+      ErrorCode::unsupported,
+      "neither the file name nor the first bytes show the format; known formats: CityJSON, "
+      "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, WKT and EWKB"};
 }
 
 }  // namespace

@@ -139,11 +139,11 @@ Result<Solid> unmerge(const Solid& merged, std::string_view line, const Limits& 
     }
     const auto chosen = number_in<Index>(next_word(line));
     if (!chosen || *chosen >= source->vertex_of.size() || source->vertex_of[*chosen] != vertex) {
-      return malformed("a ring names another vertex");
+      return malformed("a ring does not use a source of its merged vertex");
     }
     corner = *chosen;
   }
-  if (!line.empty()) return malformed("it goes on after its end");
+  if (!line.empty()) return malformed("text follows its end");
   arrays.vertices = std::move(source->points);
   return Solid::make(std::move(arrays), merged.lattice(), merged.srid(), limits);
 }

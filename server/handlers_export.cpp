@@ -51,7 +51,7 @@ Response get_export(const RoutedRequest& request) {
   const FileFormat* file = chosen_file(request);
   if (file == nullptr) {
     return refuse(406, "not-acceptable",
-                  "a collection comes as application/vnd.watertight (f=wt) or "
+                  "a collection is available as application/vnd.watertight (f=wt) or "
                   "application/city+json-seq (f=cityjsonseq)");
   }
   const std::string& id = request.target.segments[1];

@@ -31,10 +31,10 @@ std::optional<Response> json_only(const RoutedRequest& request) {
   const std::string* format = request.target.parameter("f");
   if (format != nullptr) {
     if (*format == "json") return std::nullopt;
-    return refuse(406, "not-acceptable", "f=json is what there is here");
+    return refuse(406, "not-acceptable", "this resource is available as JSON only (f=json)");
   }
   if (negotiate(request.request.header("accept"), {kJson})) return std::nullopt;
-  return refuse(406, "not-acceptable", "application/json is what there is here");
+  return refuse(406, "not-acceptable", "this resource is available as application/json only");
 }
 
 constexpr std::string_view kHtml = "text/html";
@@ -105,7 +105,7 @@ std::optional<double> parse_number(std::string_view text) {
 /// A box of 4 numbers has no limit in z.
 Result<store::StoredBox> parse_box(std::string_view text) {
   const Error wrong{ErrorCode::invalid_argument,
-                    "bbox takes 4 or 6 comma-separated numbers: minima, then maxima"};
+                    "bbox needs 4 or 6 comma-separated numbers: minima, then maxima"};
   std::vector<double> numbers;
   while (numbers.size() <= 6) {
     const std::size_t comma = text.find(',');
@@ -211,7 +211,8 @@ std::string item_path(std::string_view collection, std::string_view item) {
 Response get_landing(const RoutedRequest& request) {
   const auto type = landing_type(request);
   if (!type) {
-    return refuse(406, "not-acceptable", "application/json and text/html are what there is here");
+    return refuse(406, "not-acceptable",
+                  "this resource is available as application/json and text/html");
   }
   const Json links = Json::array(
       {link("/", "self", kJson, "this page"), link("/api", "service-desc", kOpenApiType, "the API"),

@@ -180,8 +180,9 @@ Response post_validate(const RoutedRequest& request) {
   if (!status) return to_response(to_problem(status.error()));
   const auto kind = negotiate(request.request.header("accept"), {kJson, kGeoJson, kHtml});
   if (!kind) {
-    return refuse(406, "not-acceptable",
-                  "application/json, application/geo+json and text/html are what there is here");
+    return refuse(
+        406, "not-acceptable",
+        "the report is available as application/json, application/geo+json and text/html");
   }
   Submission submission = read_submission(request, AcceptedFormats::all, "");
   if (submission.problem) return to_response(*submission.problem);

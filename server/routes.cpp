@@ -84,7 +84,7 @@ Response unrouted(const Request& request, const Target& target) {
     return refuse(404, "not-found", "there is nothing at this path; see /api");
   }
   if (request.method == "OPTIONS") return Response{204, "", "", {{"Allow", allowed}}};
-  Problem problem{405, "method-not-allowed", "this path takes " + allowed, {}, {}, {}, {}};
+  Problem problem{405, "method-not-allowed", "this path allows " + allowed, {}, {}, {}, {}};
   problem.headers.push_back({"Allow", allowed});
   return to_response(problem);
 }

@@ -95,7 +95,8 @@ std::optional<Response> refusal_of(const Parser& parser) {
   }
   const auto coding = request.find(http::field::content_encoding);
   if (coding != request.end() && lower(coding->value()) != "identity") {
-    return problem(415, "unsupported", "this service takes bodies without Content-Encoding only");
+    return problem(415, "unsupported",
+                   "this service does not accept Content-Encoding: send the body uncompressed");
   }
   return std::nullopt;
 }

@@ -177,7 +177,7 @@ class Cluster {
     std::error_code failure;
     if (fs::exists(pgdata() + "/PG_VERSION", failure)) return Done{};
     if (fs::exists(pgdata(), failure)) {
-      return refused(pgdata() + " exists and is no PostgreSQL cluster");
+      return refused(pgdata() + " exists and is not a PostgreSQL cluster");
     }
     // The cluster is made in another folder and moved: PGDATA is always whole.
     const std::string fresh = data_ + "/postgres.new";

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/quantity.h"
 #include "validate/rules/rules.h"
 #include "validate/snap.h"
 
@@ -165,14 +166,15 @@ void Certifier::prove(delaunay::EngineWorkers* workers) {
     climb(workers);
   } else if (is_interior_known_) {
     if (examined_.solid().shell_count() == 1) {
-      examined_.findings.skip({kSolidInteriorDisconnected},
-                              "one closed 2-manifold shell that does not meet itself bounds one "
-                              "interior (Jordan-Brouwer); proof by boundary was asked for");
+      examined_.findings.skip(
+          {kSolidInteriorDisconnected},
+          "one closed 2-manifold shell that does not meet itself bounds one "
+          "interior (Jordan-Brouwer); the option asked for a proof by boundary");
     }
     accept(std::nullopt);
   } else {
     inspection_.report.undecided_reason =
-        "only a tetrahedralization can tell whether the interior is in parts";
+        "only a tetrahedralization can show whether the interior is in parts";
     if (divided_ && !divided_->obstacle.empty()) {
       inspection_.report.undecided_reason += " (" + divided_->obstacle + ")";
     }
@@ -291,8 +293,9 @@ Inspection examine(const Solid& solid, delaunay::EngineWorkers* workers,
   } else if (auto snapped = snap_vertices(solid, snap, options.ladder.cancel, options.placement);
              snapped) {
     Certifier certifier(snapped->solid, options);
-    certifier.add_note("the snap tolerance moved " + std::to_string(snapped->moved) +
-                       " vertices; the verdict is about the snapped solid");
+    certifier.add_note("the snap tolerance moved " +
+                       quantity(snapped->moved, "vertex", "vertices") +
+                       "; the verdict is about the snapped solid");
     inspection = certifier.run(workers);
     exact = certifier.exact_verdict();
   } else {
@@ -316,7 +319,7 @@ Inspection flattened(const CertifyOptions& options) {
     finding.detail = "the determinant of the transformation is zero: it flattens the solid";
     findings.add(std::move(finding));
   }
-  findings.skip({kSolidInteriorDisconnected}, "the solid is flat in its place");
+  findings.skip({kSolidInteriorDisconnected}, "the solid is flat where it is placed");
   Inspection inspection;
   Report& report = inspection.report;
   report.verdict = Verdict::invalid;

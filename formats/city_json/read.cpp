@@ -146,12 +146,11 @@ void keep_text(const CityHeader& header, std::string_view text, Feature& feature
 Error type_error(const Json& root) {
   const std::string type = string_member(root, "type");
   if (type == "CityJSONFeature") {
-    return Error{
-        ErrorCode::malformed,
-        "a CityJSONFeature alone does not say its transform: send the CityJSON line of its "
-        "sequence first",
-        {},
-        "/type"};
+    return Error{ErrorCode::malformed,
+                 "a CityJSONFeature alone has no transform: send the CityJSON line of its "
+                 "sequence first",
+                 {},
+                 "/type"};
   }
   return Error{ErrorCode::malformed, "the type is not \"CityJSON\"", {}, "/type"};
 }
@@ -173,7 +172,8 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   if (!read) return std::move(read).error();
   const Json* object = find_member(*find_member(read->model.root, "CityObjects"), id);
   if (object == nullptr) {
-    return Error{ErrorCode::malformed, "the id names none of the CityObjects", {}, "/id"};
+    return Error{
+        ErrorCode::malformed, "the id is not that of a city object in CityObjects", {}, "/id"};
   }
   Feature feature;
   feature.id = id;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/quantity.h"
 #include "formats/gml/model.h"
 #include "formats/gml/shapes.h"
 #include "formats/surface.h"
@@ -336,8 +337,9 @@ class GmlReader {
                                 "read in the order written");
     }
     if (document_.features.empty() && document_.templates.empty()) {
-      document_.notes.push_back("the document has no solids; " + std::to_string(passed_over_) +
-                                " other geometries are passed over");
+      document_.notes.push_back(
+          "the document has no solids; " +
+          quantity(passed_over_, "other geometry is", "other geometries are") + " passed over");
     }
   }
 

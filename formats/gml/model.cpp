@@ -449,7 +449,7 @@ class GmlBuilder : public XmlHandler {
     if (is_list ? count % 3 == 0 : count == 3) return;
     std::string message(is_list ? "a posList" : "a position");
     message.append(" of ").append(std::to_string(count));
-    message.append(is_list ? " numbers, which is no multiple of 3" : " numbers");
+    message.append(is_list ? " numbers, which is not a multiple of 3" : " numbers");
     message.append(": two-dimensional positions are not read; a solid needs x, y and z");
     add_defect(node, numbers_.place, ErrorCode::unsupported, std::move(message));
   }

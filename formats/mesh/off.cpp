@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/quantity.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 
@@ -86,7 +87,7 @@ class OffReader {
       if (!vertex || *vertex >= vertex_count_) {
         return error_at(
             lines_.line(), lines_.words()[i],
-            "vertex index is out of range (" + std::to_string(vertex_count_) + " vertices)");
+            "vertex index is out of range (" + quantity(vertex_count_, "vertex", "vertices") + ')');
       }
       arrays_.ring_vertices.push_back(static_cast<Index>(*vertex));
     }
@@ -121,7 +122,8 @@ Result<std::string> write_off(std::span<const Feature> features) {
   for (const Feature& feature : features) {
     for (const SubmittedSolid& submitted : feature.solids) {
       if (solid != nullptr) {
-        return Error{ErrorCode::unsupported, "an OFF file holds one solid and there are several"};
+        return Error{ErrorCode::unsupported,
+                     "an OFF file holds one solid, the document has several"};
       }
       solid = &submitted.solid;
     }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/quantity.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 
@@ -121,7 +122,7 @@ class PolyReader {
       const auto node = unsigned_word(lines_.words()[word]);
       if (!node || *node < first_node_ || *node - first_node_ >= vertices_.positions.size()) {
         return wrong(word, "no node has this number (" +
-                               std::to_string(vertices_.positions.size()) + " nodes from " +
+                               quantity(vertices_.positions.size(), "node") + " from " +
                                std::to_string(first_node_) + ")");
       }
       arrays_.ring_vertices.push_back(static_cast<Index>(*node - first_node_));
@@ -148,7 +149,7 @@ class PolyReader {
       if (auto status = point(what); !status) return status;
     }
     if (*point_count > 0) {
-      document_.notes.push_back(std::to_string(*point_count) + ' ' + what + " points skipped");
+      document_.notes.push_back(quantity(*point_count, what + " point") + " skipped");
     }
     return Done{};
   }

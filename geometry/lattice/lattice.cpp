@@ -317,7 +317,8 @@ Status check_world(const LatticePoints& points) {
     if (least == points.points.end()) break;
     if (!std::isfinite(points.lattice.world((*least)[axis], axis)) ||
         !std::isfinite(points.lattice.world((*most)[axis], axis))) {
-      return Error{ErrorCode::limit_exceeded, "a transformed coordinate exceeds the doubles"};
+      return Error{ErrorCode::limit_exceeded,
+                   "a transformed coordinate is beyond the range of doubles"};
     }
   }
   return Done{};
@@ -339,7 +340,8 @@ Result<LatticePoints> rounded_transform(std::span<const std::array<std::int64_t,
                 : nearest_double({Wide{scale.mantissa} * vertices[i][axis], scale.exponent}) +
                       nearest_double({translate.mantissa, translate.exponent});
       if (!std::isfinite(doubles[i][axis])) {
-        return Error{ErrorCode::limit_exceeded, "a transformed coordinate exceeds the doubles"};
+        return Error{ErrorCode::limit_exceeded,
+                     "a transformed coordinate is beyond the range of doubles"};
       }
     }
   }
@@ -390,7 +392,7 @@ Result<LatticePoints> lattice_of_decimals(std::span<const std::array<GridNumber,
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = nearest_double({normal[i][axis].mantissa, normal[i][axis].exponent});
       if (!std::isfinite(value)) {
-        return Error{ErrorCode::limit_exceeded, "a coordinate exceeds the doubles"};
+        return Error{ErrorCode::limit_exceeded, "a coordinate is beyond the range of doubles"};
       }
       doubles[i][axis] = value;
       has_changed = has_changed || shortest_decimal(value) != normal[i][axis];

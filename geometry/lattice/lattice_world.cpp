@@ -259,7 +259,9 @@ Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& l
       return Error{ErrorCode::malformed, "a transform's scale must be positive"};
     }
   }
-  if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice is not one"};
+  if (!lattice.is_sane())
+    return Error{ErrorCode::malformed,
+                 "the lattice has a step that is not positive or an exponent out of range"};
   const std::array axes{AxisIntegers(lattice, 0, transform), AxisIntegers(lattice, 1, transform),
                         AxisIntegers(lattice, 2, transform)};
   std::vector<std::array<std::int64_t, 3>> integers(points.size());

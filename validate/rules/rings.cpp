@@ -4,6 +4,7 @@
 // the rings of a facet lie to each other (201, 202, 206, 207). Exact, in the facet's projection.
 #include <algorithm>
 
+#include "base/quantity.h"
 #include "tessellate/ring_problems.h"
 #include "validate/rules/rules.h"
 
@@ -37,7 +38,7 @@ bool check_points(ExaminedSolid& examined, Index facet) {
       finding.measured = static_cast<double>(ring.size());
       finding.limit = 3;
       finding.unit = "points";
-      finding.detail = "the ring has " + std::to_string(ring.size()) + " points";
+      finding.detail = "the ring has " + quantity(ring.size(), "point");
       examined.findings.add(std::move(finding));
       is_good = false;
       continue;

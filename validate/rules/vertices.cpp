@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity.h"
 #include "validate/overlap/near_vertices.h"
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
@@ -54,7 +55,7 @@ void check_near(ExaminedSolid& examined) {
   finding.limit = kNearMetres;
   finding.unit = std::string(1, 'm');
   finding.detail = std::to_string(near.points.size()) +
-                   " vertices are nearly at the place of another; these two are the closest";
+                   " vertices nearly coincide with another vertex; these two are the closest";
   examined.findings.add(std::move(finding));
 }
 
@@ -75,8 +76,7 @@ void check_unused(ExaminedSolid& examined, const geometry::UnusedVertices& left_
   finding.measured = static_cast<double>(count);
   finding.limit = 0;
   finding.unit = "vertices";
-  finding.detail = std::to_string(count) + (count == 1 ? " vertex is" : " vertices are") +
-                   " used by no ring; " +
+  finding.detail = quantity(count, "vertex is", "vertices are") + " used by no ring; " +
                    (left_out.count > 0 ? "the first is number " + std::to_string(left_out.first) +
                                              " of the file, counted from 0"
                                        : "this is the first");
@@ -130,8 +130,7 @@ void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded) {
   finding.measured = static_cast<double>(rounded.size());
   finding.limit = 0;
   finding.unit = "vertices";
-  finding.detail = "the digits of " + std::to_string(rounded.size()) +
-                   (rounded.size() == 1 ? " vertex" : " vertices") +
+  finding.detail = "the digits of " + quantity(rounded.size(), "vertex", "vertices") +
                    " fit no grid and were rounded; this is the first";
   examined.findings.add(std::move(finding));
 }
@@ -140,7 +139,7 @@ void report_rounded_origin(ExaminedSolid& examined) {
   Finding finding;
   finding.code = kCoordinatesRounded;
   finding.detail =
-      "the place of the whole needs more than 18 digits and was rounded to 18; the shape is exact";
+      "the origin of the solid needs more than 18 digits and was rounded to 18; the shape is exact";
   examined.findings.add(std::move(finding));
 }
 

@@ -199,7 +199,7 @@ TEST_CASE("GML: what no solid uses is not judged") {
                    "</g:MultiSurface></lod1MultiSurface></Road></cityObjectMember>"));
   CHECK(document.features.empty());
   REQUIRE(document.notes.size() == 1);
-  CHECK(document.notes[0] == "the document has no solids; 1 other geometries are passed over");
+  CHECK(document.notes[0] == "the document has no solids; 1 other geometry is passed over");
 }
 
 TEST_CASE("GML: positions by pos in Points, and by three numbers in coordinates") {

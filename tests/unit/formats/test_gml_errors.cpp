@@ -16,7 +16,8 @@ Error solid_error(const std::string& members) {
 TEST_CASE("GML: two-dimensional positions are refused with their place") {
   const Error list = solid_error("\n\n" + member(polygon("0 0 0 1 1 0 0 0", " g:id=\"p\"")));
   CHECK(list.code == ErrorCode::unsupported);
-  CHECK(says(list, "line 3: a posList of 8 numbers, which is no multiple of 3: two-dimensional"));
+  CHECK(
+      says(list, "line 3: a posList of 8 numbers, which is not a multiple of 3: two-dimensional"));
   CHECK(says(list, "in Polygon 'p', in Solid 's', of object 'b7'"));
 
   const Error stated = solid_error(

@@ -106,7 +106,7 @@ TEST_CASE("804 reports where another diagonal would open a corner that a cavity 
   std::set<Index> facets;
   for (const Finding& finding : report.findings) {
     if (finding.code != 804) continue;
-    CHECK(finding.detail.find("hang together") != std::string::npos);
+    CHECK(finding.detail.find("be connected") != std::string::npos);
     facets.insert(finding.place.facet);
   }
   CHECK(facets == std::set<Index>{0, 1, 2});

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kCandidateSteps = 256;
 
-Error malformed() { return {ErrorCode::malformed, "these triangles make no closed surface"}; }
+Error malformed() { return {ErrorCode::malformed, "the triangles do not form a closed surface"}; }
 
 /// The surface in the order of the stream, written or read.
 class SurfaceCoder {

@@ -42,7 +42,9 @@ Result<Lattice> read_lattice(ByteReader& reader, LatticeKind kind, bool one_step
   for (GridNumber& origin : lattice.origin) origin = read_grid_number(reader, fits);
   if (reader.failed()) return reader.error("lattice");
   if (!fits || !lattice.is_sane() || one_step != has_one_step(lattice)) {
-    return Error{ErrorCode::malformed, "the lattice makes no sense", reader.position()};
+    return Error{ErrorCode::malformed,
+                 "the lattice has a step that is not positive or a number out of range",
+                 reader.position()};
   }
   return lattice;
 }
@@ -61,7 +63,9 @@ Status read_acceptance(ByteReader& reader, BlobHeader& header) {
                          std::isfinite(tolerances.snap_metres);
   const bool is_implied = header.has(kHasTolerances) && tolerances == kImpliedTolerances;
   if (!is_number || is_implied || rule_set > 0xFFFF) {
-    return Error{ErrorCode::malformed, "the acceptance makes no sense", reader.position()};
+    return Error{ErrorCode::malformed,
+                 "the acceptance has tolerances that are not finite, or that the format leaves out",
+                 reader.position()};
   }
   header.acceptance.tolerances = tolerances;
   header.acceptance.rule_set = static_cast<std::uint16_t>(rule_set);
@@ -76,7 +80,7 @@ Status read_mode(ByteReader& reader, BlobHeader& header, std::uint8_t& mode_byte
   header.flags = reader.u8();
   if (reader.failed()) return reader.error("header");
   if (first != kMagic[0] || second != kMagic[1]) {
-    return Error{ErrorCode::malformed, "this is no blob: it does not start with WT", 0};
+    return Error{ErrorCode::malformed, "this is not a blob: it does not start with WT", 0};
   }
   if (version != 0) return Error{ErrorCode::unsupported, "not of format version 0", 2};
   const std::uint8_t mode = mode_byte & 0x0F;

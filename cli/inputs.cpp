@@ -123,7 +123,7 @@ Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptio
 Result<Format> format_of_name(const std::string& path) {
   const auto format = formats::detect_format(path, {});
   if (format) return format;
-  return Error{ErrorCode::unsupported, "the ending of '" + path +
+  return Error{ErrorCode::unsupported, "the extension of '" + path +
                                            "' is not that of a known format; known: .city.json "
                                            ".json .city.jsonl .jsonl .obj .off .wkt "
                                            ".wkb .ewkb"};

@@ -130,7 +130,7 @@ void add_decode(CLI::App& app, DecodeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("decode", "Restore the document of a Watertight file or blob");
   sub->add_option("IN", command.input, "Watertight file or blob; - for standard input")->required();
   sub->add_option("-o,--output", command.output,
-                  "its ending decides the format; - for standard output in the stored format")
+                  "its extension decides the format; - for standard output in the stored format")
       ->required();
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
@@ -138,7 +138,7 @@ void add_decode(CLI::App& app, DecodeCommand& command, Chosen& chosen) {
 void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("convert", "Write a document in another format, unvalidated");
   sub->add_option("IN", command.input, "document; - for standard input")->required();
-  sub->add_option("-o,--output", command.output, "its ending decides the format")->required();
+  sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 

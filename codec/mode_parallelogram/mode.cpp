@@ -403,7 +403,7 @@ Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& model
   }
   if (trials.best().has_guesses) {
     VertexOptions changed = trials.best();
-    changed.habit = 1;
+    changed.naming_weight = 1;
     if (const Status tried = trials.attempt(changed); !tried) return tried.error();
   }
   return trials.best();

@@ -218,8 +218,8 @@ Response get_landing(const RoutedRequest& request) {
       {link("/", "self", kJson, "this page"), link("/api", "service-desc", kOpenApiType, "the API"),
        link("/collections", "data", kJson, "collections of solids"),
        link("/validate", "validate", kJson, "POST a document to validate it"),
-       link("/healthz", "status", kJson, "is the process alive"),
-       link("/readyz", "status", kJson, "is the database there")});
+       link("/healthz", "status", kJson, "state of the process"),
+       link("/readyz", "status", kJson, "state of the database")});
   if (*type == kHtml) return Response{200, "text/html; charset=utf-8", landing_html(links), {}};
   return json_response({{"title", kTitle}, {"description", kDescription}, {"links", links}});
 }

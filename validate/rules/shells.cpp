@@ -162,7 +162,7 @@ void ShellExaminer::report_border(const Border& border) {
   finding.limit = 0;
   finding.unit = "edges";
   finding.detail =
-      "a border of " + quantity(border.edges.size(), "edge") + " that only one facet uses";
+      "a hole: a border of " + quantity(border.edges.size(), "edge") + " that only one facet uses";
   finding.uncertain = is_faulty(border.edges);
   examined_.findings.add(std::move(finding));
 }

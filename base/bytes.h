@@ -18,7 +18,7 @@ namespace watertight {
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
-/// The same bytes under the other name. No copy.
+/// Views a text as bytes, or bytes as a text. No copy.
 ByteView as_bytes(std::string_view text);
 std::string_view as_text(ByteView bytes);
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How work that takes long is called off.
+// The way in which a caller ends work that takes long.
 #pragma once
 
 #include <functional>
 
 namespace watertight {
 
-/// Asked now and then by work that may take long: true when its result is no longer wanted (time is
-/// up, the client has left, the service stops). Empty: the work is never called off.
+/// Long work calls it now and then. It returns true when nobody wants the result any more (time is
+/// up, the client has left, the service stops). Empty: the work is never ended.
 using CancelPoll = std::function<bool()>;
 
 }  // namespace watertight

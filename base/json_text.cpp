@@ -7,7 +7,7 @@
 namespace watertight {
 namespace {
 
-/// Length of the UTF-8 sequence at the front, 0 if it is none.
+/// Length in bytes of the UTF-8 sequence at the front; 0 if the front is not UTF-8.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);

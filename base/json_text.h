@@ -12,11 +12,11 @@
 
 namespace watertight {
 
-/// `text` as a JSON string with quotes; bytes that are no UTF-8 become U+FFFD.
+/// `text` as a JSON string with quotes; bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 
-/// `text` as UTF-8 without control characters but tab and line feed; what is neither becomes
-/// U+FFFD.
+/// `text` as UTF-8. Control characters, except tab and line feed, and bytes that are not UTF-8
+/// become U+FFFD.
 std::string utf8_text(std::string_view text);
 
 /// Writes JSON objects and arrays member by member; the caller keeps them balanced.
@@ -35,7 +35,7 @@ class JsonText {
   JsonText& value(int number);
   JsonText& value(const std::array<double, 3>& point);
   JsonText& raw(std::string_view json);  // a value that is JSON already
-  /// What was written since the last call.
+  /// The text written since the last call.
   std::string take() { return std::exchange(text_, {}); }
 
  private:

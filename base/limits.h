@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What one input may cost. Every reader, decoder and validator takes these and answers
+// Limits on the cost of one input. Every reader, decoder and validator takes them and answers
 // ErrorCode::limit_exceeded beyond them, before it allocates.
 #pragma once
 

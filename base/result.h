@@ -25,7 +25,7 @@ enum class ErrorCode : std::uint8_t {
   not_found,        // a named thing does not exist
   conflict,         // a named thing exists already, or changed meanwhile
   unavailable,      // a file, process or server cannot be used now; trying again can help
-  invalid_argument  // an option or parameter makes no sense
+  invalid_argument  // an option or parameter has a value that is not allowed
 };
 
 /// The code as the lower-case word used in every report, e.g. "limit-exceeded".

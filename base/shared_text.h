@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A text that many values have in common, as the features of a document its header: held once,
-// however many copies there are.
+// A text that many values share, such as the header that the features of a document have in common.
+// It is held once, however many copies there are.
 #pragma once
 
 #include <compare>
@@ -37,7 +37,7 @@ class SharedText {
   friend bool operator==(const SharedText& a, std::string_view b) { return a.str() == b; }
 
  private:
-  std::shared_ptr<const std::string> text_;  // nothing when empty
+  std::shared_ptr<const std::string> text_;  // null when the text is empty
 };
 
 }  // namespace watertight

@@ -40,7 +40,7 @@ struct EncodeCommand {
   bool keeps_steiner = false;
   std::string contract = "exact";
   bool is_bare = false;   // one blob instead of a Watertight file
-  bool explains = false;  // print what the solids take in each mode
+  bool explains = false;  // print the bytes that the solids take in each mode
   std::size_t jobs = 1;
 };
 Exit run(const EncodeCommand& command);
@@ -99,7 +99,7 @@ void complain(const std::string& file, const Error& error);
 
 /// The findings of a feature's solids and groups, as lines on standard output.
 void print_findings(const std::string& file, const pipeline::InspectedFeature& feature);
-/// The same of all features of a document.
+/// The same for all features of a document.
 void print_findings(const std::string& file, const pipeline::IngestOutcome& outcome,
                     std::FILE* out = stdout);
 

@@ -42,7 +42,7 @@ Exit refuse_to_replace(const std::string& input, const std::string& output) {
               {ErrorCode::invalid_argument, "the output '" + output + "' would replace the input"});
 }
 
-/// What is stored is not what the source says, so that even a valid solid must not pass in silence.
+/// Rounding changes even a valid solid, so that it must not pass in silence.
 void tell_rounded(const std::string& file, const pipeline::IngestOutcome& outcome) {
   for (const pipeline::FeatureOutcome& feature : outcome.features) {
     for (const pipeline::SolidOutcome& solid : feature.solids) {
@@ -88,8 +88,9 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::StoredDocument&
     if (!feature.solids.empty()) blob = &feature.solids.front().blob;
   }
   if (solids == 1) return *blob;
-  return Error{ErrorCode::invalid_argument,
-               "--bare takes a document with one solid; this one has " + std::to_string(solids)};
+  return Error{
+      ErrorCode::invalid_argument,
+      "--bare needs a document with exactly one solid; this one has " + std::to_string(solids)};
 }
 
 /// The documents of a Watertight file, or that of a blob.
@@ -120,8 +121,8 @@ std::string numbered(const std::string& output, std::size_t number) {
 }
 
 /// Writes each document to a file of its own; none if one cannot be converted or written (a rename
-/// that fails in the end leaves those before it). `input` is what they were read from: a conversion
-/// that fails is for what stands there.
+/// that fails in the end leaves those before it). They were read from `input`, which the message
+/// about a failed conversion names.
 Exit save(std::span<const Document> documents, const std::string& input,
           const std::string& output) {
   std::vector<std::string> names;
@@ -205,7 +206,7 @@ Result<Json> info_of_container(ByteView bytes) {
   json["pages"] = info->pages;
   json["solidBytes"] = info->solid_bytes;
   json["documentBytes"] = bytes.size() - info->solid_bytes;
-  // Sums of hundredths are no hundredths.
+  // A sum of hundredths in binary is not a whole number of hundredths.
   for (const auto& [name, size] : info->parts) json["parts"][name] = std::round(size * 100) / 100;
   return json;
 }

@@ -61,7 +61,7 @@ Status read_listen(const std::string& text, server::ServerOptions& options) {
   return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
 }
 
-/// Which file each feature of this run came from, by id.
+/// Id -> file, for the features of this run.
 using FilesOfFeatures = std::map<std::string, std::string>;
 
 /// Features of formats without ids are named after their file: house, house-2, ... Errors: conflict
@@ -80,7 +80,8 @@ Status name_features(Document& document, const std::string& file, const FilesOfF
   return Done{};
 }
 
-/// Remembers what was stored, and tells what it replaced of this run.
+/// Remembers which features this file stored, and prints which earlier ones of the run they
+/// replaced.
 void tell_replaced(const pipeline::IngestOutcome& outcome, const std::string& file,
                    FilesOfFeatures& files) {
   for (const pipeline::FeatureOutcome& feature : outcome.features) {

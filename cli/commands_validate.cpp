@@ -201,7 +201,7 @@ Result<formats::FeatureReader> Validation::with_cavities(const std::string& file
     if (!input) return std::move(input).error();
     std::vector<Feature>& features = input->document.features;
     if (features.size() == 1 && features[0].solids.size() == 1) return std::move(input->document);
-    return Error{ErrorCode::invalid_argument, "--interior-shell takes files with one solid each"};
+    return Error{ErrorCode::invalid_argument, "--interior-shell needs files with one solid each"};
   };
   auto document = one_solid(file);
   if (!document) return std::move(document).error();

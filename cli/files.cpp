@@ -146,7 +146,7 @@ std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths) {
   constexpr std::size_t kOthers = 256;  // the store's, the workers'
   if (::getrlimit(RLIMIT_NOFILE, &most) == 0 && most.rlim_cur < paths.size() + kOthers) {
     most.rlim_cur = std::min<rlim_t>(most.rlim_max, paths.size() + kOthers);
-    ::setrlimit(RLIMIT_NOFILE, &most);  // else those beyond say so when they are opened
+    ::setrlimit(RLIMIT_NOFILE, &most);  // else opening the files beyond reports it
   }
   std::vector<Result<OpenedFile>> files;
   for (const std::string& path : paths) files.push_back(open_file(path));
@@ -252,7 +252,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;
   if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
   if (a == b || fs::equivalent(a, b, ignored)) return true;
-  // Of a relative path without anything that exists, weakly_canonical() makes no absolute one.
+  // If no part of a relative path exists, weakly_canonical() does not make it absolute.
   const auto place = [&](const std::string& path) {
     return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
   };

@@ -12,15 +12,16 @@
 namespace watertight::cli {
 namespace {
 
-/// Enough to tell the kind.
+/// Enough bytes to detect the kind.
 constexpr std::size_t kFirstBytes = 8;
 
 Result<Input> input_of_container(ByteView bytes, const Limits& limits) {
   auto documents = pipeline::decode_container(bytes, limits);
   if (!documents) return std::move(documents).error();
   if (documents->size() != 1) {
-    return Error{ErrorCode::unsupported, "features of " + std::to_string(documents->size()) +
-                                             " documents; decode writes a file for each"};
+    return Error{ErrorCode::unsupported,
+                 "the file has " + std::to_string(documents->size()) +
+                     " documents, and this command reads one; decode writes a file for each"};
   }
   return Input{InputKind::container, std::move(documents->front())};
 }
@@ -77,7 +78,8 @@ InputKind kind_of_input(ByteView bytes) {
 }
 
 Error page_file_error() {
-  return {ErrorCode::unsupported, "a page file; the commands take Watertight files and blobs"};
+  return {ErrorCode::unsupported,
+          "this is a page file; the commands read Watertight files and blobs"};
 }
 
 Result<Input> load_input(const std::string& path, ByteView bytes,
@@ -121,10 +123,10 @@ Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptio
 Result<Format> format_of_name(const std::string& path) {
   const auto format = formats::detect_format(path, {});
   if (format) return format;
-  return Error{ErrorCode::unsupported,
-               "the ending of '" + path +
-                   "' names no format; known: .city.json .json .city.jsonl .jsonl .obj .off .wkt "
-                   ".wkb .ewkb"};
+  return Error{ErrorCode::unsupported, "the extension of '" + path +
+                                           "' is not that of a known format; known: .city.json "
+                                           ".json .city.jsonl .jsonl .obj .off .wkt "
+                                           ".wkb .ewkb"};
 }
 
 }  // namespace watertight::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a file of the command line holds: a document of any format, a Watertight file or a blob.
+// The kinds of input files: a document of any format, a Watertight file or a blob.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Input {
 Result<Input> load_input(const std::string& path, ByteView bytes,
                          const formats::ReadOptions& options);
 
-/// What to say to a page file.
+/// The error for a page file.
 Error page_file_error();
 
 /// A document that is read feature by feature; Watertight files and blobs are read whole.

@@ -21,7 +21,7 @@ std::size_t default_jobs() {
   return std::max(1U, std::min(std::thread::hardware_concurrency(), 64U));
 }
 
-/// Like CLI::Range, which takes "nan" for a number in range.
+/// Like CLI::Range, but refuses "nan", which CLI::Range accepts as in range.
 CLI::Validator in_range(double min, double max, const std::string& words) {
   const auto check = [min, max, words](std::string& text) {
     double value = 0;
@@ -56,7 +56,8 @@ void require_store(const StoreChoice& store) {
 }
 
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
-  CLI::App* sub = app.add_subcommand("validate", "Say which solids are valid, and why not");
+  CLI::App* sub =
+      app.add_subcommand("validate", "Report which solids are valid, and why others are not");
   sub->add_option("FILE", command.files, "documents; - for standard input")->required();
   sub->add_option("--report", command.report, "write the reports as JSON, a line per document");
   sub->add_option("--geojson", command.geojson, "write the findings as a GeoJSON layer");
@@ -65,7 +66,7 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
                   "file with a cavity of the file's one solid; can be repeated")
       ->allow_extra_args(false);
   sub->add_option("--overlap", command.overlap_metres,
-                  "overlaps of building parts and composite members allowed, metres deep")
+                  "depth to which building parts and composite members may overlap, metres")
       ->check(in_range(0, 1000, "from 0 to 1000"))
       ->capture_default_str();
   sub->add_option("--seconds", command.seconds_per_solid,
@@ -73,7 +74,7 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
       ->check(in_range(0, 86400, "from 0 to 86400"))
       ->capture_default_str();
   sub->add_flag("--tolerant", command.also_tolerant,
-                "also say what a snap tolerance of 1 mm would give");
+                "also report the verdict under a snap tolerance of 1 mm");
   sub->add_flag("--no-times", command.leaves_times_out,
                 "reports without times: same input, same bytes");
   sub->add_option("--planarity", command.planarity_metres, "largest distance from a plane, metres")
@@ -83,10 +84,10 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
                   "largest angle within a facet, degrees")
       ->check(in_range(1e-6, 90, "from 1e-6 to 90"))
       ->capture_default_str();
-  sub->add_option("--proof", command.proof, "what proves validity")
+  sub->add_option("--proof", command.proof, "proof of validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
       ->capture_default_str();
-  sub->add_option("--engine", command.engine, "what makes the tetrahedralizations, if it can")
+  sub->add_option("--engine", command.engine, "engine that is asked first for tetrahedralizations")
       ->check(CLI::IsMember({"auto", "cgal", "tetgen"}))
       ->capture_default_str();
   sub->add_flag("--strict", command.is_strict, "only the canonical triangles of facets count");
@@ -97,9 +98,10 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
 }
 
 void add_contract(CLI::App& sub, std::string& contract) {
-  sub.add_option("--contract", contract,
-                 "what comes back: exact, the very bytes; lattice, the same values in canonical "
-                 "order; boundary, the solids only")
+  sub.add_option(
+         "--contract", contract,
+         "content that comes back: exact, the very bytes; lattice, the same values in canonical "
+         "order; boundary, the solids only")
       ->check(CLI::IsMember({"exact", "lattice", "boundary"}))
       ->capture_default_str();
 }
@@ -127,7 +129,8 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
 void add_decode(CLI::App& app, DecodeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("decode", "Restore the document of a Watertight file or blob");
   sub->add_option("IN", command.input, "Watertight file or blob; - for standard input")->required();
-  sub->add_option("-o,--output", command.output, "the ending names the format; - as it was")
+  sub->add_option("-o,--output", command.output,
+                  "its extension decides the format; - for standard output in the stored format")
       ->required();
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
@@ -135,7 +138,7 @@ void add_decode(CLI::App& app, DecodeCommand& command, Chosen& chosen) {
 void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("convert", "Write a document in another format, unvalidated");
   sub->add_option("IN", command.input, "document; - for standard input")->required();
-  sub->add_option("-o,--output", command.output, "the ending names the format")->required();
+  sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a run over files says at its end: the table, and the exit status.
+// The end of a run over files: the table, and the exit status.
 #pragma once
 
 #include <cstdint>

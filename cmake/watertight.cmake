@@ -7,7 +7,7 @@ if(WATERTIGHT_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${WATERTIGHT_CCACHE}")
 endif()
 
-# What every target of ours is compiled with. Contraction is off so that each machine and
+# The options with which every target of ours is compiled. Contraction is off so that each machine and
 # compiler computes the same doubles.
 add_library(watertight_options INTERFACE)
 target_include_directories(watertight_options INTERFACE "${PROJECT_SOURCE_DIR}")

@@ -72,7 +72,7 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
     if (!may_fall_back) {
       std::string reason = "the blob decodes to another solid";
       if (!difference) reason = "the blob does not decode: " + difference.error().message;
-      if (is_too_short) reason = "so regular that its bytes would pass for a bomb";
+      if (is_too_short) reason = "decoders refuse blobs with so many vertices for their bytes";
       return Error{ErrorCode::not_encodable, std::move(reason)};
     }
     for (std::size_t i = 0; i < page.solids.size(); ++i) {
@@ -82,7 +82,7 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
       page.solids[i].plain = {};
     }
   }
-  return Error{ErrorCode::not_encodable, "no mode brings the solid back"};
+  return Error{ErrorCode::not_encodable, "the solid does not come back from a blob in any mode"};
 }
 
 /// Automatic mode chooses for one solid at a time, but models learn from the solids before. A small

@@ -125,7 +125,7 @@ bool is_page_file(ByteView bytes) { return bytes.size() >= kHeadBytes && has_mag
 
 Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits) {
   if (file.size() < kHeadBytes + kTailBytes || !has_magic(file) || !has_magic(file.last(4))) {
-    return malformed("is truncated, or none");
+    return malformed("is truncated or is not a page file");
   }
   if (file[4] != kFormatVersion) {
     return Error{ErrorCode::unsupported, "page file of version " + std::to_string(file[4])};
@@ -134,7 +134,7 @@ Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits)
   const std::uint32_t sum = tail.u32();
   const std::uint32_t size = tail.u32();
   const ByteView body = file.subspan(kHeadBytes, file.size() - kHeadBytes - kTailBytes);
-  if (size > body.size()) return malformed("has an index longer than itself");
+  if (size > body.size()) return malformed("has an index longer than the file");
   const ByteView index = body.last(size);
   if (crc32c(index) != sum) return malformed("has a damaged index");
   ByteReader reader(index);
@@ -143,7 +143,7 @@ Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits)
   const std::uint64_t count = reader.varint();
   const std::uint64_t pages = reader.varint();
   if (reader.failed() || count > index.size() || pages > index.size()) {
-    return malformed("has an index that cannot be");
+    return malformed("has an index that counts more pages or solids than it can hold");
   }
   result.place_.assign(count, Place{pages, 0});
   ByteReader page_bytes(body.first(body.size() - size));
@@ -160,7 +160,8 @@ Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits)
     for (std::uint64_t slot = 0; slot < solids; ++slot) {
       const std::uint64_t gap = reader.varint();
       if (gap >= count || next + gap >= count || result.place_[next + gap].page != pages) {
-        return malformed("has an index that names a solid twice, or none");
+        return malformed(
+            "has an index with a number of a solid that is out of range or that is there twice");
       }
       next += gap;
       result.place_[next] = {page, slot};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the ladder and the engine executables say to each other: a constrained Delaunay job and its
+// The messages between the ladder and the engine executables: a constrained Delaunay job and its
 // answer as bytes. Both readers trust nothing.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace watertight::delaunay {
 
-/// What the constraints are.
+/// The kinds of constraints.
 enum class Constraints : std::uint8_t {
   patches = 0,   // the polygons (with holes) that the triangles of a facet make up
   triangles = 1  // every triangle by itself

@@ -102,7 +102,8 @@ class Examination {
     for (const geometry::Tetrahedron& t : data_.tetrahedra) {
       for (const Index v : t) {
         if (v >= points) {
-          return refuse(CertificateRefusal::not_a_complex, "a tetrahedron names no vertex");
+          return refuse(CertificateRefusal::not_a_complex,
+                        "a tetrahedron has a corner that is not a vertex");
         }
       }
     }
@@ -156,7 +157,7 @@ class Examination {
     for (const ConstrainedFace& face : faces) {
       if (complex_.find(face.vertices) == kNone) {
         return refuse(CertificateRefusal::facet_not_conforming,
-                      "a constrained face is no face of the tetrahedralization", face.facet);
+                      "a constrained face is not a face of the tetrahedralization", face.facet);
       }
     }
     constraint_of_.assign(complex_.faces.size(), kNone);
@@ -232,7 +233,7 @@ class Examination {
                            (i + 2 == edges.size() || !edges[i + 2].is_same_edge(edges[i]));
       if (!is_pair) {
         return refuse(CertificateRefusal::not_a_manifold,
-                      "an edge of the boundary has not two faces of its shell",
+                      "an edge of the boundary does not have two faces of its shell",
                       oriented_[edges[i].at_high / 3].facet);
       }
       corners.join(edges[i].key[2], edges[i + 1].key[2]);
@@ -244,7 +245,7 @@ class Examination {
     }
     if (fans == vertices) return std::nullopt;
     return refuse(CertificateRefusal::not_a_manifold,
-                  "the faces of a shell around a vertex are no single fan");
+                  "the faces of a shell around a vertex do not form one fan");
   }
 
   /// The region of a tetrahedron; kNone stands for the outside.
@@ -301,7 +302,7 @@ class Examination {
           pending.push_back(next);
         } else if (parity_[next] == parity_[current]) {
           return refuse(CertificateRefusal::not_a_boundary,
-                        "inside and outside cannot be told apart", oriented_[i].facet);
+                        "inside and outside cannot be distinguished", oriented_[i].facet);
         }
       }
     }

@@ -173,7 +173,7 @@ std::optional<ComplexFault> check_edges(std::span<const Point> points,
                          edges[i].high == edges[i + 1].high &&
                          (i + 2 == edges.size() || edges[i + 2].low != edges[i].low ||
                           edges[i + 2].high != edges[i].high);
-    if (!is_pair) return fault(Kind::not_convex, "a hull edge has not two hull faces");
+    if (!is_pair) return fault(Kind::not_convex, "a hull edge does not have two hull faces");
     const Triangle& t = hull[edges[i].face];
     const Index other = edges[i + 1].opposite;
     if (std::find(t.begin(), t.end(), other) != t.end() ||

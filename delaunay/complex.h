@@ -25,7 +25,7 @@ struct ComplexFace {
 /// The faces in lexicographic order of their sorted vertices.
 struct Complex {
   std::vector<ComplexFace> faces;
-  /// Place of the face with these vertices (in any order), or kNone. Cost: logarithmic.
+  /// Index of the face with these vertices (in any order), or kNone. Cost: logarithmic.
   Index find(Triangle vertices) const;
 };
 

@@ -398,9 +398,9 @@ std::optional<double> FacetSurfaces::place_on_chain(Index facet, Index vertex, I
   return place_near_segment(vertex, from, to);
 }
 
-/// The edge of the boundary on which a chain along the segment goes on from `current`, as a place
-/// in the list, or the list's end. Where rings touch, several edges leave a vertex: the one that
-/// follows the segment. Only there does the choice ask for more than a start.
+/// The edge of the boundary on which a chain along the segment goes on from `current`, as an index
+/// into the list, or the list's size. Where rings touch, several edges leave a vertex: the one that
+/// follows the segment is taken. Only there does the choice ask for more than a start.
 std::size_t FacetSurfaces::boundary_step(Index facet, const Mesh& mesh, Index current, Index from,
                                          Index to) const {
   const auto& boundary = mesh.boundary();
@@ -452,7 +452,9 @@ std::optional<FacetFault> FacetSurfaces::check_rings(Index facet, const Mesh& me
       }
     }
   }
-  if (used != boundary.size()) return FacetFault{"its faces have a boundary beside its rings"};
+  if (used != boundary.size()) {
+    return FacetFault{"its faces have edges of a boundary that are not on its rings"};
+  }
   return std::nullopt;
 }
 
@@ -515,7 +517,9 @@ std::variant<FacetSurface, FacetFault> FacetSurfaces::check(
   if (faces.empty()) return FacetFault{"it has no faces"};
   Mesh mesh(faces);
   if (const char* wrong = mesh.turn()) return FacetFault{wrong};
-  if (!mesh.is_disc(solid_.rings_of(facet).size())) return FacetFault{"its faces are no disc"};
+  if (!mesh.is_disc(solid_.rings_of(facet).size())) {
+    return FacetFault{"its faces do not form a disc"};
+  }
   const Plane plane = plane_of(facet);
   if (auto fault = check_vertices(facet, plane, mesh)) return *std::move(fault);
   if (auto fault = check_rings(facet, mesh)) {

@@ -213,7 +213,7 @@ class Climb {
   }
 
  private:
-  /// What the constraints are made of.
+  /// The triangles of which the constraints are made.
   const tessellate::FacetTriangles& triangles() const {
     return contacts_.has_contacts() ? contacts_.triangles : canonical_;
   }
@@ -266,7 +266,7 @@ class Climb {
                                                              : Constraints::triangles;
   }
 
-  /// Scaling bends the angles that decide where Steiner points go: only where it must be.
+  /// Scaling changes the angles that decide where Steiner points go: it is used only where needed.
   std::array<double, 3> scale_of(Rung rung) const {
     const bool keeps_coordinates =
         rung == Rung::patch || (rung == Rung::tetgen && !is_anisotropic());
@@ -329,7 +329,7 @@ class Climb {
       return conclude(RungOutcome::not_delaunay,
                       "refused: " + std::to_string(following.missing_total) + " of " +
                           std::to_string(following.triangles.size()) +
-                          " boundary triangles are no Delaunay faces");
+                          " boundary triangles are not Delaunay faces");
     }
     Tetrahedralization own;
     own.points.assign(solid_.vertices().begin(), solid_.vertices().end());
@@ -436,7 +436,7 @@ class Climb {
   const LadderOptions& options_;
   ContactTriangles contacts_;
   std::vector<bool> is_kept_;  // facet -> follows its canonical triangles; empty: none must
-  std::ptrdiff_t first_of_constraints_ = 0;  // the first attempt with the constraints of today
+  std::ptrdiff_t first_of_constraints_ = 0;  // the first attempt with the present constraints
   EngineInput input_;
   RungAttempt attempt_;
   double engines_seconds_ = 0;  // CPU time of workers so far

@@ -299,7 +299,7 @@ class ContactDivision {
     if (!result_.obstacle.empty()) return;
     result_.obstacle = "facets " + std::to_string(std::min(facet, other)) + " and ";
     result_.obstacle += std::to_string(std::max(facet, other)) + " of different shells touch where";
-    result_.obstacle += " two edges (or folds) cross in a point that is no vertex";
+    result_.obstacle += " two edges (or folds) cross in a point that is not a vertex";
   }
 
   /// A diagonal of one facet that is an edge of another shell is no intersection of triangles.

@@ -26,7 +26,7 @@ struct Tetrahedralization {
   std::vector<ConstrainedFace> constrained;
 };
 
-/// What a CDT must respect: triangles (3 x triangle_count indices) with their facet numbers.
+/// The constraints of a CDT: triangles (3 x triangle_count indices) with their facet numbers.
 struct PiecewiseLinearComplex {
   std::vector<Point> vertices;
   std::vector<Triangle> triangles;

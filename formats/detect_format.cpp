@@ -67,8 +67,8 @@ std::string_view json_type(std::string_view text) {
   return {};
 }
 
-// By the type, which CityJSON, its sequences and (JSON-FG as) GeoJSON have. A sequence has a second
-// JSON text after the line that ends the first.
+// Decides by the type, which CityJSON, its sequences and (JSON-FG as) GeoJSON have. A sequence has
+// a second JSON text after the line that ends the first.
 Format json_format(std::string_view text) {
   const std::string_view type = json_type(text);
   if (type == "Feature" || type == "FeatureCollection") return Format::json_fg;
@@ -108,7 +108,7 @@ bool is_text_stl_head(std::string_view text) {
   return word.starts_with("facet") || word == "endsolid";
 }
 
-// By the first bytes of the first line that is neither blank nor a comment.
+// Decides by the first bytes of the first line that is neither blank nor a comment.
 Result<Format> format_of_text(std::string_view text) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t start = text.find_first_not_of(" \t\r\n\x1E");
@@ -131,9 +131,10 @@ Result<Format> format_of_text(std::string_view text) {
     }
     if (is_obj_line(text)) return Format::obj;
   }
-  return Error{ErrorCode::unsupported,
-               "neither the name nor the first bytes tell the format; known are CityJSON, "
-               "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, WKT and EWKB"};
+  return Error{
+      ErrorCode::unsupported,
+      "neither the file name nor the first bytes show the format; known formats: CityJSON, "
+      "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, WKT and EWKB"};
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
     return bytes_of(*text);
   }
   if (format != Format::wkt && format != Format::ewkb) {
-    return Error{ErrorCode::unsupported, std::string(to_string(format)) + " is read, not written"};
+    return Error{ErrorCode::unsupported,
+                 std::string(to_string(format)) + " can be read, but not written"};
   }
   Bytes out;
   for (const Feature& feature : features) {

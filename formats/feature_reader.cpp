@@ -8,7 +8,7 @@ namespace watertight::formats {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 18U;
-/// Bytes after the first line that tell a sequence from a document written over several lines.
+/// Bytes after the first line that show whether it is a sequence or a document of several lines.
 constexpr std::size_t kGlimpse = 4096;
 
 /// Without the record separator of RFC 8142 and the blanks before the text.
@@ -154,7 +154,7 @@ Result<std::optional<FeatureText>> FeatureReader::next_line() {
   }
 }
 
-/// `blanks` stand at the start of a line that has a text behind them or not.
+/// `blanks` stand at the start of a line; `has_text`: a text follows them in that line.
 void FeatureReader::note_gap(std::string_view blanks, bool has_text) {
   gap_ += blanks;
   if (!has_text) return;

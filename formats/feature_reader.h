@@ -30,9 +30,9 @@ struct FeatureText {
 
 class FeatureReader {
  public:
-  /// Looks at the start of the input. `file_name` helps to tell the format, as in detect_format().
-  /// Errors: those of detect_format(), of the source, and of the header of a sequence; for other
-  /// formats those of read_document().
+  /// Looks at the start of the input. `file_name` helps to detect the format, as in
+  /// detect_format(). Errors: those of detect_format(), of the source, and of the header of a
+  /// sequence; for other formats those of read_document().
   static Result<FeatureReader> open(ByteSource source, std::string_view file_name,
                                     const ReadOptions& options = {});
   /// A reader of a document that is in memory already.
@@ -49,7 +49,7 @@ class FeatureReader {
 
   /// Format, header and notes; its features are the reader's.
   const Document& document() const { return document_; }
-  /// What stood between the lines of a sequence that was read to its end, with
+  /// The bytes between the lines of a sequence that was read to its end, with
   /// ReadOptions::keep_text (Document::framing).
   Bytes framing() const;
   std::uint64_t bytes_read() const { return bytes_read_; }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/quantity.h"
 #include "formats/surface.h"
 #include "formats/text/json.h"
 #include "formats/text/numbers.h"
@@ -156,8 +157,8 @@ class JsonFgReader {
     if (!status) return std::move(status).error();
     if (document_.features.empty() && (left_out_ > 0 || fallbacks_ > 0)) return nothing_to_read();
     if (left_out_ > 0) {
-      document_.notes.push_back(std::to_string(left_out_) +
-                                " features without a polyhedron as place left out");
+      document_.notes.push_back(quantity(left_out_, "feature") +
+                                " without a polyhedron as place left out");
     }
     if (fallbacks_ > 0) {
       document_.notes.push_back("geometry ignored where place is given");

@@ -15,7 +15,7 @@ Result<SubmittedSolid> submitted(SolidArrays arrays, const Lattice& lattice, Sol
   return SubmittedSolid{std::move(*solid), std::move(source), {}};
 }
 
-/// What of `all` is not in `used`.
+/// The vertices of `all` that are not in `used`.
 geometry::UnusedVertices unused_vertices(const std::vector<std::array<GridNumber, 3>>& all,
                                          const std::vector<Index>& used) {
   geometry::UnusedVertices unused{all.size() - used.size(), 0, {}};

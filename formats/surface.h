@@ -27,8 +27,8 @@ struct DecimalVertices {
   std::vector<Index> number_of;  // for number_by_first_use
 };
 
-/// A solid whose ring vertices are indices into `vertices`; vertices of one index stay one. Those
-/// that no ring uses are left out and told.
+/// A solid whose ring vertices are indices into `vertices`; vertices of one index stay one.
+/// Vertices that no ring uses are left out; SubmittedSolid::unused counts them.
 Result<SubmittedSolid> indexed_solid(SolidArrays arrays, DecimalVertices& vertices,
                                      SolidSource source, const Limits& limits);
 

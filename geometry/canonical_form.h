@@ -12,7 +12,7 @@
 
 namespace watertight::geometry {
 
-/// Where everything of the canonical solid stood in the source. All are permutations.
+/// Where each vertex, shell, facet and ring of the canonical solid stood. All are permutations.
 struct SourceOrder {
   std::vector<Index> vertex;      // canonical vertex -> source vertex
   std::vector<Index> shell;       // canonical shell -> source shell

@@ -11,8 +11,8 @@
 namespace watertight::geometry {
 namespace {
 
-/// Pairs of an edge and a vertex looked at for one solid: two seconds of work. Only long oblique
-/// edges beside many vertices come near it.
+/// At most so many pairs of an edge and a vertex are tested in one solid: two seconds of work. Only
+/// long oblique edges beside many vertices come near it.
 constexpr std::uint64_t kMostPairs = 100'000'000;
 
 /// Rings that do not share segments are a planar graph once they are divided: at most 3 edges for

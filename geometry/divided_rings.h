@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Rings that touch: a vertex of one ring may lie inside an edge of another ring of the same facet
-// (OGC Simple Features lets rings touch in a point). The vertex then splits the edge: a ring
-// a, b, ... counts as a, v, b, ... For all that looks at edges: the triangulation of facets, the
-// rules of shells, closed boundaries. A solid is stored and written with its rings as submitted.
+// (OGC Simple Features lets rings touch in a point). The vertex then splits the edge: a ring a, b,
+// ... counts as a, v, b, ... Used by the triangulation of facets, the rules of shells and closed
+// boundaries. A solid is stored and written with its rings as submitted.
 #pragma once
 
 #include <span>
@@ -22,10 +22,10 @@ struct RingTouch {
 
 /// The touches of the rings of these facets, by corner and then along the edge. Exact: the vertex
 /// lies on the edge in space, not only in a projection. A vertex that the edge's own ring has too
-/// is none (that ring meets itself). None are given of a facet whose rings must share segments.
-/// Requires merged vertices and facets in ascending order.
-/// Cost: O(n log n + pairs of an edge and a vertex that are close along each axis); after 100
-/// million such pairs the facets that are left have none.
+/// is no touch (that ring meets itself). Facets whose rings must share segments get no touches.
+/// Requires merged vertices and facets in ascending order. Cost: O(n log n + pairs of an edge and a
+/// vertex that are close along each axis); after 100 million such pairs the remaining facets get
+/// none.
 std::vector<RingTouch> ring_touches(const Solid& solid, std::span<const Index> facets);
 
 /// The touches of all facets with several rings.

@@ -182,8 +182,8 @@ double world_area(const Solid& solid, std::span<const Triangle> triangles) {
   return area.value();
 }
 
-/// V - E + F of a shell; an interior ring takes one, as a cut to the exterior ring would add an
-/// edge.
+/// V - E + F of a shell. Each interior ring subtracts one, because a cut to the exterior ring would
+/// add an edge.
 std::int64_t euler_characteristic(const Solid& solid, Index shell) {
   std::vector<Index> vertices;
   std::vector<std::pair<Index, Index>> edges;

@@ -24,7 +24,7 @@ class Crew {
       try {
         threads_.emplace_back([this] { help(); });
       } catch (const std::system_error&) {
-        return;  // the threads there are do the work
+        return;  // the threads that have started do the work
       }
     }
   }

@@ -11,8 +11,8 @@ namespace watertight::geometry {
 /// Calls work(i, is_caller) for all i < count, each once, on at most `threads` threads: the
 /// caller's (is_caller is true there) and others. Pieces are begun in ascending order. While the
 /// caller waits for others it calls wait() some hundred times a second; it may be empty.
-/// What `work` throws is thrown again by the caller, after all threads have ended. Where the system
-/// gives no more threads, fewer do the work.
+/// The caller throws again what `work` throws, after all threads have ended. Where the system gives
+/// no more threads, fewer do the work.
 void for_each_piece(std::size_t count, unsigned threads,
                     const std::function<void(std::size_t, bool)>& work,
                     const std::function<void()>& wait = {});

@@ -41,7 +41,7 @@ BigInteger determinant(const Matrix& m) {
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-/// The arrays are those of a solid, in another order or at finite places.
+/// Requires the arrays of a solid in another order or with other finite coordinates.
 Result<Solid> remade(SolidArrays arrays, const Lattice& lattice, std::uint32_t srid) {
   Limits limits;  // the solid has been admitted already
   limits.vertices = limits.facets = limits.rings = limits.shells = kNone;

@@ -45,8 +45,8 @@ std::array<double, 3> place(const Placement& placement, const std::array<double,
 /// it. Errors: malformed if a coordinate leaves the doubles.
 Result<Solid> placed(const Solid& solid, const Placement& placement);
 
-/// The solid with all rings reversed. A map with negative determinant makes of a solid what one
-/// with positive determinant makes of it turned over.
+/// The solid with all rings reversed. Under a map with negative determinant the facets of a solid
+/// turn as those of the solid turned over do under a map with positive determinant.
 Solid turned_over(const Solid& solid);
 
 }  // namespace watertight::geometry

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/quantity.h"
+
 namespace watertight::geometry {
 namespace {
 
@@ -39,13 +41,15 @@ Result<Solid> Solid::make(SolidArrays arrays, Lattice lattice, std::uint32_t sri
       !are_offsets(arrays.shell_offsets, arrays.facet_offsets.size() - 1)) {
     return Error{ErrorCode::malformed, "ring, facet or shell offsets do not describe a solid"};
   }
-  if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice is not one"};
+  if (!lattice.is_sane())
+    return Error{ErrorCode::malformed,
+                 "the lattice has a step that is not positive or an exponent out of range"};
   if (auto sizes = check_sizes(arrays, limits); !sizes) return sizes.error();
   for (const Index vertex : arrays.ring_vertices) {
     if (vertex >= arrays.vertices.size()) {
-      return Error{ErrorCode::malformed, "vertex index " + std::to_string(vertex) +
-                                             " is out of range (" +
-                                             std::to_string(arrays.vertices.size()) + " vertices)"};
+      return Error{ErrorCode::malformed,
+                   "vertex index " + std::to_string(vertex) + " is out of range (" +
+                       quantity(arrays.vertices.size(), "vertex", "vertices") + ')'};
     }
   }
   for (Point& p : arrays.vertices) {

@@ -15,8 +15,8 @@ class Certifier;
 
 namespace watertight::geometry {
 
-/// Tolerances a solid was certified under. All in world units of its CRS axis unit unless named.
-/// They measure (planarity); no decision about side, order or crossing uses them.
+/// The tolerances under which a solid was certified, in the units that their names say. They
+/// measure; no decision about side, order or crossing uses them.
 struct Tolerances {
   double planarity_metres = 0.01;   // largest distance of a facet's vertex to its fitted plane
   double planarity_degrees = 20.0;  // largest angle between two triangles of a facet
@@ -24,7 +24,7 @@ struct Tolerances {
   friend bool operator==(const Tolerances&, const Tolerances&) = default;
 };
 
-/// What proves that the boundary encloses one connected interior.
+/// The kind of proof that the boundary encloses one connected interior.
 enum class Proof : std::uint8_t {
   tetrahedralization = 0,  // a certified constrained Delaunay tetrahedralization
   boundary = 1             // exact tests only
@@ -33,7 +33,7 @@ enum class Proof : std::uint8_t {
 /// The number of the rule set that this program applies. Raised when a rule changes.
 inline constexpr std::uint16_t kRuleSet = 1;
 
-/// What a valid solid was accepted under; stored with it.
+/// The rules and tolerances under which a valid solid was accepted; stored with it.
 struct Acceptance {
   Tolerances tolerances;
   Proof proof = Proof::tetrahedralization;
@@ -43,8 +43,8 @@ struct Acceptance {
 
 /// Closed and oriented by edges: every directed ring edge is met by its reverse exactly as often,
 /// at least where a vertex of a ring that lies inside an edge of another ring of its facet splits
-/// that edge (geometry/divided_rings.h). Geometry is not promised. What the codec works on, and
-/// what benches on dirty meshes use.
+/// that edge (geometry/divided_rings.h). It promises nothing about geometry. The codec works on it,
+/// and so do benches on dirty meshes.
 class OrientedBoundary {
  public:
   /// Errors: not_encodable naming the first unmatched edge, a ring below 3 vertices, a facet

@@ -82,7 +82,7 @@ void write_feature(ByteWriter& writer, std::uint64_t document, const EncodedFeat
   }
 }
 
-/// The feature's solids have been decoded: the document of it alone.
+/// A document of this feature alone, whose solids have been decoded.
 Result<Feature> restored(ContainerFeature& feature, const std::string& format,
                          const Limits& limits) {
   feature.encoded.format = format;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The Watertight file: documents with their solids in pages, in one file (docs/cli.md has the
-// layout). What `encode` and `export` write, `decode` reads and the service gives as a download.
+// layout). `encode` and `export` write it, `decode` reads it, the service gives it as a download.
 #pragma once
 
 #include <map>
@@ -22,13 +22,13 @@ class ContainerWriter {
   /// `pages`: how the solids are coded in pages. Those with Steiner vertices stay blobs.
   explicit ContainerWriter(const EncodeOptions& pages = {});
 
-  /// The document that features of this format and header belong to; without one, their first
+  /// The document that features of this format and header belong to. Without this call their first
   /// feature makes it. Cost: linear in the number of documents.
   void add_document(const std::string& format, const SharedText& header, Bytes framing = {});
-  /// Features of a document keep their order. Errors: malformed (a blob is
-  /// damaged); limit_exceeded; not_encodable.
+  /// Features of a document keep their order. Errors: malformed (a blob is damaged);
+  /// limit_exceeded; not_encodable.
   Status add(EncodedFeature feature);
-  /// What was written since the last call, to be appended to the file.
+  /// The bytes written since the last call, to be appended to the file.
   Bytes take();
   /// The rest of the file. Errors: as add().
   Result<Bytes> finish() &&;
@@ -55,14 +55,14 @@ Result<Bytes> write_container(const StoredDocument& document, const EncodeOption
 /// Errors: malformed (with byte offset), unsupported (version), limit_exceeded; those of decode().
 Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& limits = {});
 
-/// What a Watertight file is made of.
+/// The contents of a Watertight file, counted.
 struct ContainerInfo {
   std::vector<Format> formats;  // of each document
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t pages = 0;
   std::uint64_t solid_bytes = 0;        // of page files and blobs
-  std::map<std::string, double> parts;  // bytes of the solids, by what they are for
+  std::map<std::string, double> parts;  // part of the stream -> bytes
 };
 
 /// Decodes all solids. Errors: as decode_container().

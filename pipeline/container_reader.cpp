@@ -65,7 +65,7 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& it
   return !reader.failed() && is_in_range && feature.document < documents;
 }
 
-/// False when the texts are none of a part that follows so many documents.
+/// False when the texts do not fit a part that follows so many documents.
 bool read_texts(ByteView bytes, std::uint64_t documents, std::uint64_t& items_left, Texts& texts) {
   ByteReader reader(bytes);
   const std::uint64_t added = reader.varint();
@@ -170,7 +170,8 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
     for (std::size_t i = 0; i < feature.encoded.solids.size(); ++i) {
       const std::uint64_t size = texts.sizes[number++];
       if (size == 0) {
-        if (next_paged == paged.size()) return malformed("a solid that no page has");
+        if (next_paged == paged.size())
+          return malformed("the pages hold fewer solids than the features");
         feature.solids.push_back(std::move(paged[next_paged++]));
         continue;
       }
@@ -180,7 +181,8 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
       feature.solids.push_back(*std::move(decoded));
     }
   }
-  if (next_paged != paged.size()) return malformed("pages with solids of no feature");
+  if (next_paged != paged.size())
+    return malformed("the pages hold solids that belong to no feature");
   part.solid_bytes = before - parts_.remaining();
   return std::optional<ContainerPart>(std::move(part));
 }

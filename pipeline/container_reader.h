@@ -13,7 +13,7 @@
 
 namespace watertight::pipeline {
 
-/// As PNG's: a byte above 127, and line ends that a text-mode transfer would change.
+/// Like PNG's: a byte above 127, and line ends that a text-mode transfer would change.
 inline constexpr std::uint8_t kContainerMagic[8] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n'};
 inline constexpr std::uint8_t kContainerVersion = 1;
 

@@ -101,7 +101,7 @@ Status CollectionExport::add(const StoredFeature& feature, Bytes& bytes) {
 }
 
 Status CollectionExport::add_line(const StoredFeature& feature, Bytes& bytes) {
-  // Those that were put after start() only.
+  // Only features that were put after start() can have another one.
   if (!is_city_model(feature.format) || feature.header != header_) {
     return about(feature, {ErrorCode::unsupported, kOtherDocument});
   }

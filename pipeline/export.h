@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A whole collection out of a store, in order of place (SolidStore::walk), so that neighbours share
-// pages. Memory does not grow with the collection: a batch of features at a time (of a Watertight
-// file, a part). A feature that is put or removed meanwhile may be missing or there, and one that
-// is put at another place may be there twice; each is whole.
+// A whole collection out of a store, in order of place numbers (SolidStore::walk), so that
+// neighbours share pages. Memory does not grow with the collection: one batch of features, or one
+// part of a Watertight file, at a time. When features change meanwhile, the export holds old or new
+// ones, and a feature that moves may be in it twice; each is whole.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,9 @@ class CollectionExport {
   /// unsupported as start(). After one of them the file has no end.
   Result<Bytes> next();
 
-  /// True when the next bytes are none: the last ones were returned.
+  /// True when the last bytes have been returned.
   bool is_at_end() const { return is_last_; }
-  /// What next() has read so far.
+  /// Counts of what next() has read so far.
   const Exported& exported() const { return exported_; }
 
  private:

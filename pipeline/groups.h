@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Which solids of a feature are compared with each other, and what the comparison says.
+// Decides which solids of a feature are compared, and reports the comparison.
 #pragma once
 
 #include <span>

@@ -123,7 +123,7 @@ Status check_crs(const Document& document, SolidStore& store, const std::string&
   return Done{};
 }
 
-/// Leaves what the contract promises of what the features share.
+/// Reduces what the features share to what the contract promises.
 Status reduce_to(formats::Contract contract, Document& document) {
   if (contract == formats::Contract::exact) return Done{};
   document.framing.clear();

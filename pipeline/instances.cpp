@@ -14,7 +14,7 @@ namespace {
 /// Effects remembered for each template: bounds the memory of a document with many instances.
 constexpr std::size_t kMostEffects = 4096;
 
-/// Nothing of its report refers to a member.
+/// True if no finding and no reason in the group's report refers to a member.
 bool is_silent(const InspectedGroup& group) {
   return group.report.verdict == Verdict::valid && group.report.findings.empty() &&
          group.report.not_run.empty();
@@ -35,7 +35,7 @@ std::vector<bool> shown(std::span<const GroupCandidate> candidates, std::size_t 
   return is_shown;
 }
 
-/// Of a group's members that are left, the feature's own.
+/// True if the members, solids of the feature itself, come from two geometries or more.
 bool are_of_two_geometries(std::span<const std::size_t> members, const InspectedFeature& feature) {
   const auto geometry = [&](std::size_t member) {
     const SolidSource& source = feature.solids[member].source;
@@ -160,7 +160,7 @@ void TemplateInspector::compare_members(std::size_t first, InspectedInstances& i
   }
 }
 
-/// Nothing of a placement that is congruent in metres: then the template stands for the instance.
+/// Nothing for a placement that is congruent in metres: the template then stands for the instance.
 TemplateInspector::Effect TemplateInspector::effect_of(const geometry::Placement& placement) {
   Effect effect = full_effect_of(placement);
   const bool is_in_metres = effect->second == std::array<double, 3>{1, 1, 1};
@@ -215,7 +215,7 @@ std::size_t TemplateInspector::show(InstanceSolid solid, InspectedFeature& featu
     own.is_proven = true;
     solid.inspection = certify(source.solid, nullptr, own);
   }
-  // A place beyond the doubles cannot be shown: the template is.
+  // An instance whose coordinates exceed the doubles cannot be shown: its template is.
   auto in_place = geometry::placed(source.solid, placement);
   SubmittedSolid submitted{in_place ? *std::move(in_place) : source.solid, std::move(solid.source)};
   const int sign = geometry::determinant_sign(placement);
@@ -277,7 +277,7 @@ void add_groups(InspectedInstances instances, const TemplateInspector& templates
     groups.push_back(std::move(group));
   }
   const std::vector<bool> is_shown = shown(candidates, own, groups);
-  // Of each candidate that is shown, among the feature's solids.
+  // Candidate -> its index among the feature's solids, for those that are shown.
   std::vector<std::size_t> place(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i < own) {

@@ -51,9 +51,9 @@ class TemplateInspector {
 
   /// The templates as a feature of their own, of type "GeometryTemplates", after all features:
   /// those without instances as they are, the others as one of their valid instances has them (one
-  /// that is shifted or turned only, else the least placement, whatever the order of features).
-  /// With those of `others`, instances that no feature has, that are not valid. Nothing when none
-  /// is left.
+  /// that is shifted or turned only, else the least placement, whatever the order of features). It
+  /// includes the invalid ones of `others`, which are instances that no feature has. Nothing when
+  /// no template is left.
   std::optional<InspectedFeature> inspect_templates(
       std::vector<formats::TemplateInstance> others = {});
 

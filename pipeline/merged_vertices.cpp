@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The line: the number of source vertices; for each its merged vertex, or "x:y:z" when no ring uses
-// it; then, for each place of a ring whose merged vertex came from several, the one it was.
+// it; then, for each ring vertex whose merged vertex came from several, the source vertex it was.
 #include "pipeline/merged_vertices.h"
 
 #include <array>
@@ -111,7 +111,7 @@ Result<std::string> describe_merge(const Solid& source, const Solid& merged) {
       if (axis > 0) line += ':';
       append_number(line, point[axis]);
     }
-    // "5:6:7" can be no index, so one look at a word tells the two apart.
+    // "5:6:7" can be no index, so the first word shows which of the two it is.
   }
   for (const Index vertex : source.arrays().ring_vertices) {
     if (sources[merge.vertex_of[vertex]] < 2) continue;
@@ -139,11 +139,11 @@ Result<Solid> unmerge(const Solid& merged, std::string_view line, const Limits& 
     }
     const auto chosen = number_in<Index>(next_word(line));
     if (!chosen || *chosen >= source->vertex_of.size() || source->vertex_of[*chosen] != vertex) {
-      return malformed("a ring names another vertex");
+      return malformed("a ring does not use a source of its merged vertex");
     }
     corner = *chosen;
   }
-  if (!line.empty()) return malformed("it goes on after its end");
+  if (!line.empty()) return malformed("text follows its end");
   arrays.vertices = std::move(source->points);
   return Solid::make(std::move(arrays), merged.lattice(), merged.srid(), limits);
 }

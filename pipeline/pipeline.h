@@ -66,16 +66,16 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups = {},
                          TemplateInspector* templates = nullptr);
 
-/// What became of one solid of a document.
+/// The outcome of one solid of a document.
 struct SolidOutcome {
   SolidSource source;
   Report report;
   std::string report_json;       // of the report, without times
   std::size_t blob_bytes = 0;    // when encoded
-  std::size_t source_bytes = 0;  // 24 a vertex and 4 a ring vertex: what the solid takes plainly
+  std::size_t source_bytes = 0;  // as plain arrays: 24 a vertex, 4 a ring vertex
 };
 
-/// What became of one feature of a document.
+/// The outcome of one feature of a document.
 struct FeatureOutcome {
   std::string id;
   Verdict verdict = Verdict::undecided;
@@ -85,7 +85,7 @@ struct FeatureOutcome {
   std::uint64_t version = 0;  // when stored
 };
 
-/// What happens to a document in which not all features are valid.
+/// The treatment of a document in which not all features are valid.
 enum class InvalidFeatures : std::uint8_t { refuse_document, skip };
 
 /// Called with features done and features in all; from one thread at a time.

@@ -68,7 +68,7 @@ Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleto
     const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), solid);
     if (end == std::string_view::npos || error != std::errc{} || solid >= solids ||
         rest == line.data() + line.size()) {
-      return Error{ErrorCode::malformed, "stored vertex merge: it names no solid"};
+      return Error{ErrorCode::malformed, "stored vertex merge: the line has no number of a solid"};
     }
     lines[solid] = line.substr(static_cast<std::size_t>(rest - line.data()) + 1);
     skeleton.remove_prefix(end + 1);

@@ -65,7 +65,7 @@ class Stream {
     formats::FeatureText text;
   };
 
-  /// What every thread does until the document ends.
+  /// The work of every thread until the document ends.
   void work() {
     try {
       for (auto found = take_next(); found; found = take_next()) {
@@ -127,7 +127,7 @@ std::optional<Stream::Found> Stream::take_next() {
     return found;
   }
   is_over_ = true;
-  if (!text) {  // the rest cannot be read: said in its place
+  if (!text) {  // the rest cannot be read: the error has its turn
     passages_[taken_++].error = std::move(text).error();
     hand_on_in_order(lock);
   }

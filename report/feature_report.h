@@ -20,7 +20,7 @@ namespace watertight::report {
 /// Takes the next piece of text. An error ends the report and is handed to its caller.
 using TextSink = std::function<Status(std::string_view)>;
 
-/// What is the same for all documents of a run.
+/// The facts that hold for all documents of a run.
 struct ReportHead {
   std::string program_version;  // "0.1.0"
   std::string time;             // when the run began, RFC 3339; "" leaves all times out
@@ -30,13 +30,13 @@ struct ReportHead {
   bool also_tolerant = false;  // CertifyOptions::also_tolerant
 };
 
-/// What is known of a document before its features are.
+/// The facts about a document that are known before its features.
 struct DocumentHead {
   std::string file;              // as the user named it; any bytes
-  std::optional<Format> format;  // nothing when it could not be told
+  std::optional<Format> format;  // nothing when it could not be detected
 };
 
-/// What is known of a document after its features.
+/// The facts about a document that are known after its features.
 struct DocumentEnd {
   std::vector<std::string> notes;  // Document::notes
   double seconds = 0;              // wall

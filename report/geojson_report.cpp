@@ -52,7 +52,7 @@ class GeoJsonReport final : public FeatureReport {
   Status finish() override { return sink_((is_open_ ? "" : opening(0)) + "\n]}\n"); }
 
  private:
-  /// The reference system is that of the first finding: it is written before it.
+  /// The reference system is that of the first finding, before which this is written.
   std::string opening(std::uint32_t srid) {
     is_open_ = true;
     srid_ = srid;

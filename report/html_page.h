@@ -10,7 +10,7 @@
 namespace watertight::report {
 
 /// Text for elements and quoted attributes: markup characters become entities, control characters
-/// and bytes that are no UTF-8 become U+FFFD.
+/// and bytes that are not UTF-8 become U+FFFD.
 std::string html_text(std::string_view text);
 
 /// Appends the parts one after the other.

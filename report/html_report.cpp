@@ -316,8 +316,8 @@ std::string HtmlReport::banner() const {
   if (features.total() == 0) {
     html += "No features were validated.";
   } else if (features.valid == features.total()) {
-    append(html, {"All ", counted(features.total(), "feature")});
-    html += features.total() == 1 ? " is valid." : " are valid.";
+    if (features.total() == 1) return html + "The feature is valid.</span></div>";
+    append(html, {"All ", counted(features.total(), "feature"), " are valid."});
   } else {
     append(html, {count_text(features.invalid), " of ", counted(features.total(), "feature")});
     html += features.invalid == 1 ? " is not valid" : " are not valid";
@@ -477,7 +477,9 @@ std::string HtmlReport::bottom() const {
   }
   html += "<footer>";
   for (const std::string& note : notes_) append(html, {"<p>Note: ", html_text(note), "</p>"});
-  html += "<p>Decided exactly on the coordinates as written. Facets are numbered from 0 in the ";
+  html +=
+      "<p>All decisions are exact, on the coordinates as written. Facets are numbered from 0 in "
+      "the ";
   html += "order of the document. This page holds everything it shows and loads nothing.</p>";
   html += "</footer></main><script>";
   html += kPageScript;

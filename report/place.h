@@ -45,7 +45,7 @@ std::string pointer_of(const pipeline::InspectedFeature& feature, Index solid, c
 /// The document's name for the reference system, "urn:ogc:def:crs:EPSG::7415"; "" for 0.
 std::string crs_name(std::uint32_t srid);
 
-/// What val3dity calls a format: "CityJSON", "OBJ", ...
+/// val3dity's name for a format: "CityJSON", "OBJ", ...
 std::string_view format_name(Format format);
 
 }  // namespace watertight::report

@@ -18,9 +18,9 @@ constexpr double kRadius = 1000;  // of a scene, from its centre
 constexpr std::size_t kMostCornersForEdges = 1'000'000;
 
 /// Metres around a point of the document, so that far coordinates and degrees draw alike.
-class Frame {
+class LocalMetres {
  public:
-  Frame(const Solid& solid, const Triple& centre)
+  LocalMetres(const Solid& solid, const Triple& centre)
       : centre_(centre), metres_(geometry::axis_units(solid.srid(), centre).metres_per_unit) {}
   Triple operator()(const Triple& world) const {
     Triple local{};
@@ -58,7 +58,7 @@ double squared_distance_to_box(const Triple& low, const Triple& high) {
 }
 
 /// Approximate positions of all vertices: cheaper than Solid::world.
-std::vector<Triple> positions_of(const Solid& solid, const Frame& frame) {
+std::vector<Triple> positions_of(const Solid& solid, const LocalMetres& metres) {
   std::vector<Triple> positions;
   positions.reserve(solid.vertex_count());
   Triple origin{};
@@ -68,15 +68,15 @@ std::vector<Triple> positions_of(const Solid& solid, const Frame& frame) {
     scale[static_cast<std::size_t>(axis)] = solid.lattice().scale(axis);
   }
   for (const Point& p : solid.vertices()) {
-    positions.push_back(frame(
+    positions.push_back(metres(
         {origin[0] + scale[0] * p.x, origin[1] + scale[1] * p.y, origin[2] + scale[2] * p.z}));
   }
   return positions;
 }
 
-void add_candidates(const Solid& solid, const Frame& frame, Role role_of_all,
+void add_candidates(const Solid& solid, const LocalMetres& metres, Role role_of_all,
                     std::vector<Candidate>& candidates) {
-  const std::vector<Triple> positions = positions_of(solid, frame);
+  const std::vector<Triple> positions = positions_of(solid, metres);
   constexpr double kFar = std::numeric_limits<double>::infinity();
   for (Index facet = 0; facet < solid.facet_count(); ++facet) {
     const IndexRange rings = solid.rings_of(facet);
@@ -118,13 +118,13 @@ std::size_t count_shown(const std::vector<Candidate>& sorted, std::size_t total,
   return shown;
 }
 
-std::vector<Triple> ring_points(const Solid& solid, Index ring, const Frame& frame,
+std::vector<Triple> ring_points(const Solid& solid, Index ring, const LocalMetres& metres,
                                 std::size_t most) {
   const std::span<const Index> vertices = solid.ring(ring);
   const std::size_t stride = vertices.size() / std::max<std::size_t>(most, 3) + 1;
   std::vector<Triple> points;
   for (std::size_t i = 0; i < vertices.size(); i += stride) {
-    points.push_back(frame(solid, vertices[i]));
+    points.push_back(metres(solid, vertices[i]));
   }
   return points;
 }
@@ -135,13 +135,15 @@ std::size_t corner_count(const SceneFacet& facet) {
   return corners;
 }
 
-SceneFacet facet_of(const Candidate& candidate, const Frame& frame, std::size_t most_corners) {
+SceneFacet facet_of(const Candidate& candidate, const LocalMetres& metres,
+                    std::size_t most_corners) {
   SceneFacet facet;
   facet.role = candidate.role;
   const IndexRange rings = candidate.solid->rings_of(candidate.facet);
   std::size_t corners = 0;
   for (Index ring = rings.begin; ring < rings.end && corners < most_corners; ++ring) {
-    std::vector<Triple> points = ring_points(*candidate.solid, ring, frame, most_corners - corners);
+    std::vector<Triple> points =
+        ring_points(*candidate.solid, ring, metres, most_corners - corners);
     if (points.empty()) continue;
     corners += points.size();
     facet.rings.push_back(std::move(points));
@@ -151,7 +153,7 @@ SceneFacet facet_of(const Candidate& candidate, const Frame& frame, std::size_t 
 
 /// Edges that are not used exactly twice, for the findings that speak of them. An edge that a
 /// vertex of another ring of its facet splits counts as its parts.
-void add_bad_edges(const Solid& solid, const Frame& frame, std::size_t most, Scene& scene) {
+void add_bad_edges(const Solid& solid, const LocalMetres& metres, std::size_t most, Scene& scene) {
   if (solid.arrays().ring_vertices.size() > kMostCornersForEdges) return;
   const Solid merged = geometry::merge_equal_vertices(solid).solid;
   const Solid divided = geometry::divide_rings(merged, geometry::ring_touches(merged)).solid;
@@ -170,18 +172,18 @@ void add_bad_edges(const Solid& solid, const Frame& frame, std::size_t most, Sce
         std::upper_bound(edges.begin() + static_cast<std::ptrdiff_t>(i), edges.end(), edges[i]);
     const auto next = static_cast<std::size_t>(end - edges.begin());
     if (next - i != 2) {
-      scene.lines.push_back({frame(divided, edges[i][0]), frame(divided, edges[i][1])});
+      scene.lines.push_back({metres(divided, edges[i][0]), metres(divided, edges[i][1])});
     }
     i = next;
   }
 }
 
-void add_ring_line(const Solid* solid, const Place& place, const Frame& frame, std::size_t most,
-                   Scene& scene) {
+void add_ring_line(const Solid* solid, const Place& place, const LocalMetres& metres,
+                   std::size_t most, Scene& scene) {
   if (solid == nullptr || place.facet >= solid->facet_count()) return;
   const IndexRange rings = solid->rings_of(place.facet);
   if (place.ring >= rings.size()) return;
-  std::vector<Triple> line = ring_points(*solid, rings.begin + place.ring, frame, most);
+  std::vector<Triple> line = ring_points(*solid, rings.begin + place.ring, metres, most);
   if (line.empty()) return;
   line.push_back(line.front());
   scene.lines.push_back(std::move(line));
@@ -262,11 +264,11 @@ std::optional<Scene> scene_of(const pipeline::InspectedFeature& feature,
   const Solid* there = submitted_solid(feature, placed.other_solid);
   if (here == nullptr || here->facet_count() == 0) return std::nullopt;
   const auto point = point_of(feature, placed);
-  const Frame frame(*here, point ? *point : middle_of(*here));
+  const LocalMetres metres(*here, point ? *point : middle_of(*here));
   const bool is_pair_of_solids = there != nullptr && there != here;
   std::vector<Candidate> candidates;
-  add_candidates(*here, frame, Role::other_facet, candidates);
-  if (is_pair_of_solids) add_candidates(*there, frame, Role::other_facet, candidates);
+  add_candidates(*here, metres, Role::other_facet, candidates);
+  if (is_pair_of_solids) add_candidates(*there, metres, Role::other_facet, candidates);
   for (Candidate& candidate : candidates) {
     const bool is_of_second = is_pair_of_solids && candidate.solid == there;
     if (is_pair_of_solids) candidate.role = is_of_second ? Role::second : Role::first;
@@ -285,24 +287,24 @@ std::optional<Scene> scene_of(const pipeline::InspectedFeature& feature,
   scene.hidden_facets = total - shown;
   std::size_t corners = 0;
   for (std::size_t i = 0; i < shown && corners < options.most_corners; ++i) {
-    scene.facets.push_back(facet_of(candidates[i], frame, options.most_corners - corners));
+    scene.facets.push_back(facet_of(candidates[i], metres, options.most_corners - corners));
     corners += corner_count(scene.facets.back());
   }
   const int code = placed.finding->code;
   if (code == validate::kShellNotClosed || code == validate::kNonManifold) {
-    add_bad_edges(*here, frame, options.most_facets, scene);
+    add_bad_edges(*here, metres, options.most_facets, scene);
   }
   const bool is_about_rings =
       code < validate::kNonPlanarDistance || validate::finding_level(code) == 2;
   const bool is_about_planes =
       code == validate::kNonPlanarDistance || code == validate::kNonPlanarNormals;
   if (is_about_rings && !is_about_planes) {
-    add_ring_line(here, placed.finding->place, frame, options.most_corners, scene);
+    add_ring_line(here, placed.finding->place, metres, options.most_corners, scene);
     if (placed.finding->other) {
-      add_ring_line(there, *placed.finding->other, frame, options.most_corners, scene);
+      add_ring_line(there, *placed.finding->other, metres, options.most_corners, scene);
     }
   }
-  if (point) scene.witness = frame(*point);
+  if (point) scene.witness = metres(*point);
   const double reach = shown == 0 ? 0 : std::sqrt(candidates[shown - 1].distance);
   if (!fit(scene, reach)) return std::nullopt;
   return scene;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a picture of a finding shows, in whole thousandths of its radius around its centre. Internal
-// to report/.
+// The content of a picture of a finding, in whole thousandths of its radius around its centre.
+// Internal to report/.
 #pragma once
 
 #include <array>

@@ -200,7 +200,7 @@ std::string svg_of(const Scene& scene, const View& view) {
   for (const Drawn& facet : drawn) {
     const std::string path = path_of(facet.facet->rings, project, true);
     svg += path_element(facet.style, path);
-    // Seen through whatever is in front of them.
+    // These facets show through everything in front of them.
     if (facet.facet->role == Role::first) outlines += path_element("oa", path);
     if (facet.facet->role == Role::second) outlines += path_element("ob", path);
   }

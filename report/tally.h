@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a report counts: features and solids by type and verdict, findings by code. Internal to
+// The counts of a report: features and solids by type and verdict, findings by code. Internal to
 // report/.
 #pragma once
 

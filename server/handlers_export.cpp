@@ -38,7 +38,7 @@ Response refuse_export(const Error& error) {
       return refuse(406, "not-acceptable", error.message);
     case ErrorCode::malformed:
     case ErrorCode::limit_exceeded:
-    case ErrorCode::not_encodable:  // of what is stored, not of the request
+    case ErrorCode::not_encodable:  // a fault of what is stored, not of the request
       return refuse(500, "internal", "the collection cannot be exported: " + error.message);
     default:
       return to_response(to_problem(error));
@@ -51,7 +51,7 @@ Response get_export(const RoutedRequest& request) {
   const FileFormat* file = chosen_file(request);
   if (file == nullptr) {
     return refuse(406, "not-acceptable",
-                  "a collection comes as application/vnd.watertight (f=wt) or "
+                  "a collection is available as application/vnd.watertight (f=wt) or "
                   "application/city+json-seq (f=cityjsonseq)");
   }
   const std::string& id = request.target.segments[1];

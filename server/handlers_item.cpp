@@ -83,7 +83,7 @@ Result<Bytes> blob_of(const StoredFeature& feature, const Target& target) {
   } else if (feature.solids.size() != 1) {
     return Error{ErrorCode::invalid_argument,
                  "this feature has " + count +
-                     " solids: name one by solid=0, ..., or take f=wt for all in one file"};
+                     " solids: choose one with solid=0, ..., or use f=wt for all in one file"};
   }
   return feature.solids[solid].blob;
 }
@@ -112,13 +112,14 @@ Result<Bytes> represent(const StoredFeature& feature, const ItemFormat& format,
 Response get_item(const RoutedRequest& request) {
   const auto format = chosen_format(request);
   if (!format) {
-    return refuse(406, "not-acceptable",
-                  "an item comes as application/city+json (f=cityjson), application/json (f=json), "
-                  "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
-                  "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob)");
+    return refuse(
+        406, "not-acceptable",
+        "an item is available as application/city+json (f=cityjson), application/json (f=json), "
+        "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
+        "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob)");
   }
   if (request.target.parameter("solid") != nullptr && format->parameter != "blob") {
-    return refuse(400, "invalid-argument", "solid goes with f=blob only");
+    return refuse(400, "invalid-argument", "the parameter solid is for f=blob only");
   }
   const auto feature =
       request.service.store->get(request.target.segments[1], request.target.segments[3]);

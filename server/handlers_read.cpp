@@ -26,15 +26,15 @@ Json link(std::string href, std::string_view relation, std::string_view type,
   return {{"href", std::move(href)}, {"rel", relation}, {"type", type}, {"title", title}};
 }
 
-/// Nothing when JSON is what the client wants of a JSON-only resource.
+/// The refusal of a client that does not accept JSON, for resources that have JSON only.
 std::optional<Response> json_only(const RoutedRequest& request) {
   const std::string* format = request.target.parameter("f");
   if (format != nullptr) {
     if (*format == "json") return std::nullopt;
-    return refuse(406, "not-acceptable", "f=json is what there is here");
+    return refuse(406, "not-acceptable", "this resource is available as JSON only (f=json)");
   }
   if (negotiate(request.request.header("accept"), {kJson})) return std::nullopt;
-  return refuse(406, "not-acceptable", "application/json is what there is here");
+  return refuse(406, "not-acceptable", "this resource is available as application/json only");
 }
 
 constexpr std::string_view kHtml = "text/html";
@@ -105,7 +105,7 @@ std::optional<double> parse_number(std::string_view text) {
 /// A box of 4 numbers has no limit in z.
 Result<store::StoredBox> parse_box(std::string_view text) {
   const Error wrong{ErrorCode::invalid_argument,
-                    "bbox takes 4 or 6 comma-separated numbers: minima, then maxima"};
+                    "bbox needs 4 or 6 comma-separated numbers: minima, then maxima"};
   std::vector<double> numbers;
   while (numbers.size() <= 6) {
     const std::size_t comma = text.find(',');
@@ -211,14 +211,15 @@ std::string item_path(std::string_view collection, std::string_view item) {
 Response get_landing(const RoutedRequest& request) {
   const auto type = landing_type(request);
   if (!type) {
-    return refuse(406, "not-acceptable", "application/json and text/html are what there is here");
+    return refuse(406, "not-acceptable",
+                  "this resource is available as application/json and text/html");
   }
   const Json links = Json::array(
       {link("/", "self", kJson, "this page"), link("/api", "service-desc", kOpenApiType, "the API"),
        link("/collections", "data", kJson, "collections of solids"),
        link("/validate", "validate", kJson, "POST a document to validate it"),
-       link("/healthz", "status", kJson, "is the process alive"),
-       link("/readyz", "status", kJson, "is the database there")});
+       link("/healthz", "status", kJson, "state of the process"),
+       link("/readyz", "status", kJson, "state of the database")});
   if (*type == kHtml) return Response{200, "text/html; charset=utf-8", landing_html(links), {}};
   return json_response({{"title", kTitle}, {"description", kDescription}, {"links", links}});
 }

@@ -97,8 +97,8 @@ std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::Tex
   return report::json_report(std::move(sink), std::move(head));
 }
 
-/// Validates a document and answers with its report: 0 JSON, 1 GeoJSON, 2 HTML. Equal documents
-/// get equal answers, so it says no times.
+/// Validates a document and answers with its report: 0 JSON, 1 GeoJSON, 2 HTML. Equal documents get
+/// equal answers, so the report has no times.
 Response report_of(Document document, const RoutedRequest& request,
                    const pipeline::IngestOptions& options, std::size_t kind) {
   constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};
@@ -180,8 +180,9 @@ Response post_validate(const RoutedRequest& request) {
   if (!status) return to_response(to_problem(status.error()));
   const auto kind = negotiate(request.request.header("accept"), {kJson, kGeoJson, kHtml});
   if (!kind) {
-    return refuse(406, "not-acceptable",
-                  "application/json, application/geo+json and text/html are what there is here");
+    return refuse(
+        406, "not-acceptable",
+        "the report is available as application/json, application/geo+json and text/html");
   }
   Submission submission = read_submission(request, AcceptedFormats::all, "");
   if (submission.problem) return to_response(*submission.problem);

@@ -34,7 +34,7 @@ Error malformed_target(std::string message) {
   return Error{ErrorCode::malformed, std::move(message), {}, {}};
 }
 
-/// Length of the UTF-8 sequence at the front of `text`, 0 if it is none (RFC 3629, section 4).
+/// Length of the UTF-8 sequence at the front of `text`, 0 if there is none (RFC 3629, section 4).
 std::size_t utf8_sequence(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

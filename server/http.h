@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Requests and responses as plain values, so that routes are functions that need no socket. What
-// of HTTP the routes use: percent-decoding, query parameters, content types, Accept.
+// Requests and responses as plain values, so that routes are functions that need no socket. The
+// parts of HTTP that routes use: percent-decoding, query parameters, content types, Accept.
 #pragma once
 
 #include <functional>
@@ -38,8 +38,9 @@ struct Response {
   std::string content_type;  // "" for a response without body
   std::string body;
   std::vector<HeaderField> headers = {};
-  /// What follows `body`, made while it is sent; none for a body that is whole. Asked by one thread
-  /// at a time, each time when the part before is out, and no more when the client is gone.
+  /// Makes the parts that follow `body` while they are sent; none for a body that is whole. One
+  /// thread at a time calls it, after the part before was sent, and never again once the client is
+  /// gone.
   BodyParts rest = {};
 };
 

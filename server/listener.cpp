@@ -28,7 +28,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using std::chrono::milliseconds;
 
-constexpr std::size_t kRefusedAtOnce = 64;  // connections beyond the limit that still get a word
+constexpr std::size_t kRefusedAtOnce = 64;  // connections beyond the limit that get an answer
 constexpr milliseconds kPause{20};
 
 class AsioServer final : public HttpServer {

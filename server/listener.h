@@ -21,7 +21,7 @@ namespace watertight::server {
 /// their own.
 enum class Lane : std::uint8_t { quick, reading, computing };
 
-/// What answers requests. Both functions are called from several threads at once.
+/// The functions that answer requests. Several threads call both at once.
 struct Application {
   std::function<Lane(const Request&)> lane;
   std::function<Response(const Request&, const CancelPoll&)> respond;

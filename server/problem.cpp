@@ -56,7 +56,7 @@ Response to_response(const Problem& problem) {
     const Json extension = Json::parse(problem.extension, nullptr, false);
     if (extension.is_object()) json.update(extension);
   }
-  // Details quote the sender's bytes, which need not be UTF-8: replaced, never thrown about.
+  // Details quote the sender's bytes, which need not be UTF-8: others are replaced, nothing throws.
   return Response{problem.status, "application/problem+json",
                   json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
                   problem.headers};

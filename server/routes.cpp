@@ -53,7 +53,7 @@ bool is_collection_id(std::string_view id) {
          id != "." && id != "..";
 }
 
-/// What is wrong with a target that matches a route; nothing when it is fine.
+/// The refusal of a target that matches a route; nothing when the target is fine.
 std::optional<Response> refusal_of(const Target& target, const Route& route) {
   if (target.segments.size() > 1 && !is_collection_id(target.segments[1])) {
     return refuse(route.method == "GET" ? 404 : 400, "collection-id",
@@ -84,7 +84,7 @@ Response unrouted(const Request& request, const Target& target) {
     return refuse(404, "not-found", "there is nothing at this path; see /api");
   }
   if (request.method == "OPTIONS") return Response{204, "", "", {{"Allow", allowed}}};
-  Problem problem{405, "method-not-allowed", "this path takes " + allowed, {}, {}, {}, {}};
+  Problem problem{405, "method-not-allowed", "this path allows " + allowed, {}, {}, {}, {}};
   problem.headers.push_back({"Allow", allowed});
   return to_response(problem);
 }

@@ -23,7 +23,7 @@ struct RouteOptions {
   std::uint64_t largest_findings = 1000;  // kept per report in answers
 };
 
-/// What routes work on. The store and workers must outlive the service and be thread-safe.
+/// The parts that routes work with. Store and workers must outlive the service and be thread-safe.
 struct Service {
   SolidStore* store = nullptr;
   delaunay::EngineWorkers* workers = nullptr;  // null: rung 0 only
@@ -33,7 +33,7 @@ struct Service {
 /// Answers a request. Never fails: every error is an application/problem+json answer.
 Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled);
 
-/// Which threads should answer a request.
+/// The threads that should answer a request.
 Lane lane_of(const Request& request);
 
 /// The two functions above as the server wants them.

@@ -79,7 +79,7 @@ std::string lower(beast::string_view text) {
   return lower_case(std::string_view(text.data(), text.size()));
 }
 
-/// What is wrong with a header before its body is read.
+/// The refusal of a header before its body is read; nothing when the header is fine.
 std::optional<Response> refusal_of(const Parser& parser) {
   const auto& request = parser.get();
   if (request.version() >= 11 && request.count(http::field::host) != 1) {
@@ -92,7 +92,8 @@ std::optional<Response> refusal_of(const Parser& parser) {
   }
   const auto coding = request.find(http::field::content_encoding);
   if (coding != request.end() && lower(coding->value()) != "identity") {
-    return problem(415, "unsupported", "this service takes bodies without Content-Encoding only");
+    return problem(415, "unsupported",
+                   "this service does not accept Content-Encoding: send the body uncompressed");
   }
   return std::nullopt;
 }
@@ -108,7 +109,7 @@ Request to_request(http::request<http::string_body>&& message) {
   return request;
 }
 
-/// Status and header fields of an answer, but those that tell its length.
+/// Status and header fields of an answer, except those that state its length.
 template <class Body>
 http::response<Body> head_of(const Response& response, bool keep_alive, unsigned version) {
   http::response<Body> message;
@@ -229,7 +230,7 @@ awaitable<bool> Session::wait_for_request() {
 }
 
 /// Reads the header and the body. Returns the problem that ends the connection, if any; a problem
-/// without status means to close without words.
+/// without status means that the connection is closed without an answer.
 awaitable<std::optional<Response>> Session::receive(Parser& parser) {
   const Response silence{0, "", "", {}};
   error_code error;

@@ -31,7 +31,7 @@ class Budget {
   std::atomic<std::uint64_t> left_;
 };
 
-/// What a session takes from a Budget while it lives.
+/// The share of a Budget that a session holds while it lives.
 class BudgetShare {
  public:
   BudgetShare(Budget& budget, std::uint64_t amount)
@@ -57,7 +57,7 @@ struct Connection {
   std::string peer;
 };
 
-/// What all sessions of a server share. Outlives them.
+/// The state that all sessions of a server share. It outlives them.
 struct SessionEnvironment {
   SessionEnvironment(const ServerOptions& server_options, Application server_application,
                      LogLine server_log);
@@ -83,7 +83,7 @@ struct SessionEnvironment {
 boost::asio::awaitable<void> run_session(std::shared_ptr<Connection> connection,
                                          SessionEnvironment& environment);
 
-/// Tells a connection that is one too many to come back later, and closes it.
+/// Asks a connection beyond the limit to come back later, and closes it.
 boost::asio::awaitable<void> refuse_session(std::shared_ptr<Connection> connection);
 
 }  // namespace watertight::server

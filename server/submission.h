@@ -10,11 +10,11 @@
 
 namespace watertight::server {
 
-/// What a JSON body says it is, by its top-level "type": "CityJSON", "CityJSONFeature" or another
+/// The type that a JSON body states at its top level: "CityJSON", "CityJSONFeature" or another
 /// word; "" when there is none. Reads no further than needed.
 std::string top_level_type(std::string_view json);
 
-/// What clients may send.
+/// The formats that clients may send.
 enum class AcceptedFormats : std::uint8_t { city_models, all };
 
 /// The document in the body, by f= or else by Content-Type. `header` is the document header that a

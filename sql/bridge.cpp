@@ -25,7 +25,7 @@ struct wt_engine {
 namespace watertight::sql {
 namespace {
 
-// A detail names this many findings; the whole report is wt_validate's.
+// A detail names this many findings; wt_validate gives the whole report.
 constexpr std::size_t kFindingsShown = 20;
 // A varlena of PostgreSQL holds less than 1 GiB.
 constexpr std::size_t kLargestValue = (1ULL << 30) - 1024;
@@ -156,7 +156,7 @@ std::string errors_of(const Report& report) {
 void validate_into(const wt_job& job, wt_reply* reply) {
   const Result<Examined> examined = examine(job);
   if (!examined) return fail(reply, examined.error());
-  // An immutable function says nothing of how the verdict was reached: a helper can crash once.
+  // An immutable function must not report how the verdict was reached: a helper can crash once.
   Report report = examined->inspection.report;
   report.attempts.clear();
   report.rung = delaunay::Rung::none;

@@ -24,14 +24,14 @@ typedef bool (*wt_poll)(void);
 /** The helper processes of one backend. */
 typedef struct wt_engine wt_engine;
 
-/** Why there is no value. All texts are UTF-8. */
+/** The reason why there is no value. All texts are UTF-8. */
 typedef struct wt_failure {
   char sqlstate[6];  /* "" = no failure */
   char message[512]; /* one sentence */
   char* detail;      /* may be NULL; owned by the reply */
 } wt_failure;
 
-/** What a function answers. Start from all zero bytes; wt_reply_clear() frees and zeroes it. */
+/** The answer of a function. Start from all zero bytes; wt_reply_clear() frees and zeroes it. */
 typedef struct wt_reply {
   uint8_t* bytes; /* the value: a blob, EWKB, or JSON text */
   size_t size;

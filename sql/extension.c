@@ -200,7 +200,7 @@ _PG_init(void)
 {
 	DefineCustomStringVariable("watertight.libexec",
 							   "Folder of the helper executables watertight-worker and watertight-tetgen.",
-							   "Empty: the folder of the installation. Changes where helpers are found, never a verdict.",
+							   "Empty: the folder of the installation. No verdict depends on it.",
 							   &libexec_setting, "", PGC_SUSET, GUC_SUPERUSER_ONLY, NULL, NULL, NULL);
 	MarkGUCPrefixReserved("watertight");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is known of a blob without decoding its solid, as JSON for wt_info.
+// The facts about a blob that need no decoding of its solid, as JSON for wt_info.
 #pragma once
 
 #include <string>

@@ -16,7 +16,7 @@
 namespace watertight::store {
 namespace {
 
-/// What a child needs at spawn time; freed with the object.
+/// The attributes and file actions of posix_spawn; freed with the object.
 class SpawnSetup {
  public:
   explicit SpawnSetup(const SpawnOptions& options) {

@@ -142,7 +142,7 @@ Result<std::string> prepare_data_directory(const std::string& folder) {
     return Error{ErrorCode::invalid_argument,
                  folder + " is not empty and holds no cluster of Watertight"};
   }
-  // Through a symbolic link to the place itself, which must be ours.
+  // A symbolic link is followed to the folder itself, which must be ours.
   const fs::path place = fs::weakly_canonical(folder, failure);
   if (failure) {
     return Error{ErrorCode::unavailable, "cannot find " + folder + ": " + failure.message()};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What lies in the data directory of a private cluster, and whose processes work there. For
+// The files in the data directory of a private cluster, and the processes that work there. For
 // private_cluster only.
 //
 //   DATA/cluster.lock    held exclusively while someone starts or stops the cluster
@@ -51,7 +51,7 @@ std::optional<PostmasterFile> read_postmaster_file(const std::string& pgdata);
 /// Whether `pid` is a PostgreSQL process that works in `pgdata` (a real path): a process that took
 /// over the number of a dead postmaster is not.
 bool is_postgres_in(pid_t pid, const std::string& pgdata);
-/// All such processes: postmaster, backends, and backends that a killed postmaster left behind.
+/// All processes of that kind: postmaster, backends, and backends that a killed postmaster left.
 std::vector<pid_t> postgres_processes_in(const std::string& pgdata);
 
 /// Creates `folder` with mode 0700, or accepts an existing one of ours that is empty or holds a

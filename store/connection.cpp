@@ -251,7 +251,7 @@ Result<Rows> DatabaseSession::run(const std::string& statement, const Parameters
 void DatabaseSession::roll_back() {
   if (is_lost() || PQtransactionStatus(connection_.get()) == PQTRANS_IDLE) return;
   const Result<Rows> done = run("ROLLBACK");
-  static_cast<void>(done);  // a session that cannot roll back is lost, and is asked about that
+  static_cast<void>(done);  // a session that cannot roll back is lost: is_lost()
 }
 
 bool DatabaseSession::is_lost() const { return PQstatus(connection_.get()) != CONNECTION_OK; }

@@ -55,7 +55,7 @@ class Rows {
   bool is_null(int row, int column) const;
   /// The bytes of a text or bytea column; "" for NULL.
   std::string_view text(int row, int column) const;
-  /// Of an int8 column; 0 for NULL or another width.
+  /// The number in an int8 column; 0 for NULL or a column of another width.
   std::int64_t int8(int row, int column) const;
   double float8(int row, int column) const;
 
@@ -70,7 +70,7 @@ class Rows {
 class DatabaseSession {
  public:
   /// Errors: invalid_argument when the connection string cannot be parsed; unavailable with the
-  /// server's words. `may_come_back` in the failure tells whether waiting can help.
+  /// server's words. `may_come_back` in the failure says whether waiting can help.
   struct OpenFailure {
     Error error;
     bool may_come_back = false;
@@ -82,8 +82,8 @@ class DatabaseSession {
   DatabaseSession(const DatabaseSession&) = delete;
   DatabaseSession& operator=(const DatabaseSession&) = delete;
 
-  /// Runs one statement. Errors: the server's words under a fitting code; state() and is_lost()
-  /// tell more.
+  /// Runs one statement. Errors: the server's words under a fitting code; state() and is_lost() say
+  /// more.
   Result<Rows> run(const std::string& statement, const Parameters& parameters = {});
   /// Ends a transaction that failed. Nothing to do when none is open.
   void roll_back();
@@ -110,7 +110,7 @@ ServerState server_state(const std::string& connection);
 /// `keyword='value'` for a connection string, quoted.
 std::string connection_option(std::string_view keyword, std::string_view value);
 
-/// At most `size` sessions, opened by who leases them. Thread-safe.
+/// At most `size` sessions; whoever leases a session opens it. Thread-safe.
 class ConnectionPool {
  public:
   ConnectionPool(std::string connection, std::size_t size)

@@ -11,7 +11,7 @@ namespace watertight::store {
 namespace {
 
 constexpr std::uint64_t kLargestPage = 10'000;
-constexpr std::int64_t kBatchBytes = 16 << 20;  // of blobs and skeletons
+constexpr std::int64_t kBatchBytes = 16 << 20;  // blobs and skeletons of one batch
 
 std::string collections_where(const char* condition) {
   return std::string(
@@ -160,9 +160,9 @@ Result<Rows> page_rows(DatabaseSession& connection, const FeatureQuery& query, s
   return connection.run(kFeatureColumns + matching(query) + rest, parameters);
 }
 
-/// A place in a walk: the features after it are those with a higher (place, id).
+/// A position in a walk: the features after it have a higher (place, id).
 struct WalkPlace {
-  std::int64_t place = -1;  // no feature's: place_number() is not negative
+  std::int64_t place = -1;  // below every feature's: place_number() is not negative
   std::string id;
 };
 
@@ -184,7 +184,7 @@ Result<WalkPlace> walk_place(const std::string& text) {
   return Error{ErrorCode::invalid_argument, "a batch cannot start after '" + text + "'"};
 }
 
-/// `columns` and the place of the features that come next, in order of place and id.
+/// `columns` and the place numbers of the features that come next, in order of place number and id.
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit) {
   return connection.run(columns +
@@ -275,7 +275,7 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
     return page;
   }
   if (limit == 0) return page;
-  // One more than asked for tells whether there is a next page.
+  // One feature more than asked for shows whether there is a next page.
   const Result<Rows> rows = page_rows(connection, query, static_cast<std::int64_t>(limit) + 1);
   if (!rows) return rows.error();
   page.features = features_of(*rows, query.collection);

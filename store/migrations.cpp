@@ -96,7 +96,8 @@ constexpr Migration kMigrations[] = {
      }},
     {"an index of features by place",
      {
-         // store/place.h; what was stored before has the place of features without a box.
+         // store/place.h; features that were stored before get the place number of features without
+         // a box.
          R"(ALTER TABLE watertight.feature ADD COLUMN place bigint NOT NULL
               DEFAULT 9223372036854775807)",
          R"(COMMENT ON COLUMN watertight.feature.place IS

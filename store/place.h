@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One number for where a feature stands, so that features in its order have their neighbours near.
+// The place number of a feature: features that are sorted by it have their neighbours near.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace watertight::store {
 
-/// The place of a feature without a box: after all others.
+/// The place number of a feature without a box: it comes after all others.
 inline constexpr std::int64_t kNoPlace = INT64_MAX;
 
 /// The number of the box's centre along a Hilbert curve through 2^31 by 2^31 cells, not negative.

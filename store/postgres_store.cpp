@@ -21,7 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A restarted server replays its log and is back within seconds; after that the caller is told.
+// A restarted server replays its log and is back within seconds; after that the caller gets an
+// error.
 constexpr std::chrono::seconds kPatience{10};
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};

@@ -115,8 +115,8 @@ std::string quoted_name(const std::string& name) {
   return quoted + "\"";
 }
 
-/// The cluster on the disk and its processes, without who uses it. Calls are made under the
-/// exclusive lock.
+/// The cluster on the disk and its processes; it does not know who uses it. Calls are made under
+/// the exclusive lock.
 class Cluster {
  public:
   Cluster(std::string data, std::string programs, std::string user)
@@ -160,7 +160,7 @@ class Cluster {
       const std::optional<pid_t> pid = postmaster();
       if (!pid) return;
       kill(*pid, signal);
-      // postmaster.pid goes a moment before the process.
+      // postmaster.pid disappears a moment before the process ends.
       const Clock::time_point deadline = Clock::now() + kStopPatience;
       for (; is_postgres_in(*pid, pgdata()) && Clock::now() < deadline; reap()) {
         std::this_thread::sleep_for(kPoll);
@@ -177,9 +177,9 @@ class Cluster {
     std::error_code failure;
     if (fs::exists(pgdata() + "/PG_VERSION", failure)) return Done{};
     if (fs::exists(pgdata(), failure)) {
-      return refused(pgdata() + " exists and is no PostgreSQL cluster");
+      return refused(pgdata() + " exists and is not a PostgreSQL cluster");
     }
-    // Made beside its place and moved there: what is there is always whole.
+    // The cluster is made in another folder and moved: PGDATA is always whole.
     const std::string fresh = data_ + "/postgres.new";
     fs::remove_all(fresh, failure);
     const Result<pid_t> child =
@@ -300,7 +300,7 @@ Status ensure_database(const Cluster& cluster) {
 }
 
 /// Where the server has the extension, the database gets it. Storing needs no extension, so a
-/// failure is no error: CREATE EXTENSION by hand tells its reason.
+/// failure is no error: CREATE EXTENSION by hand says why.
 Status ensure_extension(const Cluster& cluster) {
   const Result<std::unique_ptr<DatabaseSession>> session =
       connect(cluster.connection("watertight"));
@@ -353,7 +353,7 @@ class RunningCluster final : public PrivateCluster {
     const Result<FileLock> lock = FileLock::take(lock_path_, FileLock::Kind::exclusive, seconds(1));
     if (!lock) return;
     const Status running = cluster_.ensure_running();
-    static_cast<void>(running);  // tried again at the next look; the store reports meanwhile
+    static_cast<void>(running);  // tried again at the next look; until then the store reports it
   }
 
   Cluster cluster_;

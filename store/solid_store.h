@@ -75,7 +75,7 @@ struct FeaturePage {
   std::string next;                     // `after` of the next page; "" = this is the last
 };
 
-/// A document that features came in: what they share.
+/// The format and header that the features of one document share.
 struct StoredHeader {
   std::string format;
   std::string header;
@@ -102,11 +102,11 @@ class SolidStore {
   virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;
   /// At most 10,000 features a page. Errors: not_found when there is no such collection.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
-  /// All features of a collection, a batch at a time, in order of place: along a Hilbert curve
-  /// through the centres of their boxes (store/place.h), those without a box last, ties by id,
-  /// bytewise. At most `limit` (10,000) features, fewer when they are large (16 MiB). `after` is
-  /// FeatureBatch::next, "" at the start. Errors: not_found when there is no such collection;
-  /// invalid_argument for an `after` that is none.
+  /// All features of a collection, a batch at a time, in order of their place numbers
+  /// (store/place.h: along a Hilbert curve through the centres of their boxes), those without a box
+  /// last, ties by id, bytewise. At most `limit` (10,000) features, fewer when they are large (16
+  /// MiB). `after` is FeatureBatch::next, "" at the start. Errors: not_found when there is no such
+  /// collection; invalid_argument for an `after` that no batch returned.
   virtual Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                                     const std::string& after) = 0;
   /// The documents that the features of a collection came in, at most `limit` of them; none of a

@@ -114,9 +114,9 @@ FacetState FacetTriangulator::triangulate_three(std::span<const Index> ring,
 }
 
 /// For four points on a circle in projection: true if the diagonal 0-2 is taken. Where they are not
-/// in one plane it is the shorter one in space: that says the same of the mirror image, of every
-/// numbering and from both sides of the facet. Equal diagonals, and those of a flat facet, which
-/// make no difference, are told apart by coordinates.
+/// in one plane the shorter diagonal in space is taken: a choice that is the same in the mirror
+/// image, in every numbering and from both sides of the facet. Coordinates decide between equal
+/// diagonals, and in flat facets, where the choice makes no difference.
 bool FacetTriangulator::is_even_diagonal(std::span<const Index> ring,
                                          const std::array<PlanePoint, 4>& p) const {
   const auto at = [&](std::size_t i) -> const Point& { return vertices_[ring[i]]; };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Whether the points of a facet are in one plane, exactly. A facet of which they are is the same
-// set of points under every triangulation; any other is what its canonical triangles make it. For
-// validate and delaunay.
+// Whether the points of a facet are in one plane, exactly. A flat facet is the same set of points
+// under every triangulation; its canonical triangles define any other facet. For validate and
+// delaunay.
 #pragma once
 
 #include "geometry/point.h"

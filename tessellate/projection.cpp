@@ -58,7 +58,7 @@ std::array<Number, 3> doubled_area(std::span<const Point> vertices, std::span<co
   return area;
 }
 
-/// Requires `weight`: what a component is multiplied by to be in world scale.
+/// `weight` is the factor that brings a component into world scale.
 template <class Number>
 Projection largest_component(const std::array<Number, 3>& area,
                              const std::array<Number, 3>& weight) {
@@ -88,7 +88,7 @@ CGAL::Exact_rational power(int radix, std::int32_t exponent) {
 }
 
 /// True if the horizontal axes of a ring are angles. As for measures, coordinates beyond a full
-/// turn cannot be angles; asked of each ring, so that the answer depends on nothing but its place.
+/// turn cannot be angles. Each ring is asked by itself, so that only its own coordinates decide.
 bool is_in_angles(const Solid& solid, std::span<const Index> ring) {
   const double largest = geometry::largest_angle(solid.srid());
   if (largest == 0) return false;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/quantity.h"
 #include "validate/rules/rules.h"
 #include "validate/snap.h"
 
@@ -48,7 +49,7 @@ class Certifier {
     apply_exact_rules();
     return exact_verdict();
   }
-  /// What the exact rules said, whatever the tetrahedralization said later.
+  /// The verdict of the exact rules, whatever the tetrahedralization shows later.
   TolerantVerdict exact_verdict() const { return exact_; }
 
   void add_note(std::string note) { inspection_.report.notes.push_back(std::move(note)); }
@@ -70,7 +71,7 @@ class Certifier {
   std::string incomplete_;  // why the exact tests did not finish
   std::optional<delaunay::ContactTriangles>
       divided_;                     // the triangles where shells touch, for several shells
-  bool is_interior_known_ = false;  // the exact tests say whether it is in parts
+  bool is_interior_known_ = false;  // the exact tests show whether it is connected
   TolerantVerdict exact_;
   Verdict verdict_ = Verdict::undecided;
   Inspection inspection_;
@@ -124,7 +125,7 @@ void Certifier::examine_interior(const ShellContacts& contacts) {
   is_interior_known_ = check_interior(examined_, *divided_);
 }
 
-/// What the absence of findings means, asked of the facts themselves.
+/// Checks the facts that must hold when there are no findings.
 bool Certifier::is_sound() const {
   const auto& states = examined_.triangles().state;
   return !shells_.empty() &&
@@ -165,14 +166,15 @@ void Certifier::prove(delaunay::EngineWorkers* workers) {
     climb(workers);
   } else if (is_interior_known_) {
     if (examined_.solid().shell_count() == 1) {
-      examined_.findings.skip({kSolidInteriorDisconnected},
-                              "one closed 2-manifold shell that does not meet itself bounds one "
-                              "interior (Jordan-Brouwer); proof by boundary was asked for");
+      examined_.findings.skip(
+          {kSolidInteriorDisconnected},
+          "one closed 2-manifold shell that does not meet itself bounds one "
+          "interior (Jordan-Brouwer); the option asked for a proof by boundary");
     }
     accept(std::nullopt);
   } else {
     inspection_.report.undecided_reason =
-        "only a tetrahedralization can tell whether the interior is in parts";
+        "only a tetrahedralization can show whether the interior is in parts";
     if (divided_ && !divided_->obstacle.empty()) {
       inspection_.report.undecided_reason += " (" + divided_->obstacle + ")";
     }
@@ -203,7 +205,8 @@ void Certifier::climb(delaunay::EngineWorkers* workers) {
 }
 
 /// The certificate speaks of the canonical triangles here, as the exact tests do. Where these know
-/// the interior, one that says otherwise shows a defect of this program, not of the solid.
+/// the interior, a certificate that says otherwise shows a defect of this program, not of the
+/// solid.
 void Certifier::report_property(const delaunay::LadderResult& result) {
   if (is_interior_known_) {
     inspection_.report.undecided_reason = "the exact tests and the tetrahedralization disagree (";
@@ -261,8 +264,8 @@ namespace {
 constexpr Tolerances kTolerant{
     .planarity_metres = 0.01, .planarity_degrees = 20, .snap_metres = 0.001};
 
-/// `exact` is what the exact rules say under `options`, which hold for the tolerant verdict too
-/// when nothing but the snapping differs and that moves nothing.
+/// `exact` is the verdict of the exact rules under `options`. It is the tolerant verdict too when
+/// nothing but the snapping differs and that moves nothing.
 TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& options,
                                  const TolerantVerdict& exact) {
   CertifyOptions tolerant = options;
@@ -290,8 +293,9 @@ Inspection examine(const Solid& solid, delaunay::EngineWorkers* workers,
   } else if (auto snapped = snap_vertices(solid, snap, options.ladder.cancel, options.placement);
              snapped) {
     Certifier certifier(snapped->solid, options);
-    certifier.add_note("the snap tolerance moved " + std::to_string(snapped->moved) +
-                       " vertices; the verdict is about the snapped solid");
+    certifier.add_note("the snap tolerance moved " +
+                       quantity(snapped->moved, "vertex", "vertices") +
+                       "; the verdict is about the snapped solid");
     inspection = certifier.run(workers);
     exact = certifier.exact_verdict();
   } else {
@@ -314,7 +318,7 @@ Inspection flattened(const CertifyOptions& options) {
         {.code = code,
          .detail = "the determinant of the transformation is zero: it flattens the solid"});
   }
-  findings.skip({kSolidInteriorDisconnected}, "the solid is flat in its place");
+  findings.skip({kSolidInteriorDisconnected}, "the solid is flat where it is placed");
   Inspection inspection;
   Report& report = inspection.report;
   report.verdict = Verdict::invalid;

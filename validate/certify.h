@@ -21,22 +21,22 @@ struct CertifyOptions {
   delaunay::LadderOptions ladder;
   /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
   std::span<const Index> rounded = {};
-  /// The place of the whole was rounded, not its shape (SubmittedSolid::is_origin_rounded): 805.
+  /// Rounding its origin moved the whole, not its shape (SubmittedSolid::is_origin_rounded): 805.
   bool is_origin_rounded = false;
   /// Vertices that the reader left out (SubmittedSolid::unused): warning 802.
   geometry::UnusedVertices unused = {};
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
   std::span<const Index> unclosed_rings = {};
-  /// Of a geometry template: where an instance puts it. The solid is judged as placed: orientation
-  /// by the determinant's exact sign, everything measured in metres there; a determinant of zero is
-  /// 306 and 806. Null for other solids. Kept by the caller.
+  /// Where an instance puts a geometry template; null for other solids. The solid is judged as
+  /// placed: the determinant's exact sign gives the orientation, metres are measured there; a
+  /// determinant of zero is 306 and 806. Kept by the caller.
   const geometry::Placement* placement = nullptr;
   /// True if the same template has passed with proof under another placement with a determinant of
   /// the same sign: no proof depends on a measurement, so the exact tests suffice. `certified` is
   /// then absent.
   bool is_proven = false;
   bool also_tolerant = false;  // fill Report::tolerant
-  /// Of the search for intersections within one solid; the report does not depend on it.
+  /// For the search of intersections within one solid; the report does not depend on it.
   unsigned threads = 1;
 };
 
@@ -55,8 +55,8 @@ struct Inspection {
   std::optional<ValidSolid> unplaced;
 };
 
-/// Never fails: what cannot be evaluated is said in the report. Deterministic but for `seconds`
-/// and time-outs of engines. `workers` may be null (rung 0 only). Thread-safe.
+/// Never fails: the report says what could not be evaluated. Deterministic but for `seconds` and
+/// time-outs of engines. `workers` may be null (rung 0 only). Thread-safe.
 Inspection certify(const Solid& solid, delaunay::EngineWorkers* workers,
                    const CertifyOptions& options = {});
 

@@ -63,7 +63,7 @@ class ExaminedSolid {
   /// The submitted solid with equal vertices merged.
   const Solid& merged() const { return merged_.solid; }
   /// The merged solid with the vertices of rings that split edges of other rings of their facet in
-  /// those rings too: all rules look at it. Places are told in the submitted solid.
+  /// those rings too: all rules look at it. Findings name places in the submitted solid.
   const Solid& solid() const { return triangles_.divided_solid(merged_.solid); }
   /// True if a corner of solid() splits an edge and is no corner of the submitted ring.
   bool is_inserted(Index corner) const;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The diagonals of the canonical triangulation of facets: where they touch other facets, and which
-// of them have another that fills the facet otherwise. Facets of a shell share an edge only where a
-// segment is an edge of the boundary of both. Where it is a diagonal of one of them, the facets
-// touch, or cross, along it, although their triangles merely have an edge in common. Internal to
-// validate/.
+// of them can be flipped so that other triangles fill the facet. Facets of a shell share an edge
+// only where a segment is an edge of the boundary of both. Where it is a diagonal of one of them,
+// the facets touch, or cross, along it, although their triangles merely have an edge in common.
+// Internal to validate/.
 #pragma once
 
 #include <array>

@@ -22,14 +22,14 @@ using Pair = std::pair<Index, Index>;
 
 /// Members named in a reason; more are counted.
 constexpr std::size_t kMostNamed = 8;
-/// Pairs of overlapping boxes, and looks at boxes to find them: bounds of memory and time.
+/// At most so many pairs of overlapping boxes, and so many looks at boxes to find them.
 constexpr std::size_t kMostPairs = 10'000'000;
 constexpr std::uint64_t kMostLooks = 2'000'000'000;
 
-/// Rounded vertices lie within half a step of their places along each axis; distances are computed
-/// in doubles.
+/// Rounded vertices lie within half a step of their exact positions along each axis; distances are
+/// computed in doubles.
 constexpr double kRoundedSteps = 16;
-/// Of coordinates in the world, relative: bounds the rounding of placed vertices for their boxes.
+/// Relative bound of the rounding of placed vertices in the world, for their boxes.
 constexpr double kPlaceError = 1e-14;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ struct ComparedPair {
   const GroupGrid* grid = nullptr;
   const SolidSurface* first_surface = nullptr;
   const SolidSurface* second_surface = nullptr;
-  double rounding = 0;  // metres by which vertices may be beside their places
+  double rounding = 0;  // metres by which vertices may be off
 };
 
 class GroupExaminer {
@@ -105,8 +105,8 @@ class GroupExaminer {
   GroupKind kind_;
   const GroupOptions& options_;
   std::vector<Index> present_;     // members that are valid, ascending
-  std::vector<Index> number_;      // of each member among those, kNone for the others
-  std::optional<GroupGrid> grid_;  // of all, if they have one frame; else each pair has its own
+  std::vector<Index> number_;      // member -> its number among those, kNone for the others
+  std::optional<GroupGrid> grid_;  // of all, if they share a placement; else by pair
   std::vector<Box> boxes_;         // of all members, not too small
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
   geometry::DisjointSets connected_;
@@ -154,7 +154,7 @@ bool GroupExaminer::find_grid() {
     }
     solids.push_back(standing(i));
   }
-  if (auto grid = geometry::SharedGrid::of_one_frame(std::move(solids)))
+  if (auto grid = geometry::SharedGrid::of_one_placement(std::move(solids)))
     grid_ = group_grid(*std::move(grid));
   if (!grid_ && is_composite()) {
     give_up("the coordinates of the solids have no exact grid in common");
@@ -204,10 +204,11 @@ GroupGrid GroupExaminer::group_grid(geometry::SharedGrid grid) const {
   const std::array<double, 3> high = lattice.world(all.max);
   std::array<double, 3> centre{};
   for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = low[axis] / 2 + high[axis] / 2;
-  const geometry::Placement* frame = grid.frame();
-  if (frame != nullptr) centre = geometry::shift_of(*frame);
+  const geometry::Placement* placement = grid.placement();
+  if (placement != nullptr) centre = geometry::shift_of(*placement);
   const geometry::AxisUnits units = geometry::axis_units(srid(present_.front()), centre);
-  const auto linear = geometry::linear_part(frame != nullptr ? *frame : geometry::Placement{});
+  const auto linear =
+      geometry::linear_part(placement != nullptr ? *placement : geometry::Placement{});
   GroupGrid result{std::move(grid)};
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -283,7 +284,7 @@ std::unique_ptr<SolidSurface> GroupExaminer::surface(Index member, const geometr
   return std::make_unique<SolidSurface>(solid, *points, facets);
 }
 
-/// On the grid of all members. Made when first asked for.
+/// The surface on the grid of all members, made when first asked for.
 const SolidSurface* GroupExaminer::kept_surface(Index member) {
   if (!surfaces_[member]) surfaces_[member] = surface(member, grid_->grid, number_[member]);
   return surfaces_[member].get();
@@ -356,7 +357,7 @@ void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRela
   (is_duplicate ? duplicates_ : report_.findings).push_back(std::move(finding));
 }
 
-/// False when no more pairs are to be compared.
+/// Compares two members. False when no more pairs are to be compared.
 bool GroupExaminer::compare(const Pair& pair) {
   if (options_.cancel && options_.cancel()) {
     give_up("the comparison was cancelled");
@@ -367,10 +368,10 @@ bool GroupExaminer::compare(const Pair& pair) {
                               kept_surface(pair.second)});
 }
 
-/// On a grid of the two.
+/// Compares two members on a grid of their own.
 bool GroupExaminer::compare_apart(const Pair& pair) {
   const std::vector<geometry::StandingSolid> both{standing(pair.first), standing(pair.second)};
-  auto found = geometry::SharedGrid::of_one_frame(both);
+  auto found = geometry::SharedGrid::of_one_placement(both);
   if (!found) found = geometry::SharedGrid::in_world(both);
   if (!found) return compare(ComparedPair{pair.first, pair.second});
   const GroupGrid grid = group_grid(*std::move(found));

@@ -18,11 +18,11 @@ namespace watertight::validate {
 enum class GroupKind : std::uint8_t { composite_solid, building_parts };
 
 struct GroupOptions {
-  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact). An overlap reaches
-  /// no deeper if
-  /// each part of it that hangs together fits between two parallel planes that far apart. Looked at
-  /// are planes across the axes and along the facets that meet the part, so the depth is never too
-  /// small, and of a slab between two facets it is the thickness.
+  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact). An overlap
+  /// reaches no deeper than d if each connected part of it fits between two parallel
+  /// planes d apart. Planes across the axes and along the facets that meet the part are
+  /// tried, so the depth is never too small; for a slab between two facets it is the
+  /// thickness.
   double overlap_metres = 0;
   Limits limits;
   CancelPoll cancel = {};
@@ -35,7 +35,7 @@ struct GroupMember {
   const geometry::Placement* placement = nullptr;
 };
 
-/// What a comparison of solids found. Places name a member by Place::solid, its index in `members`.
+/// The result of a comparison. Places name a member by Place::solid, its index in `members`.
 struct GroupReport {
   /// undecided when it was cancelled, or the members' coordinates have no exact common grid.
   Verdict verdict = Verdict::valid;
@@ -49,15 +49,15 @@ struct GroupReport {
 ///
 /// 501, 601: the interiors of two solids have a point in common; both facets, the depth in metres
 /// (GroupOptions::overlap_metres) and, where one was found, a point inside both. 502: two members
-/// are the same points, however their facets are divided. 503: not all members hang together over
-/// areas that two have in common; one finding for each part beside that of the first member; not
-/// looked at when members overlap or are the same, as by val3dity.
+/// are the same points, however their facets are divided. 503: common areas of two members do not
+/// connect all members; one finding for each part but that of the first member; not tested when
+/// members overlap or are the same, as in val3dity.
 ///
 /// Members that share one placement, or have none, are compared exactly on their own coordinates.
-/// Two others are compared on a SharedGrid of the world, which never rounds two without placements.
-/// Where that had to round one of them, they overlap if they do so wherever their vertices lie
-/// within 16 steps of that grid, which are some 1e-14 of their extent: a contact may be an overlap
-/// or a gap by the digits of a matrix.
+/// Other pairs are compared on a SharedGrid of the world, which never rounds two without
+/// placements. Where it had to round one of them, they overlap only if they do so wherever their
+/// vertices lie within 16 steps of that grid, some 1e-14 of their extent: the digits of a matrix
+/// can turn a contact into an overlap or a gap.
 ///
 /// Members with the same entry in `unit_of` are not compared with each other; empty: all are.
 /// Never fails. Deterministic, independent of threads. Cost: pairs of overlapping boxes, then near

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the validator says about a solid: a verdict and every finding with code, place, witness and
+// The validator's report on a solid: a verdict and every finding with code, place, witness and
 // measured value. Plain data for service, CLI, SQL and library.
 #pragma once
 
@@ -20,7 +20,7 @@ enum class Severity : std::uint8_t { error, warning };
 std::string_view to_string(Verdict verdict);
 std::string_view to_string(Severity severity);
 
-/// Where in the solid; indices into the submitted Solid, kNone where they do not apply.
+/// Where a finding is: indices into the submitted Solid, kNone where they do not apply.
 struct Place {
   Index shell = kNone;
   Index facet = kNone;
@@ -49,7 +49,7 @@ struct SkippedRule {
   std::string reason;
 };
 
-/// What val3dity's default tolerances say of a solid (snap 1 mm, planarity 1 cm and 20 degrees).
+/// The verdict under val3dity's default tolerances (snap 1 mm, planarity 1 cm and 20 degrees).
 struct TolerantVerdict {
   Verdict verdict = Verdict::undecided;  // by the exact tests of the snapped solid
   std::vector<int> first_level;          // codes, sorted

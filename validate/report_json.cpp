@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/quantity.h"
 #include "validate/finding_kinds.h"
 
 namespace watertight::validate {
@@ -186,7 +187,8 @@ std::vector<std::string> report_text(const Report& report) {
   lines.push_back(std::move(first));
   for (const Finding& finding : report.findings) lines.push_back(finding_text(finding));
   if (report.findings_omitted > 0) {
-    lines.push_back(std::to_string(report.findings_omitted) + " more findings are not listed");
+    lines.push_back(quantity(report.findings_omitted, "more finding is", "more findings are") +
+                    " not listed");
   }
   return lines;
 }

@@ -40,7 +40,7 @@ struct ReportJsonOptions {
 std::string report_json(const Report& report, const Solid& submitted,
                         const ReportJsonOptions& options = {});
 
-/// A solid that places are in, and how they are written.
+/// The solid to which places refer, and how they are written.
 struct PlacedSolid {
   const Solid* submitted = nullptr;
   const ReportJsonOptions* options = nullptr;

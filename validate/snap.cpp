@@ -11,7 +11,7 @@ namespace watertight::validate {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
-/// Cells beyond this number per axis could not be told apart in double precision.
+/// Double precision could not distinguish cells beyond this number per axis.
 constexpr double kMostCells = 1e15;
 
 class Snapper {
@@ -98,7 +98,8 @@ Result<SnappedSolid> snap_vertices(const Solid& solid, double metres, const Canc
     return Error{ErrorCode::limit_exceeded,
                  "the snap tolerance is too small for the size of the solid"};
   }
-  // The others neither move nor draw another; a little more reach than needed is_near() decides.
+  // All other points neither move nor attract one. The search reaches a little too far; is_near()
+  // decides.
   constexpr double kSlack = 1e-9;
   const NearPoints near = near_points(snapper.places(), metres * (1 + kSlack), cancel);
   if (cancel && cancel()) return Error{ErrorCode::cancelled, "the snapping was cancelled"};

@@ -21,7 +21,8 @@ bool is_executable_file(const std::string& path) {
 
 Result<std::string> find_helper(const std::string& name) {
   if (name.empty() || name.find('/') != std::string::npos) {
-    return Error{ErrorCode::invalid_argument, "'" + name + "' is no name of a helper executable"};
+    return Error{ErrorCode::invalid_argument,
+                 "'" + name + "' is not the name of a helper executable"};
   }
   std::vector<std::filesystem::path> folders;
   if (const char* folder = std::getenv("WATERTIGHT_LIBEXEC"); folder != nullptr && *folder == '/') {

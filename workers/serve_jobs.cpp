@@ -70,7 +70,7 @@ void watch_parent() {
   try {
     std::thread(end_with_parent).detach();
   } catch (const std::system_error&) {
-    // No thread to be had: the end of the stream and the limits still end the process.
+    // Without this thread the end of the stream and the limits still end the process.
   }
 }
 

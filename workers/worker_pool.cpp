@@ -88,7 +88,7 @@ class Conversation {
 
   bool is_sent() const { return unsent_header_.empty() && unsent_body_.empty(); }
 
-  /// So far, with the start of a new process; 0 once it has ended.
+  /// CPU time of the job so far, with the start of a new process; 0 once the process has ended.
   double cpu_of_job() const {
     return std::max(process_.cpu_seconds().value_or(0) - process_.accounted(), 0.0);
   }
@@ -150,7 +150,7 @@ class Conversation {
     }
   }
 
-  /// Makes a result of the reply when it is complete, or clear that it never can be.
+  /// Makes a result once the reply is complete, or once it is clear that it never will be.
   void parse() {
     if (received_.size() < kReplyHeader) return;
     ByteReader reader(received_);
@@ -264,8 +264,8 @@ struct WorkerPool::State {
     returned.notify_one();
   }
 
-  /// A process that waits, or a new one. Also reaps the idle ones that ended or spoke by
-  /// themselves.
+  /// A process that waits, or a new one. Also reaps idle processes that ended or that wrote without
+  /// a request.
   Result<WorkerProcess> take() {
     std::vector<WorkerProcess> ended;
     {

@@ -95,8 +95,8 @@ std::vector<std::string> environment_of_worker(double idle_seconds) {
   std::vector<std::string> environment = {
       "LANG=C", "PATH=/usr/bin:/bin",
       std::string(kIdleVariable) + "=" + std::to_string(static_cast<long>(milliseconds))};
-  // A parent-death signal comes when the *thread* that started the child ends, so it is asked for
-  // by the main thread only; the closed socket tells the process in every other case.
+  // A parent-death signal comes when the *thread* that started the child ends, so only the main
+  // thread asks for one; in every other case the closed socket ends the process.
   if (gettid() == getpid()) {
     environment.push_back(std::string(kParentVariable) + "=" + std::to_string(getpid()));
   }

@@ -13,7 +13,7 @@
 
 namespace watertight::workers {
 
-/// What became of a process that was killed or ended.
+/// How a process ended: killed, or by itself.
 struct Ending {
   bool by_signal = false;
   int code = 0;            // signal number or exit status
@@ -41,7 +41,7 @@ class WorkerProcess {
   Status limit(double cpu_seconds, std::uint64_t memory_bytes);
   /// CPU time since the process started; nothing once it has ended.
   std::optional<double> cpu_seconds() const;
-  /// The same at the end of the last job that it answered.
+  /// CPU time at the end of the last job that the process answered.
   double accounted() const { return accounted_; }
   void count_job(double cpu_seconds) {
     ++jobs_done_;
@@ -49,7 +49,7 @@ class WorkerProcess {
   }
   /// True if the process has ended (and waits to be reaped).
   bool has_ended() const;
-  /// True if it waits for a job: it runs, and said nothing that nobody asked for.
+  /// True if it waits for a job: it runs, and it has sent no bytes without a request.
   bool is_waiting() const;
   /// Kills the whole group if it still runs, and reaps the process.
   Ending end();

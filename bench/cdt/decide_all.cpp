@@ -34,7 +34,7 @@ struct Settings {
 struct Totals {
   std::size_t files = 0, unreadable = 0, solids = 0, valid = 0, invalid = 0;
   double seconds = 0;  // of certify(), wall
-  /// Of the solids that an engine was asked about.
+  /// Counts of the solids for which an engine was asked.
   delaunay::CdtStatistics with_engine;
   delaunay::CdtStatistics cdt;
   std::vector<std::string> undecided;

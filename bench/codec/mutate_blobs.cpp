@@ -42,7 +42,7 @@ Result<std::vector<Decoded>> decode_any(ByteView bytes) {
   return std::vector<Decoded>{std::move(one).value()};
 }
 
-/// Of a solid that was read, by an error about what comes after it.
+/// True if the solid was read and the error is about the bytes after it.
 bool is_whole(const Error& error) {
   return error.message.find("does not end where") != std::string::npos ||
          error.message.find("checksum does not match") != std::string::npos;

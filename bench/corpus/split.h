@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Which solids of a corpus the models of the codec are trained on, and which they are tested on.
+// The division of a corpus into solids that train the models of the codec and solids that test
+// them.
 // Within a set, blocks of 64 consecutive solids are training and test in turns; sets that are
 // excluded from training are test only. A test solid that stands where a training solid stands (the
 // same building in another release, level of detail or file) is left out.

@@ -6,7 +6,7 @@
 #
 # BIN has make_corpus and train_models; DATA is the folder of data sets (bench/corpus/README.md lists them); CORPUS is
 # written, and MODEL if given (codec/models/model-1.bin). Prints the table of train_models and, last, the arguments that
-# tell `compare` which sets are unseen.
+# name the unseen sets for `compare`.
 set -euo pipefail
 [ $# -ge 3 ] || { sed -n '3,9s/^# \{0,1\}//p' "$0" >&2 && exit 2; }
 bin=$(realpath "$1")

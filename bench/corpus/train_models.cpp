@@ -213,8 +213,8 @@ Options read_options(int count, char** arguments) {
   return options;
 }
 
-/// What surfaces have in common are their decisions; how much the parts of a context say differs
-/// from mesh to mesh, so that weights adapt faster from neutral ones, and counters too.
+/// Surfaces share their decisions; how much the parts of a context say differs from mesh to mesh,
+/// so that weights adapt faster from neutral ones, and counters too.
 std::array<codec::PriorShape, codec::kModelParts> shapes_of(const Options& options) {
   std::array<codec::PriorShape, codec::kModelParts> shapes{};
   shapes.fill({.max_count = options.max_count});

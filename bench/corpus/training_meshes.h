@@ -10,9 +10,9 @@
 
 namespace watertight {
 
-/// Of the files under `folder` in the order of their paths every other one, from the first: its
-/// closed meshes of at most 60,000 facets, on grids of 11, 14 and 16 bits and on their own. The
-/// other files are not seen. None if the name is empty.
+/// The closed meshes of at most 60,000 facets in every other file under `folder`, in the order of
+/// their paths from the first, on grids of 11, 14 and 16 bits and on their own. The other files are
+/// not read. None if the name is empty.
 std::vector<codec::IntegerSolid> training_meshes(const std::string& folder);
 
 }  // namespace watertight

@@ -28,7 +28,7 @@ namespace {
 
 using namespace watertight;
 
-/// What a peer lacks: three varints of the origin and two bytes of grid.
+/// The bytes that a peer does not need: three varints of the origin and two bytes of grid.
 std::size_t placement_bytes(const OrientedBoundary& boundary) {
   ByteWriter writer;
   for (const std::int64_t number : codec::page_solid(boundary, {}).gridded.origin)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What was measured of a mesh, and of many: Markdown.
+// The measurements of one mesh, and of many, as Markdown.
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,7 @@
 namespace watertight {
 namespace {
 
-/// Of this thread alone: other work on the machine does not count.
+/// Seconds of this thread alone: other work on the machine does not count.
 double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // oracle_triangle_pairs [N [SEED]]: compares the triangle-triangle classification with an exact
-// construction on N random and degenerate integer pairs (1,000,000 unless told). Prints how often
+// construction on N random and degenerate integer pairs (1,000,000 by default). Prints how often
 // each class occurred; exit status 1 at the first disagreement.
 #include <array>
 #include <cstdio>

@@ -26,7 +26,7 @@ struct ShellFacts {
 };
 ShellFacts ask_pmp(std::span<const Point> vertices, const ShellTriangles& shell);
 
-/// Of sound shells (closed, one component, not meeting themselves): the first is the exterior one.
+/// Facts about sound shells (closed, one component, not meeting themselves); the first is exterior.
 struct NefFacts {
   bool cavities_inside = false;    // each within the exterior shell, sharing no area with it
   bool cavities_apart = false;     // no two with common interior points or areas

@@ -21,7 +21,7 @@ namespace {
 using solids::Random;
 using Codes = std::set<int>;
 
-/// What a seed makes, and what is known of it.
+/// The input that a seed makes, and the facts known about it.
 struct Subject {
   std::string family;
   Solid solid;
@@ -144,7 +144,8 @@ std::string text_of(const std::vector<int>& codes) {
 
 Codes errors_of(const Report& report) { return solids::codes_of(report, Severity::error); }
 
-/// Without what only a tetrahedralization tells: it may be found under one map and not the other.
+/// Without codes that only a tetrahedralization finds: it may exist under one map and not the
+/// other.
 Codes exact_errors_of(const Report& report) {
   Codes codes = errors_of(report);
   codes.erase(404);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // collective CORPUS [N]: the paper's second open question, measured. For each set, tiles of N
-// solids (400 unless told) are coded once one by one and once together: one Delaunay
+// solids (400 by default) are coded once one by one and once together: one Delaunay
 // tetrahedralization of all vertices of the tile, each vertex and each shared wall once. Printed
 // per solid: vertices, facets, Delaunay faces, marked and unrecovered ones, the paper's bits (1 per
 // Delaunay face, 96 per unrecovered face), and the entropy of the marks if each were independent of

@@ -24,7 +24,7 @@ using namespace watertight;
 
 namespace {
 
-// What a file of one page takes beside it: head and tail (17 bytes), the index with its numbers of
+// Bytes of a file of one page beside the page: head and tail (17), the index with its numbers of
 // pages and solids (up to 8) and a byte for each solid (codec/page_file.h).
 constexpr std::size_t kFileBytes = 25;
 

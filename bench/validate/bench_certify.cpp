@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What each group of rules costs on large generated solids (seconds of processor time on one
+// The cost of each group of rules on large generated solids (seconds of processor time on one
 // thread), without the constrained Delaunay tetrahedralization.
 //
 //   bench_certify [CASE FACES]...        default: all cases at 100,000 facets

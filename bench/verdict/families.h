@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Families of small solids near the borders of validity. Each seed gives one sample: a solid, a
-// group of solids or a document. The oracle tells the truth about it unless the construction does.
+// group of solids or a document. The oracle finds its truth unless the construction gives it.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ struct Sample {
   std::vector<Solid> members;  // one solid, or a group on one lattice
   std::optional<validate::GroupKind> group;
   std::string document;        // CityJSON; then there are no members
-  std::optional<Truth> truth;  // by construction; else the oracle tells
+  std::optional<Truth> truth;  // by construction; nothing: the oracle finds it
   /// Sizes beyond 1e-140 to 1e150 m, where engines may give up.
   bool may_be_undecided = false;
 };

@@ -27,7 +27,7 @@ enum class Outcome : std::uint8_t {
 inline constexpr std::size_t kOutcomes = 7;
 const char* to_string(Outcome outcome);
 
-/// What the product says.
+/// The product's verdict.
 struct Said {
   Verdict verdict = Verdict::undecided;
   std::set<int> codes;  // of error findings

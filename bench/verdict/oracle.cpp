@@ -27,7 +27,7 @@ class Sets {
   std::vector<std::size_t> parent_;
 };
 
-/// Which regions and facets are at each edge and point of a complex.
+/// The regions and facets at each edge and point of a complex.
 struct Incidence {
   std::vector<std::vector<std::size_t>> regions_at_edge;  // twice when on both sides
   std::vector<Numbers> facets_at_edge;

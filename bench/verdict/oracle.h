@@ -21,7 +21,7 @@ struct Truth {
   /// Empty: valid. Else a report is right when it has one of these codes.
   std::set<int> codes;
   std::string reason;  // for people
-  /// Ring edges of two shells cross in a point that is no vertex: engines may have no answer.
+  /// Ring edges of two shells cross in a point that is not a vertex: engines may have no answer.
   bool has_crossing_edges = false;
   bool is_planar = true;  // all facets are
   bool is_valid() const { return is_known && codes.empty(); }

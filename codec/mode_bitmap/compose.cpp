@@ -25,7 +25,7 @@ Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits) {
   auto steiner = read_steiner_vertices(sections.steiner, limits);
   if (!steiner) return steiner.error();
   if (steiner->empty()) {
-    return Error{ErrorCode::malformed, "a section of Steiner vertices holds none"};
+    return Error{ErrorCode::malformed, "a section of Steiner vertices is empty"};
   }
   nodes.points.insert(nodes.points.end(), steiner->begin(), steiner->end());
   return nodes;
@@ -63,7 +63,7 @@ Result<std::vector<Triangle>> read_unrecovered_faces(const BitmapSections& secti
   if (sections.unrecovered.empty()) return std::vector<Triangle>{};
   auto faces = read_face_list(sections.unrecovered, point_count);
   if (faces && faces->empty()) {
-    return Error{ErrorCode::malformed, "a section of unrecovered faces holds none"};
+    return Error{ErrorCode::malformed, "a section of unrecovered faces is empty"};
   }
   return faces;
 }

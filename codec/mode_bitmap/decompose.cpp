@@ -74,7 +74,7 @@ Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical) {
   complex.vertex_count = solid.vertex_count();
   if (!has_storable_delaunay(complex.points)) {
     return not_encodable(
-        "mode bitmap holds coordinates that are 0 or of magnitude 2^-100 to 2^100");
+        "mode bitmap codes only coordinates that are 0 or of magnitude 2^-100 to 2^100");
   }
   auto delaunay = create_delaunay(complex);
   if (!delaunay) return delaunay.error();
@@ -108,7 +108,7 @@ Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
                                 const delaunay::Certificate& certificate) {
   const Solid& solid = canonical.boundary.solid();
   const delaunay::Tetrahedralization& mesh = certificate.tetrahedralization;
-  const Error foreign = not_encodable("the certificate is not one of this solid");
+  const Error foreign = not_encodable("the certificate belongs to another solid");
   if (mesh.input_count != solid.vertex_count() || mesh.points.size() < mesh.input_count) {
     return foreign;
   }
@@ -133,7 +133,7 @@ Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
   }
   if (!has_storable_delaunay(complex.points)) {
     return not_encodable(
-        "mode bitmap holds coordinates that are 0 or of magnitude 2^-100 to 2^100");
+        "mode bitmap codes only coordinates that are 0 or of magnitude 2^-100 to 2^100");
   }
   const std::vector<Index> facet_place = inverse_of(canonical.order.facet);
   for (const delaunay::ConstrainedFace& face : mesh.constrained) {

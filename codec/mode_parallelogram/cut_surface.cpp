@@ -130,7 +130,8 @@ Result<CutSurface> cut_surface(const IntegerSolid& solid) {
          ++facet) {
       const Index ring = solid.facet_offsets[facet];
       if (solid.facet_offsets[facet + 1] != ring + 1 || solid.ring(ring).size() != 3) {
-        return Error{ErrorCode::not_encodable, "a facet is no triangle"};
+        return Error{ErrorCode::not_encodable,
+                     "mode parallelogram codes triangles only: a facet is not a triangle"};
       }
       const auto corners = solid.ring(ring);
       surface.triangles.push_back({corners[0], corners[1], corners[2]});

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kCandidateSteps = 256;
 
-Error malformed() { return {ErrorCode::malformed, "these triangles make no closed surface"}; }
+Error malformed() { return {ErrorCode::malformed, "the triangles do not form a closed surface"}; }
 
 /// The surface in the order of the stream, written or read.
 class SurfaceCoder {
@@ -403,7 +403,7 @@ Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& model
   }
   if (trials.best().has_guesses) {
     VertexOptions changed = trials.best();
-    changed.habit = 1;
+    changed.naming_weight = 1;
     if (const Status tried = trials.attempt(changed); !tried) return tried.error();
   }
   return trials.best();

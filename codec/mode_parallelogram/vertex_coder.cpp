@@ -30,7 +30,7 @@ void VertexCoder::code_options(const VertexOptions& options) {
   stream_.enter(StreamPart::connectivity);
   has_repeats_ = models_.code(stream_, kHasRepeats, 0, {0}, options.has_repeats);
   has_guesses_ = models_.code(stream_, kHasGuesses, 0, {0}, options.has_guesses);
-  habit_ = options.habit;
+  naming_weight_ = options.naming_weight;
   chosen_places_ = options.places;
 }
 
@@ -200,8 +200,8 @@ std::uint32_t VertexCoder::code_guess(const SurfaceFront& front, const Gate& gat
       double bits = passed;
       if (i + 1 < kGuesses) {
         const double ones = models_.probability(kGuess, i, contexts[i]) / 65536.0;
-        bits -= habit_ * rough_log2(ones);
-        passed -= habit_ * rough_log2(1 - ones);
+        bits -= naming_weight_ * rough_log2(ones);
+        passed -= naming_weight_ * rough_log2(1 - ones);
       }
       for (std::size_t k = 0; k < 3; ++k) {
         const double missed = std::abs(static_cast<double>((*truth)[k]) - tip.guesses[i][k]);

@@ -63,7 +63,7 @@ class VertexCoder {
   Limits limits_;
   bool has_repeats_ = false;
   bool has_guesses_ = false;
-  double habit_ = 0;                           // writing
+  double naming_weight_ = 0;                   // writing
   std::array<AxisPlaces, 3> chosen_places_{};  // writing
   std::array<AxisPlaces, 3> places_{};         // of every number until the origin is known
   GridPoint origin_{};

@@ -9,13 +9,13 @@
 
 namespace watertight::codec::parallelogram {
 
-/// The writer chooses these for each solid. All but `habit` are in the stream.
+/// The writer chooses these for each solid. All but `naming_weight` are in the stream.
 struct VertexOptions {
   bool has_repeats = false;  // coordinates of vertices nearby come again
   bool has_guesses = false;  // each tip names the guess that it is coded from
   std::array<AxisPlaces, 3> places{};
   /// Writer only: the weight, in the choice of a guess, of the bits that name it (0.5 or 1).
-  double habit = 0.5;
+  double naming_weight = 0.5;
 };
 
 }  // namespace watertight::codec::parallelogram

@@ -23,7 +23,7 @@ void SurfaceWalk::fill() {
       step.twin = chains_[followed].in;
       to = result_.surface.vertex[step.twin];
       if ((to == start) != (count == size_)) {
-        return fail(ErrorCode::malformed, "a ring does not have its size");
+        return fail(ErrorCode::malformed, "a ring ends before or after its coded size");
       }
     } else if (count == size_) {
       to = start;

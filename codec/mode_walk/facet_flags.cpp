@@ -28,7 +28,8 @@ constexpr std::uint32_t kLengths = 16;
 constexpr std::uint32_t kKnown = 16;
 
 Error not_encodable() {
-  return {ErrorCode::not_encodable, "flags of edges cannot tell the facets"};
+  return {ErrorCode::not_encodable,
+          "mode walk cannot code the facets: their edges do not separate them"};
 }
 
 Vector difference(const Point& p, const Point& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }

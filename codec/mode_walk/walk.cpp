@@ -122,7 +122,7 @@ class Walk {
   bool is_reading() const { return truth_ == nullptr; }
   Error broken() const {
     return is_reading() ? Error{ErrorCode::malformed, "the boundary among the Delaunay faces"}
-                        : not_encodable("the boundary is beyond the walk");
+                        : not_encodable("mode walk cannot code the boundary");
   }
 
   Status code_component(Index seed);

@@ -123,7 +123,7 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
   const std::uint8_t models = reader.u8();
   if (reader.failed()) return reader.error("header");
   if (first != kMagic[0] || second != kMagic[1]) {
-    return Error{ErrorCode::malformed, "this is no blob: it does not start with WT", 0};
+    return Error{ErrorCode::malformed, "this is not a blob: it does not start with WT", 0};
   }
   if ((version & 0x7FU) != kFormatVersion) {
     return Error{ErrorCode::unsupported,

@@ -128,7 +128,7 @@ Result<std::vector<Point>> read_vertices(ByteView section, const Limits& limits)
     } else {
       for (int axis = 0; axis < 3; ++axis) is_good = is_good && read_double(reader, p[axis]);
     }
-    if (!is_good) return malformed_vertices("holds a coordinate that is none");
+    if (!is_good) return malformed_vertices("has a coordinate not finite or out of range");
     if (i > 0 && !(points[i - 1] < p)) return malformed_vertices("is not sorted");
   }
   if (reader.remaining() != 0) return malformed_vertices("is longer than its vertices");
@@ -177,7 +177,7 @@ Result<std::vector<Point>> read_steiner_vertices(ByteView section, const Limits&
       }
     }
     if (!is_good || reader.failed()) {
-      return malformed_vertices("of Steiner points holds a coordinate that is none");
+      return malformed_vertices("of Steiner points has a coordinate not finite or out of range");
     }
     if (i > 0 && !(points[i - 1] < p)) return malformed_vertices("of Steiner points is not sorted");
   }

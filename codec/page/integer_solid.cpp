@@ -143,7 +143,10 @@ Result<Lattice> lattice_at(const PageGrid& grid, const GridPoint& origin) {
     if (!number) return Error{ErrorCode::malformed, "the origin of the lattice is out of range"};
     lattice.origin[axis] = *number;
   }
-  if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice makes no sense"};
+  if (!lattice.is_sane()) {
+    return Error{ErrorCode::malformed,
+                 "the lattice has a step that is not positive or a number out of range"};
+  }
   return lattice;
 }
 

@@ -60,7 +60,9 @@ Status code_tolerances(EntropyStream& stream, ModelBank& models, Tolerances& tol
                          std::isfinite(tolerances.planarity_degrees) &&
                          std::isfinite(tolerances.snap_metres);
   if (!is_number || tolerances == kImpliedTolerances) {
-    return Error{ErrorCode::malformed, "the acceptance makes no sense"};
+    return Error{
+        ErrorCode::malformed,
+        "the acceptance has tolerances that are not finite, or that the format leaves out"};
   }
   return Done{};
 }
@@ -76,7 +78,7 @@ Status code_grid(EntropyStream& stream, ModelBank& models, PageGrid& grid) {
   const auto kind = static_cast<unsigned>(grid.kind);
   const bool high = models.code(stream, kKind, 0, {0}, (kind & 2U) != 0);
   const bool low = models.code(stream, kKind, 0, {high ? 2U : 1U}, (kind & 1U) != 0);
-  if (high && low) return Error{ErrorCode::malformed, "the lattice is of no known kind"};
+  if (high && low) return Error{ErrorCode::malformed, "the kind of the lattice is unknown"};
   grid.kind = high ? LatticeKind::float64 : low ? LatticeKind::binary : LatticeKind::decimal;
   if (grid.kind == LatticeKind::float64) return Done{};
   const bool one_step = models.code(stream, kOneStep, 0, {0},
@@ -151,7 +153,7 @@ Result<geometry::CanonicalSolid> canonical_of(Result<Solid> solid) {
   if (!solid) return solid.error();
   auto boundary = OrientedBoundary::make(std::move(solid).value());
   if (!boundary) {
-    return Error{ErrorCode::malformed, "no closed boundary: " + boundary.error().message};
+    return Error{ErrorCode::malformed, "the boundary is not closed: " + boundary.error().message};
   }
   geometry::CanonicalSolid canonical = geometry::canonical_form(*boundary);
   return canonical;
@@ -347,7 +349,8 @@ Status SolidCoder::code_order(PageSolid& solid) {
   watertight::codec::code_order(stream_, models_[ModelPart::order],
                                 solid.canonical->boundary.solid(), solid.canonical->order);
   if (stream_.is_reading() && solid.canonical->order.is_identity()) {
-    return Error{ErrorCode::malformed, "an order that orders nothing"};
+    return Error{ErrorCode::malformed,
+                 "the source order equals the canonical order, which the format leaves out"};
   }
   return Done{};
 }

@@ -50,8 +50,8 @@ CanonicalDelaunay list_canonically(std::vector<geometry::Tetrahedron> tetrahedra
   CanonicalDelaunay result;
   result.tetrahedra = std::move(tetrahedra);
   for (geometry::Tetrahedron& t : result.tetrahedra) t = canonical_tetrahedron(t);
-  // Faces are told apart by their three vertices, tetrahedra by their first three: two with the
-  // same would lie on the same side of a face.
+  // Three vertices identify a face, and the first three a tetrahedron: two tetrahedra with the same
+  // three would lie on the same side of a face.
   sort_by_vertices(result.tetrahedra, vertex_count, [](const geometry::Tetrahedron& t) {
     return Triangle{t[0], t[1], t[2]};
   });

@@ -59,7 +59,7 @@ Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
   Cancellation cancellation(is_cancelled);
   Delaunay::Vertex_handle hint;
   for (const std::size_t i : insertion_order(converted)) {
-    // Asked by cells made: degenerate sets make many with each point.
+    // The number of new cells decides when to ask: in degenerate sets each point makes many.
     const std::size_t cells = delaunay.tds().number_of_cells();
     const std::size_t before = delaunay.number_of_vertices();
     hint = delaunay.insert(converted[i], hint);

@@ -39,7 +39,7 @@ class DelaunayFaces {
   DelaunayFaces(const CanonicalDelaunay& delaunay, std::size_t vertex_count)
       : faces_(delaunay.faces), vertex_count_(vertex_count) {}
 
-  /// Place of a face in the sorted list, or kNone.
+  /// Index of a face in the sorted list, or kNone.
   Index find(Triangle triangle) const {
     std::sort(triangle.begin(), triangle.end());
     const auto at = std::lower_bound(faces_.begin(), faces_.end(), triangle);

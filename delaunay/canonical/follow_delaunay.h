@@ -25,9 +25,9 @@ struct FollowingTriangles {
   std::vector<Index> first{0};  // facet -> first triangle; facet_count + 1 entries
   /// Per facet: how many of its triangles are no faces of the Delaunay tetrahedralization.
   std::vector<Index> missing;
-  /// Per triangle: its place in CanonicalDelaunay::faces, kNone if it is not there.
+  /// Per triangle: its index in CanonicalDelaunay::faces, kNone if it is not there.
   std::vector<Index> delaunay_face;
-  /// Of all facets together.
+  /// The sum of `missing` over all facets.
   Index missing_total = 0;
 };
 

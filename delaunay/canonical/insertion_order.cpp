@@ -17,7 +17,7 @@ constexpr unsigned kRoundBits = 5;
 /// Fewer points are one round.
 constexpr std::size_t kOneRound = 64;
 
-/// Place on a Hilbert curve through a grid of 2^bits cells per axis.
+/// Number of a cell along a Hilbert curve through a grid of 2^bits cells per axis.
 /// Source: Skilling, "Programming the Hilbert curve" (2004).
 std::uint32_t hilbert_place(std::array<std::uint32_t, 3> cell, unsigned bits) {
   auto& [x, y, z] = cell;

@@ -215,9 +215,9 @@ void SmallDelaunay::fill_cavity(Index vertex) {
   }
 }
 
-/// Two new cells are neighbours if their faces in the rim share an edge: found in a table of the
-/// rim's vertices by its vertices. An empty place stands for cell 0, which takes what is written
-/// there by mistake: it is never in use.
+/// Two new cells are neighbours if their faces in the rim share an edge. A table with a row and a
+/// column for each vertex of the rim finds them. An empty entry stands for cell 0, which takes what
+/// is written there by mistake: cell 0 is never in use.
 void SmallDelaunay::link_small_rim() {
   std::array<Side, kRimVertices * kRimVertices> table;
   Index labels = 0;

@@ -48,7 +48,7 @@ void keep_solids_only(Json& object) {
   *geometries = std::move(kept);
 }
 
-/// The header's or document's members that say where the solids are.
+/// Leaves the members of a header or document that say where the solids are.
 void keep_reference(Json& root) {
   keep_members(root, kRootMembers);
   Json* metadata = find_member(root, "metadata");
@@ -74,7 +74,7 @@ Json arranged_ring(const Json& values, const Arranged& solid, Index ring) {
   return out;
 }
 
-/// What has values by ring; `first_ring` is the canonical facet's first one.
+/// The values by ring of one facet; `first_ring` is the canonical facet's first ring.
 Json arranged_facet(const Json& values, const Arranged& solid, Index facet, Index first_ring) {
   const IndexRange rings = solid.source->rings_of(solid.order.facet[facet]);
   if (!values.is_array() || values.size() != rings.size()) return values;
@@ -86,7 +86,7 @@ Json arranged_facet(const Json& values, const Arranged& solid, Index facet, Inde
   return out;
 }
 
-/// Values by shell and facet of one solid. Lists of another shape say nothing and stay.
+/// Values by shell and facet of one solid. Lists of another shape stay as they are.
 Json arranged_solid(const Json& values, const Arranged& solid, bool has_rings) {
   if (!values.is_array() || values.size() != solid.source->shell_count()) return values;
   Json out = Json::array();

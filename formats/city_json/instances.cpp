@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/quantity.h"
 #include "formats/city_json/model.h"
 #include "formats/text/numbers.h"
 
@@ -68,7 +69,7 @@ Result<InstanceRef> read_instance(const Json& geometry, const std::string& point
   ref.template_number = number->get<std::uint64_t>();
   if (ref.template_number >= template_count) {
     return wrong("template " + std::to_string(ref.template_number) + " is out of range (" +
-                     std::to_string(template_count) + " templates)",
+                     quantity(template_count, "template") + ')',
                  pointer + "/template");
   }
   const Json* boundaries = find_member(geometry, "boundaries");

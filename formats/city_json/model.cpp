@@ -114,7 +114,7 @@ Index parent_of(const Json& object, const std::unordered_map<std::string_view, I
   return kNone;
 }
 
-// A child that the document does not hold is a solid that nobody would miss.
+// A child that the document does not hold may be a solid, and nobody would miss it.
 Status check_children(const Json& object, std::string_view id,
                       const std::unordered_map<std::string_view, Index>& by_id) {
   const Json* children = find_member(object, "children");
@@ -124,7 +124,8 @@ Status check_children(const Json& object, std::string_view id,
   for (std::size_t i = 0; i < children->size(); ++i) {
     const Json& child = (*children)[i];
     if (!child.is_string() || !by_id.contains(child.get_ref<const std::string&>())) {
-      return wrong("the child names none of the CityObjects", pointer + pointer_token(i));
+      return wrong("the child is not the id of a city object in CityObjects",
+                   pointer + pointer_token(i));
     }
   }
   return Done{};

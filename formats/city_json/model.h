@@ -48,7 +48,7 @@ struct InstanceRef {
   std::array<GridNumber, 16> matrix{};  // row by row
 };
 
-/// What refers to what in a city model.
+/// The references within a city model.
 struct ModelIndex {
   std::vector<std::string> ids;        // of the city objects, in document order
   std::vector<std::uint32_t> root_of;  // object -> its top-level object
@@ -73,11 +73,11 @@ struct CitySolid {
 Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count);
 
 /// Reads a GeometryInstance, all but its object and geometry. Errors: malformed with JSON Pointer
-/// (a template that is not there, no vertex, a matrix that is none).
+/// (a template that does not exist, no vertex, a matrix that is not valid).
 Result<InstanceRef> read_instance(const Json& geometry, const std::string& pointer,
                                   std::uint64_t template_count);
 
-/// The model's instances with their places, in document order. Vertex indices must be in range.
+/// The model's instances with their placements, in document order. Vertex indices must be in range.
 /// Errors: malformed with JSON Pointer.
 Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
                                                      const ModelIndex& index,

@@ -136,8 +136,8 @@ std::string header_text(const Json& root) {
   return out + '}';
 }
 
-/// Notes how the feature's text differs from the one we would write. What cannot be written is kept
-/// as it is.
+/// Notes how the feature's text differs from the one we would write. Of a feature that cannot be
+/// written the layout keeps the whole text.
 void keep_text(const CityHeader& header, std::string_view text, Feature& feature) {
   const auto plain = write_city_json_feature(header, feature);
   feature.layout = describe_layout(plain ? *plain : std::string(), text);
@@ -146,12 +146,11 @@ void keep_text(const CityHeader& header, std::string_view text, Feature& feature
 Error type_error(const Json& root) {
   const std::string type = string_member(root, "type");
   if (type == "CityJSONFeature") {
-    return Error{
-        ErrorCode::malformed,
-        "a CityJSONFeature alone does not say its transform: send the CityJSON line of its "
-        "sequence first",
-        {},
-        "/type"};
+    return Error{ErrorCode::malformed,
+                 "a CityJSONFeature alone has no transform: send the CityJSON line of its "
+                 "sequence first",
+                 {},
+                 "/type"};
   }
   return Error{ErrorCode::malformed, "the type is not \"CityJSON\"", {}, "/type"};
 }
@@ -173,7 +172,8 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   if (!read) return std::move(read).error();
   const Json* object = find_member(*find_member(read->model.root, "CityObjects"), id);
   if (object == nullptr) {
-    return Error{ErrorCode::malformed, "the id names none of the CityObjects", {}, "/id"};
+    return Error{
+        ErrorCode::malformed, "the id is not that of a city object in CityObjects", {}, "/id"};
   }
   Feature feature;
   feature.id = id;

@@ -352,7 +352,7 @@ Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, cons
   }
   // The parser takes a NUL for the end of the text, and what follows would be lost.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
-    return Error{ErrorCode::malformed, "a NUL byte is no part of a JSON text", nul, {}};
+    return Error{ErrorCode::malformed, "a JSON text must not contain a NUL byte", nul, {}};
   }
   CitySax sax(is_city, kind, limits);
   if (!Json::sax_parse(text.begin(), text.end(), &sax)) return std::move(sax.error());

@@ -35,7 +35,7 @@ struct VertexList {
   std::size_t size() const { return are_integers ? integers.size() : decimals.size(); }
 };
 
-/// What a city model says. `root` is the document with `vertices` replaced by null and each
+/// The content of a city model. `root` is the document with `vertices` replaced by null and each
 /// boundary, at /CityObjects/*/geometry/*/boundaries, by its index into `boundary_begin`.
 struct CityModel {
   Json root;

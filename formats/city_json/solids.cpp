@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/quantity.h"
 #include "formats/city_json/model.h"
 #include "formats/surface.h"
 
@@ -43,7 +44,7 @@ class SolidCutter {
         }
         if (token >= vertex_count) {
           return wrong("vertex index " + std::to_string(token) + " is out of range (" +
-                       std::to_string(vertex_count) + " vertices)");
+                       quantity(vertex_count, "vertex", "vertices") + ')');
         }
         current_.ring_vertices.push_back(token);
       }
@@ -86,7 +87,7 @@ Status check_range(std::span<const BoundaryToken> tokens, std::size_t vertex_cou
     if (tokens[i] < kClose && tokens[i] >= vertex_count) {
       return Error{ErrorCode::malformed,
                    "vertex index " + std::to_string(tokens[i]) + " is out of range (" +
-                       std::to_string(vertex_count) + " vertices)",
+                       quantity(vertex_count, "vertex", "vertices") + ')',
                    {},
                    pointer_to(tokens, i)};
     }

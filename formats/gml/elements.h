@@ -15,7 +15,7 @@ inline constexpr std::string_view kXlinkSpace = "http://www.w3.org/1999/xlink";
 /// GML 3.1.1 (also GML 2) and GML 3.2.
 bool is_gml_space(std::string_view space);
 
-/// What a geometry element of GML is; nothing for an element that is no geometry.
+/// The kind of a geometry element of GML; nothing for an element that is no geometry.
 std::optional<GmlKind> geometry_kind(std::string_view name);
 
 /// The role of a property of a geometry of `kind`; nothing when it has no such property.

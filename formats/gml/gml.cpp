@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/quantity.h"
 #include "formats/gml/model.h"
 #include "formats/gml/shapes.h"
 #include "formats/surface.h"
@@ -159,8 +160,8 @@ class GmlReader {
     return node == kNone ? "" : std::string(model_.name(model_.nodes[node].id));
   }
 
-  // Objects of one feature that have no gml:id, or the same, are counted on together, so that id
-  // and number name one geometry.
+  // Objects of one feature that have no gml:id, or the same, share one count, so that id and number
+  // name one geometry.
   std::uint32_t next_geometry(bool is_template, const std::string& object_id) {
     return is_template ? templates_++ : geometries_of_[object_id]++;
   }
@@ -336,8 +337,9 @@ class GmlReader {
                                 "read in the order written");
     }
     if (document_.features.empty() && document_.templates.empty()) {
-      document_.notes.push_back("the document has no solids; " + std::to_string(passed_over_) +
-                                " other geometries are passed over");
+      document_.notes.push_back(
+          "the document has no solids; " +
+          quantity(passed_over_, "other geometry is", "other geometries are") + " passed over");
     }
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // GML 3.1.1 and 3.2 solids, alone or in features: CityGML 1 to 3, IndoorGML, any application
-// schema. What is read and what is refused: docs/formats.md. Internal to formats/.
+// schema. docs/formats.md lists what is read and what is refused. Internal to formats/.
 #pragma once
 
 #include <cstdint>

@@ -93,7 +93,7 @@ class GmlBuilder : public XmlHandler {
     return Done{};
   }
 
-  /// malformed for XML of something else, as a page of HTML that was saved instead of the data.
+  /// Errors: malformed for XML that is not GML, such as a page of HTML saved instead of the data.
   Result<GmlModel> take() {
     if (is_of_ogc_) return std::move(model_);
     return error_at(root_.place, ErrorCode::malformed,
@@ -135,7 +135,7 @@ class GmlBuilder : public XmlHandler {
     Index feature = kNone;  // top-level: its number in model_.objects; kNone until needed
   };
 
-  // What the coordinates element being read says about itself.
+  // The attributes of the coordinates element that is being read.
   struct Numbers {
     std::string_view element;  // "pos", "posList", "coordinates"
     std::uint64_t at = 0;
@@ -449,7 +449,7 @@ class GmlBuilder : public XmlHandler {
     if (is_list ? count % 3 == 0 : count == 3) return;
     std::string message(is_list ? "a posList" : "a position");
     message.append(" of ").append(std::to_string(count));
-    message.append(is_list ? " numbers, which is no multiple of 3" : " numbers");
+    message.append(is_list ? " numbers, which is not a multiple of 3" : " numbers");
     message.append(": two-dimensional positions are not read; a solid needs x, y and z");
     add_defect(node, numbers_.place, ErrorCode::unsupported, std::move(message));
   }

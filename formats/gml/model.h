@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A GML document as its geometry elements, the links between them, and the objects that own them.
-// Coordinates stay text until a solid uses them: what no solid reaches is not judged. Internal to
-// formats/.
+// Coordinates stay text until a solid uses them: coordinates that no solid uses are not judged.
+// Internal to formats/.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace watertight::formats {
 
-/// What an element is for the solids. A collection of surfaces is any of Shell, CompositeSurface,
+/// The role of an element in a solid. A collection of surfaces is any of Shell, CompositeSurface,
 /// MultiSurface, Surface, PolyhedralSurface, TriangulatedSurface and Tin.
 enum class GmlKind : std::uint8_t {
   ring,     // LinearRing

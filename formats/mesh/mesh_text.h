@@ -27,7 +27,7 @@ Result<Document> read_poly(std::string_view text, const Limits& limits);
 Result<Document> read_wkt_document(std::string_view text, const Limits& limits);
 Result<Document> read_ewkb_document(ByteView bytes, const Limits& limits);
 
-/// Objects named after what the solids were. Errors: unsupported for holes and cavities.
+/// Each solid is an object with the id of its source. Errors: unsupported for holes and cavities.
 Result<std::string> write_obj(std::span<const Feature> features);
 /// Errors: unsupported for anything but one solid without holes and cavities.
 Result<std::string> write_off(std::span<const Feature> features);

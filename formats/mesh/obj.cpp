@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "base/quantity.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 #include "formats/text/numbers.h"
@@ -48,7 +49,7 @@ class ObjReader {
       return Error{ErrorCode::malformed,
                    "line " + std::to_string(missing_line_) + ": vertex index " +
                        std::to_string(last_missing_) + " is out of range (" +
-                       std::to_string(vertices_.positions.size()) + " vertices)",
+                       quantity(vertices_.positions.size(), "vertex", "vertices") + ')',
                    missing_offset_,
                    {}};
     }
@@ -102,7 +103,7 @@ class ObjReader {
     return error_at(line, keyword, "not a statement of an OBJ file");
   }
 
-  // An object without faces gives way to the next one.
+  // The next object replaces an object without faces.
   void begin_object(std::string name) {
     ObjObject& last = objects_.back();
     if (!last.arrays.ring_vertices.empty()) {
@@ -207,7 +208,7 @@ class ObjReader {
       document.features.push_back(std::move(feature));
     }
     if (left_out_ > 0) {
-      document.notes.push_back(std::to_string(left_out_) + " objects without faces left out");
+      document.notes.push_back(quantity(left_out_, "object") + " without faces left out");
     }
     return document;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdint>
 
+#include "base/quantity.h"
 #include "formats/mesh/one_shell_text.h"
 
 namespace watertight::formats {
@@ -69,8 +70,8 @@ class OffReader : private OneShellText {
     for (std::uint64_t i = 1; i <= *corners; ++i) {
       const auto vertex = unsigned_word(lines_.words()[i]);
       if (!vertex || *vertex >= vertex_count_) {
-        return wrong(
-            i, "vertex index is out of range (" + std::to_string(vertex_count_) + " vertices)");
+        return wrong(i, "vertex index is out of range (" +
+                            quantity(vertex_count_, "vertex", "vertices") + ')');
       }
       arrays_.ring_vertices.push_back(static_cast<Index>(*vertex));
     }
@@ -94,7 +95,8 @@ Result<std::string> write_off(std::span<const Feature> features) {
   for (const Feature& feature : features) {
     for (const SubmittedSolid& submitted : feature.solids) {
       if (solid != nullptr) {
-        return Error{ErrorCode::unsupported, "an OFF file holds one solid and there are several"};
+        return Error{ErrorCode::unsupported,
+                     "an OFF file holds one solid, the document has several"};
       }
       solid = &submitted.solid;
     }

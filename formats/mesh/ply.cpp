@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/quantity.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/mesh/ply_header.h"
 #include "formats/surface.h"
@@ -321,7 +322,7 @@ class PlyReader {
       if (*index < 0 || static_cast<std::uint64_t>(*index) >= vertex_count_) {
         return Error{ErrorCode::malformed,
                      "vertex index " + std::to_string(*index) + " is out of range (" +
-                         std::to_string(vertex_count_) + " vertices)",
+                         quantity(vertex_count_, "vertex", "vertices") + ')',
                      offset};
       }
       arrays_.ring_vertices.push_back(static_cast<Index>(*index));

@@ -6,6 +6,7 @@
 // point in each hole.
 #include <cstdint>
 
+#include "base/quantity.h"
 #include "formats/mesh/one_shell_text.h"
 
 namespace watertight::formats {
@@ -97,7 +98,7 @@ class PolyReader : private OneShellText {
       const auto node = unsigned_word(lines_.words()[word]);
       if (!node || *node < first_node_ || *node - first_node_ >= vertices_.positions.size()) {
         return wrong(word, "no node has this number (" +
-                               std::to_string(vertices_.positions.size()) + " nodes from " +
+                               quantity(vertices_.positions.size(), "node") + " from " +
                                std::to_string(first_node_) + ")");
       }
       arrays_.ring_vertices.push_back(static_cast<Index>(*node - first_node_));
@@ -124,7 +125,7 @@ class PolyReader : private OneShellText {
       if (auto status = point(what); !status) return status;
     }
     if (*point_count > 0) {
-      document_.notes.push_back(std::to_string(*point_count) + ' ' + what + " points skipped");
+      document_.notes.push_back(quantity(*point_count, what + " point") + " skipped");
     }
     return Done{};
   }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/ascii.h"
+#include "base/quantity.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/surface.h"
 #include "formats/text/numbers.h"
@@ -144,7 +145,7 @@ class TextStlReader {
       document_.notes.push_back("the file has no triangles");
       if (auto status = add_feature({}); !status) return status.error();
     } else if (left_out_ > 0) {
-      document_.notes.push_back(std::to_string(left_out_) + " solids without triangles left out");
+      document_.notes.push_back(quantity(left_out_, "solid") + " without triangles left out");
     }
     return std::move(document_);
   }
@@ -298,7 +299,7 @@ Result<Document> read_stl(ByteView bytes, const Limits& limits) {
   }
   const std::uint64_t count = word_at(bytes, 80);
   return Error{ErrorCode::malformed,
-               "a binary STL of " + std::to_string(count) + " triangles has " +
+               "a binary STL of " + quantity(count, "triangle") + " has " +
                    std::to_string(kHeader + kTriangle * count) + " bytes, this file has " +
                    std::to_string(bytes.size()),
                std::min<std::uint64_t>(bytes.size(), kHeader + kTriangle * count)};

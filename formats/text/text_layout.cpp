@@ -27,7 +27,7 @@ struct Token {
   std::string_view text;
 };
 
-/// Cuts a text into tokens. What is no JSON gives some tokens or other.
+/// Cuts a text into tokens. A text that is not JSON gives arbitrary tokens.
 class Tokens {
  public:
   explicit Tokens(std::string_view text) : rest_(text) {}
@@ -86,8 +86,8 @@ void append_escape(std::string& out, std::uint32_t unit) {
   for (int shift = 12; shift >= 0; shift -= 4) out += kHex[(unit >> shift) & 15U];
 }
 
-/// The character that starts at `at`, which moves to its last byte. Requires UTF-8; of anything
-/// else makes some number or other.
+/// The character that starts at `at`, which moves to its last byte. Requires UTF-8; the number for
+/// other bytes is arbitrary.
 std::uint32_t code_point(std::string_view text, std::size_t& at) {
   const auto first = static_cast<unsigned char>(text[at]);
   const std::size_t more = first >= 0xF0 ? 3 : first >= 0xE0 ? 2 : 1;
@@ -116,13 +116,13 @@ std::string with_escapes(std::string_view token, Escapes escapes) {
   return out;
 }
 
-/// What the next gap and the next spelling most likely are. Describing and applying teach it the
-/// same way.
+/// Predicts the next gap and the next spelling. Describing and applying a layout teach it the same
+/// way.
 class Predictor {
  public:
   Predictor() : gaps_(kKinds * kKinds * (kDepths + 1)) {}
 
-  /// Which place the gap before `token` is; its likely text is gap().
+  /// Moves to the gap before `token`; gap() is its likely text.
   void move_to(std::string_view token) {
     const std::size_t kind = kind_of(token);
     if (kind == kind_of("}") || kind == kind_of("]")) depth_ = depth_ > 0 ? depth_ - 1 : 0;
@@ -164,7 +164,7 @@ class Predictor {
 
  private:
   static constexpr std::size_t kKinds = 8;    // the marks, a value, start or end of the text
-  static constexpr std::size_t kDepths = 32;  // deeper places count as one
+  static constexpr std::size_t kDepths = 32;  // all greater depths count as one
   struct Place {
     bool is_known = false;
     std::string_view text;

@@ -4,10 +4,10 @@
 // space, spellings of numbers and escapes of strings. With it the very bytes of a document come
 // back. Internal to formats/.
 //
-// Both texts have the same tokens in the same order. What stands before each token is predicted
-// from what stood at the last such place (the tokens before and after, the depth), the spelling of
-// a token from the last one that was unlike ours; a layout holds the exceptions only. So it is a
-// few bytes for a text in any regular style, and still exact for a text in none.
+// Both texts have the same tokens in the same order. The text before each token is predicted from
+// that at the last such place (the tokens before and after, the depth), the spelling of a token
+// from the last one that was unlike ours; a layout holds the exceptions only. So it takes a few
+// bytes for a text in any regular style, and is still exact for a text in none.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@
 
 namespace watertight::formats {
 
-/// What turns `plain` into `text`, with size and hash of `text`. For two texts without the same
-/// tokens it holds all of `text`. Cost: linear.
+/// The layout that turns `plain` into `text`, with size and hash of `text`. For two texts without
+/// the same tokens it holds all of `text`. Cost: linear.
 Bytes describe_layout(std::string_view plain, std::string_view text);
 
-/// The text that describe_layout(plain, text) was made of.
-/// Errors: malformed when that is not what comes out, limit_exceeded beyond `most_bytes`.
+/// The text that describe_layout(plain, text) was made of. Errors: malformed when the result is
+/// another text, limit_exceeded beyond `most_bytes`.
 Result<std::string> apply_layout(std::string_view plain, ByteView layout, std::uint64_t most_bytes);
 
 /// True if the layout needs no plain text.
@@ -58,7 +58,7 @@ class ExceptionReader {
   bool is_last_run_ = false;
 };
 
-/// What stands before, between and after the lines of a sequence: nothing, then a line feed each.
+/// The bytes before, between and after the lines of a sequence; expected: a line feed after each.
 class FramingWriter {
  public:
   /// The gap before the next line, or after the last when `is_last`.

@@ -26,13 +26,13 @@ struct AxisUnits {
 /// metres, with a note. Cost: logarithmic.
 AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre);
 
-/// Of a geographic system, the largest coordinate that can be an angle: a full turn, 360 (degrees)
+/// The largest coordinate of a geographic system that can be an angle: a full turn, 360 (degrees)
 /// or 400 (grads). 0 for other systems and for unknown codes. Cost: logarithmic.
 double largest_angle(std::uint32_t srid);
 
-/// Where the authority's first axis is latitude: the angle of the pole, 90 (degrees) or 100
-/// (grads). 0 for other systems, among them the geographic ones of France that EPSG names
-/// "(lon-lat)", and for unknown codes. Cost: logarithmic.
+/// The angle of the pole, 90 (degrees) or 100 (grads), for systems whose first axis is latitude by
+/// the authority's definition. 0 for other systems, among them the geographic ones of France that
+/// EPSG names "(lon-lat)", and for unknown codes. Cost: logarithmic.
 double pole_of_first_axis(std::uint32_t srid);
 
 }  // namespace watertight::geometry

@@ -8,8 +8,8 @@
 
 namespace watertight::geometry {
 
-/// The unit of the horizontal axes; of the vertical one too unless named after it (degrees and
-/// grads have heights in metres).
+/// The unit of the horizontal axes, and of the vertical axis too unless the name says otherwise
+/// (degrees and grads have heights in metres).
 enum class CrsUnit : std::uint8_t {
   metre,
   us_survey_foot,

@@ -137,7 +137,7 @@ void Search::divide_into_pieces() {
   pieces_ = std::move(small);
 }
 
-/// Replaces a piece, the last, by its slabs.
+/// Replaces the last piece, whose number is given, by its slabs.
 bool Search::divide(std::size_t number) {
   SlabDivider<3> divider;
   const PartMembers<3> members{pieces_[number].members, {}, true};

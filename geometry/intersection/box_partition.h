@@ -44,10 +44,10 @@ struct IntersectionOptions {
 /// Errors: cancelled. Cost: O(n log n) for surfaces whose triangles are small beside the whole, for
 /// fans around common vertices and for needles that run alike; at worst O(n^2) box comparisons and
 /// classifications (docs/robustness.md). Memory: linear, beside the pairs.
-/// Source: the paper, section 3.2. Departures: boxes are cut into slabs along the axis that tells
-/// them apart best; a pair is reported only in the part that owns the low corner of the overlap of
-/// its boxes; what no cut takes apart is looked at by direction from a common vertex, or along axes
-/// that follow the triangles.
+/// Source: the paper, section 3.2. Departures: boxes are cut into slabs along the axis that
+/// separates them best; a pair is reported only in the part that owns the low corner of the overlap
+/// of its boxes; triangles that no cut separates are compared by direction from a common vertex, or
+/// along axes that follow them.
 Result<std::vector<IntersectingPair>> intersecting_pairs(std::span<const Point> points,
                                                          std::span<const Triangle> triangles,
                                                          const IntersectionOptions& options = {});

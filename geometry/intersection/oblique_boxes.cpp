@@ -10,7 +10,7 @@ namespace {
 using Vector = std::array<double, 3>;
 
 /// More than the rounding errors of all doubles here, which are 1 at most: unit vectors and
-/// coordinates in a frame's scale take some ten operations of 2^-53 each.
+/// scaled coordinates along axes take some ten operations of 2^-53 each.
 constexpr double kMargin = 1e-14;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -28,7 +28,7 @@ double largest_component(const Vector& v) {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
 
-/// Nothing for vectors without a direction, and for those whose direction doubles cannot tell.
+/// Nothing for vectors without a direction, and for those whose direction doubles cannot hold.
 std::optional<Vector> unit(Vector v) {
   constexpr double kSmallest = 1e-290;
   const double largest = largest_component(v);
@@ -158,7 +158,7 @@ BoxMember<6> seen_from(Index apex, std::span<const Point> points, const Triangle
   for (const Index vertex : triangle) {
     if (vertex == apex) continue;
     const auto direction = unit(half_difference(points[vertex], points[apex]));
-    // Another vertex at the apex, or too close to tell: the triangles can meet there.
+    // Another vertex at the apex, or too close for doubles: the triangles can meet there.
     is_anywhere = is_anywhere || !direction;
     if (direction) directions[count++] = *direction;
   }
@@ -172,8 +172,8 @@ BoxMember<6> seen_from(Index apex, std::span<const Point> points, const Triangle
   return result;
 }
 
-Frame::Frame(std::span<const Point> points, std::span<const Triangle> triangles,
-             std::span<const Index> members) {
+ObliqueAxes::ObliqueAxes(std::span<const Point> points, std::span<const Triangle> triangles,
+                         std::span<const Index> members) {
   if (members.empty()) return;
   centre_ = points[triangles[members.front()][0]];
   std::array<Vector, 3> edges{};
@@ -208,8 +208,8 @@ Frame::Frame(std::span<const Point> points, std::span<const Triangle> triangles,
   axes_[1] = unit(cross(axes_[2], axes_[0])).value_or(across);
 }
 
-BoxMember<6> Frame::box(std::span<const Point> points, const Triangle& triangle,
-                        const BoxMember<3>& box) const {
+BoxMember<6> ObliqueAxes::box(std::span<const Point> points, const Triangle& triangle,
+                              const BoxMember<3>& box) const {
   BoxMember<6> result = extended(box);
   std::array<Vector, 3> corners{};
   for (std::size_t i = 0; i < 3; ++i) {

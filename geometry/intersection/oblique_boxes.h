@@ -21,12 +21,12 @@ BoxMember<6> seen_from(Index apex, std::span<const Point> points, const Triangle
 
 /// Three axes at right angles: the first along the triangles' long edges, the second along their
 /// normals as far as those agree.
-class Frame {
+class ObliqueAxes {
  public:
-  Frame(std::span<const Point> points, std::span<const Triangle> triangles,
-        std::span<const Index> members);
+  ObliqueAxes(std::span<const Point> points, std::span<const Triangle> triangles,
+              std::span<const Index> members);
 
-  /// Adds to a triangle's box its bounds along the frame's axes.
+  /// Adds to a triangle's box its bounds along the axes.
   BoxMember<6> box(std::span<const Point> points, const Triangle& triangle,
                    const BoxMember<3>& box) const;
 

@@ -19,7 +19,7 @@ bool is_before(const IntersectingPair& a, const IntersectingPair& b) {
   return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
-/// The vertex of most of the triangles, the lowest one of several, and how many it has.
+/// The vertex that most of the triangles have (the lowest of several), and how many have it.
 std::pair<Index, std::size_t> busiest_vertex(std::span<const Triangle> triangles,
                                              std::span<const Index> members) {
   std::vector<Index> vertices;
@@ -77,7 +77,7 @@ PairSearch::Stalled PairSearch::stalled_part(const PartMembers<D>& members) {
 
 void PairSearch::resolve(Stalled stalled) {
   if (stalled.is_within && stalled.may_have_hub && resolve_hub(stalled)) return;
-  resolve_in_frame(stalled);
+  resolve_along_axes(stalled);
 }
 
 /// If many of the triangles have one vertex, finds their pairs by the directions from it, and then
@@ -106,15 +106,15 @@ bool PairSearch::resolve_hub(Stalled& stalled) {
 }
 
 /// Looks for pairs along axes that follow the triangles.
-void PairSearch::resolve_in_frame(const Stalled& stalled) {
+void PairSearch::resolve_along_axes(const Stalled& stalled) {
   std::vector<Index> all = stalled.first;
   all.insert(all.end(), stalled.second.begin(), stalled.second.end());
-  const Frame frame(context_.points, context_.triangles, all);
+  const ObliqueAxes axes(context_.points, context_.triangles, all);
   const auto boxes = [&](const std::vector<Index>& members) {
     std::vector<BoxMember<6>> result;
     for (const Index member : members) {
       result.push_back(
-          frame.box(context_.points, context_.triangles[member], context_.boxes[member]));
+          axes.box(context_.points, context_.triangles[member], context_.boxes[member]));
     }
     return result;
   };
@@ -122,7 +122,7 @@ void PairSearch::resolve_in_frame(const Stalled& stalled) {
 }
 
 /// Compares the pairs of the members. Parts that remain large, but not as large as the whole, are
-/// looked at again in a frame of their own.
+/// compared again along axes of their own.
 void PairSearch::divide_directions(const std::vector<BoxMember<6>>& first,
                                    const std::vector<BoxMember<6>>& second,
                                    const Stalled& stalled) {
@@ -162,7 +162,7 @@ bool PairSearch::compare(const PartMembers<D>& members, const PartBounds<D>& bou
     const std::size_t begin = members.is_within ? i + 1 : 0;
     columns.for_overlapping(member, begin, [&](std::size_t j) {
       const BoxMember<D>& partner = partners[j];
-      // In space the bounds and the outer ones are the same.
+      // In three directions `bounds` and `outer` are the same.
       if (!bounds.owns(member, partner) || (D > 3 && !outer.owns(member, partner))) return;
       if (context_.are_of_one_group(member.triangle, partner.triangle)) return;
       const ContactClass contact = context_.tester.contact(first_planes_[i], partner_planes[j]);

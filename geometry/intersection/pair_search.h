@@ -17,7 +17,7 @@
 
 namespace watertight::geometry {
 
-/// What all pieces of one search read, and how it is ended.
+/// The data that all pieces of one search read, and the means to end it.
 struct SearchContext {
   std::span<const Point> points;
   std::span<const Triangle> triangles;
@@ -62,7 +62,7 @@ class PairSearch {
   void divide_space(std::span<const BoxMember<3>> members, const PartBounds<3>& bounds);
   void resolve(Stalled stalled);
   bool resolve_hub(Stalled& stalled);
-  void resolve_in_frame(const Stalled& stalled);
+  void resolve_along_axes(const Stalled& stalled);
   void divide_directions(const std::vector<BoxMember<6>>& first,
                          const std::vector<BoxMember<6>>& second, const Stalled& stalled);
   template <std::size_t D>

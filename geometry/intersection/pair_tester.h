@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The contact of two triangles, for many pairs of few triangles: their planes are computed once,
-// in doubles with an error bound, and decide most pairs. Corners that are small integers, as those
-// of a lattice are, make the planes exact: they decide the neighbours in a planar facet too. What
-// is left open is classified exactly. Private to geometry/ (it includes CGAL).
+// The contact of two triangles, for many pairs of few triangles: their planes are computed once, in
+// doubles with an error bound, and decide most pairs. Corners that are small integers, as those of
+// a lattice are, make the planes exact: they decide the neighbours in a planar facet too. All other
+// pairs are classified exactly. Private to geometry/ (it includes CGAL).
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class PairTester {
   PairTester(std::span<const Point> points, std::span<const Triangle> triangles)
       : points_(points), triangles_(triangles), classifier_(points) {}
 
-  /// What the corners of all triangles that are compared are measured from: one of this triangle's.
+  /// The point from which corners of all compared triangles are measured: a corner of this one.
   const Point& origin(Index triangle) const { return points_[triangles_[triangle][0]]; }
 
   PlaneTriangle plane_triangle(Index triangle, const Point& origin) const {
@@ -61,7 +61,7 @@ class PairTester {
     return true;
   }
 
-  /// The contact of a and b; any that is no intersection stands for the others that are none.
+  /// The contact of a and b; one class that is no intersection stands for all that are none.
   ContactClass contact(const PlaneTriangle& a, const PlaneTriangle& b) const {
     std::size_t common = 0;
     std::size_t in_a = 0;  // a common vertex; with three of them, the sums do not matter

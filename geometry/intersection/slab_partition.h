@@ -15,8 +15,8 @@
 
 namespace watertight::geometry {
 
-/// What one part holds. Pairs are either all within `first`, when `is_within`, or those of one
-/// member of `first` and one of `second`.
+/// The members of one part. Its pairs are all within `first`, when `is_within`, or else each has
+/// one member of `first` and one of `second`.
 template <std::size_t D>
 struct PartMembers {
   std::span<const BoxMember<D>> first;
@@ -30,8 +30,8 @@ struct PartMembers {
   }
 };
 
-/// Parallel planes across one direction: slab s holds the values v with
-/// planes[s] <= v < planes[s + 1], the first and last slab whatever lies outside.
+/// Parallel planes across one direction: slab s holds the values v with planes[s] <= v < planes[s +
+/// 1]; the first and the last slab also hold all values outside.
 struct Slabs {
   static constexpr std::size_t kMost = 16;
   std::size_t axis = 0;

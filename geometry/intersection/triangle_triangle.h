@@ -12,9 +12,9 @@
 
 namespace watertight::geometry {
 
-/// What two triangles have in common. The first three are how the triangles of a boundary may
-/// meet; each of the others is an intersection in the sense of the paper, section 3.2: the common
-/// part is not a face of both. Ordered by severity.
+/// The common part of two triangles. The triangles of a boundary may meet in the first three ways;
+/// each of the others is an intersection in the sense of the paper, section 3.2: the common part is
+/// not a face of both. Ordered by severity.
 enum class ContactClass : std::uint8_t {
   disjoint = 0,
   shared_vertex,     // exactly one vertex of both (one index)
@@ -33,7 +33,7 @@ enum class ContactClass : std::uint8_t {
 /// The class as lower-case words, e.g. "vertex-edge".
 std::string_view to_string(ContactClass contact);
 
-/// True for what the triangles of a boundary must not do.
+/// True for a contact that the triangles of a boundary must not have.
 inline bool is_intersection(ContactClass contact) { return contact > ContactClass::shared_edge; }
 
 /// Classifies two triangles. Vertices with one index are one vertex; equal points under different

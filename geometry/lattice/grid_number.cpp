@@ -182,7 +182,7 @@ double nearest_double(const WideNumber& decimal) {
   double value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc::result_out_of_range) return value + 0.0;
-  // Too large or too small: the exponent tells which.
+  // The exponent shows whether the number is too large or too small.
   const bool is_large = decimal.exponent > 0;
   const double magnitude = is_large ? std::numeric_limits<double>::infinity() : 0.0;
   return decimal.mantissa < 0 && is_large ? -magnitude : magnitude;

@@ -187,8 +187,8 @@ LatticePoints points_on(const Axes& axes, const Grids& grids, LatticeKind kind) 
 }
 
 /// The normal form on a decimal grid, if there is one; a function of the values alone. Forms with
-/// one step for all axes keep the shape of the solid, so a step of its own that is no power of ten
-/// comes last.
+/// one step for all axes keep the shape of the solid, so a step for each axis that is no power of
+/// ten comes last.
 std::optional<LatticePoints> on_decimal_grid(const Axes& axes) {
   const Grids common = common_power_grid(axes, kDecimal);
   if (fits(axes, common, kCompactEnd)) return points_on(axes, common, LatticeKind::decimal);
@@ -308,7 +308,7 @@ Status check_transform(const Transform& transform) {
   return Done{};
 }
 
-/// Measures and boxes are doubles: a solid beyond them has none.
+/// Measures and boxes are doubles: a solid beyond the range of doubles has none.
 Status check_world(const LatticePoints& points) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto less = [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; };
@@ -317,14 +317,15 @@ Status check_world(const LatticePoints& points) {
     if (least == points.points.end()) break;
     if (!std::isfinite(points.lattice.world((*least)[axis], axis)) ||
         !std::isfinite(points.lattice.world((*most)[axis], axis))) {
-      return Error{ErrorCode::limit_exceeded, "a transformed coordinate exceeds the doubles"};
+      return Error{ErrorCode::limit_exceeded,
+                   "a transformed coordinate is beyond the range of doubles"};
     }
   }
   return Done{};
 }
 
-/// The transformed integers as nearest doubles: for origins that no decimal of 18 digits tells from
-/// their neighbours.
+/// The transformed integers as nearest doubles: for origins that a decimal of 18 digits cannot
+/// distinguish from their neighbours.
 Result<LatticePoints> rounded_transform(std::span<const std::array<std::int64_t, 3>> vertices,
                                         const Transform& transform) {
   std::vector<std::array<double, 3>> doubles(vertices.size());
@@ -339,7 +340,8 @@ Result<LatticePoints> rounded_transform(std::span<const std::array<std::int64_t,
                 : nearest_double({Wide{scale.mantissa} * vertices[i][axis], scale.exponent}) +
                       nearest_double({translate.mantissa, translate.exponent});
       if (!std::isfinite(doubles[i][axis])) {
-        return Error{ErrorCode::limit_exceeded, "a transformed coordinate exceeds the doubles"};
+        return Error{ErrorCode::limit_exceeded,
+                     "a transformed coordinate is beyond the range of doubles"};
       }
     }
   }
@@ -390,7 +392,7 @@ Result<LatticePoints> lattice_of_decimals(std::span<const std::array<GridNumber,
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = nearest_double({normal[i][axis].mantissa, normal[i][axis].exponent});
       if (!std::isfinite(value)) {
-        return Error{ErrorCode::limit_exceeded, "a coordinate exceeds the doubles"};
+        return Error{ErrorCode::limit_exceeded, "a coordinate is beyond the range of doubles"};
       }
       doubles[i][axis] = value;
       has_changed = has_changed || shortest_decimal(value) != normal[i][axis];

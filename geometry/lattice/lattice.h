@@ -87,8 +87,8 @@ struct LatticePoints {
   /// Indices of points whose source digits did not fit and were rounded (finding 'coordinates
   /// rounded'); empty for nearly every source.
   std::vector<Index> rounded;
-  /// The digits of the whole's place did not fit: it lies up to half a unit of the 18th digit of
-  /// the lattice's origin beside its place, and its shape is exact.
+  /// The origin needs more than 18 digits and was rounded: the whole is moved by at most half a
+  /// unit of the 18th digit, and its shape is exact.
   bool is_origin_rounded = false;
 };
 
@@ -120,9 +120,9 @@ Result<LatticePoints> lattice_of_decimals(std::span<const std::array<GridNumber,
 Result<LatticePoints> lattice_of_doubles(std::span<const std::array<double, 3>> vertices);
 
 /// The integers that `points` are under `transform`: the inverse of lattice_of_integers. An origin
-/// that lattice_of_integers would have rounded so stands for the integer it was made of. On binary
-/// and float64 lattices a coordinate stands for its shortest decimal.
-/// Errors: malformed if a point is not on the transform's grid.
+/// that lattice_of_integers rounded stands for the integer from which it was made. On binary and
+/// float64 lattices a coordinate stands for its shortest decimal. Errors: malformed if a point is
+/// not on the transform's grid.
 Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& lattice,
                                                                 std::span<const Point> points,
                                                                 const Transform& transform);

@@ -157,7 +157,7 @@ class AxisIntegers {
   }
 
  private:
-  /// The decimal that such a coordinate stands for is its shortest one.
+  /// A coordinate of a binary or float64 lattice stands for its shortest decimal.
   std::optional<std::int64_t> of_shortest(double coordinate) const {
     const double world = lattice_.world(coordinate, static_cast<int>(axis_));
     if (!std::isfinite(world)) return std::nullopt;
@@ -165,7 +165,7 @@ class AxisIntegers {
                          translate_);
   }
 
-  /// Distances from a rounded origin are exact.
+  /// The distances of points from a rounded origin are exact.
   std::optional<std::int64_t> from_first(double coordinate) const {
     const BigDecimal distance =
         big_product(from_grid(lattice_.step[axis_], LatticeKind::decimal), from_double(coordinate));
@@ -259,7 +259,9 @@ Result<std::vector<std::array<std::int64_t, 3>>> integers_under(const Lattice& l
       return Error{ErrorCode::malformed, "a transform's scale must be positive"};
     }
   }
-  if (!lattice.is_sane()) return Error{ErrorCode::malformed, "the lattice is not one"};
+  if (!lattice.is_sane())
+    return Error{ErrorCode::malformed,
+                 "the lattice has a step that is not positive or an exponent out of range"};
   const std::array axes{AxisIntegers(lattice, 0, transform), AxisIntegers(lattice, 1, transform),
                         AxisIntegers(lattice, 2, transform)};
   std::vector<std::array<std::int64_t, 3>> integers(points.size());

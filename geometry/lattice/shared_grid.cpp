@@ -11,7 +11,8 @@
 namespace watertight::geometry {
 namespace {
 
-/// Coordinates on the grid differ by less; one bit is left for the rounding of its origin.
+/// Coordinates on the grid differ by less than 2^52: one bit is left for the rounding of its
+/// origin.
 constexpr unsigned kSpanBits = 52;
 constexpr double kCoordinateEnd = 9007199254740992.0;  // 2^53
 constexpr std::size_t kOriginDigits = 18;
@@ -113,7 +114,7 @@ struct WorldGrid {
   std::int64_t exponent = 0;
   BigInteger origin;  // times 10^exponent
 
-  /// value * 10^from on the grid, rounded to the nearest; finer values than the grid's only.
+  /// value * 10^from on the grid, rounded to the nearest; only for values finer than the grid.
   double coordinate(const BigInteger& value, std::int64_t from) const {
     if (from >= exponent) {
       return BigInteger(big_mantissa_at({value, from}, exponent) - origin).get_d();
@@ -141,7 +142,7 @@ WorldGrid grid_of(const std::vector<WorldAxis>& axes, const std::vector<Range>& 
   WorldGrid grid{exponent + dropped, floor_quotient(low, big_power(10, dropped))};
   const BigInteger magnitude = abs(grid.origin);
   const std::size_t digits = magnitude.get_str().size();
-  if (digits > kOriginDigits) {  // the lattice's origin has no more
+  if (digits > kOriginDigits) {  // a lattice's origin has no more digits
     const BigInteger unit = big_power(10, static_cast<std::int64_t>(digits - kOriginDigits));
     grid.origin = floor_quotient(grid.origin, unit) * unit;
   }
@@ -183,10 +184,10 @@ struct SharedGrid::World {
 SharedGrid::SharedGrid(std::vector<StandingSolid> solids)
     : solids_(std::move(solids)), boxes_(solids_.size()), rounded_axes_(solids_.size()) {}
 
-std::optional<SharedGrid> SharedGrid::of_one_frame(std::vector<StandingSolid> solids) {
+std::optional<SharedGrid> SharedGrid::of_one_placement(std::vector<StandingSolid> solids) {
   SharedGrid grid(std::move(solids));
   if (grid.solids_.empty() || !have_one_placement(grid.solids_)) return std::nullopt;
-  if (!grid.share_frame()) return std::nullopt;
+  if (!grid.share_placement()) return std::nullopt;
   return grid;
 }
 
@@ -198,11 +199,11 @@ std::optional<SharedGrid> SharedGrid::in_world(std::vector<StandingSolid> solids
 
 bool SharedGrid::is_turned_over(std::size_t solid) const {
   const Placement* placement = solids_[solid].placement;
-  return frame_ == nullptr && placement != nullptr && determinant_sign(*placement) < 0;
+  return placement_ == nullptr && placement != nullptr && determinant_sign(*placement) < 0;
 }
 
-bool SharedGrid::share_frame() {
-  frame_ = solids_.front().placement;
+bool SharedGrid::share_placement() {
+  placement_ = solids_.front().placement;
   std::vector<Lattice> lattices;
   for (const StandingSolid& standing : solids_) {
     const Lattice& lattice = standing.solid->lattice();
@@ -261,7 +262,7 @@ bool SharedGrid::put_in_world() {
 
 std::array<double, 3> SharedGrid::world(const Point& p) const {
   const std::array<double, 3> point = lattice_.world(p);
-  return frame_ == nullptr ? point : place(*frame_, point);
+  return placement_ == nullptr ? point : place(*placement_, point);
 }
 
 std::optional<std::vector<Point>> SharedGrid::vertices(std::size_t index) const {

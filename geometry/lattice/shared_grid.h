@@ -27,7 +27,7 @@ class SharedGrid {
   /// For solids without placements, or that share one placement: the grid of their lattices, in
   /// the world or in the template, exactly. Nothing for others, and when their lattices have no
   /// CommonLattice. Cost: linear in the solids.
-  static std::optional<SharedGrid> of_one_frame(std::vector<StandingSolid> solids);
+  static std::optional<SharedGrid> of_one_placement(std::vector<StandingSolid> solids);
 
   /// The solids where they stand, by exact decimals, on the coarsest grid of powers of ten that
   /// holds them; where that has 2^52 steps or more along an axis, vertices are rounded to the
@@ -36,8 +36,8 @@ class SharedGrid {
   static std::optional<SharedGrid> in_world(std::vector<StandingSolid> solids);
 
   const Lattice& lattice() const { return lattice_; }
-  /// From a template's frame to the world; null if the grid is in the world.
-  const Placement* frame() const { return frame_; }
+  /// From a template's coordinates to the world; null if the grid is in the world.
+  const Placement* placement() const { return placement_; }
   /// A point of the grid in the world, rounded.
   std::array<double, 3> world(const Point& p) const;
 
@@ -53,14 +53,14 @@ class SharedGrid {
  private:
   struct World;
   explicit SharedGrid(std::vector<StandingSolid> solids);
-  bool share_frame();
+  bool share_placement();
   bool put_in_world();
 
   std::vector<StandingSolid> solids_;
   Lattice lattice_;
-  std::optional<CommonLattice> common_;  // of one frame
+  std::optional<CommonLattice> common_;  // of one placement
   std::shared_ptr<const World> world_;   // of other grids: from each solid to the grid
-  const Placement* frame_ = nullptr;
+  const Placement* placement_ = nullptr;
   std::vector<Box> boxes_;
   std::vector<std::array<bool, 3>> rounded_axes_;
 };

@@ -54,8 +54,8 @@ struct InlinePredicates {
     return exact_orient2d({a[first], a[second]}, {b[first], b[second]}, {c[first], c[second]});
   }
 
-  /// Of the sum of the terms' sizes. On any way through the determinant there are at most 8
-  /// roundings of 2^-53, and a few more in the sum of sizes: twice as many are allowed for.
+  /// Bound of the error relative to the sum of the terms' sizes. A term passes through at most 8
+  /// roundings of 2^-53, the sum of sizes through a few more: twice as many are allowed.
   static constexpr double kRelativeError = 16.0 / 9007199254740992.0;
   /// More than a product can lose by underflow (2^-1075).
   static constexpr double kUnderflow = 1e-200;
@@ -80,8 +80,8 @@ struct InlinePredicates {
  private:
   static constexpr double kLongest = 1099511627776.0;  // 2^40
 
-  /// The sign of `value` if rounding cannot have changed it, else 0. `factor` is the size of what
-  /// products of differences are multiplied with.
+  /// The sign of `value` if rounding cannot have changed it, else 0. `factor` is the size of the
+  /// numbers by which products of differences are multiplied.
   static int certain_sign(double value, double size, double factor) {
     constexpr double kLargest = 1e300;  // nothing has overflowed
     const double error = kRelativeError * size + kUnderflow * factor + kUnderflow;

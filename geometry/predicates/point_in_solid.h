@@ -28,7 +28,7 @@ TrianglePoint triangle_point(const std::array<Point, 3>& corners, int exponent,
                              std::uint64_t number);
 std::uint64_t triangle_points(int exponent);
 
-/// The point as doubles if they hold it exactly and this can be told quickly (integers that are not
+/// The point as doubles if they hold it exactly and a quick test shows this (integers that are not
 /// too large, as on nearly every lattice).
 std::optional<Point> exact_doubles(const TrianglePoint& point);
 

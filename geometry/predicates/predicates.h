@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The exact decisions of this program. Each is correct for any finite doubles (CGAL's filtered
-// predicates on the EPICK kernel). Never call them with a repeated point: the answer is right but
-// the exact zero misses the filter and costs a hundred times more.
+// The exact decisions of this program. Each is correct for any finite doubles: a filter in doubles
+// decides most calls, 128-bit integers those with small integers, CGAL the rest. An exact zero is
+// right but misses the filter, so callers leave out calls with a repeated point.
 #pragma once
 
 #include "geometry/point.h"

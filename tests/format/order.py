@@ -86,7 +86,7 @@ class Order:
             result.append(place)
         result.append(self.starts)
         if not any(self.starts) and all(part == sorted(part) for part in result[:4]):
-            raise Malformed("an order that orders nothing")
+            raise Malformed("the source order equals the canonical order, which the format leaves out")
         return result
 
     def read_shell(self, shell):

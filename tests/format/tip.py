@@ -8,7 +8,7 @@ MEMORY = 0.995
 
 
 def tamed(x):
-    """Within the range of coordinates, also if it is no number."""
+    """Clamped to +-9e15, the range of coordinates; NaN becomes -9e15."""
     return min(x, 9e15) if x > -9e15 else -9e15
 
 

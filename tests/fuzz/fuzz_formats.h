@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What every reader promises on any bytes: an Error that says something, or a document that can be
+// The promise of every reader on any bytes: an Error that says something, or a document that can be
 // written and then reads as the same solids.
 #pragma once
 

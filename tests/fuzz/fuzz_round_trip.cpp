@@ -2,7 +2,7 @@
 //
 // libFuzzer harness of the round trip. The bytes are the choices of a generator: they fill a small
 // grid with cells, move its corners, merge coplanar facets or split them, and choose a lattice.
-// What comes of it must come back in every mode that takes it.
+// Every solid made so must come back in every mode that takes it.
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -136,7 +136,7 @@ std::vector<Golden> goldens() {
   add("torus", torus(9, 5));
   add("terrain", random_terrain(random, 5));
   add("spire", spire());
-  // What the others leave out of a decoder, found by its lines that they did not run.
+  // These run the lines of the decoder that the others do not run.
   const auto add_one = [&](const std::string& name, const OrientedBoundary& boundary, Mode mode) {
     all.push_back({name + "-" + std::string(codec::to_string(mode)), boundary, {}, mode});
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a mode must keep of every solid it encodes. For the unit test's slice, bench/codec and the
-// fuzzing harness.
+// The properties that a mode must keep of every solid. For the unit test's slice, bench/codec and
+// the fuzzing harness.
 #pragma once
 
 #include <map>

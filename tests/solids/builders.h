@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Shapes made by formula and by seed, on integer coordinates: shells that are valid by
-// construction, and shapes whose truth an oracle must tell.
+// construction, and shapes whose truth an oracle must find.
 #pragma once
 
 #include <string>

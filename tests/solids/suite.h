@@ -12,7 +12,7 @@
 
 namespace watertight::solids {
 
-/// What is asked for, and so what can be expected.
+/// The question, and with it the answer that can be expected.
 enum class Ask : std::uint8_t {
   rung_zero,  // the exact tests and the canonical Delaunay tetrahedralization decide
   engines,    // needs the engines' rungs

@@ -101,7 +101,7 @@ TEST_CASE("the suite's files are what the builders make, and read as files they 
              text_of(truth.errors) + "," + text_of(truth.warnings) + "," +
              std::string(proof_of(truth.ask)) + "\n";
     const Solid solid = read_solid(text, Format::city_json);
-    // What the engines decide is decided above; here only that the file says the same.
+    // The engines' verdicts are tested above; here only that the file says the same.
     const bool is_decided = truth.ask == Ask::engines;
     if (!is_decided || solid.shell_count() == 1) {
       check(truth, report_of(solid, is_decided ? Ask::boundary : truth.ask));

@@ -117,7 +117,8 @@ TEST_CASE("the engines prove solids whose rings touch inside edges") {
   CHECK(proven > 20);
 }
 
-TEST_CASE("a T-junction at a touch is told with the facet, the vertex and the rings as submitted") {
+TEST_CASE(
+    "a T-junction at a touch is reported with the facet, the vertex and the rings as submitted") {
   const TouchingRings touching = touching_rings()[0];
   REQUIRE(touching.name == "pit-at-edge-plain-across");
   const Solid solid = solid_of(touching.shape, millimetres());

@@ -71,7 +71,7 @@ TEST_CASE("the bridge encodes a valid solid and decodes it to the same bytes") {
   CHECK(info.text().find("\"bytes\":" + std::to_string(blob.value.size)) != std::string::npos);
 }
 
-TEST_CASE("the bridge tells valid from invalid and names the findings") {
+TEST_CASE("the bridge separates valid from invalid and names the findings") {
   CHECK(call(wt_bridge_is_valid, cube()).value.truth);
   const Reply open = call(wt_bridge_is_valid, cube(1));
   CHECK(open.state().empty());

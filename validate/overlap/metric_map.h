@@ -25,7 +25,7 @@ class MetricMap {
   /// True if each lattice axis keeps its direction, so that two different points of the grid are at
   /// least the shortest step apart.
   bool keeps_axes() const { return !matrix_; }
-  /// What was assumed of the units, "" when nothing.
+  /// The assumption about the units, "" when none was made.
   const std::string& note() const { return note_; }
 
  private:

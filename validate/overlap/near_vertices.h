@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points that are nearly at the place of another: measured, for warning 801 and for snapping.
-// Internal to validate/.
+// Points that nearly coincide with another: measured, for warning 801 and for snapping. Internal to
+// validate/.
 #pragma once
 
 #include <array>

@@ -35,7 +35,7 @@ Metres triangle_normal(const Metres& a, const Metres& b, const Metres& c) {
   return unit_normal(difference(b, a), difference(c, a));
 }
 
-/// Of boundaries that overlap: the box that both boxes have in common.
+/// The box that the boxes of two overlapping boundaries have in common.
 Box common_box(const RegionSurface& first, const RegionSurface& second) {
   Box common;
   for (int axis = 0; axis < 3; ++axis) {

@@ -17,9 +17,9 @@
 // (3) Then the insides meet if and only if a triangle of Y is in, or an arbitrary triangle of X is:
 //     the inside of X is connected, so it holds a point of Y's boundary (and a triangle of Y there
 //     is in) or lies inside Y as a whole (and all triangles of X are in).
-// (4) Every point of a triangle that is in or out, off the other boundary, tells which it is.
-// Triangles
-//     that do not meet the other boundary share their answer with all that have a corner of them.
+// (4) Every point of such a triangle that is not on the other boundary shows whether it is in or
+//     out. Triangles that do not meet the other boundary share their answer with all triangles that
+//     have a corner of them.
 //
 // Nothing here needs the inside of Y to be connected or bounded, so the complement of Y (its
 // triangles turned) can take its place: X lies in Y when X does not meet Y's complement. The
@@ -183,7 +183,8 @@ void Comparison::note(geometry::ContactClass contact, std::size_t i, std::size_t
     }
   } else if (contact == geometry::ContactClass::vertex_face ||
              contact == geometry::ContactClass::edge_face) {
-    // The one whose inside is met has corners on both sides of the other, which has not.
+    // The triangle whose inside is met lies in one plane, on both sides of which the other has
+    // corners.
     const Sides of_first = sides_to(b, a);
     const bool is_second_met = !of_first.are_both();
     const bool is_inner = is_second_met ? of_first.has_inner : sides_to(a, b).has_inner;
@@ -275,7 +276,7 @@ class TriangleSides {
       }
       return location;
     }
-    // Every point off the other boundary tells; corners are cheaper than points inside.
+    // Every point off the other boundary decides; corners are cheaper than points inside.
     for (const Index vertex : side_.surface->triangles()[triangle]) {
       const auto [place, is_new] = touched_.try_emplace(vertex, Location::boundary);
       if (is_new) place->second = other_.locate(side_.surface->vertices()[vertex]);

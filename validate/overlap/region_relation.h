@@ -59,7 +59,7 @@ RegionSurface surface_of_shells(const Solid& solid, std::span<const Point> verti
 /// True if no point of the inner closed box is outside the outer one.
 bool contains(const Box& outer, const Box& inner);
 
-/// Questions beside whether the insides meet. Each answer costs time.
+/// Questions in addition to whether the insides meet. Each answer costs time.
 struct RegionQuestions {
   bool is_first_inside = false;
   bool is_second_inside = false;

@@ -12,7 +12,7 @@ struct Passage {
   Index vertex, before, after, corner;
 };
 
-/// Of all corners at vertices that the facet's rings pass more than once, by vertex.
+/// The passages of all corners at vertices that the facet's rings pass more than once, by vertex.
 std::vector<Passage> shared_passages(const Solid& solid, Index facet) {
   std::vector<Passage> list;
   const IndexRange rings = solid.rings_of(facet);

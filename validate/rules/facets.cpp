@@ -93,7 +93,7 @@ WidestPair widest_pair(const std::vector<Vector>& normals) {
     const double cosine = dot(normals[a], normals[b]);
     if (cosine < widest.cosine) widest = {cosine, std::min(a, b), std::max(a, b)};
   };
-  // A first guess: twice to the farthest of the last.
+  // A first guess: the normal farthest from the first one, then the one farthest from that.
   for (int round = 0; round < 2; ++round) {
     const std::size_t from = widest.b;
     for (std::size_t i = 0; i < normals.size(); ++i) compare(from, i);

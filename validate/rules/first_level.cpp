@@ -45,7 +45,7 @@ Codes of_shell(const Codes& codes) {
   return first_of(codes, {kMultipleComponents, kShellNotClosed, kShellSelfIntersection});
 }
 
-/// What is known of one shell.
+/// The codes of one shell.
 struct ShellCodes {
   std::map<Index, Codes> facets;
   bool has_folds = false;

@@ -233,7 +233,7 @@ class InteriorExaminer {
         "with the diagonal between vertices " +
         std::to_string(examined_.submitted_vertex(diagonal.left)) + " and " +
         std::to_string(examined_.submitted_vertex(diagonal.right)) +
-        (parts.count > 1 ? " the interior would be in parts" : " the interior would hang together");
+        (parts.count > 1 ? " the interior would be in parts" : " the interior would be connected");
     examined_.findings.add(std::move(finding));
   }
 

@@ -4,6 +4,7 @@
 // the rings of a facet lie to each other (201, 202, 206, 207). Exact, in the facet's projection.
 #include <algorithm>
 
+#include "base/quantity.h"
 #include "tessellate/ring_problems.h"
 #include "validate/rules/rules.h"
 
@@ -34,7 +35,7 @@ bool check_points(ExaminedSolid& examined, Index facet) {
                              .measured = static_cast<double>(ring.size()),
                              .limit = 3,
                              .unit = "points",
-                             .detail = "the ring has " + std::to_string(ring.size()) + " points"});
+                             .detail = "the ring has " + quantity(ring.size(), "point")});
       is_good = false;
       continue;
     }
@@ -90,7 +91,7 @@ Finding finding_of(const ExaminedSolid& examined, Index facet,
   return finding;
 }
 
-/// What is known of a facet without a triangulation before the reason is looked for.
+/// Reports a facet without a triangulation for which the search found no closer reason.
 void report_no_region(ExaminedSolid& examined, Index facet) {
   examined.findings.add({.code = examined.solid().rings_of(facet).size() == 1
                                      ? kRingSelfIntersection

@@ -24,7 +24,7 @@ void check_closed_rings(ExaminedSolid& examined, std::span<const Index> unclosed
 /// 203, 204, 205, 208. Returns why a facet could not be measured, "" if all were.
 std::string check_facets(ExaminedSolid& examined);
 
-/// What is known of a shell's topology after check_shells.
+/// The facts about a shell's topology that check_shells establishes.
 struct ShellTopology {
   bool is_closed = false;    // every edge is met exactly twice
   bool is_manifold = false;  // edges and vertices
@@ -53,7 +53,7 @@ struct ShellContacts {
   std::vector<ShellPair> intersecting;  // facets cross or overlap; sorted
   std::vector<bool> is_touching;        // per shell: has a point in common with another
   std::string incomplete;               // why the search did not finish; "" when it did
-  std::vector<TrianglePair> found;      // of the findings, all of each pair of facets; sorted
+  std::vector<TrianglePair> found;      // all of each pair of facets with a finding; sorted
 };
 
 /// 306 and 401: facets that intersect. Facets of different shells may touch in points and edges;

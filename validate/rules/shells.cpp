@@ -5,6 +5,7 @@
 // they are not.
 #include <map>
 
+#include "base/quantity.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "validate/edge_table.h"
@@ -39,8 +40,8 @@ class ShellExaminer {
   void report_junction(const TJunction& junction);
   void report_border(const Border& border);
   void link_wedges(geometry::DisjointSets& fans, Index first_corner, Index last_corner);
-  void check_umbrellas();
-  void report_pinch(Index vertex, Index facet, std::size_t umbrellas);
+  void check_fans();
+  void report_pinch(Index vertex, Index facet, std::size_t fans);
   std::string_view interior_connected();
   void check_components();
   void check_orientation();
@@ -100,7 +101,7 @@ void ShellExaminer::check_facet_count() {
                           .measured = static_cast<double>(facets_.size()),
                           .limit = 4,
                           .unit = "facets",
-                          .detail = "the shell has " + std::to_string(facets_.size()) + " facets"});
+                          .detail = "the shell has " + quantity(facets_.size(), "facet")});
 }
 
 void ShellExaminer::sort_edges() {
@@ -155,8 +156,7 @@ void ShellExaminer::report_border(const Border& border) {
                           .measured = static_cast<double>(border.edges.size()),
                           .limit = 0,
                           .unit = "edges",
-                          .detail = "a border of " + std::to_string(border.edges.size()) +
-                                    (border.edges.size() == 1 ? " edge" : " edges") +
+                          .detail = "a hole: a border of " + quantity(border.edges.size(), "edge") +
                                     " that only one facet uses",
                           .uncertain = is_faulty(border.edges)});
 }
@@ -169,7 +169,7 @@ void ShellExaminer::check_open() {
   for (const Border& border : result.borders) report_border(border);
   if (!result.is_complete) {
     examined_.findings.skip({kShellNotClosed},
-                            "T-junctions were not all looked for: too many "
+                            "not all T-junctions were looked for: too many "
                             "open edges in shell " +
                                 std::to_string(shell_));
   }
@@ -194,9 +194,9 @@ void ShellExaminer::link_wedges(geometry::DisjointSets& fans, Index first_corner
   }
 }
 
-/// Ring edges around a vertex, linked by the facets between them, form one umbrella or several. The
+/// Ring edges around a vertex, linked by the facets between them, form one fan or several. The
 /// edge that leaves corner c is number 2 c + 1, the one that arrives there 2 c.
-void ShellExaminer::check_umbrellas() {
+void ShellExaminer::check_fans() {
   const auto& offsets = solid_.arrays().ring_offsets;
   const auto& ring_vertices = solid_.arrays().ring_vertices;
   const Index first_corner = offsets[solid_.arrays().facet_offsets[facets_.begin]];
@@ -218,7 +218,7 @@ void ShellExaminer::check_umbrellas() {
   });
   // Every fan lies around one vertex.
   struct Around {
-    Index umbrellas = 0;
+    Index fans = 0;
     Index facet = kNone;  // the first
   };
   std::vector<Around> around(edges_.vertices().size());
@@ -229,27 +229,27 @@ void ShellExaminer::check_umbrellas() {
     here.facet = std::min(here.facet, use.facet);
     if (is_seen[root]) continue;
     is_seen[root] = true;
-    ++here.umbrellas;
+    ++here.fans;
   }
   for (std::size_t i = 0; i < around.size(); ++i) {
-    if (around[i].umbrellas < 2) continue;
+    if (around[i].fans < 2) continue;
     const Index vertex = edges_.vertices()[i];
     if (std::binary_search(crowded_.begin(), crowded_.end(), vertex)) continue;
-    report_pinch(vertex, around[i].facet, around[i].umbrellas);
+    report_pinch(vertex, around[i].facet, around[i].fans);
   }
 }
 
-void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t umbrellas) {
+void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t fans) {
   topology_.is_manifold = false;
   Finding finding;
   finding.code = kNonManifold;
   finding.place = examined_.at_facet(facet);
   finding.place.vertex = examined_.submitted_vertex(vertex);
   finding.witness = examined_.world(vertex);
-  finding.measured = static_cast<double>(umbrellas);
+  finding.measured = static_cast<double>(fans);
   finding.limit = 1;
-  finding.unit = "umbrellas";
-  finding.detail = std::to_string(umbrellas) + " umbrellas of facets touch in a vertex";
+  finding.unit = "groups";
+  finding.detail = std::to_string(fans) + " separate groups of facets meet in one vertex";
   if (topology_.is_closed) {
     finding.detail += "; interior_connected: " + std::string(interior_connected());
   }
@@ -257,8 +257,8 @@ void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t umbrella
   examined_.findings.add(std::move(finding));
 }
 
-/// For a closed shell that touches itself in vertices: parts that hang together over edges each
-/// bound a region. One part leaves the interior connected; several do when all but one are turned
+/// For a closed shell that touches itself in vertices: each part that is connected over edges
+/// bounds a region. One part leaves the interior connected; several do when all but one are turned
 /// inward (cavities that touch the outside in a vertex).
 std::string_view ShellExaminer::interior_connected() {
   if (!interior_connected_.empty()) return interior_connected_;
@@ -283,7 +283,7 @@ std::string_view ShellExaminer::interior_connected() {
 void ShellExaminer::check_components() {
   geometry::DisjointSets vertices(edges_.vertices().size());
   for (const EdgeUse& use : uses_) vertices.join(number_of(use.low), number_of(use.high));
-  // A ring of a facet may hang together with the exterior ring by the facet alone.
+  // Only the facet may connect an interior ring of a facet to its exterior ring.
   std::vector<Index> anchor(facets_.size(), kNone);
   for (const EdgeUse& use : uses_) {
     Index& first = anchor[local(use.facet)];
@@ -310,8 +310,8 @@ void ShellExaminer::check_components() {
     finding.witness = examined_.submitted().world(finding.place.vertex);
     finding.measured = static_cast<double>(part->second.size());
     finding.unit = "facets";
-    finding.detail = "a part of " + std::to_string(part->second.size()) +
-                     " facets shares no vertex with the rest of the shell";
+    finding.detail = "a part of " + quantity(part->second.size(), "facet") +
+                     " shares no vertex with the rest of the shell";
     finding.uncertain = is_shell_faulty_;
     examined_.findings.add(std::move(finding));
   }
@@ -395,7 +395,7 @@ ShellTopology ShellExaminer::examine() {
   check_facet_count();
   if (uses_.empty()) return topology_;
   sort_edges();
-  for (const auto check : {&ShellExaminer::check_open, &ShellExaminer::check_umbrellas,
+  for (const auto check : {&ShellExaminer::check_open, &ShellExaminer::check_fans,
                            &ShellExaminer::check_components, &ShellExaminer::check_orientation}) {
     if (examined_.is_cancelled()) return {};
     (this->*check)();

@@ -17,7 +17,7 @@ namespace {
 /// Points located and boxes compared while shells are located against each other: a few seconds of
 /// work.
 constexpr std::uint64_t kMostLooks = 10'000'000;
-/// Seven points inside a triangle are located where its corners tell nothing.
+/// Seven points inside a triangle are located where its corners decide nothing.
 constexpr int kPointExponent = 6;
 
 std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shell) {
@@ -141,7 +141,8 @@ void SolidExaminer::check_orientation() {
   }
 }
 
-/// Small surfaces are gone through; a tree is made of others when they are first asked about.
+/// Tests the triangles of a small surface one by one, and makes a tree for a large one at first
+/// use.
 Location SolidExaminer::locate(const Point& p, Index around) {
   constexpr std::size_t kSmall = 64;
   if (!boxes_[around].overlaps(Box{p, p})) return Location::outside;
@@ -161,9 +162,9 @@ Location SolidExaminer::locate_inside(const geometry::TrianglePoint& point, Inde
       point, examined_.solid().vertices(), triangles_of(examined_, around)))};
 }
 
-/// For shells that have no point in common, or of which one has defects of its own. Where `shell`
-/// lies to `around`, by its points that are not on `around`: by the first when the
-/// shells have no point in common, else by all. Requires shells whose facets neither cross nor
+/// Where `shell` lies to `around`, for shells that have no point in common, or of which one has
+/// defects of its own. Points of `shell` that are not on `around` decide: the first one when the
+/// shells have no point in common, else all. Requires shells whose facets neither cross nor
 /// overlap.
 SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
   const std::span<const Point> vertices = examined_.solid().vertices();

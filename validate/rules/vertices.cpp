@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity.h"
 #include "validate/overlap/near_vertices.h"
 #include "validate/planarity.h"
 #include "validate/rules/rules.h"
@@ -12,7 +13,7 @@
 namespace watertight::validate {
 namespace {
 
-/// Closer vertices are worth a warning: the snap tolerance that val3dity takes by default.
+/// Vertices that are closer than val3dity's default snap tolerance are worth a warning.
 constexpr double kNearMetres = 0.001;
 /// Facets narrower than that are worth a warning: the same length, across the facet.
 constexpr double kSliverMetres = 0.001;
@@ -54,7 +55,7 @@ void check_near(ExaminedSolid& examined) {
   finding.limit = kNearMetres;
   finding.unit = std::string(1, 'm');
   finding.detail = std::to_string(near.points.size()) +
-                   " vertices are nearly at the place of another; these two are the closest";
+                   " vertices nearly coincide with another vertex; these two are the closest";
   examined.findings.add(std::move(finding));
 }
 
@@ -75,8 +76,7 @@ void check_unused(ExaminedSolid& examined, const geometry::UnusedVertices& left_
   finding.measured = static_cast<double>(count);
   finding.limit = 0;
   finding.unit = "vertices";
-  finding.detail = std::to_string(count) + (count == 1 ? " vertex is" : " vertices are") +
-                   " used by no ring; " +
+  finding.detail = quantity(count, "vertex is", "vertices are") + " used by no ring; " +
                    (left_out.count > 0 ? "the first is number " + std::to_string(left_out.first) +
                                              " of the file, counted from 0"
                                        : "this is the first");
@@ -128,15 +128,14 @@ void check_rounded(ExaminedSolid& examined, std::span<const Index> rounded) {
   finding.measured = static_cast<double>(rounded.size());
   finding.limit = 0;
   finding.unit = "vertices";
-  finding.detail = "the digits of " + std::to_string(rounded.size()) +
-                   (rounded.size() == 1 ? " vertex" : " vertices") +
+  finding.detail = "the digits of " + quantity(rounded.size(), "vertex", "vertices") +
                    " fit no grid and were rounded; this is the first";
   examined.findings.add(std::move(finding));
 }
 
 void report_rounded_origin(ExaminedSolid& examined) {
   examined.findings.add({.code = kCoordinatesRounded,
-                         .detail = "the place of the whole needs more than 18 digits and was "
+                         .detail = "the origin of the solid needs more than 18 digits and was "
                                    "rounded to 18; the shape is exact"});
 }
 

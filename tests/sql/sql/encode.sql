@@ -4,7 +4,7 @@ SELECT name, wt_encode(ewkb) = wt_encode(wt_decode(wt_encode(ewkb))) AS stable,
        wt_is_valid(wt_decode(wt_encode(ewkb))) AS valid,
        octet_length(wt_encode(ewkb)) < octet_length(ewkb) AS smaller
 FROM solids WHERE wt_is_valid(ewkb) ORDER BY name;
--- What PostGIS wrote comes back as PostGIS writes it, byte for byte.
+-- EWKB that PostGIS wrote comes back as PostGIS writes it, byte for byte.
 SELECT name, wt_decode(wt_encode(ewkb)) = ewkb AS identical
 FROM solids WHERE name IN ('postgis cube', 'pierced') ORDER BY name;
 SELECT name, info->>'version' AS version, info->>'srid' AS srid, info->>'shells' AS shells,

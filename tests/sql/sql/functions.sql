@@ -1,4 +1,4 @@
--- What the extension offers, and what it answers for a few solids.
+-- The functions of the extension, and their answers for a few solids.
 SELECT wt_version();
 SELECT p.oid::regprocedure AS function, provolatile, proisstrict, proparallel, procost,
        obj_description(p.oid, 'pg_proc') IS NOT NULL AS has_comment

@@ -20,7 +20,7 @@ SELECT wt_is_valid(schoenhardt());
 SELECT wt_encode(schoenhardt());
 SELECT wt_validate(schoenhardt());
 \set VERBOSITY default
--- What needs no helper is not touched by it.
+-- Calls that need no helper are not touched by it.
 SELECT wt_is_valid(ewkb) FROM solids WHERE name = 'hollow';
 
 \set hanging :folder /hanging

@@ -77,7 +77,7 @@ const std::string kCubeObj =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-TEST_CASE("a progress line tells the rate, and the time left where the whole is known") {
+TEST_CASE("a progress line shows the rate, and the time left where the whole is known") {
   CHECK(cli::progress_line("a", 100, 0.5, 10) ==
         "a [###############...............] 100 features  10/s  0:10 left");
   CHECK(cli::progress_line("a", 100, 0.01, 100) ==
@@ -86,7 +86,7 @@ TEST_CASE("a progress line tells the rate, and the time left where the whole is 
   CHECK(cli::progress_line("a", 0, 0.0, 0) == "a [..............................] 0 features  0/s");
 }
 
-TEST_CASE_METHOD(Fixture, "the exit status tells valid, invalid and broken input apart") {
+TEST_CASE_METHOD(Fixture, "the exit status separates valid, invalid and broken input") {
   write("good.city.jsonl", kValid);
   write("bad.city.jsonl", kInvalid);
   write("broken.city.json", "{\"type\":\"CityJSON\",");
@@ -423,7 +423,7 @@ TEST_CASE_METHOD(Fixture, "findings do not mix with a file on standard output") 
   CHECK(read("errors.txt").find("error 302") != std::string::npos);
 }
 
-TEST_CASE_METHOD(Fixture, "encode tells coordinates that had to be rounded") {
+TEST_CASE_METHOD(Fixture, "encode reports coordinates that had to be rounded") {
   std::string fine = kCubeObj;
   for (const std::string corner : {"v 0 0 1", "v 1 0 1", "v 1 1 1", "v 0 1 1"}) {
     fine.replace(fine.find(corner), corner.size(), corner + ".12345678901234567890123456789");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What hostile documents and careless command lines can do to the terminal and to files.
+// Hostile documents and careless command lines must not harm the terminal or files.
 #include <sys/wait.h>
 
 #include <catch2/catch_test_macros.hpp>

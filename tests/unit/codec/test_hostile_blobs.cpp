@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the decoder does with bytes that no encoder wrote. Every blob that decodes must be a
-// well-formed boundary that encodes again.
+// The decoder against bytes that no encoder wrote. Every blob that decodes must be a well-formed
+// boundary that encodes again.
 #include <catch2/catch_test_macros.hpp>
 #include <filesystem>
 #include <fstream>

@@ -203,7 +203,7 @@ void check_agreement(const Solid& solid, delaunay::EngineWorkers& workers, bool 
     return;
   }
   ++counts.meeting;
-  // What the exact tests spare the engines: whatever they make of it, no certificate accepts it.
+  // The exact tests spare the engines these solids: no certificate accepts any answer to them.
   const Solid merged = geometry::merge_equal_vertices(solid).solid;
   delaunay::LadderOptions options;
   options.seconds_per_rung = 0.5;

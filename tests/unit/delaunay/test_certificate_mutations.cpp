@@ -127,7 +127,7 @@ const std::vector<Proof>& proofs() {
 }
 
 /// Calls `change` with a copy of each proof's data and each of some positions below count(data).
-/// What it makes must be refused for one of the reasons. `change` returns false to leave one out.
+/// The changed data must be refused for one of the reasons. `change` returns false to skip one.
 template <class Count, class Change>
 void check_refused(const Refusals& reasons, Count count, Change change) {
   std::size_t changes = 0;
@@ -293,7 +293,7 @@ auto constrained_face(delaunay::Tetrahedralization& data, const geometry::Tetrah
 }
 
 TEST_CASE("certificate accepts a needless Steiner point inside a tetrahedron") {
-  // What the bubbles below start from is no damage by itself.
+  // The data from which the bubbles below start are accepted by themselves.
   for (const Proof& proof : proofs()) {
     delaunay::Tetrahedralization data = proof.data;
     REQUIRE(split(data, data.tetrahedra.size() / 2));

@@ -155,7 +155,7 @@ TEST_CASE("edges of different shells that cross in no vertex are named") {
   add_tetrahedron(shape, {{150, 40, 60}, {160, 40, 120}, {50, 100, 100}, {150, 100, 103}});
   const delaunay::LadderResult result = climb(shape, {});
   INFO(attempts(result));
-  CHECK(result.obstacle.find("cross in a point that is no vertex") != std::string::npos);
+  CHECK(result.obstacle.find("cross in a point that is not a vertex") != std::string::npos);
   CHECK(result.property == delaunay::CertificateRefusal::none);
 }
 

@@ -61,7 +61,7 @@ TEST_CASE("a sequence is read the same however its bytes arrive") {
   }
 }
 
-TEST_CASE("a sequence is told by its content when no name does") {
+TEST_CASE("a sequence is detected by its content when no name helps") {
   const std::string text = samples::sequence({samples::feature("a")});
   auto reader = formats::FeatureReader::open(in_pieces(text, 100), "");
   REQUIRE(reader);

@@ -199,7 +199,7 @@ TEST_CASE("GML: what no solid uses is not judged") {
                    "</g:MultiSurface></lod1MultiSurface></Road></cityObjectMember>"));
   CHECK(document.features.empty());
   REQUIRE(document.notes.size() == 1);
-  CHECK(document.notes[0] == "the document has no solids; 1 other geometries are passed over");
+  CHECK(document.notes[0] == "the document has no solids; 1 other geometry is passed over");
 }
 
 TEST_CASE("GML: positions by pos in Points, and by three numbers in coordinates") {
@@ -382,7 +382,7 @@ TEST_CASE("GML: parts of a building, and parts of parts, name the building") {
   CHECK(buildings == std::vector<std::string>{"b:b", "p:b", "q:b", "r:", "t:", "lone:"});
 }
 
-TEST_CASE("GML: the format is told by name and by the first bytes") {
+TEST_CASE("GML: the format is detected by name and by the first bytes") {
   for (const char* name : {"x.gml", "x.XML", "x.citygml"}) {
     CHECK(*formats::detect_format(name, {}) == Format::gml);
   }

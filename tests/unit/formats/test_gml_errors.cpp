@@ -16,7 +16,8 @@ Error solid_error(const std::string& members) {
 TEST_CASE("GML: two-dimensional positions are refused with their place") {
   const Error list = solid_error("\n\n" + member(polygon("0 0 0 1 1 0 0 0", " g:id=\"p\"")));
   CHECK(list.code == ErrorCode::unsupported);
-  CHECK(says(list, "line 3: a posList of 8 numbers, which is no multiple of 3: two-dimensional"));
+  CHECK(
+      says(list, "line 3: a posList of 8 numbers, which is not a multiple of 3: two-dimensional"));
   CHECK(says(list, "in Polygon 'p', in Solid 's', of object 'b7'"));
 
   const Error stated = solid_error(
@@ -30,7 +31,7 @@ TEST_CASE("GML: two-dimensional positions are refused with their place") {
                                 "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>")),
              "a position of 2 numbers"));
 
-  // Six positions of two numbers are four of three; the Envelope and the ring's end tell.
+  // Six positions of two numbers are four of three; the Envelope and the ring's end decide.
   const std::string envelope = "<g:boundedBy><g:Envelope srsDimension=\"2\"/></g:boundedBy>";
   const std::string flat = building(solid_of(member(polygon("0 0 4 0 4 4 2 5 0 4 0 0"))));
   CHECK(says(gml_error(model(envelope + flat)), "srsDimension 2 of the Envelope"));

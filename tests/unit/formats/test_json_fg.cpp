@@ -134,7 +134,7 @@ TEST_CASE("empty polyhedra, shells, polygons and rings are for the validator") {
   }
 }
 
-TEST_CASE("JSON files are told apart by their type") {
+TEST_CASE("the type decides the format of JSON files") {
   const auto format = [](std::string_view name, const std::string& text) {
     return *formats::detect_format(name, as_bytes(text));
   };

@@ -357,7 +357,7 @@ TEST_CASE("interior shells are appended on a common grid") {
         ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("mesh files are told by their names and by what they hold") {
+TEST_CASE("mesh files are detected by their names and by their contents") {
   CHECK(*formats::detect_format("a.STL", {}) == Format::stl);
   CHECK(*formats::detect_format("a.ply", {}) == Format::ply);
   CHECK(*formats::detect_format("a.poly", {}) == Format::poly);

@@ -81,7 +81,7 @@ TEST_CASE("what follows the coordinates of an OBJ vertex is a weight or a colour
   }
 }
 
-TEST_CASE("vertices of a file that no face uses are left out and told") {
+TEST_CASE("vertices of a file that no face uses are left out and reported") {
   const auto off = formats::read_document(
       as_bytes("OFF\n5 1 0\n9 9 9\n0 0 0\n1 0 0\n0 1 0\n2.5 0 0\n3 1 2 3\n"), Format::off);
   REQUIRE(off);
@@ -242,7 +242,7 @@ TEST_CASE("holes and cavities are not written where a format has none") {
   }
 }
 
-TEST_CASE("formats are told by name, else by content") {
+TEST_CASE("formats are detected by name, else by content") {
   const auto detected = [](std::string_view name, std::string_view text) {
     const auto format = formats::detect_format(name, as_bytes(text));
     return format ? std::string(formats::to_string(*format)) : std::string("unknown");

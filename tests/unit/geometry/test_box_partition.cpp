@@ -251,7 +251,7 @@ TEST_CASE("only the caller's thread is asked whether to end a search with thread
 }
 
 TEST_CASE("fans of many triangles end after few comparisons") {
-  // Comparing all boxes would take billions of steps: the search asks often enough to tell.
+  // Comparing all boxes would take billions of steps: the search asks often enough.
   Random random(8);
   for (const Soup& soup : {fan(60'000, true, random), fan(30'000, false, random)}) {
     std::uint64_t asked = 0;

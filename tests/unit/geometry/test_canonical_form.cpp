@@ -94,7 +94,7 @@ TEST_CASE("the canonical form of a canonical solid is itself") {
   CHECK(twice.order.is_identity());
 }
 
-TEST_CASE("the hash tells orientation, coordinates, lattice and reference system apart") {
+TEST_CASE("the hash depends on orientation, coordinates, lattice and reference system") {
   const auto hash_of = [](const Solid& solid) { return geometry::solid_hash(boundary_of(solid)); };
   const Solid source = tunnel_solid();
   const auto remade = [&](auto change) {

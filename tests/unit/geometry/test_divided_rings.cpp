@@ -45,7 +45,7 @@ TEST_CASE("a vertex of two rings splits an edge of a third once") {
         Touches{{0, 4}});
 }
 
-TEST_CASE("divided rings keep vertices, facets and shells and tell where each corner comes from") {
+TEST_CASE("divided rings keep vertices, facets and shells and say where each corner comes from") {
   const std::vector<Point> vertices{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {6, 0, 0},
                                     {7, 2, 0}, {5, 2, 0}, {3, 0, 0}, {4, 2, 0}, {2, 2, 0}};
   const Solid solid = facet_solid(vertices, {{0, 1, 2, 3}, {4, 6, 5}, {7, 9, 8}});

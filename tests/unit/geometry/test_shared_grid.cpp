@@ -40,9 +40,9 @@ GridNumber decimal(const std::string& text) {
 TEST_CASE("solids without placements are on the grid of their lattices") {
   const Solid coarse = triangle_of({{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}, decimal_lattice(-2));
   const Solid fine = triangle_of({{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}, decimal_lattice(-3, {1, 0}));
-  const auto grid = geometry::SharedGrid::of_one_frame({{&coarse, nullptr}, {&fine, nullptr}});
+  const auto grid = geometry::SharedGrid::of_one_placement({{&coarse, nullptr}, {&fine, nullptr}});
   REQUIRE(grid);
-  CHECK(grid->frame() == nullptr);
+  CHECK(grid->placement() == nullptr);
   CHECK(grid->lattice().step[0] == GridNumber{1, -3});
   CHECK(grid->vertices(0)->front() == Point{10, 20, 30});
   CHECK(grid->vertices(1)->front() == Point{1001, 1002, 1003});
@@ -56,9 +56,9 @@ TEST_CASE("solids of one placement are on the grid of their template") {
   placement.linear[0][0] = decimal("0.333333333333333333");
   placement.anchor = {{{3, 0}, {4, 0}, {5, 0}}};
   const geometry::Placement same = placement;
-  const auto grid = geometry::SharedGrid::of_one_frame({{&solid, &placement}, {&solid, &same}});
+  const auto grid = geometry::SharedGrid::of_one_placement({{&solid, &placement}, {&solid, &same}});
   REQUIRE(grid);
-  CHECK(grid->frame() == &placement);
+  CHECK(grid->placement() == &placement);
   CHECK(grid->vertices(1)->front() == Point{1, 2, 3});
   CHECK(grid->world({0, 0, 0}) == std::array<double, 3>{3, 4, 5});
 }
@@ -72,7 +72,7 @@ TEST_CASE("solids of different placements are put into the world exactly where a
   turned.anchor = {{decimal("1000"), decimal("-2000.5"), {}}};
   const auto grid = geometry::SharedGrid::in_world({{&solid, nullptr}, {&solid, &turned}});
   REQUIRE(grid);
-  CHECK(grid->frame() == nullptr);
+  CHECK(grid->placement() == nullptr);
   CHECK(grid->rounded_axes(0) == kNoAxis);
   CHECK(grid->rounded_axes(1) == kNoAxis);
   const auto own = grid->vertices(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What comes back of a document under each contract, through Watertight files and a store.
+// Documents come back as their contract says, through Watertight files and a store.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <nlohmann/json.hpp>

@@ -184,7 +184,7 @@ TEST_CASE("a part that is not valid is named and not compared") {
   CHECK(feature.verdict() == Verdict::invalid);
 }
 
-TEST_CASE("the outcome's JSON tells of groups") {
+TEST_CASE("the outcome's JSON lists groups") {
   const std::string text =
       std::string(samples::kHeader) +
       "\n{\"type\":\"CityJSONFeature\",\"id\":\"a\",\"CityObjects\":{" +

@@ -94,7 +94,7 @@ inline pipeline::ValidatedFeature overlapping_parts() {
   return feature;
 }
 
-/// What a report is as text, and how its pieces came.
+/// The text of a report, and how its pieces came.
 struct Written {
   std::string text;
   std::size_t largest_piece = 0;

@@ -49,7 +49,7 @@ const std::string kTwo = samples::sequence({samples::feature("a"), samples::feat
 const std::string kOneOpen =
     samples::sequence({samples::feature("a"), samples::feature("open", samples::kOpenFacets)});
 
-/// What a value of the document is or refers to.
+/// The value, or the part of the document to which it refers.
 Json resolved(const Json& document, const Json& value) {
   if (!value.contains("$ref")) return value;
   return document.at(Json::json_pointer(value["$ref"].get<std::string>().substr(1)));

@@ -197,7 +197,7 @@ TEST_CASE("bodies together have a limit of their own") {
   starts(second.receive_all(), "503");
 }
 
-TEST_CASE("a client that expects it is told to go on") {
+TEST_CASE("a client that expects 100 Continue gets it") {
   const Server server;
   const Client client(server.server->port());
   client.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nExpect: 100-continue\r\n\r\n");
@@ -236,7 +236,7 @@ TEST_CASE("quick requests are answered while others compute, and a full queue is
   starts(waiting.receive_answer(), "200");
 }
 
-TEST_CASE("connections beyond the limit are told to come back") {
+TEST_CASE("connections beyond the limit are asked to come back") {
   server::ServerOptions options = Server::small();
   options.connections = 1;
   Server server(options);

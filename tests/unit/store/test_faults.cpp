@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What happens to a store when the server, or the way to it, breaks.
+// The store when the server, or the way to it, breaks.
 #include <signal.h>
 
 #include <atomic>

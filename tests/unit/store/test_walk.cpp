@@ -132,7 +132,7 @@ TEST_CASE("a walk takes boxes of any size and unit, and none at the end, by id")
   }
 }
 
-TEST_CASE("degrees are told apart to a hand's breadth") {
+TEST_CASE("degrees are distinguished to a hand's breadth") {
   const Database database;
   const auto store = database.store();
   // Two rows of buildings, 1 metre and 100 km apart: each row stays together.
@@ -214,7 +214,7 @@ TEST_CASE("an index serves walks") {
   CHECK(plan.find("Sort") == std::string::npos);
 }
 
-TEST_CASE("the documents of a collection are told, as many as asked for") {
+TEST_CASE("the documents of a collection are listed, as many as asked for") {
   const Database database;
   const auto store = database.store();
   CHECK(store->documents("buildings", 5)->empty());

@@ -105,14 +105,14 @@ TEST_CASE("touching, spikes and repeated vertices are contacts of a ring with it
   CHECK(kinds_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {8, 4, 0}, {0, 8, 0}}}) == once);
 }
 
-TEST_CASE("collapsed and duplicate rings are told") {
+TEST_CASE("collapsed and duplicate rings are reported") {
   CHECK(kinds_of({{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}}}) ==
         Kinds{tessellate::RingProblemKind::collapsed});
   CHECK(kinds_of({square(0, 9), square(2, 4), square(2, 4)}) ==
         Kinds{tessellate::RingProblemKind::same_ring});
 }
 
-TEST_CASE("rings that cross, nest or lie outside are told apart") {
+TEST_CASE("rings that cross, nest or lie outside are distinguished") {
   CHECK(kinds_of({square(0, 9), square(5, 12)}) ==
         Kinds{tessellate::RingProblemKind::rings_meet, tessellate::RingProblemKind::rings_meet});
   CHECK(kinds_of({square(0, 9), square(12, 14)}) ==
@@ -122,7 +122,7 @@ TEST_CASE("rings that cross, nest or lie outside are told apart") {
   // Crosses the exterior ring in two of its vertices only.
   CHECK(kinds_of({square(0, 9), {{9, 0, 0}, {12, 12, 0}, {0, 9, 0}, {4, 4, 0}}}) ==
         Kinds{tessellate::RingProblemKind::rings_meet});
-  // All vertices are vertices of the exterior ring: the edges tell.
+  // All vertices are vertices of the exterior ring: the edges decide.
   CHECK(kinds_of({{{0, 0, 0}, {9, 0, 0}, {5, 5, 0}, {0, 9, 0}},
                   {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}}) != Kinds{});
 }

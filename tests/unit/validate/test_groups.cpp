@@ -300,7 +300,7 @@ TEST_CASE("groups of no, one and no valid member have no findings") {
   CHECK(composite_codes(Group().add_invalid().add_invalid()).empty());
 }
 
-TEST_CASE("a point of a triangle in doubles is told like the same point in rationals") {
+TEST_CASE("a point of a triangle in doubles is located like the same point in rationals") {
   const std::vector<Point> vertices{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8}};
   const std::vector<Triangle> tetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   std::mt19937 random(7);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A compressed text, told apart from plain text by its type: skeletons as a store keeps them.
+// A compressed text, which its type separates from plain text: skeletons as a store keeps them.
 #pragma once
 
 #include "base/bytes.h"

@@ -22,8 +22,8 @@ struct Certificate {
   Tetrahedralization tetrahedralization;
   std::vector<bool> is_interior;  // per tetrahedron
   double largest_deviation = 0;   // of a Steiner point from its facet, world units
-  /// Facets that are not exactly planar and that the faces fill otherwise than the canonical
-  /// triangulation: "valid within tolerance".
+  /// Facets that are not exactly planar and that the faces fill with other triangles than the
+  /// canonical ones: "valid within tolerance".
   std::vector<Index> refilled_facets;
 };
 
@@ -32,8 +32,8 @@ struct CertificateResult {
   CertificateRefusal refusal = CertificateRefusal::none;
   std::string detail;
   Index facet = kNone;
-  /// As in the certificate, also with a refusal that comes after the facets were examined: then it
-  /// speaks of another surface than the canonical triangulation, and is no property of the solid.
+  /// The same facets, also after a refusal that comes once the facets were examined: the refusal
+  /// then concerns another surface than the canonical one, and is not a property of the solid.
   std::vector<Index> refilled_facets;
   Certificate certificate;  // when refusal is none
 };

@@ -339,7 +339,7 @@ std::optional<FacetFault> FacetSurfaces::check_vertices(Index facet, const Plane
   return std::nullopt;
 }
 
-/// Of a Steiner point from the plane, in world units.
+/// The largest distance of a Steiner point from the plane, in world units.
 double FacetSurfaces::largest_deviation(const Plane& plane, const Mesh& mesh) const {
   double largest = 0;
   if (!(plane.world_length > 0)) return largest;

@@ -51,13 +51,13 @@ struct LadderOptions {
   Rung last_rung = Rung::tetgen;
   double seconds_per_rung = 0;  // CPU time of an engine on one rung; 0: by size (2 s and more)
   /// CPU time of all engines on one solid together; 0: by size (20 s and more, see
-  /// default_ladder_seconds()). A rung gets what those before it left.
+  /// default_ladder_seconds()). A rung gets the time that those before it left.
   double seconds_in_all = 0;
   CancelPoll cancel = {};
   /// divide_at_contacts() of the solid, where the caller has it; null: the ladder divides.
   const ContactTriangles* contacts = nullptr;
-  /// The exact tests have shown one interior: a refusal that calls the solid wrong is no end, and
-  /// remains a property only if no rung is accepted.
+  /// The exact tests have shown one interior: a refusal that calls the solid wrong does not end the
+  /// climb, and counts as a property only if no rung is accepted.
   bool is_interior_known = false;
 };
 
@@ -75,7 +75,7 @@ struct LadderResult {
   CertificateRefusal property = CertificateRefusal::none;
   std::string detail;
   Index facet = kNone;
-  /// Why engines can hardly have an answer (shells whose edges cross in no vertex), or empty.
+  /// Why engines hardly find an answer (edges of shells that cross in no vertex), or empty.
   std::string obstacle;
   std::vector<RungAttempt> attempts;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The rungs of the CDT ladder and what became of each attempt: plain data for reports and
-// statistics, without the ladder (delaunay/ladder.h) and its processes.
+// The rungs of the CDT ladder and the outcomes of attempts: plain data for reports and statistics,
+// without the ladder (delaunay/ladder.h) and its processes.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace watertight::delaunay {
 
-/// Which rung of the ladder produced the tetrahedralization.
+/// The rungs of the ladder.
 enum class Rung : std::uint8_t {
   none = 255,
   delaunay = 0,      // the canonical DT itself
@@ -31,16 +31,16 @@ enum class CertificateRefusal : std::uint8_t {
   not_a_boundary,         // a constrained face has one region on both sides, or parity conflicts
   interior_disconnected,  // more than one interior region (a property of the solid)
   cavity_mismatch,        // cavities and declared inner shells differ (a property of the solid)
-  facet_not_conforming,   // a facet's faces are no disc with its rings as boundary
+  facet_not_conforming,   // a facet's faces do not form a disc with its rings as boundary
   not_a_manifold,         // faces of one shell meet at more edges or vertices than neighbours do
   foreign_face,           // a constrained face that belongs to no facet
   wrong_orientation,      // a declared normal points inward (a property of the solid)
   volume_mismatch,
-  cancelled  // the caller did not want to know; says nothing
+  cancelled  // the caller stopped the check: nothing is known
 };
 std::string_view to_string(CertificateRefusal refusal);
 
-/// What became of one rung's attempt: the classes that statistics count.
+/// The outcome of one rung's attempt: the classes that statistics count.
 enum class RungOutcome : std::uint8_t {
   accepted,                // by the certificate: the solid is decided
   refused_by_certificate,  // RungAttempt::refusal names the reason

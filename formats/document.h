@@ -35,7 +35,7 @@ enum class Format : std::uint8_t {
   poly      // TetGen; read only
 };
 std::string_view to_string(Format format);
-/// The inverse. Errors: malformed.
+/// The format of this name. Errors: malformed.
 Result<Format> format_named(std::string_view name);
 
 /// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb", "x.gml",
@@ -63,12 +63,12 @@ struct SubmittedSolid {
   std::vector<Index> unclosed_rings = {};
   /// gml:id of each facet's polygon, "" for those without one; empty when none has one.
   std::vector<std::string> facet_ids = {};
-  /// Of a file whose vertices are for this solid alone.
+  /// Unused vertices of a file whose list of vertices is for this solid alone.
   geometry::UnusedVertices unused = {};
   bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
 };
 
-/// A geometry template in a place of a document. Judged like a solid there, but not one of the
+/// A geometry template where an instance puts it. Judged like a solid there, but not one of the
 /// feature: writing takes it from the skeleton.
 struct TemplateInstance {
   SolidSource source;  // `pointer` leads to the geometry that is the instance; no LoD of its own
@@ -94,8 +94,8 @@ struct Feature {
 
 struct Document {
   Format format = Format::city_json;
-  /// What features share (CityJSON: version, transform, metadata, templates, ...), as the first
-  /// line of a CityJSONSeq: UTF-8 JSON. "" for formats that share nothing.
+  /// The values that features share (CityJSON: version, transform, metadata, templates, ...), as
+  /// the first line of a CityJSONSeq: UTF-8 JSON. "" for formats that share nothing.
   SharedText header;
   std::vector<Feature> features;
   std::vector<std::string> notes;  // readings of doubtful input, one clause each
@@ -103,14 +103,14 @@ struct Document {
   /// Coordinates are the templates' own, on no reference system; `source.pointer` is, for example,
   /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's position.
   std::vector<SubmittedSolid> templates = {};
-  /// Instances that no feature has: of GML, whose objects without solids are no features.
+  /// Instances that belong to no feature: in GML an object without solids is not a feature.
   std::vector<TemplateInstance> instances = {};
-  /// What stands between the lines of a CityJSONSeq read with ReadOptions::keep_text; empty: line
+  /// The bytes between the lines of a CityJSONSeq read with ReadOptions::keep_text; empty: line
   /// feeds. Opaque.
   Bytes framing = {};
 };
 
-/// What comes back of a document.
+/// The contract levels: how much of a document comes back.
 enum class Contract : std::uint8_t {
   exact,    // its very bytes, if it was read with ReadOptions::keep_text; else its values and order
   lattice,  // its values; solids in canonical form (geometry/canonical_form.h), what is listed by
@@ -118,7 +118,7 @@ enum class Contract : std::uint8_t {
   boundary  // solids in canonical form; of the rest only city objects, their types and families
 };
 std::string_view to_string(Contract contract);
-/// The inverse. Errors: invalid_argument.
+/// The contract of this name. Errors: invalid_argument.
 Result<Contract> contract_named(std::string_view name);
 
 struct ReadOptions {
@@ -144,8 +144,8 @@ Result<std::string> write_feature(const Document& document, const Feature& featu
 /// The whole document. City models: a CityJSON of all features when `format` is city_json, header
 /// line + feature lines when city_json_seq; a document that kept its text gives it back in its own
 /// format. For obj, off, wkt and ewkb the solids of all features.
-/// Errors: unsupported when a format cannot hold what is asked (OFF: several solids; OBJ, OFF:
-/// rings with holes are triangulated only by `convert`, never silently here).
+/// Errors: unsupported when a format cannot hold the document (OFF: several solids; OBJ, OFF: rings
+/// with holes are triangulated only by `convert`, never silently here).
 Result<Bytes> write_document(const Document& document, Format format);
 
 }  // namespace watertight::formats

@@ -129,12 +129,12 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
 /// The document (with one feature) that encode_feature() was given.
 /// Errors: malformed when the feature is not as encode_feature() makes them; those of decode().
 Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits = {});
-/// The same of solids that are decoded already, one per feature.solids; its blobs are not looked
-/// at.
+/// The same for solids that are decoded already, one per feature.solids; its blobs are not
+/// used.
 Result<Document> decode_feature(const EncodedFeature& feature, std::vector<Solid> solids,
                                 const Limits& limits = {});
 
-/// What the store keeps of a feature. Errors: those of pack_text().
+/// The part of a feature that the store keeps. Errors: those of pack_text().
 Result<StoredFeature> pack(EncodedFeature feature);
 /// The feature that pack() was given. Errors: those of unpack_text().
 Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {});

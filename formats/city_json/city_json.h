@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// CityJSON and CityJSONSeq: whole documents, sequences line by line, and what a contract leaves of
-// a feature's skeleton. Callers that have any format use formats/document.h.
+// CityJSON and CityJSONSeq: whole documents, sequences line by line, and skeletons reduced to a
+// contract. Callers that have any format use formats/document.h.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace watertight::formats {
 
-/// What all features of a city model share, as stated by the first line of a CityJSONSeq.
+/// The values that all features of a city model share: the first line of a CityJSONSeq.
 struct CityHeader {
   std::string text;  // as Document::header
   std::string version;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the readers of OFF and POLY share: a text that states how many things follow, and makes one
-// shell. Internal to formats/.
+// The common part of the readers of OFF and POLY: a text that states how many things follow, and
+// makes one shell. Internal to formats/.
 #pragma once
 
 #include <cstdint>

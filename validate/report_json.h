@@ -14,7 +14,7 @@
 
 namespace watertight::validate {
 
-/// Number of this JSON layout; raised when a member changes its meaning or goes.
+/// Number of this JSON layout; raised when a member changes its meaning or is removed.
 inline constexpr int kReportSchema = 2;
 
 enum class JsonStyle : std::uint8_t { compact, indented };

@@ -236,7 +236,7 @@ bool WorkerProcess::is_waiting() const {
 Ending WorkerProcess::end() {
   Ending ending;
   if (process_ > 0) {
-    // Before it is reaped, its number and so its group's belong to it alone.
+    // Until it is reaped, its process number, and so that of its group, belongs to it alone.
     kill(-process_, SIGKILL);
     int status = 0;
     rusage used{};

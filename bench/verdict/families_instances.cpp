@@ -333,7 +333,7 @@ Sample make_instance(Random& random) {
   const bool is_folded = one_in(random, 2);
   const bool is_folded_far = one_in(random, 2);
   const int scale = static_cast<int>(random.between(-3, 3));
-  // In place a unit of the form is a millimetre.
+  // Where the instance stands, a unit of the template is a millimetre.
   Document document;
   document.add_template({is_folded ? folded_cube(is_folded_far) : planar_form(random)}, -3 - scale);
   Sample sample;

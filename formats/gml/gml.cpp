@@ -110,7 +110,7 @@ class GmlReader {
 
   Status add_geometry(const GmlGeometry& geometry) {
     const GmlLink& link = model_.links[geometry.link];
-    // The template that an implicit geometry refers to is judged where it stands.
+    // A template is judged where the implicit geometry that refers to it stands.
     if (geometry.is_template && link.node == kNone) return Done{};
     auto target = shapes_.resolve(link);
     if (!target) return in_object(std::move(target).error(), id_of(geometry, kNone));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Boxes of triangles in single precision, rounded so that triangles that meet have boxes that
-// overlap: what the box partition splits and compares. Private to geometry/.
+// overlap. The box partition splits and compares them. Private to geometry/.
 #pragma once
 
 #include <algorithm>

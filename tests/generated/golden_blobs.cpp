@@ -89,7 +89,7 @@ OrientedBoundary box_with_far_origin() {
   return boundary_of(std::move(arrays), lattice, 7415);
 }
 
-/// One of generated_variety.h, of 4 to some 60 vertices.
+/// A solid of generated_variety.h with 4 to some 60 vertices.
 OrientedBoundary varied(std::uint64_t seed) {
   Random random(seed);
   const Index size = 4 + static_cast<Index>(random.below(40));

@@ -150,7 +150,7 @@ Shape random_shape(Random& random) {
       shape = random_union(random, 8 + random.below(1000));
       break;
   }
-  // Some meet themselves, or nearly.
+  // Some shapes meet themselves, or nearly.
   for (auto moves = random.below(3); moves > 0 && !shape.vertices.empty(); --moves) {
     if (random.below(3) != 0) continue;
     Point& p = shape.vertices[random.below(shape.vertices.size())];

@@ -10,8 +10,8 @@
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/mode_bitmap/face_marks.h"
 #include "codec/mode_bitmap/facet_structure.h"
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 
 namespace watertight::codec::bitmap {
 

@@ -13,7 +13,7 @@
 #include <numeric>
 
 #include "codec/mode_bitmap/face_marks.h"
-#include "codec/page/coordinates.h"
+#include "codec/sections/coordinates.h"
 #include "delaunay/canonical/follow_delaunay.h"
 #include "tessellate/facets.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "codec/mode_parallelogram/cut_surface.h"
+#include "codec/mesh/cut_surface.h"
 
 #include <algorithm>
 #include <numeric>

@@ -10,9 +10,9 @@
 #include "base/checksum.h"
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/page.h"
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
 #include "codec/page/solid_checksum.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 
 namespace watertight::codec {
 namespace {

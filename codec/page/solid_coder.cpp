@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
 #include "codec/page/source_order.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 
 namespace watertight::codec {
 namespace {

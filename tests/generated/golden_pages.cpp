@@ -8,9 +8,9 @@
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "codec/page/container.h"
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
 #include "codec/page_file.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 #include "geometry/canonical_form.h"
 #include "tests/generated/generated_solids.h"
 

@@ -9,7 +9,7 @@
 #include "codec/mode_bitmap/compose.h"
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/mode_bitmap/face_marks.h"
-#include "codec/page/coordinates.h"
+#include "codec/sections/coordinates.h"
 #include "delaunay/certificate.h"
 #include "tests/generated/generated_solids.h"
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "codec/mode_parallelogram/cut_surface.h"
+#include "codec/mesh/cut_surface.h"
 
-namespace watertight::codec::parallelogram {
+namespace watertight::codec {
 namespace {
 
 Index next_half_edge(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -144,4 +144,4 @@ Result<CutSurface> cut_surface(const IntegerSolid& solid) {
   return surface;
 }
 
-}  // namespace watertight::codec::parallelogram
+}  // namespace watertight::codec

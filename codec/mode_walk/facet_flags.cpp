@@ -9,12 +9,16 @@
 #include "codec/mesh/facet_rings.h"
 #include "codec/mesh/half_edges.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/vector3.h"
 
 namespace watertight::codec::walk {
 namespace {
 
 __extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
-using Vector = std::array<double, 3>;
+using Vector = geometry::Vector3;
+using geometry::cross;
+using geometry::difference;
+using geometry::dot;
 
 // The families of the facets.
 constexpr std::uint32_t kIsInterior = 0;
@@ -34,12 +38,6 @@ Error not_encodable() {
   return {ErrorCode::not_encodable,
           "mode walk cannot code the facets: their edges do not separate them"};
 }
-
-Vector difference(const Point& p, const Point& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
-Vector cross(const Vector& u, const Vector& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
-double dot(const Vector& u, const Vector& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
 
 /// True if the differences of whole numbers below 2^31 span no volume, exactly.
 bool is_flat(const Vector& u, const Vector& v, const Vector& w) {

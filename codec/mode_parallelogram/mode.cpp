@@ -370,10 +370,10 @@ std::array<AxisPlaces, 3> suggest_places(const CutSurface& surface) {
   return places;
 }
 
-/// Chooses the options of least cost. Repeats and guesses are tried first, with Kind::every on all
-/// axes; then the best of these, and its variants, with the values that occur on each axis.
-Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& models,
-                                     const PageMemory& memory, const Limits& limits) {
+/// Repeats and guesses are tried first, with Kind::every on all axes; then the best of these, and
+/// its variants, with the values that occur on each axis.
+Result<VertexOptions> options_for(const CutSurface& surface, ModelBank& models,
+                                  const PageMemory& memory, const Limits& limits) {
   OptionTrials trials(surface, models, memory, limits);
   const bool is_small = surface.triangles.size() < kFewTriangles;
   std::vector<VertexOptions> options{{}, {.has_repeats = true}};
@@ -407,20 +407,24 @@ Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& model
 
 }  // namespace
 
+Result<VertexOptions> choose_options(const IntegerSolid& solid, ModelBank& models,
+                                     const PageMemory& memory, const Limits& limits) {
+  const Result<CutSurface> surface = cut_surface(solid);
+  if (!surface) return surface.error();
+  return options_for(*surface, models, memory, limits);
+}
+
 Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                  IntegerSolid& solid, WriterChoice& choice, const Limits& limits) {
+                  IntegerSolid& solid, const WriterChoice& choice, const Limits& limits) {
   if (stream.is_reading()) {
     return SurfaceCoder(stream, models, memory, limits).code(nullptr, solid, {});
   }
   const Result<CutSurface> surface = cut_surface(solid);
   if (!surface) return surface.error();
-  if (!choice.vertex_options) {
-    auto options = choose_options(*surface, models, memory, limits);
-    if (!options) return options.error();
-    choice.vertex_options = std::move(options).value();
-  }
-  return SurfaceCoder(stream, models, memory, limits)
-      .code(&*surface, solid, *choice.vertex_options);
+  auto options = choice.vertex_options ? Result<VertexOptions>(*choice.vertex_options)
+                                       : options_for(*surface, models, memory, limits);
+  if (!options) return options.error();
+  return SurfaceCoder(stream, models, memory, limits).code(&*surface, solid, *options);
 }
 
 }  // namespace watertight::codec::parallelogram

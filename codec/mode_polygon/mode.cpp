@@ -83,7 +83,7 @@ const ModelLayout& model_layout() {
 }
 
 Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                  IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
+                  IntegerSolid& solid, const WriterChoice& /*choice*/, const Limits& limits) {
   std::optional<SurfaceTruth> truth;
   if (!stream.is_reading()) {
     auto surface = surface_of(solid, memory);

@@ -255,7 +255,8 @@ TEST_CASE("composition step 7: surface and unrecovered faces close to the polyhe
     const Stored stored = stored_schoenhardt(used);
     const auto composition = codec::bitmap::compose(stored.sections, {});
     REQUIRE(composition);
-    CHECK(composition->marked_faces + composition->unrecovered_faces == 8);
+    CHECK(composition->counts.marked_faces + composition->counts.unrecovered_faces == 8);
+    CHECK(composition->counts == stored.parts.counts);
     auto solid = Solid::make(composition->arrays, canonical.lattice(), canonical.srid());
     REQUIRE(solid);
     auto boundary = OrientedBoundary::make(*solid);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The sequence of steps for a vertex, and its column. position_heights.cpp codes its height.
+// The sequence of steps for a vertex, and its column. position_coder_heights.cpp codes its height.
 #include "codec/mode_polygon/position_coder.h"
 
 #include <algorithm>

@@ -22,7 +22,7 @@ Result<std::vector<Decoded>> decode_page(ByteView page, const Limits& limits) {
   const auto stored = read_page_bytes(page, PageKind::page, limits);
   if (!stored) return stored.error();
   std::vector<Decoded> solids;
-  for (std::size_t i = 0; i < stored->solids.size(); ++i) {
+  for (std::size_t i = 0; i < stored->contents.solids.size(); ++i) {
     auto decoded = decoded_of(*stored, i);
     if (!decoded) return decoded.error();
     solids.push_back(std::move(decoded).value());

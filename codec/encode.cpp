@@ -27,7 +27,7 @@ constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
 /// The number of the first solid that does not come back, or the number of solids if all do.
 Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
                                      const std::vector<Source>& sources,
-                                     const std::vector<PageSolid>& stored,
+                                     const std::vector<StoredSolid>& stored,
                                      const EncodeOptions& options) {
   const auto page = read_page_bytes(bytes, kind, kNoLimits);
   if (!page) return page.error();
@@ -43,11 +43,10 @@ Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
 }
 
 /// Makes automatic mode take another mode than the one that it has taken.
-void decline_mode(PageSolid& solid) {
-  if (solid.mode == Mode::raw) return;
-  solid.declined |= 1U << static_cast<unsigned>(solid.mode);
-  solid.mode = Mode::automatic;
-  solid.plain = {};
+void decline_mode(Plan& plan) {
+  if (plan.mode == Mode::raw) return;
+  plan.declined |= 1U << static_cast<unsigned>(plan.mode);
+  plan.mode = Mode::automatic;
 }
 
 /// In automatic mode each solid takes the mode that codes it in the fewest bytes, after the solids
@@ -59,12 +58,13 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
   PageContents page;
   page.models = options.models;
   for (const Source& source : sources) {
-    page.solids.push_back(page_solid(*source.boundary, options));
+    page.solids.push_back(stored_solid(*source.boundary, options.keep_order));
   }
+  std::vector<Plan> plans(sources.size(), Plan{.mode = options.mode});
   page.frame = frame_of(sources.front().boundary->solid(), sources.front().acceptance);
   const bool may_fall_back = options.mode == Mode::automatic;
   for (std::size_t attempt = 0; attempt <= sources.size() + kModes; ++attempt) {
-    auto bytes = write_page_bytes(page, kind, options.certificate);
+    auto bytes = write_page_bytes(page, plans, kind, options.certificate);
     if (!bytes) return bytes;
     const auto difference = first_difference(*bytes, kind, sources, page.solids, options);
     if (difference && *difference == sources.size()) return bytes;
@@ -76,9 +76,12 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
       return Error{ErrorCode::not_encodable, std::move(reason)};
     }
     for (std::size_t i = 0; i < page.solids.size(); ++i) {
-      if (is_too_short) decline_mode(page.solids[i]);
-      if (is_too_short || (difference && *difference != i)) continue;
-      page.solids[i].mode = Mode::raw;
+      if (!is_too_short && difference && *difference != i) continue;
+      if (is_too_short) {
+        decline_mode(plans[i]);
+      } else {
+        plans[i].mode = Mode::raw;
+      }
       page.solids[i].plain = {};
     }
   }

@@ -9,6 +9,12 @@
 
 namespace watertight::geometry {
 
+/// Sets numbered by their smallest members.
+struct NumberedSets {
+  std::vector<Index> set_of;  // element -> set
+  std::vector<Index> first;   // set -> its smallest member; increasing
+};
+
 /// Union-find with path halving; the smallest member is the root.
 class DisjointSets {
  public:
@@ -24,6 +30,17 @@ class DisjointSets {
     b = root(b);
     if (a > b) std::swap(a, b);
     parent_[b] = a;
+  }
+  NumberedSets numbered() {
+    NumberedSets sets;
+    sets.set_of.reserve(parent_.size());
+    for (Index i = 0; i < parent_.size(); ++i) {
+      const Index least = root(i);
+      sets.set_of.push_back(least == i ? static_cast<Index>(sets.first.size())
+                                       : sets.set_of[least]);
+      if (least == i) sets.first.push_back(i);
+    }
+    return sets;
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/json_text.h"
+#include "geometry/vector3.h"
 #include "report/scene.h"
 
 namespace watertight::report {
@@ -14,7 +15,7 @@ constexpr double kHeight = 480;
 constexpr double kMargin = 28;
 constexpr double kDegree = std::numbers::pi / 180;
 
-double dot(const Triple& a, const Triple& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+using geometry::dot;
 
 /// Twice the area vector of a ring (Newell), of length 1 or 0.
 Triple normal_of(const std::vector<Triple>& ring) {

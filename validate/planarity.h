@@ -4,18 +4,16 @@
 // Internal to validate/.
 #pragma once
 
-#include <array>
+#include "geometry/vector3.h"
 
 namespace watertight::validate {
 
-using Vector = std::array<double, 3>;
+using Vector = geometry::Vector3;
+using geometry::cross;
+using geometry::dot;
+using geometry::length;
+using geometry::operator-;
 
-inline double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 /// The vector's direction, of length 1; zero stays zero. No size of vector underflows or overflows.
 Vector direction_of(const Vector& v);
 

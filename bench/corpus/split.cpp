@@ -12,10 +12,10 @@ namespace {
 /// Where a solid stands: its smallest corner and its extent in x and y, to 500 steps.
 using Site = std::array<std::int64_t, 4>;
 
-Site site_of(const codec::PageSolid& stored) {
+Site site_of(const codec::StoredSolid& stored) {
   std::array<std::int64_t, 2> low{INT64_MAX, INT64_MAX};
   std::array<std::int64_t, 2> high{INT64_MIN, INT64_MIN};
-  for (const codec::GridPoint& vertex : stored.gridded.solid.vertices) {
+  for (const codec::GridPoint& vertex : stored.integers->vertices) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       low[axis] = std::min(low[axis], vertex[axis]);
       high[axis] = std::max(high[axis], vertex[axis]);
@@ -39,20 +39,20 @@ CorpusPage& page_for(std::vector<CorpusPage>& pages, const CorpusPage& wanted, s
 }  // namespace
 
 std::vector<CorpusPage> split_corpus(const std::vector<CorpusSolid>& corpus,
-                                     const std::vector<codec::PageSolid>& stored,
+                                     const std::vector<codec::StoredSolid>& stored,
                                      const std::set<std::string>& excluded, std::size_t most) {
   std::map<std::string, std::size_t> seen;  // solids of a set so far
   std::vector<bool> is_test(corpus.size(), false);
   std::set<Site> training;
   for (std::size_t i = 0; i < corpus.size(); ++i) {
-    if (!stored[i].has_grid) continue;
+    if (!stored[i].integers) continue;
     const std::size_t number = seen[corpus[i].set]++;
     is_test[i] = excluded.contains(corpus[i].set) || (number / kBlock) % 2 == 1;
     if (!is_test[i]) training.insert(site_of(stored[i]));
   }
   std::vector<CorpusPage> pages;
   for (std::size_t i = 0; i < corpus.size(); ++i) {
-    if (!stored[i].has_grid || (is_test[i] && training.contains(site_of(stored[i])))) continue;
+    if (!stored[i].integers || (is_test[i] && training.contains(site_of(stored[i])))) continue;
     const codec::Frame frame =
         codec::frame_of(corpus[i].canonical.boundary.solid(), corpus[i].acceptance);
     page_for(pages, {corpus[i].set, is_test[i], frame, {}}, most).solids.push_back(i);

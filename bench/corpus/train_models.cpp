@@ -38,7 +38,7 @@ struct Page {
   std::string set;
   bool is_test = false;
   codec::Frame frame;
-  std::vector<const codec::PageSolid*> solids;
+  std::vector<const codec::StoredSolid*> solids;
 };
 
 struct Options {
@@ -79,13 +79,10 @@ double bytes_of(std::uint64_t cost) {
 }
 
 /// Codes one solid with a set of models; false if the mode cannot hold it, which spoils the coder.
-bool learn(codec::SolidCoder& coder, const codec::PageSolid& solid, Mode mode,
-           std::array<std::uint64_t, codec::kStreamParts>* costs = nullptr) {
-  codec::PageSolid copy = solid;
+bool learn(codec::SolidCoder& coder, const codec::StoredSolid& solid, Mode mode) {
+  codec::StoredSolid copy = solid;
   copy.mode = mode;
-  if (!coder.code(copy)) return false;
-  if (costs != nullptr) *costs = copy.costs;
-  return true;
+  return coder.code(copy).has_value();
 }
 
 /// A coder with a meter of its own.
@@ -102,7 +99,7 @@ void train(const std::vector<Page>& pages, codec::ModelSet& models, const Choose
   for (const Page& page : pages) {
     if (page.is_test) continue;
     MeteredCoder paged(models, page.frame);
-    for (const codec::PageSolid* solid : page.solids) {
+    for (const codec::StoredSolid* solid : page.solids) {
       MeteredCoder alone(models, page.frame);
       codec::Frame frame = page.frame;
       if (!codec::code_frame(alone.meter, models[codec::ModelPart::frame], frame)) std::abort();
@@ -120,7 +117,7 @@ Sums measure_page(const Page& page, const std::array<codec::ModelBank, codec::kM
   Sums sum;
   codec::ModelSet models(priors);
   MeteredCoder paged(models, page.frame);
-  for (const codec::PageSolid* solid : page.solids) {
+  for (const codec::StoredSolid* solid : page.solids) {
     codec::ModelSet own(priors);
     MeteredCoder alone(own, page.frame);
     codec::Frame frame = page.frame;
@@ -131,11 +128,13 @@ Sums measure_page(const Page& page, const std::array<codec::ModelBank, codec::kM
       continue;
     }
     learn(alone.coder, *solid, mode);
-    std::array<std::uint64_t, codec::kStreamParts> costs{};
+    const codec::StreamCosts before = paged.meter.costs();
     const Mode paged_mode = choose(paged.coder, *solid);
-    learn(paged.coder, *solid, paged_mode, &costs);
+    learn(paged.coder, *solid, paged_mode);
+    codec::StreamCosts costs = paged.meter.costs();
+    for (std::size_t i = 0; i < codec::kStreamParts; ++i) costs[i] -= before[i];
     ++sum.solids;
-    sum.vertices += solid->gridded.solid.vertices.size();
+    sum.vertices += solid->integers->vertices.size();
     sum.alone += bytes_of(alone.meter.cost());
     for (std::size_t i = 0; i < codec::kStreamParts; ++i) sum.parts[i] += bytes_of(costs[i]);
     for (const std::uint64_t cost : costs) sum.paged += bytes_of(cost);
@@ -185,7 +184,7 @@ std::array<codec::ModelBank, codec::kModelParts> banks_of(codec::ModelSet& model
 }
 
 std::vector<Page> pages_of(const std::vector<CorpusSolid>& corpus,
-                           const std::vector<codec::PageSolid>& stored, const Options& options) {
+                           const std::vector<codec::StoredSolid>& stored, const Options& options) {
   std::vector<Page> pages;
   for (const CorpusPage& page : split_corpus(corpus, stored, options.excluded, kBlock)) {
     pages.push_back(Page{page.set, page.is_test, page.frame, {}});
@@ -228,8 +227,7 @@ void learn_meshes(const std::vector<codec::IntegerSolid>& meshes, codec::ModelBa
     codec::EntropyStream meter = codec::EntropyStream::meter();
     codec::ModelBank learning = models;
     codec::IntegerSolid solid = mesh;
-    codec::WriterChoice choice;
-    if (codec::parallelogram::code_solid(meter, learning, codec::PageMemory{}, solid, choice,
+    if (codec::parallelogram::code_solid(meter, learning, codec::PageMemory{}, solid, {},
                                          Limits{})) {
       models = learning;
     }
@@ -245,8 +243,8 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   for (const Mode mode : kModes) {
     if (!options.only.empty() && options.only != codec::to_string(mode)) continue;
     const auto start = std::chrono::steady_clock::now();
-    const auto choose = [mode](const codec::SolidCoder& coder, codec::PageSolid solid) {
-      return coder.cost(solid, mode) ? mode : Mode::automatic;
+    const auto choose = [mode](const codec::SolidCoder& coder, const codec::StoredSolid& solid) {
+      return coder.measure(solid, mode) ? mode : Mode::automatic;
     };
     for (int pass = 0; pass < options.passes; ++pass) train(pages, first, choose);
     const std::string title(codec::to_string(mode));
@@ -258,8 +256,8 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   if (!options.only.empty()) return;
 
   const std::array<codec::ModelBank, codec::kModelParts> chosen_by = banks_of(first);
-  const auto cheapest = [](const codec::SolidCoder& coder, codec::PageSolid solid) {
-    return coder.cheapest_mode(solid);
+  const auto cheapest = [](const codec::SolidCoder& coder, const codec::StoredSolid& solid) {
+    return coder.cheapest(solid).mode;
   };
   codec::ModelSet second(chosen_by);
   for (int pass = 0; pass < options.passes; ++pass) train(pages, second, cheapest);
@@ -288,9 +286,9 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::vector<CorpusSolid> corpus = read_corpus(options.corpus);
-  std::vector<codec::PageSolid> stored;
+  std::vector<codec::StoredSolid> stored;
   for (const CorpusSolid& solid : corpus) {
-    stored.push_back(codec::page_solid(solid.source, EncodeOptions{.keep_order = false}));
+    stored.push_back(codec::stored_solid(solid.source, false));
   }
   std::printf("%zu solids\n", corpus.size());
   train_all(pages_of(corpus, stored, options), options);

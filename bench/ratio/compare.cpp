@@ -82,7 +82,7 @@ void add_peers(const Solid& solid, const codec::GridPoint& origin, const codec::
 }
 
 Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
-             const std::vector<codec::PageSolid>& stored) {
+             const std::vector<codec::StoredSolid>& stored) {
   Sums sums;
   codec::PageContents contents;
   contents.frame = page.frame;
@@ -108,12 +108,13 @@ Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
     sums.decode_seconds += now() - middle;
     if (require(again, "decode").solid != solid) std::abort();
     sums.alone += static_cast<double>(blob->size());
-    add_peers(solid, stored[number].gridded.origin, before, sums);
-    before = stored[number].gridded.origin;
-    contents.solids.push_back(codec::page_solid(corpus[number].canonical.boundary, options));
+    add_peers(solid, stored[number].origin, before, sums);
+    before = stored[number].origin;
+    contents.solids.push_back(codec::stored_solid(corpus[number].canonical.boundary, false));
   }
   if (contents.solids.empty()) return sums;
-  const auto bytes = codec::write_page_bytes(contents, codec::PageKind::page, nullptr);
+  std::vector<codec::Plan> plans(contents.solids.size());
+  const auto bytes = codec::write_page_bytes(contents, plans, codec::PageKind::page, nullptr);
   const auto decoded = codec::decode_page(require(bytes, "encode page"));
   for (std::size_t i = 0; i < sums.all.size(); ++i) {
     if (require(decoded, "decode page")[i].solid != *sums.all[i]) std::abort();
@@ -180,9 +181,9 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::vector<CorpusSolid> corpus = read_corpus(options.corpus);
-  std::vector<codec::PageSolid> stored;
+  std::vector<codec::StoredSolid> stored;
   for (const CorpusSolid& solid : corpus) {
-    stored.push_back(codec::page_solid(solid.source, EncodeOptions{.keep_order = false}));
+    stored.push_back(codec::stored_solid(solid.source, false));
   }
   std::map<std::string, Sums> sets;
   std::size_t wide = 0;

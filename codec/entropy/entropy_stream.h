@@ -18,6 +18,7 @@ namespace watertight::codec {
 /// The parts that a report on sizes tells apart.
 enum class StreamPart : std::uint8_t { frame, position, connectivity, facets, coordinates, order };
 inline constexpr std::size_t kStreamParts = 6;
+using StreamCosts = std::array<std::uint64_t, kStreamParts>;
 
 /// Costs are in units of 2^-kCostBits bit: in 1/65536 bit.
 inline constexpr int kCostBits = 16;
@@ -52,6 +53,7 @@ class EntropyStream {
   /// The cost of the decisions so far, in 1/65536 bit; within 0.1 % of the bytes.
   std::uint64_t cost() const;
   std::uint64_t cost(StreamPart part) const { return costs_[static_cast<std::size_t>(part)]; }
+  const StreamCosts& costs() const { return costs_; }
   /// Books the costs of the decisions from here on under `part`. Changes nothing else.
   void enter(StreamPart part) { part_ = static_cast<std::size_t>(part); }
   /// Ends a written stream. Returns the shortest bytes that a reader takes for it, and of those the
@@ -74,7 +76,7 @@ class EntropyStream {
   std::size_t position_ = 0;  // reading: bytes taken, counting those past the end
   ByteView source_;
   Bytes bytes_;
-  std::array<std::uint64_t, kStreamParts> costs_{};
+  StreamCosts costs_{};
   std::size_t part_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/solid.h"
 
 namespace watertight::codec::bitmap {
@@ -33,14 +34,14 @@ class BoundarySurface {
   /// Sorted by (from, to).
   std::span<const Joint> joints() const { return joints_; }
   /// Components are connected through joints and numbered by their smallest triangle.
-  Index component_count() const { return static_cast<Index>(component_first_.size()); }
-  Index component_of(Index triangle) const { return component_of_[triangle]; }
+  Index component_count() const { return static_cast<Index>(components_.first.size()); }
+  Index component_of(Index triangle) const { return components_.set_of[triangle]; }
 
   /// Sets which joints lie inside a facet. Facets are connected through those joints and numbered
   /// by their smallest triangle.
   void set_interior(std::vector<bool> is_interior);
-  Index facet_count() const { return static_cast<Index>(facet_first_.size()); }
-  Index first_triangle_of(Index facet) const { return facet_first_[facet]; }
+  Index facet_count() const { return static_cast<Index>(facets_.first.size()); }
+  Index first_triangle_of(Index facet) const { return facets_.first[facet]; }
 
   /// Orients every component by its smallest triangle, which turns as its sorted vertices do, or
   /// the other way round if `is_flipped` of the component is true. Errors: malformed if a component
@@ -60,25 +61,16 @@ class BoundarySurface {
  private:
   void find_joints();
   void find_components();
-  Index vertex_at(Index half_edge) const { return turned_[half_edge / 3][half_edge % 3]; }
-  static Index next_of(Index half_edge) {
-    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
-  }
   Index half_edge_of(Index triangle, Index corner_vertex) const;
   std::vector<Index> interior_twins() const;
-  void walk_rings(Index start, const std::vector<Index>& twin, std::vector<bool>& is_done,
-                  std::vector<VertexRing>& rings) const;
-  void close_ring(std::span<const Index> walk, std::vector<VertexRing>& rings) const;
 
   std::vector<Triangle> triangles_;
   Index vertex_count_;
   std::vector<Joint> joints_;
   std::vector<std::vector<Index>> joints_of_;  // triangle -> at most three joints
-  std::vector<Index> component_of_;
-  std::vector<Index> component_first_;
-  std::vector<bool> is_interior_;
-  std::vector<Index> facet_of_;
-  std::vector<Index> facet_first_;
+  geometry::NumberedSets components_;          // of triangles
+  std::vector<bool> is_interior_;              // per joint
+  geometry::NumberedSets facets_;              // of triangles
   std::vector<Triangle> turned_;
 };
 

@@ -10,8 +10,8 @@
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/mode_bitmap/face_marks.h"
 #include "codec/mode_bitmap/facet_structure.h"
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 
 namespace watertight::codec::bitmap {
 
@@ -97,10 +97,9 @@ Result<Composition> compose(const BitmapSections& sections, const Limits& limits
   if (!unrecovered) return unrecovered.error();
 
   Composition result;
-  result.steiner_vertices = static_cast<Index>(nodes->points.size()) - nodes->vertex_count;
-  result.delaunay_faces = static_cast<Index>(delaunay->faces.size());
-  result.marked_faces = static_cast<Index>(surface.size());
-  result.unrecovered_faces = static_cast<Index>(unrecovered->size());
+  result.counts = {static_cast<Index>(nodes->points.size()) - nodes->vertex_count,
+                   static_cast<Index>(delaunay->faces.size()), static_cast<Index>(surface.size()),
+                   static_cast<Index>(unrecovered->size())};
   auto arrays = complete_boundary(sections, *nodes, std::move(surface), *unrecovered, limits);
   if (!arrays) return arrays.error();
   result.arrays = std::move(arrays).value();

@@ -10,6 +10,7 @@
 #include "base/bytes.h"
 #include "base/limits.h"
 #include "codec/mode_bitmap/bit_coder.h"
+#include "codec/mode_bitmap/face_marks.h"
 #include "delaunay/canonical_delaunay.h"
 #include "geometry/solid.h"
 
@@ -35,10 +36,7 @@ struct Nodes {
 
 struct Composition {
   SolidArrays arrays;  // exterior shell and ring first; else in no particular order
-  Index steiner_vertices = 0;
-  Index delaunay_faces = 0;
-  Index marked_faces = 0;
-  Index unrecovered_faces = 0;
+  FaceCounts counts;
 };
 
 /// 1. Read the CDT's nodes. Errors: malformed; limit_exceeded.

@@ -13,7 +13,7 @@
 #include <numeric>
 
 #include "codec/mode_bitmap/face_marks.h"
-#include "codec/page/coordinates.h"
+#include "codec/sections/coordinates.h"
 #include "delaunay/canonical/follow_delaunay.h"
 #include "tessellate/facets.h"
 
@@ -247,9 +247,14 @@ Result<Decomposition> decompose(const geometry::CanonicalSolid& solid,
   if (!marked) return marked.error();
   auto delaunay = create_delaunay(*complex);
   if (!delaunay) return delaunay.error();
-  store_bitmap(*delaunay, mark_delaunay_faces(*marked, *delaunay), result);
+  const std::vector<bool> marks = mark_delaunay_faces(*marked, *delaunay);
+  store_bitmap(*delaunay, marks, result);
   store_unrecovered_faces(*marked, *delaunay, result);
   result.facets = write_facet_structure(complex->points, *marked, solid.boundary.solid());
+  const auto found = static_cast<Index>(std::count(marks.begin(), marks.end(), true));
+  result.counts = {static_cast<Index>(complex->points.size()) - complex->vertex_count,
+                   static_cast<Index>(delaunay->faces.size()), found,
+                   static_cast<Index>(marked->triangles.size()) - found};
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/mode_bitmap/bit_coder.h"
+#include "codec/mode_bitmap/face_marks.h"
 #include "codec/mode_bitmap/facet_structure.h"
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/certificate.h"
@@ -34,6 +35,7 @@ struct Decomposition {
   Bytes bitmap;
   Bytes unrecovered;                  // empty if every boundary face is a Delaunay face
   std::optional<CodedFacets> facets;  // if nothing, the caller lists the facets
+  FaceCounts counts;
 };
 
 /// True if the canonical Delaunay tetrahedralization of these points may be part of a blob: each

@@ -15,6 +15,15 @@
 
 namespace watertight::codec::bitmap {
 
+/// How a boundary lies in the Delaunay tetrahedralization of its nodes.
+struct FaceCounts {
+  Index steiner_vertices = 0;
+  Index delaunay_faces = 0;
+  Index marked_faces = 0;
+  Index unrecovered_faces = 0;
+  friend bool operator==(const FaceCounts&, const FaceCounts&) = default;
+};
+
 /// Requires one mark for each face. Cost: O(n log n).
 Bytes write_marks(BitCoding coding, const delaunay::CanonicalDelaunay& delaunay,
                   const std::vector<bool>& marks);

@@ -7,26 +7,19 @@
 #include "codec/mode_bitmap/boundary_surface.h"
 #include "geometry/canonical_form.h"
 #include "geometry/predicates/predicates.h"
+#include "geometry/vector3.h"
 
 namespace watertight::codec::bitmap {
 namespace {
+
+using geometry::cross;
+using geometry::difference;
+using geometry::dot;
 
 /// Classes of the angle at which two triangles meet, by which the models guess whether they belong
 /// to one facet. Class 0 is an exact predicate, the others compare IEEE products and sums in a
 /// fixed order: every machine finds the same.
 constexpr int kBendClasses = 6;
-
-std::array<double, 3> difference(const Point& p, const Point& q) {
-  return {p.x - q.x, p.y - q.y, p.z - q.z};
-}
-
-std::array<double, 3> cross(const std::array<double, 3>& u, const std::array<double, 3>& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
-
-double dot(const std::array<double, 3>& u, const std::array<double, 3>& v) {
-  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
 
 int bend_class(std::span<const Point> points, const Joint& joint) {
   const Point& a = points[joint.from];

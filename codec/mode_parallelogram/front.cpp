@@ -17,11 +17,10 @@ double SurfaceFront::angle(Index at, Index from, Index to) const {
 }
 
 Index SurfaceFront::add_gate(Index side, Index half_edge) {
-  const Triangle& triangle = triangles_[side / 3];
   Gate gate;
-  gate.start = triangle[side % 3];
-  gate.end = triangle[(side + 1) % 3];
-  gate.apex = triangle[(side + 2) % 3];
+  gate.start = start_of(triangles_, side);
+  gate.end = end_of(triangles_, side);
+  gate.apex = corner_of(triangles_, side);
   gate.side = side;
   gate.half_edge = half_edge;
   gates_.push_back(gate);
@@ -87,21 +86,28 @@ void SurfaceFront::add_seed(const Triangle& t, const std::array<Index, 3>& half_
   set_room(third, 2 * kHalfTurn - angle(t[0], t[1], t[2]));
 }
 
-void SurfaceFront::add_vertex(Index gate, Index w, const std::array<Index, 2>& half_edges) {
-  const Gate old = gates_[gate];
-  const Index u = old.start;
-  const Index v = old.end;
-  const Index side = add_triangle({v, u, w});
+/// Puts the triangle beyond `gate` that ends at `tip`, and its two gates, in place of the gate. The
+/// new gates are linked with the loop outside of them, but not with each other.
+SurfaceFront::NewGates SurfaceFront::replace_gate(Index gate, Index tip,
+                                                  const std::array<Index, 2>& half_edges) {
+  const Gate& old = gates_[gate];
+  const Index side = add_triangle({old.end, old.start, tip});
   pair(old.side, side);
   drop(gate);
   const Index rise = add_gate(side + 1, half_edges[0]);
   const Index fall = add_gate(side + 2, half_edges[1]);
   link(old.previous, rise);
-  link(rise, fall);
   link(fall, old.next);
-  set_room(old.previous, gates_[old.previous].room - angle(u, v, w));
-  set_room(rise, 2 * kHalfTurn - angle(w, u, v));
-  set_room(fall, old.room - angle(v, u, w));
+  set_room(old.previous, gates_[old.previous].room - angle(old.start, old.end, tip));
+  return {rise, fall};
+}
+
+void SurfaceFront::add_vertex(Index gate, Index w, const std::array<Index, 2>& half_edges) {
+  const Gate old = gates_[gate];
+  const auto [rise, fall] = replace_gate(gate, w, half_edges);
+  link(rise, fall);
+  set_room(rise, 2 * kHalfTurn - angle(w, old.start, old.end));
+  set_room(fall, old.room - angle(old.end, old.start, w));
 }
 
 void SurfaceFront::close_corner(Index gate, Index half_edge) {
@@ -129,23 +135,14 @@ void SurfaceFront::close_corner(Index gate, Index half_edge) {
 
 void SurfaceFront::join_corner(Index gate, Index other, const std::array<Index, 2>& half_edges) {
   const Gate old = gates_[gate];
-  const Index u = old.start;
-  const Index v = old.end;
   const Index w = gates_[other].end;
   const Index after = gates_[other].next;
-  const Index side = add_triangle({v, u, w});
-  pair(old.side, side);
-  drop(gate);
-  const Index rise = add_gate(side + 1, half_edges[0]);
-  const Index fall = add_gate(side + 2, half_edges[1]);
-  link(old.previous, rise);
+  const auto [rise, fall] = replace_gate(gate, w, half_edges);
   link(rise, after);
   link(other, fall);
-  link(fall, old.next);
-  set_room(old.previous, gates_[old.previous].room - angle(u, v, w));
-  set_room(rise, angle(w, u, gates_[after].end));
-  set_room(other, angle(w, v, gates_[other].start));
-  set_room(fall, old.room - angle(v, u, w));
+  set_room(rise, angle(w, old.start, gates_[after].end));
+  set_room(other, angle(w, old.end, gates_[other].start));
+  set_room(fall, old.room - angle(old.end, old.start, w));
 }
 
 Index SurfaceFront::next_corner() {

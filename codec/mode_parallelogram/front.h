@@ -9,6 +9,7 @@
 #include <deque>
 #include <vector>
 
+#include "codec/mesh/half_edges.h"
 #include "codec/mode_parallelogram/vectors.h"
 #include "geometry/point.h"
 
@@ -44,7 +45,7 @@ class SurfaceFront {
   /// The third vertex of the triangle beyond a half-edge, kNone while a gate.
   Index beyond(Index half_edge) const {
     const Index opposite = twin_[half_edge];
-    return opposite == kNone ? kNone : triangles_[opposite / 3][(opposite % 3 + 2) % 3];
+    return opposite == kNone ? kNone : corner_of(triangles_, opposite);
   }
   std::uint32_t degree(Index vertex) const { return degrees_[vertex]; }
 
@@ -83,6 +84,12 @@ class SurfaceFront {
   Index add_triangle(const Triangle& triangle);
   void pair(Index side, Index other);
   void drop(Index gate);
+  /// The gates of a triangle that ends away from its gate, the first from the start of that.
+  struct NewGates {
+    Index rise = 0;
+    Index fall = 0;
+  };
+  NewGates replace_gate(Index gate, Index tip, const std::array<Index, 2>& half_edges);
 
   const std::vector<Vector>& centres_;
   std::deque<Gate> gates_;  // of any number: never copied

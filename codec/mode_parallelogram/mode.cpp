@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "codec/mode_parallelogram/cut_surface.h"
-
 #include <algorithm>
 #include <numeric>
 
+#include "codec/mesh/cut_surface.h"
+#include "codec/mesh/half_edges.h"
 #include "codec/mode_parallelogram/corner_contexts.h"
 #include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/front.h"
@@ -59,11 +59,7 @@ class SurfaceCoder {
 
  private:
   bool is_writing() const { return surface_ != nullptr; }
-  Index true_vertex(Index half_edge) const {
-    return surface_->triangles[half_edge / 3][half_edge % 3];
-  }
-  static Index next_of(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
-  static Index previous_of(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+  Index true_vertex(Index half_edge) const { return start_of(surface_->triangles, half_edge); }
   const GridPoint* true_position(Index true_index) const {
     return is_writing() ? &surface_->positions[true_index] : nullptr;
   }
@@ -133,8 +129,8 @@ class SurfaceCoder {
     bool truth = false;
     if (is_writing()) {
       const Index beyond = surface_->twin[gate.half_edge];
-      truth = surface_->twin[previous_of(beyond)] == after.half_edge;
-      half_edge = next_of(beyond);
+      truth = surface_->twin[previous_half_edge(beyond)] == after.half_edge;
+      half_edge = next_half_edge(beyond);
       if (ends && truth) {
         // A loop of three gates ends with one triangle beyond all of them. A triangle beyond only
         // two of them cannot be coded.
@@ -174,7 +170,7 @@ class SurfaceCoder {
     Index tip = kNone;
     if (is_writing()) {
       const Index beyond = surface_->twin[gate.half_edge];
-      half_edges = {next_of(beyond), previous_of(beyond)};
+      half_edges = {next_half_edge(beyond), previous_half_edge(beyond)};
       tip = true_vertex(half_edges[1]);
     }
     const bool is_new =
@@ -207,7 +203,7 @@ class SurfaceCoder {
       Index incoming = surface_->twin[half_edges[1]];
       const Index first = incoming;
       while (gate_of_[incoming] == kNone || !front_[gate_of_[incoming]].is_open) {
-        incoming = surface_->twin[next_of(incoming)];
+        incoming = surface_->twin[next_half_edge(incoming)];
         if (incoming == first) return stuck();
       }
       truth = gate_of_[incoming];
@@ -374,10 +370,10 @@ std::array<AxisPlaces, 3> suggest_places(const CutSurface& surface) {
   return places;
 }
 
-/// Chooses the options of least cost. Repeats and guesses are tried first, with Kind::every on all
-/// axes; then the best of these, and its variants, with the values that occur on each axis.
-Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& models,
-                                     const PageMemory& memory, const Limits& limits) {
+/// Repeats and guesses are tried first, with Kind::every on all axes; then the best of these, and
+/// its variants, with the values that occur on each axis.
+Result<VertexOptions> options_for(const CutSurface& surface, ModelBank& models,
+                                  const PageMemory& memory, const Limits& limits) {
   OptionTrials trials(surface, models, memory, limits);
   const bool is_small = surface.triangles.size() < kFewTriangles;
   std::vector<VertexOptions> options{{}, {.has_repeats = true}};
@@ -411,20 +407,24 @@ Result<VertexOptions> choose_options(const CutSurface& surface, ModelBank& model
 
 }  // namespace
 
+Result<VertexOptions> choose_options(const IntegerSolid& solid, ModelBank& models,
+                                     const PageMemory& memory, const Limits& limits) {
+  const Result<CutSurface> surface = cut_surface(solid);
+  if (!surface) return surface.error();
+  return options_for(*surface, models, memory, limits);
+}
+
 Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                  IntegerSolid& solid, WriterChoice& choice, const Limits& limits) {
+                  IntegerSolid& solid, const WriterChoice& choice, const Limits& limits) {
   if (stream.is_reading()) {
     return SurfaceCoder(stream, models, memory, limits).code(nullptr, solid, {});
   }
   const Result<CutSurface> surface = cut_surface(solid);
   if (!surface) return surface.error();
-  if (!choice.vertex_options) {
-    auto options = choose_options(*surface, models, memory, limits);
-    if (!options) return options.error();
-    choice.vertex_options = std::move(options).value();
-  }
-  return SurfaceCoder(stream, models, memory, limits)
-      .code(&*surface, solid, *choice.vertex_options);
+  auto options = choice.vertex_options ? Result<VertexOptions>(*choice.vertex_options)
+                                       : options_for(*surface, models, memory, limits);
+  if (!options) return options.error();
+  return SurfaceCoder(stream, models, memory, limits).code(&*surface, solid, *options);
 }
 
 }  // namespace watertight::codec::parallelogram

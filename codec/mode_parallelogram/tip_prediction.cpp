@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "codec/mesh/half_edges.h"
+
 namespace watertight::codec::parallelogram {
 namespace {
 
@@ -27,12 +29,12 @@ const TipPrediction::Tip& TipPrediction::predict(const SurfaceFront& front,
   const Vector middle = (u + v) * 0.5;
   const Vector along = v - u;
   tip_.size = length(along);
-  tip_.normal = unit(cross(along, apex - u));
+  tip_.normal = unit_by_reciprocal(cross(along, apex - u));
   tip_.bends = cosine_bucket(tip_.normal, normal_of(after, centres)) * 8 +
                cosine_bucket(tip_.normal, normal_of(before, centres));
-  const Vector outward = unit(cross(along, tip_.normal));
-  const Index right = front.beyond(gate.side % 3 == 2 ? gate.side - 2 : gate.side + 1);
-  const Index left = front.beyond(gate.side % 3 == 0 ? gate.side + 2 : gate.side - 1);
+  const Vector outward = unit_by_reciprocal(cross(along, tip_.normal));
+  const Index right = front.beyond(next_half_edge(gate.side));
+  const Index left = front.beyond(previous_half_edge(gate.side));
   const std::array<Vector, kOffsets> offsets{
       u + v - apex - middle,
       u + centres[after.end] - v - middle,

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "codec/entropy/least_squares.h"
 #include "codec/mode_parallelogram/front.h"
-#include "codec/mode_parallelogram/least_squares.h"
 #include "codec/mode_parallelogram/vectors.h"
 
 namespace watertight::codec::parallelogram {

@@ -9,26 +9,21 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "geometry/vector3.h"
+
 namespace watertight::codec::parallelogram {
 
-using Vector = std::array<double, 3>;
+using Vector = geometry::Vector3;
+using geometry::cross;
+using geometry::dot;
+using geometry::length;
+using geometry::operator+;
+using geometry::operator-;
+using geometry::operator*;
 
-inline Vector operator+(const Vector& a, const Vector& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-inline Vector operator-(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Vector operator*(const Vector& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-inline double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double length(const Vector& a) { return std::sqrt(dot(a, a)); }
-/// `a` divided by its length, or 0.
-inline Vector unit(const Vector& a) {
+/// `a` times the reciprocal of its length (part of the format: a quotient would be rounded
+/// otherwise), or 0.
+inline Vector unit_by_reciprocal(const Vector& a) {
   const double size = length(a);
   return size > 0 ? a * (1 / size) : Vector{};
 }

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "codec/mode_polygon/families.h"
-#include "codec/mode_polygon/positions.h"
+#include "codec/mode_polygon/position_coder.h"
 #include "codec/mode_polygon/surface.h"
 #include "codec/page/modes.h"
 
@@ -83,7 +83,7 @@ const ModelLayout& model_layout() {
 }
 
 Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                  IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
+                  IntegerSolid& solid, const WriterChoice& /*choice*/, const Limits& limits) {
   std::optional<SurfaceTruth> truth;
   if (!stream.is_reading()) {
     auto surface = surface_of(solid, memory);
@@ -97,7 +97,7 @@ Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& me
   for (const Index fan : walked->truth_vertex) {
     points.push_back(solid.vertices[truth->vertex_of[fan]]);
   }
-  auto positions = code_positions(stream, models, memory, walked->surface, points);
+  auto positions = PositionCoder(stream, models, memory, walked->surface, points).run();
   if (!positions) return positions.error();
   if (stream.is_reading()) solid = assemble(*walked, *positions);
   return Done{};

@@ -3,21 +3,17 @@
 
 #include <cmath>
 
+#include "geometry/vector3.h"
+
 namespace watertight::codec::polygon {
 namespace {
 
-using Vector = std::array<double, 3>;
+using geometry::Vector3;
 
-Vector between(const GridPoint& from, const GridPoint& to) {
+Vector3 between(const GridPoint& from, const GridPoint& to) {
   return {static_cast<double>(to[0] - from[0]), static_cast<double>(to[1] - from[1]),
           static_cast<double>(to[2] - from[2])};
 }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double squared(const Vector& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
 
 // |normal z| below this part of the normal's length is a wall: 1.1 degrees.
 constexpr double kWallSquared = 0.02 * 0.02;
@@ -81,8 +77,8 @@ void FacetPlane::add(Index vertex, const std::vector<GridPoint>& points_of) {
   const GridPoint& q = points_of[vertex];
   const auto consider = [&](std::size_t one, std::size_t two, std::size_t replaced) {
     const GridPoint& a = points_of[points[one]];
-    const Vector candidate = cross(between(a, points_of[points[two]]), between(a, q));
-    const double candidate_area = squared(candidate);
+    const Vector3 candidate = geometry::cross(between(a, points_of[points[two]]), between(a, q));
+    const double candidate_area = geometry::dot(candidate, candidate);
     if (!(candidate_area > area)) return false;
     normal = candidate;
     area = candidate_area;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How mode `polygon` codes the position of one vertex after the other: the state that both
-// directions of the stream keep alike. For the mode only.
+// The positions of the vertices of a walked surface in mode `polygon`: columns by vertical edges,
+// walls and right angles, heights by planes and levels (docs/format.md). For the mode only.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "codec/mode_polygon/plane_geometry.h"
-#include "codec/mode_polygon/positions.h"
+#include "codec/mode_polygon/surface.h"
 
 namespace watertight::codec::polygon {
 
@@ -66,6 +66,15 @@ inline std::uint32_t length_bits(Flat vector) {
 
 inline GridColumn column_of(const GridPoint& point) { return {point[0], point[1]}; }
 
+/// `same_as[v]` is the first vertex at the same position, or v itself. (A vertex of the solid where
+/// several fans meet is one vertex of the surface for each fan.)
+struct CodedPositions {
+  std::vector<GridPoint> points;
+  std::vector<Index> same_as;
+};
+
+/// Codes the position of each vertex of `surface` in turn. `truth` is empty when reading, else the
+/// positions.
 class PositionCoder {
  public:
   PositionCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
@@ -78,6 +87,8 @@ class PositionCoder {
     in_known_column_.assign(surface.vertex_count(), 0);
   }
 
+  /// Errors: malformed, or not_encodable when writing, if a coordinate is 2^53 or more. Cost:
+  /// linear; per vertex at most 128 columns of the page, for the first one 4096.
   Result<CodedPositions> run();
 
  private:

@@ -2,79 +2,27 @@
 #include "codec/mode_polygon/surface.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
+
+#include "codec/mesh/edge_sides.h"
+#include "codec/mesh/fans.h"
 
 namespace watertight::codec::polygon {
 namespace {
 
-struct PairedEdge {
-  Index shell = 0;
-  Index low = 0;
-  Index high = 0;
-  bool is_forward = false;
-  Index half = 0;
-  friend auto operator<=>(const PairedEdge&, const PairedEdge&) = default;
-};
-
-/// Half-edges between the same vertices of a shell: those of one direction, then of the other.
-std::vector<PairedEdge> sorted_edges(const PolygonSurface& surface,
-                                     const std::vector<Index>& vertices) {
-  std::vector<PairedEdge> edges;
-  edges.reserve(vertices.size());
-  for (Index shell = 0; shell + 1 < surface.shell_offsets.size(); ++shell) {
-    const Index first = surface.ring_offsets[surface.facet_offsets[surface.shell_offsets[shell]]];
-    const Index last =
-        surface.ring_offsets[surface.facet_offsets[surface.shell_offsets[shell + 1]]];
-    for (Index half = first; half < last; ++half) {
-      const Index from = vertices[half];
-      const Index to = vertices[surface.next(half)];
-      edges.push_back({shell, std::min(from, to), std::max(from, to), from < to, half});
-    }
+/// The twin of each half-edge, in the same shell. Nothing if a shell is not closed.
+std::optional<std::vector<Index>> twins_of(const IntegerSolid& solid) {
+  std::vector<Index> twin;
+  for (Index shell = 0; shell < solid.shell_count(); ++shell) {
+    const Index first = solid.facet_offsets[solid.shell_offsets[shell]];
+    const Index last = solid.facet_offsets[solid.shell_offsets[shell + 1]];
+    const auto sides = sides_of_rings(solid.ring_vertices, solid.ring_offsets, first, last);
+    const auto twins = paired(sides, solid.ring_offsets[first]);
+    if (!twins) return std::nullopt;
+    twin.insert(twin.end(), twins->begin(), twins->end());
   }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
-bool pair_twins(PolygonSurface& surface, const std::vector<Index>& vertices) {
-  const std::vector<PairedEdge> edges = sorted_edges(surface, vertices);
-  surface.twin.assign(vertices.size(), kNone);
-  for (std::size_t begin = 0; begin < edges.size();) {
-    std::size_t middle = begin;
-    std::size_t end = begin;
-    for (; end < edges.size() && edges[end].shell == edges[begin].shell &&
-           edges[end].low == edges[begin].low && edges[end].high == edges[begin].high;
-         ++end) {
-      middle += edges[end].is_forward ? 0U : 1U;
-    }
-    if (2 * (middle - begin) != end - begin) return false;
-    for (std::size_t i = begin; i < middle; ++i) {
-      const Index one = edges[i].half;
-      const Index other = edges[i - begin + middle].half;
-      surface.twin[one] = other;
-      surface.twin[other] = one;
-    }
-    begin = end;
-  }
-  return true;
-}
-
-/// Numbers the fans: around its vertex, a half-edge is followed by the twin of its predecessor.
-void number_fans(SurfaceTruth& truth, const std::vector<Index>& vertices) {
-  PolygonSurface& surface = truth.surface;
-  surface.vertex.assign(vertices.size(), kNone);
-  for (Index start = 0; start < vertices.size(); ++start) {
-    if (surface.vertex[start] != kNone) continue;
-    const auto fan = static_cast<Index>(truth.vertex_of.size());
-    Index degree = 0;
-    for (Index half = start; surface.vertex[half] == kNone;
-         half = surface.twin[surface.previous(half)]) {
-      surface.vertex[half] = fan;
-      ++degree;
-    }
-    truth.vertex_of.push_back(vertices[start]);
-    surface.degree.push_back(degree);
-    surface.out_half.push_back(start);
-  }
+  return twin;
 }
 
 /// The facet at which the walk of a shell begins: the one whose highest vertex is lowest; of equals
@@ -139,11 +87,17 @@ Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& mem
     if (solid.shell_offsets[shell] != solid.shell_offsets[shell + 1]) continue;
     return Error{ErrorCode::not_encodable, "a shell has no facets"};
   }
-  if (!pair_twins(surface, solid.ring_vertices)) {
+  auto twins = twins_of(solid);
+  if (!twins) {
     return Error{ErrorCode::not_encodable,
                  "the ring edges of a shell are not matched by those of the same shell"};
   }
-  number_fans(truth, solid.ring_vertices);
+  surface.twin = std::move(*twins);
+  Fans fans = number_fans(surface.twin, [&surface](Index half) { return surface.previous(half); });
+  for (const Index half : fans.first) truth.vertex_of.push_back(solid.ring_vertices[half]);
+  surface.vertex = std::move(fans.fan_of);
+  surface.out_half = std::move(fans.first);
+  surface.degree = std::move(fans.size);
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
     truth.first_half.push_back(first_half(solid, first_facet(solid, shell), memory));
   }

@@ -4,14 +4,21 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+#include "codec/mesh/facet_rings.h"
+#include "codec/mesh/half_edges.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/vector3.h"
 
 namespace watertight::codec::walk {
 namespace {
 
 __extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
-using Vector = std::array<double, 3>;
+using Vector = geometry::Vector3;
+using geometry::cross;
+using geometry::difference;
+using geometry::dot;
 
 // The families of the facets.
 constexpr std::uint32_t kIsInterior = 0;
@@ -31,12 +38,6 @@ Error not_encodable() {
   return {ErrorCode::not_encodable,
           "mode walk cannot code the facets: their edges do not separate them"};
 }
-
-Vector difference(const Point& p, const Point& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
-Vector cross(const Vector& u, const Vector& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
-double dot(const Vector& u, const Vector& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
 
 /// True if the differences of whole numbers below 2^31 span no volume, exactly.
 bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
@@ -109,11 +110,9 @@ class Facets {
         mesh_(mesh),
         facet_of_(facet_of),
         solid_(solid),
-        root_(mesh.triangles.size()),
-        is_interior_(mesh.twin.size(), false),
-        known_(mesh.triangles.size(), 0) {
-    std::iota(root_.begin(), root_.end(), Index{0});
-  }
+        facets_(mesh.triangles.size()),
+        inner_twin_(mesh.twin.size(), kNone),
+        known_(mesh.triangles.size(), 0) {}
 
   Status run();
 
@@ -122,23 +121,10 @@ class Facets {
   bool rare(std::uint32_t context, bool value) {
     return models_.code(stream_, family_ + kRare, 0, {context}, value);
   }
-  Index vertex_at(Index half_edge) const { return mesh_.triangles[half_edge / 3][half_edge % 3]; }
-  static Index next_of(Index half_edge) {
-    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
-  }
-  Index root_of(Index triangle) {
-    while (root_[triangle] != triangle) {
-      root_[triangle] = root_[root_[triangle]];
-      triangle = root_[triangle];
-    }
-    return triangle;
-  }
   void code_flags();
   void code_flag(Index half_edge);
   void number_facets();
-  void walk_rings();
-  void walk_ring(Index start, std::vector<bool>& is_done);
-  void close_ring(Index facet, std::span<const Index> walk);
+  void find_rings();
   bool order_rings();
   bool order_shells();
   template <class Matches>
@@ -153,8 +139,8 @@ class Facets {
   const BoundaryMesh& mesh_;
   std::span<const Index> facet_of_;
   IntegerSolid& solid_;
-  std::vector<Index> root_;  // triangle -> one of the same facet
-  std::vector<bool> is_interior_;
+  geometry::DisjointSets facets_;      // of triangles
+  std::vector<Index> inner_twin_;      // half-edge -> its twin if inside a facet, else kNone
   std::vector<std::uint8_t> known_;    // per triangle: interior edges so far, 4 times those not
   std::uint32_t history_ = 0;          // of the flags of flat edges
   std::vector<Index> facet_;           // triangle -> facet
@@ -168,13 +154,10 @@ void Facets::code_flag(Index half_edge) {
   const Index twin = mesh_.twin[half_edge];
   const Index t = half_edge / 3;
   const Index u = twin / 3;
-  const Index a = vertex_at(twin);
-  const Index b = vertex_at(next_of(twin));
-  const Meeting m = meeting(points_[a], points_[b], points_[vertex_at(next_of(next_of(twin)))],
-                            points_[vertex_at(next_of(next_of(half_edge)))]);
-  const Index t_root = root_of(t);
-  const Index u_root = root_of(u);
-  const std::uint32_t linked = t_root == u_root ? 1 : 0;
+  const Meeting m = meeting(
+      points_[start_of(mesh_.triangles, twin)], points_[end_of(mesh_.triangles, twin)],
+      points_[corner_of(mesh_.triangles, twin)], points_[corner_of(mesh_.triangles, half_edge)]);
+  const std::uint32_t linked = facets_.root(t) == facets_.root(u) ? 1 : 0;
   const std::uint32_t direction = m.slope * 3 + m.course;
   const bool interior =
       models_.code(stream_, family_ + kIsInterior, m.offset,
@@ -188,8 +171,9 @@ void Facets::code_flag(Index half_edge) {
   known_[t] = static_cast<std::uint8_t>(known_[t] + (interior ? 1 : 4));
   known_[u] = static_cast<std::uint8_t>(known_[u] + (interior ? 1 : 4));
   if (!interior) return;
-  is_interior_[half_edge] = is_interior_[twin] = true;
-  root_[std::max(t_root, u_root)] = std::min(t_root, u_root);
+  inner_twin_[half_edge] = twin;
+  inner_twin_[twin] = half_edge;
+  facets_.join(t, u);
 }
 
 void Facets::code_flags() {
@@ -202,69 +186,16 @@ void Facets::code_flags() {
 }
 
 void Facets::number_facets() {
-  facet_.resize(mesh_.triangles.size());
-  for (Index t = 0; t < facet_.size(); ++t) {
-    const Index root = root_of(t);  // the least of the facet
-    if (root == t) {
-      facet_[t] = static_cast<Index>(first_triangle_.size());
-      first_triangle_.push_back(t);
-    } else {
-      facet_[t] = facet_[root];
-    }
-  }
-}
-
-void Facets::close_ring(Index facet, std::span<const Index> walk) {
-  FlagRing ring{facet, {walk.begin(), walk.end()}, squared_diagonal(points_, walk)};
-  std::rotate(ring.vertices.begin(), std::min_element(ring.vertices.begin(), ring.vertices.end()),
-              ring.vertices.end());
-  rings_.push_back(std::move(ring));
-}
-
-/// Follows the boundary of a facet until it closes; split at vertices that come twice.
-void Facets::walk_ring(Index start, std::vector<bool>& is_done) {
-  std::vector<Index> walk;
-  Index h = start;
-  do {
-    is_done[h] = true;
-    walk.push_back(vertex_at(h));
-    h = next_of(h);
-    while (is_interior_[h]) h = next_of(mesh_.twin[h]);
-  } while (h != start);
-  const Index facet = facet_[start / 3];
-  std::vector<Index> sorted = walk;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) {
-    close_ring(facet, walk);
-    return;
-  }
-  // A loop that closes on the stack is a ring of its own.
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  std::vector<bool> is_on_stack(sorted.size(), false);
-  const auto place_of = [&](Index vertex) {
-    return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), vertex) -
-                                    sorted.begin());
-  };
-  std::vector<Index> stack;
-  for (const Index vertex : walk) {
-    if (is_on_stack[place_of(vertex)]) {
-      std::size_t begin = stack.size() - 1;
-      while (stack[begin] != vertex) --begin;
-      close_ring(facet, std::span<const Index>(stack).subspan(begin));
-      for (std::size_t i = begin; i < stack.size(); ++i) is_on_stack[place_of(stack[i])] = false;
-      stack.resize(begin);
-    }
-    is_on_stack[place_of(vertex)] = true;
-    stack.push_back(vertex);
-  }
-  close_ring(facet, stack);
+  geometry::NumberedSets facets = facets_.numbered();
+  facet_ = std::move(facets.set_of);
+  first_triangle_ = std::move(facets.first);
 }
 
 /// All rings, those of a facet together, the largest first.
-void Facets::walk_rings() {
-  std::vector<bool> is_done(is_interior_.size(), false);
-  for (Index h = 0; h < is_interior_.size(); ++h) {
-    if (!is_interior_[h] && !is_done[h]) walk_ring(h, is_done);
+void Facets::find_rings() {
+  for (FacetRing& ring : facet_rings(mesh_.triangles, inner_twin_)) {
+    const double size = squared_diagonal(points_, ring.vertices);
+    rings_.push_back({facet_[ring.triangle], std::move(ring.vertices), size});
   }
   std::stable_sort(rings_.begin(), rings_.end(), [](const FlagRing& x, const FlagRing& y) {
     return x.facet != y.facet ? x.facet < y.facet : x.size > y.size;
@@ -381,7 +312,7 @@ Status Facets::run() {
   code_flags();
   if (stream_.failed()) return malformed;
   number_facets();
-  walk_rings();
+  find_rings();
   if (!is_reading() && !matches_solid()) return not_encodable();
   const bool is_ordered = order_rings() && order_shells();
   if (!is_ordered || stream_.failed()) return is_reading() ? malformed : not_encodable();

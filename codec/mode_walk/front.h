@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "codec/mesh/half_edges.h"
 #include "geometry/point.h"
 
 namespace watertight::codec::walk {
@@ -26,16 +27,10 @@ class WalkFront {
   /// Adds a triangle, whose half-edges must be unused, and joins them to open ones.
   void add(const Triangle& triangle);
 
-  Index from(Index half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
-  Index to(Index half_edge) const { return triangles[half_edge / 3][next_corner(half_edge)]; }
-  Index corner(Index half_edge) const { return triangles[half_edge / 3][(half_edge + 2) % 3]; }
+  Index from(Index half_edge) const { return start_of(triangles, half_edge); }
+  Index to(Index half_edge) const { return end_of(triangles, half_edge); }
+  Index corner(Index half_edge) const { return corner_of(triangles, half_edge); }
   bool is_open(Index half_edge) const { return twin[half_edge] == kNone; }
-  static Index next_of(Index half_edge) {
-    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
-  }
-  static Index previous_of(Index half_edge) {
-    return half_edge % 3 == 0 ? half_edge + 2 : half_edge - 1;
-  }
 
   /// The half-edges of the component that leave `v`: this one first, then next_at().
   Index first_at(Index v) const { return is_used(v) ? head_[v] : kNone; }
@@ -55,8 +50,6 @@ class WalkFront {
   std::size_t open_edges() const { return open_edges_; }
 
  private:
-  static Index next_corner(Index half_edge) { return (half_edge % 3 + 1) % 3; }
-
   Index component_ = kNone;  // start_component() makes the first one 0
   std::vector<Index> next_;  // half-edge -> the one added before it at the same vertex
   std::vector<Index> head_;

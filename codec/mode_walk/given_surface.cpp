@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "codec/mesh/edge_sides.h"
+#include "codec/mesh/fans.h"
+#include "codec/mesh/half_edges.h"
 #include "codec/mode_walk/walk.h"
 
 namespace watertight::codec::walk {
@@ -31,41 +34,24 @@ bool WalkTruth::take(BoundaryMesh& mesh, Index vertex_count) {
               [&](Index g, Index h) { return to(g) != to(h) ? to(g) < to(h) : g < h; });
   }
 
-  // Components given are ranges of half-edges, so twins of a component lie in its range.
-  twin_.assign(half_edge_count, kNone);
   for (std::size_t c = 0; c + 1 < mesh.component_first.size(); ++c) {
-    const Index begin = 3 * mesh.component_first[c];
-    const Index stop = 3 * mesh.component_first[c + 1];
-    for (Index h = begin; h < stop; ++h) {
-      const auto place = std::lower_bound(
-          half_edges_.begin() + first_[to(h)], half_edges_.begin() + first_[to(h) + 1], h,
-          [&](Index g, Index) { return to(g) != from(h) ? to(g) < from(h) : g < begin; });
-      if (place == half_edges_.begin() + first_[to(h) + 1] || to(*place) != from(h) ||
-          *place >= stop) {
-        return false;
-      }
-      twin_[h] = *place;
-    }
+    const Index first = mesh.component_first[c];
+    const auto sides = sides_of_triangles(triangles_, first, mesh.component_first[c + 1]);
+    const auto is_again = [](const EdgeSide& a, const EdgeSide& b) {
+      return a.has_edge_of(b) && a.is_downward == b.is_downward;
+    };
+    if (std::adjacent_find(sides.begin(), sides.end(), is_again) != sides.end()) return false;
+    const auto twins = paired(sides, 3 * first);
+    if (!twins) return false;
+    twin_.insert(twin_.end(), twins->begin(), twins->end());
   }
-  for (Index h = 0; h < half_edge_count; ++h) {
-    if (twin_[h] == kNone || twin_[twin_[h]] != h) return false;  // kNone: in no component
-  }
+  if (twin_.size() != half_edge_count) return false;  // a triangle is in no component
   is_used_.assign(triangles_.size(), false);
   return true;
 }
 
 bool WalkTruth::is_manifold() const {
-  for (Index v = 0; v + 1 < first_.size(); ++v) {
-    const Index start = half_edges_[first_[v]];
-    Index h = start;
-    Index fan = 0;
-    do {
-      h = twin_of(turned(h, 2));
-      ++fan;
-    } while (h != start);
-    if (fan != first_[v + 1] - first_[v]) return false;
-  }
-  return true;
+  return number_fans(twin_, previous_half_edge).first.size() + 1 == first_.size();
 }
 
 Index WalkTruth::find_unused(const Triangle& triangle) const {

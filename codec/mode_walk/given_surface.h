@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "codec/mesh/half_edges.h"
 #include "geometry/point.h"
 
 namespace watertight::codec::walk {
@@ -22,14 +23,10 @@ class WalkTruth {
   /// True if the triangles at each vertex form one fan.
   bool is_manifold() const;
 
-  Index from(Index half_edge) const { return triangles_[half_edge / 3][half_edge % 3]; }
-  Index to(Index half_edge) const { return from(turned(half_edge, 1)); }
-  Index corner(Index half_edge) const { return from(turned(half_edge, 2)); }
+  Index from(Index half_edge) const { return start_of(triangles_, half_edge); }
+  Index to(Index half_edge) const { return end_of(triangles_, half_edge); }
+  Index corner(Index half_edge) const { return corner_of(triangles_, half_edge); }
   Index twin_of(Index half_edge) const { return twin_[half_edge]; }
-  /// The half-edge `corners` farther in the same triangle.
-  static Index turned(Index half_edge, Index corners) {
-    return half_edge / 3 * 3 + (half_edge % 3 + corners) % 3;
-  }
 
   void use(Index half_edge) { is_used_[half_edge / 3] = true; }
   /// The first half-edge of an unused triangle with these corners in this order, or kNone.

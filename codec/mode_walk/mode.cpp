@@ -95,7 +95,7 @@ const ModelLayout& model_layout() {
 }
 
 Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                  IntegerSolid& solid, WriterChoice& /*choice*/, const Limits& limits) {
+                  IntegerSolid& solid, const WriterChoice& /*choice*/, const Limits& limits) {
   if (!stream.is_reading() && solid.vertices.size() < 4) {
     return Error{ErrorCode::not_encodable, "the vertices span no volume"};
   }

@@ -8,13 +8,11 @@
 namespace watertight::codec::walk {
 namespace {
 
-Vector difference(const Point& p, const Point& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
-
-Vector cross(const Vector& u, const Vector& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
-
-double dot(const Vector& u, const Vector& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
+using Vector = geometry::Vector3;
+using geometry::cross;
+using geometry::difference;
+using geometry::dot;
+using geometry::operator-;
 
 /// cos(k pi / 12) for k = 1 to 11.
 constexpr std::array<double, 11> kBends{0.96592582628906828,  0.86602540378443865,
@@ -128,9 +126,7 @@ FaceShape face_shape(std::span<const Point> points, const Triangle& face,
   const double least = std::min(r0, r1);
   const double most = std::max(r0, r1);
   if (least > 0) {
-    const Vector between{spheres[0].centre[0] - spheres[1].centre[0],
-                         spheres[0].centre[1] - spheres[1].centre[1],
-                         spheres[0].centre[2] - spheres[1].centre[2]};
+    const Vector between = spheres[0].centre - spheres[1].centre;
     const double cosine = (r0 + r1 - dot(between, between)) / (2 * std::sqrt(r0 * r1));
     shape.sphere = static_cast<std::uint8_t>(class_below(kAngles, cosine));
     shape.ratio = static_cast<std::uint8_t>(octave(most / least, 0, kRatioClasses - 2));

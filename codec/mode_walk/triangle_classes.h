@@ -10,10 +10,9 @@
 #include <span>
 
 #include "geometry/point.h"
+#include "geometry/vector3.h"
 
 namespace watertight::codec::walk {
-
-using Vector = std::array<double, 3>;
 
 inline constexpr std::uint32_t kBendClasses = 12;
 inline constexpr std::uint32_t kSideClasses = 3;
@@ -27,10 +26,10 @@ inline constexpr std::uint32_t kGabrielClasses = 4;
 /// An edge from a to b with the triangle (a, b, o) on one side.
 struct Gate {
   Point a, b, o;
-  Vector along{};      // b - a
-  Vector normal{};     // along x (o - a)
-  double length2 = 0;  // of along, squared
-  double normal2 = 0;  // of normal, squared
+  geometry::Vector3 along{};   // b - a
+  geometry::Vector3 normal{};  // along x (o - a)
+  double length2 = 0;          // of along, squared
+  double normal2 = 0;          // of normal, squared
   Gate(const Point& from, const Point& to, const Point& corner);
 };
 

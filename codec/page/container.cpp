@@ -10,9 +10,9 @@
 #include "base/checksum.h"
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/page.h"
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
 #include "codec/page/solid_checksum.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 
 namespace watertight::codec {
 namespace {
@@ -37,7 +37,7 @@ std::size_t size_of(const PlainSections& plain) {
 std::uint32_t page_checksum(const PageContents& page, PageKind kind) {
   ByteWriter writer;
   std::uint32_t sum = 0;
-  for (const PageSolid& solid : page.solids) {
+  for (const StoredSolid& solid : page.solids) {
     sum = checksum_of(page.frame.acceptance, solid.canonical->boundary.solid(),
                       solid.keeps_order ? solid.canonical->order : geometry::SourceOrder{});
     writer.u32(sum);
@@ -55,6 +55,7 @@ Result<PlainSections> plain_sections(const geometry::CanonicalSolid& canonical, 
   }
   auto parts = bitmap::decompose(canonical, certificate);
   if (!parts) return parts.error();
+  plain.counts = parts->counts;
   unsigned flags = 0;
   plain.sections.push_back(std::move(parts->vertices));
   if (!parts->steiner.empty()) {
@@ -78,42 +79,59 @@ Result<PlainSections> plain_sections(const geometry::CanonicalSolid& canonical, 
   return plain;
 }
 
-Status make_plain(PageSolid& solid, Mode mode, const delaunay::Certificate* certificate) {
-  auto plain = plain_sections(*solid.canonical, mode, certificate);
-  if (!plain) return plain.error();
-  solid.mode = mode;
-  solid.plain = std::move(plain).value();
-  return Done{};
+/// The shorter of modes raw and bitmap, with its sections.
+Result<Mode> choose_plain(StoredSolid& solid, const Plan& plan) {
+  auto raw = plain_sections(*solid.canonical, Mode::raw, nullptr);
+  if (!raw) return raw.error();
+  solid.plain = std::move(raw).value();
+  if ((plan.declined >> static_cast<unsigned>(Mode::bitmap) & 1U) != 0) return Mode::raw;
+  auto bitmap = plain_sections(*solid.canonical, Mode::bitmap, nullptr);
+  if (!bitmap || size_of(*bitmap) >= size_of(solid.plain)) return Mode::raw;
+  solid.plain = std::move(bitmap).value();
+  return Mode::bitmap;
 }
 
-/// The cheapest mode for integers; where none can hold the solid, the shorter of raw and bitmap.
-Status choose_mode(const SolidCoder& coder, PageSolid& solid) {
-  solid.mode = coder.cheapest_mode(solid);
-  if (solid.mode != Mode::automatic) return Done{};
-  if (auto status = make_plain(solid, Mode::raw, nullptr); !status) return status;
-  if ((solid.declined >> static_cast<unsigned>(Mode::bitmap) & 1U) != 0) return Done{};
-  PageSolid bitmap = solid;
-  if (make_plain(bitmap, Mode::bitmap, nullptr) && size_of(bitmap.plain) < size_of(solid.plain)) {
-    solid = std::move(bitmap);
+/// The plan with the mode that costs least, if it leaves the mode open. Makes the sections of modes
+/// raw and bitmap, unless they are there.
+Result<Plan> complete(const SolidCoder& coder, StoredSolid& solid, Plan plan,
+                      const delaunay::Certificate* certificate) {
+  if (plan.mode == Mode::automatic) {
+    plan = coder.cheapest(solid, plan);
+    if (plan.mode != Mode::automatic) return plan;
+    const auto mode = choose_plain(solid, plan);
+    if (!mode) return mode.error();
+    plan.mode = *mode;
   }
-  return Done{};
+  const bool is_plain = plan.mode == Mode::raw || plan.mode == Mode::bitmap;
+  if (is_plain && solid.plain.sections.empty()) {
+    auto plain = plain_sections(*solid.canonical, plan.mode, certificate);
+    if (!plain) return plain.error();
+    solid.plain = std::move(plain).value();
+  }
+  return plan;
 }
 
 /// The header, what the decisions about each part took, the checksum.
-std::vector<BlobInfo::Part> parts_of(const PageSolid& solid, const PageContents& page) {
+std::vector<BlobInfo::Part> parts_of(const StoredPage& page, std::size_t number) {
   constexpr const char* kNames[kStreamParts] = {"frame",  "position",    "connectivity",
                                                 "facets", "coordinates", "order"};
   std::vector<BlobInfo::Part> parts;
-  const bool is_alone = page.solids.size() == 1;
+  const bool is_alone = page.contents.solids.size() == 1;
   if (is_alone) parts.push_back({"header", static_cast<double>(kHeaderBytes)});
   for (std::size_t i = 0; i < kStreamParts; ++i) {
-    const std::uint64_t cost = solid.costs[i] + (is_alone && i == 0 ? page.frame_cost : 0);
+    const std::uint64_t cost = page.costs[number][i] + (is_alone && i == 0 ? page.frame_cost : 0);
     if (cost == 0) continue;
     const double bytes = static_cast<double>(cost) / (8.0 * (1 << kCostBits));
     parts.push_back({kNames[i], std::round(bytes * 100) / 100});
   }
   if (is_alone) parts.push_back({"checksum", static_cast<double>(checksum_bytes(page.kind))});
   return parts;
+}
+
+StreamCosts costs_since(const StreamCosts& before, const EntropyStream& stream) {
+  StreamCosts costs = stream.costs();
+  for (std::size_t i = 0; i < kStreamParts; ++i) costs[i] -= before[i];
+  return costs;
 }
 
 Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
@@ -140,16 +158,14 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
 
 }  // namespace
 
-PageSolid page_solid(const OrientedBoundary& boundary, const EncodeOptions& options) {
-  PageSolid solid;
+StoredSolid stored_solid(const OrientedBoundary& boundary, bool keeps_order) {
+  StoredSolid solid;
   solid.canonical = geometry::canonical_form(boundary);
-  solid.keeps_order = options.keep_order && !solid.canonical->order.is_identity();
-  const Solid& canonical = solid.canonical->boundary.solid();
-  if (auto gridded = grid_solid(canonical)) {
-    solid.gridded = std::move(*gridded);
-    solid.has_grid = true;
+  solid.keeps_order = keeps_order && !solid.canonical->order.is_identity();
+  if (auto gridded = grid_solid(solid.canonical->boundary.solid())) {
+    solid.integers = std::move(gridded->solid);
+    solid.origin = gridded->origin;
   }
-  solid.mode = options.mode;
   return solid;
 }
 
@@ -159,7 +175,7 @@ Frame frame_of(const Solid& solid, const Acceptance& acceptance) {
   return {acceptance, solid.srid(), grid};
 }
 
-Result<Bytes> write_page_bytes(PageContents& page, PageKind kind,
+Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, PageKind kind,
                                const delaunay::Certificate* certificate) {
   auto models = ModelSet::make(page.models);
   if (!models) return models.error();
@@ -174,24 +190,22 @@ Result<Bytes> write_page_bytes(PageContents& page, PageKind kind,
     return status.error();
   }
   SolidCoder coder(stream, *models, page.frame, none);
-  for (PageSolid& solid : page.solids) {
-    if (solid.mode == Mode::automatic) {
-      if (auto status = choose_mode(coder, solid); !status) return status.error();
-    }
-    const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
-    if (is_plain && solid.plain.sections.empty()) {
-      if (auto status = make_plain(solid, solid.mode, certificate); !status) return status.error();
-    }
-    if (auto status = coder.code(solid); !status) return status.error();
+  for (std::size_t i = 0; i < page.solids.size(); ++i) {
+    StoredSolid& solid = page.solids[i];
+    auto plan = complete(coder, solid, plans[i], certificate);
+    if (!plan) return plan.error();
+    plans[i] = std::move(plan).value();
+    solid.mode = plans[i].mode;
+    if (auto status = coder.code(solid, plans[i].choice); !status) return status.error();
   }
   ByteWriter writer;
   writer.append(kMagic);
   writer.u8(static_cast<std::uint8_t>(kFormatVersion | (kind == PageKind::page ? kPageFlag : 0U)));
   writer.u8(page.models);
   writer.append(std::move(stream).finish());
-  page.checksum = page_checksum(page, kind);
+  const std::uint32_t checksum = page_checksum(page, kind);
   for (std::size_t i = 0; i < checksum_bytes(kind); ++i) {
-    writer.u8(static_cast<std::uint8_t>(page.checksum >> (8 * i)));
+    writer.u8(static_cast<std::uint8_t>(checksum >> (8 * i)));
   }
   return std::move(writer).bytes();
 }
@@ -206,7 +220,7 @@ Limits limits_of_stream(std::size_t bytes, const Limits& limits) {
   return result;
 }
 
-Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits) {
+Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits) {
   if (bytes.size() > limits.bytes) {
     return Error{ErrorCode::limit_exceeded, "a blob of " + std::to_string(bytes.size()) +
                                                 " bytes; the limit is " +
@@ -219,9 +233,10 @@ Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits
     return Error{ErrorCode::malformed, "the blob ends before its checksum", bytes.size()};
   }
   const std::size_t size = bytes.size() - kHeaderBytes - checksum_bytes(kind);
-  PageContents page;
-  page.models = *number;
-  auto models = ModelSet::make(page.models);
+  StoredPage page;
+  page.kind = kind;
+  page.contents.models = *number;
+  auto models = ModelSet::make(*number);
   if (!models) return models.error();
   EntropyStream stream = EntropyStream::reader(reader.take(size));
   for (std::size_t i = 0; i < checksum_bytes(kind); ++i) {
@@ -229,54 +244,55 @@ Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits
   }
   const std::uint64_t count =
       kind == PageKind::page ? stream.code_uniform(0, kMaxPageSolids) + 1 : 1;
-  if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.frame); !status) {
+  if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.contents.frame); !status) {
     return status.error();
   }
-  page.kind = kind;
   page.frame_cost = stream.cost();
-  SolidCoder coder(stream, *models, page.frame, limits_of_stream(size, limits));
+  SolidCoder coder(stream, *models, page.contents.frame, limits_of_stream(size, limits));
   for (std::uint64_t i = 0; i < count; ++i) {
-    PageSolid solid;
+    StoredSolid solid;
+    const StreamCosts before = stream.costs();
     if (auto status = coder.code(solid); !status) {
       Error error = std::move(status).error();
       if (kind == PageKind::page) error.message += "; solid " + std::to_string(i);
       if (!error.byte_offset) error.byte_offset = kHeaderBytes + stream.position();
       return error;
     }
-    page.solids.push_back(std::move(solid));
+    page.contents.solids.push_back(std::move(solid));
+    page.costs.push_back(costs_since(before, stream));
   }
   if (!stream.is_finished()) {
     return Error{ErrorCode::malformed, "the blob does not end where its solid ends",
                  bytes.size() - checksum_bytes(kind)};
   }
-  if (page_checksum(page, kind) != page.checksum) {
+  if (page_checksum(page.contents, kind) != page.checksum) {
     return Error{ErrorCode::malformed, "the checksum does not match the solid",
                  bytes.size() - checksum_bytes(kind)};
   }
   return page;
 }
 
-Result<Decoded> decoded_of(const PageContents& page, std::size_t number) {
-  const PageSolid& stored = page.solids[number];
+Result<Decoded> decoded_of(const StoredPage& page, std::size_t number) {
+  const StoredSolid& stored = page.contents.solids[number];
   const Solid& canonical = stored.canonical->boundary.solid();
   BlobInfo info;
   info.version = kFormatVersion;
-  info.models = page.models;
+  info.models = page.contents.models;
   info.mode = stored.mode;
-  info.acceptance = page.frame.acceptance;
-  info.srid = page.frame.srid;
+  info.acceptance = page.contents.frame.acceptance;
+  info.srid = page.contents.frame.srid;
   info.lattice = canonical.lattice();
   info.vertices = canonical.vertex_count();
   info.facets = canonical.facet_count();
   info.rings = canonical.ring_count();
   info.shells = canonical.shell_count();
-  info.steiner_vertices = stored.composition.steiner_vertices;
-  info.delaunay_faces = stored.composition.delaunay_faces;
-  info.marked_faces = stored.composition.marked_faces;
-  info.unrecovered_faces = stored.composition.unrecovered_faces;
+  info.steiner_vertices = stored.plain.counts.steiner_vertices;
+  info.delaunay_faces = stored.plain.counts.delaunay_faces;
+  info.marked_faces = stored.plain.counts.marked_faces;
+  info.unrecovered_faces = stored.plain.counts.unrecovered_faces;
   info.has_order = stored.keeps_order;
   info.checksum = page.checksum;
-  info.parts = parts_of(stored, page);
+  info.parts = parts_of(page, number);
   if (!stored.keeps_order) return Decoded{canonical, std::move(info)};
   auto restored = geometry::restore_order(canonical, stored.canonical->order);
   if (!restored) return restored.error();

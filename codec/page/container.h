@@ -19,15 +19,22 @@ enum class PageKind : std::uint8_t {
 struct PageContents {
   Frame frame;
   std::uint8_t models = kModelNumber;
-  std::vector<PageSolid> solids;
-  std::uint32_t checksum = 0;
-  PageKind kind = PageKind::blob;  // when read
-  std::uint64_t frame_cost = 0;    // in 1/65536 bit, when read
+  std::vector<StoredSolid> solids;
 };
 
-/// The mode of a solid that is Mode::automatic becomes the one that costs least. `certificate` may
-/// be null. Errors: not_encodable; unsupported (the models).
-Result<Bytes> write_page_bytes(PageContents& page, PageKind kind,
+/// A page as it was read.
+struct StoredPage {
+  PageKind kind = PageKind::blob;
+  PageContents contents;
+  std::uint32_t checksum = 0;
+  std::uint64_t frame_cost = 0;    // in 1/65536 bit
+  std::vector<StreamCosts> costs;  // of each solid, likewise
+};
+
+/// Writes the solids as planned, one plan for each; `certificate` may be null. Afterwards the plans
+/// in automatic mode have the mode that costs least, and the solids are as they stand in the page.
+/// Errors: not_encodable; unsupported (the models).
+Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, PageKind kind,
                                const delaunay::Certificate* certificate);
 
 /// What a stream of so many bytes may bring forth, whatever its caller allows (docs/format.md,
@@ -35,14 +42,14 @@ Result<Bytes> write_page_bytes(PageContents& page, PageKind kind,
 Limits limits_of_stream(std::size_t bytes, const Limits& limits);
 
 /// The limits hold for all solids together. Errors: malformed; unsupported; limit_exceeded.
-Result<PageContents> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits);
+Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits);
 
-/// The stored form of a solid but for its mode's own data: its canonical form and its grid.
-PageSolid page_solid(const OrientedBoundary& boundary, const EncodeOptions& options);
+/// The stored form of a solid but for its mode: its canonical form, on its grid.
+StoredSolid stored_solid(const OrientedBoundary& boundary, bool keeps_order);
 /// What a page must share with this solid. Cost: linear.
 Frame frame_of(const Solid& solid, const Acceptance& acceptance);
 
 /// What decode() answers for one solid of a page.
-Result<Decoded> decoded_of(const PageContents& page, std::size_t number);
+Result<Decoded> decoded_of(const StoredPage& page, std::size_t number);
 
 }  // namespace watertight::codec

@@ -15,19 +15,19 @@
 
 namespace watertight::codec {
 
-/// What a mode chose for a solid when it was measured: writing takes the same instead of choosing
-/// again.
+/// What a mode may choose for a solid before it is written.
 struct WriterChoice {
-  std::optional<parallelogram::VertexOptions> vertex_options;  // of mode parallelogram
+  /// Of mode parallelogram; nothing: code_solid() chooses by itself.
+  std::optional<parallelogram::VertexOptions> vertex_options;
 };
 
 /// What every mode takes. `memory` is only looked at; the caller extends it after each solid.
-/// Writing and measuring: requires a canonical solid; errors: not_encodable where the mode cannot
-/// hold it (the stream and the bank are then useless). Reading: `solid` must be empty; its vertices
-/// and facets come in any order; errors: malformed; limit_exceeded before anything large is
-/// allocated.
+/// Writing and measuring: requires a canonical solid and leaves it as it is; errors: not_encodable
+/// where the mode cannot hold it (the stream and the bank are then useless). Reading: `solid` must
+/// be empty; its vertices and facets come in any order; errors: malformed; limit_exceeded before
+/// anything large is allocated.
 using CodeSolid = Status(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
-                         IntegerSolid& solid, WriterChoice& choice, const Limits& limits);
+                         IntegerSolid& solid, const WriterChoice& choice, const Limits& limits);
 
 }  // namespace watertight::codec
 
@@ -47,4 +47,8 @@ CodeSolid code_solid;
 namespace watertight::codec::parallelogram {
 const ModelLayout& model_layout();
 CodeSolid code_solid;
+/// The options that write a canonical solid in fewest bytes, from trials on a part of it. `models`
+/// are as they were afterwards. Errors: not_encodable.
+Result<VertexOptions> choose_options(const IntegerSolid& solid, ModelBank& models,
+                                     const PageMemory& memory, const Limits& limits);
 }  // namespace watertight::codec::parallelogram

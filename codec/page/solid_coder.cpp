@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
 #include "codec/page/source_order.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 
 namespace watertight::codec {
 namespace {
@@ -188,12 +188,6 @@ ModeCoder coder_of(Mode mode) {
   }
 }
 
-std::array<std::uint64_t, kStreamParts> costs_of(const EntropyStream& stream) {
-  std::array<std::uint64_t, kStreamParts> costs{};
-  for (std::size_t i = 0; i < kStreamParts; ++i) costs[i] = stream.cost(static_cast<StreamPart>(i));
-  return costs;
-}
-
 /// Mode parallelogram holds no other facets.
 bool is_all_triangles(const IntegerSolid& solid) {
   return solid.ring_vertices.size() == 3 * std::size_t{solid.facet_count()} &&
@@ -254,22 +248,23 @@ Mode SolidCoder::code_mode(Mode mode) {
   return static_cast<Mode>(last_mode_);
 }
 
-Status SolidCoder::code_geometry(PageSolid& solid) {
+Status SolidCoder::code_geometry(StoredSolid& solid, const WriterChoice& choice) {
   const ModeCoder coder = coder_of(solid.mode);
   if (coder.code == nullptr) {
     return Error{ErrorCode::unsupported,
                  "mode " + std::to_string(static_cast<unsigned>(solid.mode)) + " is unknown"};
   }
-  if (frame_.grid.kind == LatticeKind::float64) {
+  const bool has_integers = stream_.is_reading() || solid.integers;
+  if (frame_.grid.kind == LatticeKind::float64 || !has_integers) {
     const ErrorCode code = stream_.is_reading() ? ErrorCode::malformed : ErrorCode::not_encodable;
     return Error{code, "mode " + std::string(to_string(solid.mode)) +
                            " is for integers, and the coordinates are on no grid"};
   }
-  return coder.code(stream_, models_[coder.part], memory_, solid.gridded.solid, solid.choice,
-                    limits_);
+  if (stream_.is_reading()) solid.integers.emplace();
+  return coder.code(stream_, models_[coder.part], memory_, *solid.integers, choice, limits_);
 }
 
-Status SolidCoder::code_plain(PageSolid& solid) {
+Status SolidCoder::code_plain(StoredSolid& solid) {
   PlainSections& plain = solid.plain;
   if (solid.mode == Mode::bitmap) {
     plain.flags = static_cast<std::uint8_t>(stream_.code_bits(plain.flags, 8));
@@ -290,12 +285,12 @@ Status SolidCoder::code_plain(PageSolid& solid) {
 
 /// The origin of the solid's lattice: the smallest corner of the solid (0), the origin of the solid
 /// before (1), or any (2).
-void SolidCoder::code_origin(PageSolid& solid) {
+void SolidCoder::code_origin(StoredSolid& solid) {
   if (frame_.grid.kind == LatticeKind::float64) return;
   ModelBank& models = models_[ModelPart::frame];
   const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
-  GridPoint& origin = solid.gridded.origin;
-  const GridPoint corner = is_plain ? memory_.last_position : smallest_corner(solid.gridded.solid);
+  GridPoint& origin = solid.origin;
+  const GridPoint corner = is_plain ? memory_.last_position : smallest_corner(*solid.integers);
   std::uint32_t which = 0;
   if (!is_plain && !models.code(stream_, kOrigin, 0, {2 * last_origin_case_}, origin == corner)) {
     which = models.code(stream_, kOrigin, 0, {2 * last_origin_case_ + 1}, origin == last_origin_)
@@ -313,25 +308,26 @@ void SolidCoder::code_origin(PageSolid& solid) {
   last_origin_ = origin;
 }
 
-Status SolidCoder::rebuild(PageSolid& solid) const {
+Status SolidCoder::rebuild(StoredSolid& solid) const {
   if (stream_.failed()) return Error{ErrorCode::malformed, "truncated or malformed solid"};
   if (solid.mode != Mode::raw && solid.mode != Mode::bitmap) {
-    if (!are_in_range(solid.gridded.solid)) {
+    if (!are_in_range(*solid.integers)) {
       return Error{ErrorCode::malformed, "a coordinate is out of range"};
     }
-    solid.gridded.grid = frame_.grid;
-    auto canonical = canonical_of(ungrid_solid(solid.gridded, frame_.srid, limits_));
+    GriddedSolid gridded{frame_.grid, solid.origin, std::move(*solid.integers)};
+    auto canonical = canonical_of(ungrid_solid(gridded, frame_.srid, limits_));
+    solid.integers = std::move(gridded.solid);
     if (!canonical) return canonical.error();
     solid.canonical = std::move(canonical).value();
     return Done{};
   }
   auto composition = compose_plain(solid.mode, solid.plain, limits_);
   if (!composition) return composition.error();
-  auto lattice = lattice_at(frame_.grid, solid.gridded.origin);
+  auto lattice = lattice_at(frame_.grid, solid.origin);
   if (!lattice) return lattice.error();
-  solid.composition = std::move(composition).value();
-  auto canonical = canonical_of(
-      Solid::make(std::move(solid.composition.arrays), *lattice, frame_.srid, limits_));
+  solid.plain.counts = composition->counts;
+  auto canonical =
+      canonical_of(Solid::make(std::move(composition->arrays), *lattice, frame_.srid, limits_));
   if (!canonical) return canonical.error();
   const bool is_listed = solid.mode == Mode::raw || (solid.plain.flags & kExplicitFacets) != 0;
   if (is_listed && !canonical->order.is_identity()) {
@@ -341,7 +337,7 @@ Status SolidCoder::rebuild(PageSolid& solid) const {
   return Done{};
 }
 
-Status SolidCoder::code_order(PageSolid& solid) {
+Status SolidCoder::code_order(StoredSolid& solid) {
   solid.keeps_order =
       models_[ModelPart::frame].code(stream_, kOrder, 0, {last_order_}, solid.keeps_order);
   last_order_ = solid.keeps_order ? 1 : 0;
@@ -365,12 +361,13 @@ void SolidCoder::take_from_limits(const Solid& solid) {
   take(limits_.shells, solid.shell_count());
 }
 
-Status SolidCoder::code(PageSolid& solid) {
-  const auto before = costs_of(stream_);
+Status SolidCoder::code(StoredSolid& solid, const WriterChoice& choice) {
   stream_.enter(StreamPart::frame);
   solid.mode = code_mode(solid.mode);
   const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
-  if (auto status = is_plain ? code_plain(solid) : code_geometry(solid); !status) return status;
+  if (auto status = is_plain ? code_plain(solid) : code_geometry(solid, choice); !status) {
+    return status;
+  }
   stream_.enter(StreamPart::position);
   code_origin(solid);
   if (stream_.is_reading()) {
@@ -378,37 +375,45 @@ Status SolidCoder::code(PageSolid& solid) {
   }
   stream_.enter(StreamPart::order);
   if (auto status = code_order(solid); !status) return status;
-  solid.costs = costs_of(stream_);
-  for (std::size_t i = 0; i < kStreamParts; ++i) solid.costs[i] -= before[i];
   if (stream_.failed()) return Error{ErrorCode::malformed, "truncated or malformed solid"};
-  if (!is_plain) memory_.add(solid.gridded.solid);
+  if (!is_plain) memory_.add(*solid.integers);
   take_from_limits(solid.canonical->boundary.solid());
   return Done{};
 }
 
-std::optional<std::uint64_t> SolidCoder::cost(PageSolid& solid, Mode mode) const {
+std::optional<SolidCoder::Measure> SolidCoder::measure(const StoredSolid& solid, Mode mode,
+                                                       const WriterChoice& choice) const {
   const ModeCoder coder = coder_of(mode);
-  if (coder.code == nullptr || !solid.has_grid) return std::nullopt;
-  if (mode == Mode::parallelogram && !is_all_triangles(solid.gridded.solid)) return std::nullopt;
-  EntropyStream meter = EntropyStream::meter();
+  if (coder.code == nullptr || !solid.integers) return std::nullopt;
+  if (mode == Mode::parallelogram && !is_all_triangles(*solid.integers)) return std::nullopt;
+  IntegerSolid integers = *solid.integers;
   ModelBank& models = models_[coder.part];
-  IntegerSolid& integers = solid.gridded.solid;
+  Measure result{0, choice};
+  if (mode == Mode::parallelogram && !choice.vertex_options) {
+    auto options = parallelogram::choose_options(integers, models, memory_, limits_);
+    if (!options) return std::nullopt;
+    result.choice.vertex_options = std::move(options).value();
+  }
+  EntropyStream meter = EntropyStream::meter();
   const BankTrial trial(models, integers.vertices.size());
-  if (!coder.code(meter, models, memory_, integers, solid.choice, limits_)) return std::nullopt;
-  return meter.cost();
+  if (!coder.code(meter, models, memory_, integers, result.choice, limits_)) return std::nullopt;
+  result.cost = meter.cost();
+  return result;
 }
 
-Mode SolidCoder::cheapest_mode(PageSolid& solid) const {
-  Mode best = Mode::automatic;
+Plan SolidCoder::cheapest(const StoredSolid& solid, const Plan& plan) const {
+  Plan best = plan;
+  best.mode = Mode::automatic;
   std::uint64_t least = ~std::uint64_t{0};
   for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {
-    if ((solid.declined >> static_cast<unsigned>(mode) & 1U) != 0) continue;
-    if (mode == Mode::walk && is_large_mesh(solid.gridded.solid)) continue;
-    const auto needed = cost(solid, mode);
-    if (needed && *needed < least) {
-      least = *needed;
-      best = mode;
-    }
+    if ((plan.declined >> static_cast<unsigned>(mode) & 1U) != 0) continue;
+    if (mode == Mode::walk && solid.integers && is_large_mesh(*solid.integers)) continue;
+    const auto measured = measure(solid, mode, best.choice);
+    if (!measured) continue;
+    best.choice = measured->choice;
+    if (measured->cost >= least) continue;
+    least = measured->cost;
+    best.mode = mode;
   }
   return best;
 }

@@ -44,23 +44,25 @@ enum BitmapFlag : std::uint8_t {
 struct PlainSections {
   std::uint8_t flags = 0;  // BitmapFlag; 0 in mode raw
   std::vector<Bytes> sections;
+  bitmap::FaceCounts counts;  // of mode bitmap
 };
 
-/// A solid as it stands in a page.
-struct PageSolid {
+/// A solid as it stands in a page: the same when it is written and when it has been read.
+struct StoredSolid {
   Mode mode = Mode::raw;
-  /// When reading, code() sets it; its order is the identity unless the blob keeps a source order.
-  std::optional<geometry::CanonicalSolid> canonical;
-  bool keeps_order = false;
-  GriddedSolid gridded;        // of raw and bitmap only the origin counts
-  bool has_grid = false;       // writing: it may take the modes for integers
-  std::uint32_t declined = 0;  // writing: bit m is set if automatic mode must not take mode m
-  WriterChoice choice;         // writing: made by cost()
-  PlainSections plain;
-  /// What mode bitmap found, when reading.
-  bitmap::Composition composition;
-  /// What each StreamPart took, in 1/65536 bit.
-  std::array<std::uint64_t, kStreamParts> costs{};
+  std::optional<geometry::CanonicalSolid> canonical;  // nothing before it is read
+  bool keeps_order = false;  // the page has the source order; when read, another is the identity
+  /// Nothing where the coordinates are on no grid; when read, of modes for integers only.
+  std::optional<IntegerSolid> integers;
+  GridPoint origin{};   // of its lattice, on the grid of the page
+  PlainSections plain;  // of modes raw and bitmap only
+};
+
+/// How a solid is to be written.
+struct Plan {
+  Mode mode = Mode::automatic;
+  std::uint32_t declined = 0;  // bit m is set if automatic mode must not take mode m
+  WriterChoice choice = {};
 };
 
 /// Codes the solids of one page, one after the other. The limits are for all of them together.
@@ -69,25 +71,32 @@ class SolidCoder {
   SolidCoder(EntropyStream& stream, ModelSet& models, const Frame& frame, const Limits& limits)
       : stream_(stream), models_(models), frame_(frame), limits_(limits) {}
 
-  /// Writing or measuring: requires a solid of this frame, with all that its mode needs.
-  /// Errors: not_encodable (the coder is then useless); reading: malformed; limit_exceeded.
-  Status code(PageSolid& solid);
+  /// Writing or measuring: requires a solid of this frame with all that its mode needs, which stays
+  /// as it is; errors: not_encodable (the coder is then useless). Reading: requires an empty solid;
+  /// errors: malformed; limit_exceeded.
+  Status code(StoredSolid& solid, const WriterChoice& choice = {});
 
-  /// What the solid's own part of the stream would cost in `mode`, in 1/65536 bit; nothing if the
-  /// mode cannot hold it or is not for integers. Changes nothing but the choice, for code().
-  std::optional<std::uint64_t> cost(PageSolid& solid, Mode mode) const;
+  /// What a mode for integers would take for a solid.
+  struct Measure {
+    std::uint64_t cost = 0;  // of the solid's own part of the stream, in 1/65536 bit
+    WriterChoice choice;     // with which it costs that
+  };
+  /// With `choice`, where it is made already. Nothing if the mode cannot hold the solid or is not
+  /// for integers.
+  std::optional<Measure> measure(const StoredSolid& solid, Mode mode,
+                                 const WriterChoice& choice = {}) const;
 
-  /// The mode for integers that costs least, of those not declined; Mode::automatic if none can
-  /// hold the solid.
-  Mode cheapest_mode(PageSolid& solid) const;
+  /// `plan` with the mode for integers that costs least, of those that it does not decline, and
+  /// with the choices made for that; with Mode::automatic if none can hold the solid.
+  Plan cheapest(const StoredSolid& solid, const Plan& plan = {}) const;
 
  private:
   Mode code_mode(Mode mode);
-  Status code_geometry(PageSolid& solid);
-  Status code_plain(PageSolid& solid);
-  void code_origin(PageSolid& solid);
-  Status rebuild(PageSolid& solid) const;
-  Status code_order(PageSolid& solid);
+  Status code_geometry(StoredSolid& solid, const WriterChoice& choice);
+  Status code_plain(StoredSolid& solid);
+  void code_origin(StoredSolid& solid);
+  Status rebuild(StoredSolid& solid) const;
+  Status code_order(StoredSolid& solid);
   void take_from_limits(const Solid& solid);
 
   EntropyStream& stream_;

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <tuple>
+#include <span>
 #include <vector>
+
+#include "codec/mesh/edge_sides.h"
 
 namespace watertight::codec {
 namespace {
@@ -118,38 +120,26 @@ class OrderCoder {
 
   /// Finds for each corner the facet on the other side of the edge from this corner to the next.
   void link_corners() {
-    struct Edge {
-      Index from, to, corner;
-    };
-    std::vector<Edge> edges;
-    corner_begin_.assign(1, 0);
     facet_of_ring_.resize(solid_.ring_count());
     std::vector<Index> facet_of_corner;
     for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
       const IndexRange rings = solid_.rings_of(facet);
       for (Index ring = rings.begin; ring < rings.end; ++ring) {
         facet_of_ring_[ring] = facet;
-        const auto vertices = solid_.ring(ring);
-        for (std::size_t i = 0; i < vertices.size(); ++i) {
-          edges.push_back({vertices[i], vertices[(i + 1) % vertices.size()],
-                           static_cast<Index>(facet_of_corner.size())});
-          facet_of_corner.push_back(facet);
-        }
-        corner_begin_.push_back(static_cast<Index>(facet_of_corner.size()));
+        facet_of_corner.insert(facet_of_corner.end(), solid_.ring(ring).size(), facet);
       }
     }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-      return std::tie(a.from, a.to, a.corner) < std::tie(b.from, b.to, b.corner);
-    });
     across_.assign(facet_of_corner.size(), kNone);
-    for (const Edge& edge : edges) {
-      const auto twin =
-          std::lower_bound(edges.begin(), edges.end(), edge, [](const Edge& a, const Edge& b) {
-            return std::tie(a.from, a.to) < std::tie(b.to, b.from);
-          });
-      if (twin == edges.end() || twin->from != edge.to || twin->to != edge.from) continue;
-      across_[edge.corner] = facet_of_corner[twin->corner];
-    }
+    const auto sides = sides_of_rings(solid_.arrays().ring_vertices, solid_.arrays().ring_offsets,
+                                      0, solid_.ring_count());
+    for_each_edge(std::span<const EdgeSide>(sides), [&](std::span<const EdgeSide> edge) {
+      const std::size_t upward = upward_count(edge);
+      if (upward == 0 || upward == edge.size()) return;
+      for (const EdgeSide& side : edge) {
+        const EdgeSide& twin = side.is_downward ? edge.front() : edge[upward];
+        across_[side.half_edge] = facet_of_corner[twin.half_edge];
+      }
+    });
   }
 
   /// Finds the facing of each facet and its size, twice the projected area, by Newell's sums over
@@ -251,7 +241,7 @@ class OrderCoder {
     const auto across = [&](Index reference, Index place) {
       const Index ring = solid_.rings_of(reference).begin;
       const auto size = static_cast<Index>(solid_.ring(ring).size());
-      return across_[corner_begin_[ring] + (order_.ring_start[ring] + place) % size];
+      return across_[solid_.arrays().ring_offsets[ring] + (order_.ring_start[ring] + place) % size];
     };
     const auto ring_size = [&](Index facet) {
       return static_cast<Index>(solid_.ring(solid_.rings_of(facet).begin).size());
@@ -397,8 +387,8 @@ class OrderCoder {
           (is_seen_[before] ? 4U : 0U) + (is_seen_[here] ? 2U : 0U) + (is_seen_[after] ? 1U : 0U);
       const std::uint32_t is_oldest = oldest != kNone && number_[here] == oldest ? 1 : 0;
       const std::uint32_t related =
-          relation(across_[corner_begin_[ring] + place],
-                   across_[corner_begin_[ring] + (place + size - 1) % size]);
+          relation(across_[solid_.arrays().ring_offsets[ring] + place],
+                   across_[solid_.arrays().ring_offsets[ring] + (place + size - 1) % size]);
       const std::uint32_t rise = sign_of(p.z, q.z);
       const std::uint32_t is_low = p.z <= low ? 1 : 0;
       const std::uint32_t first = place == 0 ? 1 : 0;
@@ -463,7 +453,6 @@ class OrderCoder {
   std::vector<Index> source_facet_;   // source facet -> canonical
   std::vector<Index> source_ring_;    // source ring -> canonical
   std::vector<Index> facet_of_ring_;  // canonical
-  std::vector<Index> corner_begin_;   // ring -> its first corner
   std::vector<Index> across_;         // corner -> facet across its edge
   std::vector<std::uint32_t> facing_;
   std::vector<double> size_;

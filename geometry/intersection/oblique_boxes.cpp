@@ -4,32 +4,26 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/vector3.h"
+
 namespace watertight::geometry {
 namespace {
-
-using Vector = std::array<double, 3>;
 
 /// More than the rounding errors of all doubles here, which are 1 at most: unit vectors and
 /// scaled coordinates along axes take some ten operations of 2^-53 each.
 constexpr double kMargin = 1e-14;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// Differences of halves: never beyond the doubles.
-Vector half_difference(const Point& p, const Point& q) {
+Vector3 half_difference(const Point& p, const Point& q) {
   return {0.5 * p.x - 0.5 * q.x, 0.5 * p.y - 0.5 * q.y, 0.5 * p.z - 0.5 * q.z};
 }
 
-double largest_component(const Vector& v) {
+double largest_component(const Vector3& v) {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
 
 /// Nothing for vectors without a direction, and for those whose direction doubles cannot hold.
-std::optional<Vector> unit(Vector v) {
+std::optional<Vector3> unit(Vector3 v) {
   constexpr double kSmallest = 1e-290;
   const double largest = largest_component(v);
   if (!(largest > kSmallest)) return std::nullopt;
@@ -54,21 +48,21 @@ void set_bounds(BoxMember<6>& box, std::size_t axis, double low, double high) {
 
 /// The dominant direction of a sum of v v^T, by power iteration; any unit vector will do, so it
 /// need not converge.
-Vector dominant(const std::array<Vector, 3>& matrix) {
+Vector3 dominant(const std::array<Vector3, 3>& matrix) {
   std::size_t longest = 0;
   for (std::size_t i = 1; i < 3; ++i) {
     if (matrix[i][i] > matrix[longest][longest]) longest = i;
   }
-  Vector fallback{};
+  Vector3 fallback{};
   fallback[longest] = 1;
-  Vector v = unit(matrix[longest]).value_or(fallback);
+  Vector3 v = unit(matrix[longest]).value_or(fallback);
   for (int i = 0; i < 16; ++i) {
     v = unit({dot(matrix[0], v), dot(matrix[1], v), dot(matrix[2], v)}).value_or(v);
   }
   return v;
 }
 
-void add_square(std::array<Vector, 3>& matrix, const Vector& v) {
+void add_square(std::array<Vector3, 3>& matrix, const Vector3& v) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) matrix[i][j] += v[i] * v[j];
   }
@@ -76,23 +70,23 @@ void add_square(std::array<Vector, 3>& matrix, const Vector& v) {
 
 /// Bounds of the directions between two or three unit vectors.
 struct DirectionBounds {
-  Vector low{1, 1, 1};
-  Vector high{-1, -1, -1};
+  Vector3 low{1, 1, 1};
+  Vector3 high{-1, -1, -1};
 
   /// False if the directions can be any.
-  bool include(std::span<const Vector> corners);
+  bool include(std::span<const Vector3> corners);
 
  private:
-  void include_arc(const Vector& a, const Vector& b);
-  void include_inside(const Vector& a, const Vector& b, const Vector& c);
+  void include_arc(const Vector3& a, const Vector3& b);
+  void include_inside(const Vector3& a, const Vector3& b, const Vector3& c);
 };
 
-double squared_distance(const Vector& a, const Vector& b) {
-  const Vector d{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+double squared_distance(const Vector3& a, const Vector3& b) {
+  const Vector3 d{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   return dot(d, d);
 }
 
-bool DirectionBounds::include(std::span<const Vector> corners) {
+bool DirectionBounds::include(std::span<const Vector3> corners) {
   // Three directions whose triangle is close to the apex have two that are 120 degrees apart: with
   // q = sum of l_i v_i, |q|^2 = 1 - sum over i < j of l_i l_j |v_i - v_j|^2 >= 1 - largest / 3.
   constexpr double kAround = 2.999;
@@ -107,7 +101,7 @@ bool DirectionBounds::include(std::span<const Vector> corners) {
 }
 
 /// A component is largest at an end of the arc unless it grows from both ends inward.
-void DirectionBounds::include_arc(const Vector& a, const Vector& b) {
+void DirectionBounds::include_arc(const Vector3& a, const Vector3& b) {
   constexpr double kLevel = 1e-13;  // more than rounding errors
   const double cosine = dot(a, b);
   // The arc is at most 1 - sqrt(1 - c^2 / 4) away from its chord, of length c.
@@ -124,9 +118,9 @@ void DirectionBounds::include_arc(const Vector& a, const Vector& b) {
 }
 
 /// Between three directions a component is larger than on the arcs only around its own axis.
-void DirectionBounds::include_inside(const Vector& a, const Vector& b, const Vector& c) {
+void DirectionBounds::include_inside(const Vector3& a, const Vector3& b, const Vector3& c) {
   constexpr double kFlat = 1e-10;
-  const std::array<Vector, 3> normals{cross(a, b), cross(b, c), cross(c, a)};
+  const std::array<Vector3, 3> normals{cross(a, b), cross(b, c), cross(c, a)};
   const double volume = dot(normals[0], c);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (std::abs(volume) < kFlat) {
@@ -138,7 +132,7 @@ void DirectionBounds::include_inside(const Vector& a, const Vector& b, const Vec
     }
     double least = 1;
     double most = -1;
-    for (const Vector& normal : normals) {
+    for (const Vector3& normal : normals) {
       least = std::min(least, volume > 0 ? normal[axis] : -normal[axis]);
       most = std::max(most, volume > 0 ? normal[axis] : -normal[axis]);
     }
@@ -152,7 +146,7 @@ void DirectionBounds::include_inside(const Vector& a, const Vector& b, const Vec
 BoxMember<6> seen_from(Index apex, std::span<const Point> points, const Triangle& triangle,
                        const BoxMember<3>& box) {
   BoxMember<6> result = extended(box);
-  std::array<Vector, 3> directions{};
+  std::array<Vector3, 3> directions{};
   std::size_t count = 0;
   bool is_anywhere = false;
   for (const Index vertex : triangle) {
@@ -162,7 +156,7 @@ BoxMember<6> seen_from(Index apex, std::span<const Point> points, const Triangle
     is_anywhere = is_anywhere || !direction;
     if (direction) directions[count++] = *direction;
   }
-  const std::span<const Vector> seen(directions.data(), count);
+  const std::span<const Vector3> seen(directions.data(), count);
   DirectionBounds bounds;
   if (is_anywhere || !bounds.include(seen)) bounds = {{-1, -1, -1}, {1, 1, 1}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -176,12 +170,12 @@ ObliqueAxes::ObliqueAxes(std::span<const Point> points, std::span<const Triangle
                          std::span<const Index> members) {
   if (members.empty()) return;
   centre_ = points[triangles[members.front()][0]];
-  std::array<Vector, 3> edges{};
-  std::array<Vector, 3> normals{};
+  std::array<Vector3, 3> edges{};
+  std::array<Vector3, 3> normals{};
   double farthest = 0;
   for (const Index member : members) {
-    std::array<Vector, 3> sides{};
-    Vector longest{};
+    std::array<Vector3, 3> sides{};
+    Vector3 longest{};
     for (std::size_t i = 0; i < 3; ++i) {
       const Point& from = points[triangles[member][i]];
       farthest = std::max(farthest, largest_component(half_difference(from, centre_)));
@@ -197,12 +191,12 @@ ObliqueAxes::ObliqueAxes(std::span<const Point> points, std::span<const Triangle
   constexpr double kSmallest = 1e-290;
   scale_ = farthest > kSmallest ? 1 / farthest : 0;
   axes_[0] = dominant(edges);
-  const Vector normal = dominant(normals);
+  const Vector3 normal = dominant(normals);
   std::size_t smallest = 0;  // the axis of space that is farthest from the first one
   for (std::size_t i = 1; i < 3; ++i) {
     if (std::abs(axes_[0][i]) < std::abs(axes_[0][smallest])) smallest = i;
   }
-  Vector across{};
+  Vector3 across{};
   across[smallest] = 1;
   axes_[2] = unit(cross(axes_[0], normal)).value_or(unit(cross(axes_[0], across)).value_or(across));
   axes_[1] = unit(cross(axes_[2], axes_[0])).value_or(across);
@@ -211,7 +205,7 @@ ObliqueAxes::ObliqueAxes(std::span<const Point> points, std::span<const Triangle
 BoxMember<6> ObliqueAxes::box(std::span<const Point> points, const Triangle& triangle,
                               const BoxMember<3>& box) const {
   BoxMember<6> result = extended(box);
-  std::array<Vector, 3> corners{};
+  std::array<Vector3, 3> corners{};
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = half_difference(points[triangle[i]], centre_);
     for (double& component : corners[i]) component *= scale_;  // at most 1

@@ -11,6 +11,7 @@
 #include "geometry/intersection/contact_classifier.h"
 #include "geometry/predicates/exact_quotient.h"
 #include "geometry/predicates/inline_predicates.h"
+#include "geometry/vector3.h"
 
 namespace watertight::geometry {
 namespace {
@@ -19,17 +20,6 @@ using Rational = mpq_class;
 using Vector = std::array<Rational, 3>;
 
 Vector vector_of(const Point& p) { return {Rational(p.x), Rational(p.y), Rational(p.z)}; }
-
-Vector operator-(const Vector& a, const Vector& b) {
-  return {Rational(a[0] - b[0]), Rational(a[1] - b[1]), Rational(a[2] - b[2])};
-}
-
-Rational dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {Rational(a[1] * b[2] - a[2] * b[1]), Rational(a[2] * b[0] - a[0] * b[2]),
-          Rational(a[0] * b[1] - a[1] * b[0])};
-}
 
 /// The part of a convex polygon where normal . (x - origin) >= 0 (Sutherland and Hodgman 1974).
 std::vector<Vector> clipped(const std::vector<Vector>& polygon, const Vector& origin,

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/vector3.h"
+
 namespace watertight::geometry {
 namespace {
 
@@ -44,16 +46,7 @@ int moved_turn(const Vector& a, const Vector& b, const Vector& p) {
 
 /// Sign of det(b - a, c - a, p - a).
 int height(const Vector& a, const Vector& b, const Vector& c, const Vector& p) {
-  Vector u;
-  Vector v;
-  Vector w;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    u[axis] = b[axis] - a[axis];
-    v[axis] = c[axis] - a[axis];
-    w[axis] = p[axis] - a[axis];
-  }
-  return sgn(Rational(w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
-                      w[2] * (u[0] * v[1] - u[1] * v[0])));
+  return sgn(dot(p - a, cross(b - a, c - a)));
 }
 
 /// Requires p in the plane of abc.

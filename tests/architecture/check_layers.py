@@ -17,7 +17,8 @@ Rules, one function each:
   places       no file names a path of one machine, or the host of a package registry
   unfinished   no word that marks unfinished work
   length       no source file of the product is longer than 600 lines
-  rooms        no folder holds more than 20 headers and sources
+  rooms        no folder holds more than 20 headers and sources, no subfolder of codec/ more than 16
+  pairs        a source of a subfolder of codec/ has the name of a header beside it, or begins with it
   namespaces   a file of a folder puts its names into the folder's namespace, a file of a mode of the
                codec into the mode's; namespace watertight has base/ and the names that headers
                export to it, which docs/architecture.md lists
@@ -35,6 +36,7 @@ FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", 
            "formats", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
+MAX_SOURCES_OF_CODEC = 16  # of each of its subfolders
 
 # header pattern -> (what it is, path patterns it may be included from). First match decides.
 HOMES = [
@@ -232,8 +234,24 @@ def check_length(tree):
 def check_rooms(tree):
     rooms = collections.Counter(os.path.dirname(name) for name in tree.includes)
     for room, sources in sorted(rooms.items()):
-        if sources > MAX_SOURCES:
-            yield f"{room}: rooms: {sources} headers and sources, at most {MAX_SOURCES}"
+        most = MAX_SOURCES_OF_CODEC if room.startswith("codec/") else MAX_SOURCES
+        if sources > most:
+            yield f"{room}: rooms: {sources} headers and sources, at most {most}"
+
+
+PAIRED = re.compile(r"(codec/\w+)/(\w+)\.cpp$")
+OF_MODES_H = {"mode"}  # codec/page/modes.h declares what each mode.cpp defines
+
+
+def check_pairs(tree):
+    for name in tree.includes:
+        source = PAIRED.match(name)
+        if not source or source.group(2) in OF_MODES_H:
+            continue
+        words = source.group(2).split("_")
+        stems = ("_".join(words[:count]) for count in range(1, len(words) + 1))
+        if not any(f"{source.group(1)}/{stem}.h" in tree.text for stem in stems):
+            yield f"{name}: pairs: no header beside it has its name, or the first words of it"
 
 
 NAMESPACE = re.compile(r"^(?:inline )?namespace(?: ([\w:]+))? \{")
@@ -325,7 +343,7 @@ def check_names(tree):
 
 
 RULES = [check_layers, check_modes, check_existence, check_homes, check_cgal, check_licence, check_places,
-         check_unfinished, check_length, check_rooms,
+         check_unfinished, check_length, check_rooms, check_pairs,
          check_namespaces, check_names]
 
 
@@ -357,12 +375,14 @@ GOOD_TREE = {
         "}  // namespace watertight::geometry\n\nnamespace watertight {\nusing geometry::Solid;\n}  // namespace watertight\n",
     "codec/mode_walk/front.h": SPDX + "namespace watertight::codec::walk {\nstruct Gate {\n};\n"
         "}  // namespace watertight::codec::walk\n",
+    "codec/mode_walk/front_ring.cpp": SPDX,
     "codec/mode_polygon/front.h": SPDX + "namespace watertight::codec::polygon {\nstruct Gate {\n};\n"
         "}  // namespace watertight::codec::polygon\n",
     "scripts/test": "#!/bin/sh\n# SPDX-License-Identifier: X\n",
 }
 # (file, its text, the rule that must speak, words that must be in the line)
 GOOD_TREE.update({f"tests/unit/base/a{i}.cpp": SPDX for i in range(MAX_SOURCES)})
+GOOD_TREE.update({f"codec/page/a{i}.h": SPDX for i in range(MAX_SOURCES_OF_CODEC)})
 BREAKS = [
     ("store/store.cpp", SPDX + '#include "geometry/solid.h"\n', "layers", "does not declare geometry"),
     ("geometry/solid.h", SPDX + '#include "codec/blob.h"\n', "existence", "codec/blob.h"),
@@ -390,6 +410,8 @@ BREAKS = [
     ("geometry/solid.cpp", SPDX + "// TO" + "DO: later\n", "unfinished", "geometry/solid.cpp:2"),
     ("geometry/solid.cpp", SPDX + "\n" * MAX_LINES, "length", "601 lines"),
     ("tests/unit/base/b.cpp", SPDX, "rooms", "21 headers"),
+    ("codec/page/b.h", SPDX, "rooms", "17 headers"),
+    ("codec/mode_walk/gates.cpp", SPDX, "pairs", "no header beside it"),
     ("geometry/solid.cpp", SPDX + "namespace watertight {\nint f();\n}  // namespace watertight\n",
      "namespaces", "watertight::geometry"),
     ("codec/mode_walk/mode.cpp", SPDX + "namespace watertight::codec {\nint f();\n}  // namespace watertight::codec\n",

@@ -8,9 +8,9 @@
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "codec/page/container.h"
-#include "codec/page/coordinates.h"
-#include "codec/page/facet_listing.h"
 #include "codec/page_file.h"
+#include "codec/sections/coordinates.h"
+#include "codec/sections/facet_listing.h"
 #include "geometry/canonical_form.h"
 #include "tests/generated/generated_solids.h"
 
@@ -321,11 +321,12 @@ Result<Bytes> encode_golden_page(const GoldenPage& golden) {
   codec::PageContents page;
   page.models = golden.models;
   page.frame = codec::frame_of(golden.solids.front().solid(), {});
+  std::vector<codec::Plan> plans;
   for (std::size_t i = 0; i < golden.solids.size(); ++i) {
-    page.solids.push_back(
-        codec::page_solid(golden.solids[i], {.mode = golden.modes[i % golden.modes.size()]}));
+    page.solids.push_back(codec::stored_solid(golden.solids[i], true));
+    plans.push_back({.mode = golden.modes[i % golden.modes.size()]});
   }
-  return codec::write_page_bytes(page, codec::PageKind::page, nullptr);
+  return codec::write_page_bytes(page, plans, codec::PageKind::page, nullptr);
 }
 
 std::vector<Refused> refused() {

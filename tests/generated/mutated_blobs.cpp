@@ -123,27 +123,29 @@ Result<std::vector<Decoded>> decode_unchecked(ByteView bytes, const Limits& limi
   constexpr std::size_t kHeader = 4;
   const Error malformed{ErrorCode::malformed, "no header"};
   if (bytes.size() < kHeader) return malformed;
-  codec::PageContents page;
+  codec::StoredPage page;
   page.kind = (bytes[2] & 0x80U) != 0 ? codec::PageKind::page : codec::PageKind::blob;
-  page.models = bytes[3];
-  auto models = codec::ModelSet::make(page.models);
+  page.contents.models = bytes[3];
+  auto models = codec::ModelSet::make(page.contents.models);
   if (!models) return models.error();
   const ByteView rest = bytes.subspan(kHeader);
   codec::EntropyStream stream = codec::EntropyStream::reader(rest);
   const std::uint64_t count =
       page.kind == codec::PageKind::page ? stream.code_uniform(0, codec::kMaxPageSolids) + 1 : 1;
-  if (auto status = codec::code_frame(stream, (*models)[codec::ModelPart::frame], page.frame);
+  if (auto status =
+          codec::code_frame(stream, (*models)[codec::ModelPart::frame], page.contents.frame);
       !status) {
     return status.error();
   }
-  codec::SolidCoder coder(stream, *models, page.frame,
+  codec::SolidCoder coder(stream, *models, page.contents.frame,
                           codec::limits_of_stream(rest.size(), limits));
   std::vector<Decoded> solids;
   for (std::uint64_t i = 0; i < count; ++i) {
-    codec::PageSolid solid;
+    codec::StoredSolid solid;
     if (auto status = coder.code(solid); !status) break;
-    page.solids.push_back(std::move(solid));
-    auto decoded = codec::decoded_of(page, page.solids.size() - 1);
+    page.contents.solids.push_back(std::move(solid));
+    page.costs.emplace_back();
+    auto decoded = codec::decoded_of(page, page.contents.solids.size() - 1);
     if (!decoded) return decoded.error();
     solids.push_back(std::move(decoded).value());
   }

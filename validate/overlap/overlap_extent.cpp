@@ -27,12 +27,8 @@ constexpr std::size_t kMostTries = 64;
 
 using Metres = Vector;
 
-Metres difference(const Metres& a, const Metres& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
 Metres triangle_normal(const Metres& a, const Metres& b, const Metres& c) {
-  return unit_normal(difference(b, a), difference(c, a));
+  return unit_normal(b - a, c - a);
 }
 
 /// The box that the boxes of two overlapping boundaries have in common.
@@ -53,7 +49,7 @@ std::optional<Point> crossing(const Point& p, const Point& q, const std::array<P
   for (std::size_t i = 0; i < 3; ++i) turns[i] = geometry::orient3d(p, q, t[i], t[(i + 1) % 3]);
   const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
   if (*least < 0 && *most > 0) return std::nullopt;
-  const auto from_p = [&](const Point& r) { return Metres{r.x - p.x, r.y - p.y, r.z - p.z}; };
+  const auto from_p = [&](const Point& r) { return geometry::difference(r, p); };
   const Metres normal = triangle_normal(from_p(t[0]), from_p(t[1]), from_p(t[2]));
   const double along = dot(normal, from_p(q));
   const double share = along == 0 ? 0.5 : std::clamp(dot(normal, from_p(t[0])) / along, 0.0, 1.0);
@@ -273,11 +269,10 @@ Metres moved(const Metres& a, const Metres& direction, double factor) {
 }
 
 double distance_to_segment(const Metres& p, const Metres& a, const Metres& b) {
-  const Metres along = difference(b, a);
+  const Metres along = b - a;
   const double squared = dot(along, along);
-  const double share =
-      squared > 0 ? std::clamp(dot(difference(p, a), along) / squared, 0.0, 1.0) : 0;
-  const Metres offset = difference(p, moved(a, along, share));
+  const double share = squared > 0 ? std::clamp(dot(p - a, along) / squared, 0.0, 1.0) : 0;
+  const Metres offset = p - moved(a, along, share);
   return std::sqrt(dot(offset, offset));
 }
 
@@ -289,11 +284,11 @@ double distance_to_triangle(const Metres& p, const std::array<Metres, 3>& t) {
     const Metres& a = t[i];
     const Metres& b = t[(i + 1) % 3];
     distance = std::min(distance, distance_to_segment(p, a, b));
-    const Metres along = difference(b, a);
+    const Metres along = b - a;
     const Metres inward = cross(normal, along);
-    is_above = is_above && dot(inward, difference(p, a)) >= 0;
+    is_above = is_above && dot(inward, p - a) >= 0;
   }
-  return is_above ? std::abs(dot(normal, difference(p, t[0]))) : distance;
+  return is_above ? std::abs(dot(normal, p - t[0])) : distance;
 }
 
 /// Looks for a point of one boundary that lies further inside the other solid than rounding
@@ -355,11 +350,11 @@ class OverlapProver {
     box.include(q);
     if (!box.overlaps(common_)) return false;
     std::vector<double> shares{0, 1};
-    const Metres along = difference(metres(q), metres(p));
+    const Metres along = metres(q) - metres(p);
     for (const Index found : other.triangles_in(box)) {
       const auto point = crossing(p, q, other.corners(found));
       if (!point) continue;
-      shares.push_back(dot(difference(metres(*point), metres(p)), along) / dot(along, along));
+      shares.push_back(dot(metres(*point) - metres(p), along) / dot(along, along));
     }
     std::sort(shares.begin(), shares.end());
     for (std::size_t i = 0; i + 1 < shares.size(); ++i) {

@@ -18,8 +18,6 @@ constexpr double kNearMetres = 0.001;
 /// Facets narrower than that are worth a warning: the same length, across the facet.
 constexpr double kSliverMetres = 0.001;
 
-double length(const Vector& v) { return std::sqrt(dot(v, v)); }
-
 void check_near(ExaminedSolid& examined) {
   const Solid& solid = examined.solid();
   if (solid.vertex_count() < 2) return;

@@ -9,7 +9,7 @@
 #include "codec/mode_bitmap/compose.h"
 #include "codec/mode_bitmap/decompose.h"
 #include "codec/mode_bitmap/face_marks.h"
-#include "codec/page/coordinates.h"
+#include "codec/sections/coordinates.h"
 #include "delaunay/certificate.h"
 #include "tests/generated/generated_solids.h"
 
@@ -255,7 +255,8 @@ TEST_CASE("composition step 7: surface and unrecovered faces close to the polyhe
     const Stored stored = stored_schoenhardt(used);
     const auto composition = codec::bitmap::compose(stored.sections, {});
     REQUIRE(composition);
-    CHECK(composition->marked_faces + composition->unrecovered_faces == 8);
+    CHECK(composition->counts.marked_faces + composition->counts.unrecovered_faces == 8);
+    CHECK(composition->counts == stored.parts.counts);
     auto solid = Solid::make(composition->arrays, canonical.lattice(), canonical.srid());
     REQUIRE(solid);
     auto boundary = OrientedBoundary::make(*solid);

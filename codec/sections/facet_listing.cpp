@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "codec/page/facet_listing.h"
+#include "codec/sections/facet_listing.h"
 
 #include <algorithm>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "codec/page/coordinates.h"
+#include "codec/sections/coordinates.h"
 
 #include <cmath>
 #include <cstdint>

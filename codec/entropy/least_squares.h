@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace watertight::codec::parallelogram {
+namespace watertight::codec {
 
 template <std::size_t Size>
 class LeastSquares {
@@ -76,4 +76,4 @@ class LeastSquares {
   Features targets_{};
 };
 
-}  // namespace watertight::codec::parallelogram
+}  // namespace watertight::codec

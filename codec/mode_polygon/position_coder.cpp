@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The sequence of steps for a vertex, and its column. position_heights.cpp codes its height.
-#include "codec/mode_polygon/positions.h"
+// The sequence of steps for a vertex, and its column. position_coder_heights.cpp codes its height.
+#include "codec/mode_polygon/position_coder.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +9,6 @@
 
 #include "codec/mode_polygon/families.h"
 #include "codec/mode_polygon/nearest_columns.h"
-#include "codec/mode_polygon/position_coder.h"
 
 namespace watertight::codec::polygon {
 
@@ -346,12 +345,6 @@ void PositionCoder::learn(Index vertex) {
     }
     corner = surface_.twin[surface_.previous(corner)];
   } while (corner != half);
-}
-
-Result<CodedPositions> code_positions(EntropyStream& stream, ModelBank& models,
-                                      const PageMemory& memory, const PolygonSurface& surface,
-                                      std::span<const GridPoint> truth) {
-  return PositionCoder(stream, models, memory, surface, truth).run();
 }
 
 }  // namespace watertight::codec::polygon

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Half-edges sorted by the edge along which they run, and paired with those that run the other way.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/point.h"
+
+namespace watertight::codec {
+
+/// A half-edge as one side of the edge between two vertices. Sides are ordered by edge; of one
+/// edge, the upward sides come before the downward ones, each by number.
+struct EdgeSide {
+  Index low = 0;             // the smaller vertex
+  Index high = 0;            // the greater one
+  bool is_downward = false;  // the half-edge runs from the greater to the smaller vertex
+  Index half_edge = 0;
+  friend auto operator<=>(const EdgeSide&, const EdgeSide&) = default;
+  bool has_edge_of(const EdgeSide& other) const { return low == other.low && high == other.high; }
+};
+
+/// The sides of the half-edges of triangles `first` to `last` - 1 (codec/mesh/half_edges.h),
+/// sorted. Cost: O(n log n).
+std::vector<EdgeSide> sides_of_triangles(std::span<const Triangle> triangles, Index first,
+                                         Index last);
+
+/// The same of rings `first` to `last` - 1: half-edge i begins at ring_vertices[i], and ring r has
+/// those from ring_offsets[r] on.
+std::vector<EdgeSide> sides_of_rings(std::span<const Index> ring_vertices,
+                                     std::span<const Index> ring_offsets, Index first, Index last);
+
+/// Calls `visit` with the sides of each edge in turn. Requires that sides of an edge are together.
+template <class Side, class Visit>
+void for_each_edge(std::span<Side> sides, const Visit& visit) {
+  for (std::size_t begin = 0; begin < sides.size();) {
+    std::size_t end = begin + 1;
+    while (end < sides.size() && sides[end].has_edge_of(sides[begin])) ++end;
+    visit(sides.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+/// How many of the sides of an edge are upward. Requires that these come first.
+std::size_t upward_count(std::span<const EdgeSide> edge);
+
+/// The twin of each half-edge: of each edge, the first upward one is that of the first downward
+/// one, and so on. Nothing unless each edge has as many upward as downward sides. Requires the
+/// sides of all half-edges from `first_half_edge` on, those of an edge together, the upward ones
+/// first. Returns the twin of half-edge `first_half_edge` + i as element i. Cost: linear.
+std::optional<std::vector<Index>> paired(std::span<const EdgeSide> sides, Index first_half_edge);
+
+}  // namespace watertight::codec

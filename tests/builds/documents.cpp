@@ -22,8 +22,9 @@ std::uint64_t hash_of(const std::string& text) {
 }
 
 void print_solid(const std::string& name, const Inspection& inspection, const Solid& solid) {
-  const std::string report =
-      validate::report_json(inspection.report, solid, {.include_times = false});
+  validate::ReportJsonOptions without_times;
+  without_times.include_times = false;
+  const std::string report = validate::report_json(inspection.report, solid, without_times);
   std::printf("%s %s %016" PRIx64, name.c_str(),
               std::string(validate::to_string(inspection.report.verdict)).c_str(), hash_of(report));
   if (inspection.certified) {

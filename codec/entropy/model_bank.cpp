@@ -97,13 +97,13 @@ ModelBank::ModelBank(const ModelLayout& layout) : is_agile_(layout.is_agile) {
   for (const FamilyShape& shape : layout.families) add_family(shape);
   number_base_ = families_.size();
   for (const NumberShape& number : layout.numbers) {
-    FamilyShape length{number.selectors, {}};
-    FamilyShape mantissa{kModelledBits, {kLengths * kMantissaStates}};
-    const FamilyShape sign{number.selectors, number.contexts};
-    for (std::size_t i = 0; i < kMaxInputs && number.contexts[i] != 0; ++i) {
-      WATERTIGHT_ASSERT(i + 1 < kMaxInputs);
-      length.contexts[i] = number.contexts[i] * kLengths;
-      mantissa.contexts[i + 1] = number.contexts[i] * kMantissaLengths * kMantissaStates;
+    FamilyShape length{.selectors = number.selectors};
+    FamilyShape mantissa{.selectors = kModelledBits, .inputs = {kLengths * kMantissaStates}};
+    const FamilyShape sign{.selectors = number.selectors, .inputs = number.inputs};
+    WATERTIGHT_ASSERT(input_count(number) < kMaxInputs);
+    for (std::size_t i = 0; i < input_count(number); ++i) {
+      length.inputs[i] = number.inputs[i] * kLengths;
+      mantissa.inputs[i + 1] = number.inputs[i] * kMantissaLengths * kMantissaStates;
     }
     add_family(length);
     add_family(mantissa);
@@ -120,11 +120,11 @@ void ModelBank::add_family(const FamilyShape& shape) {
   family.selectors = shape.selectors;
   family.first_weight = static_cast<std::uint32_t>(weights_.size());
   family.first_rate = static_cast<std::uint32_t>(mixed_.size());
-  while (family.inputs < kMaxInputs && shape.contexts[family.inputs] != 0) {
-    const std::uint32_t size = shape.contexts[family.inputs];
-    family.first_counter[family.inputs] = static_cast<std::uint32_t>(counters_.size());
-    family.sizes[family.inputs++] = size;
-    counters_.insert(counters_.end(), size, kUnknown);
+  family.inputs = static_cast<std::uint32_t>(input_count(shape));
+  family.sizes = shape.inputs;
+  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+    family.first_counter[i] = static_cast<std::uint32_t>(counters_.size());
+    counters_.insert(counters_.end(), shape.inputs[i], kUnknown);
   }
   for (std::uint32_t selector = 0; selector < shape.selectors; ++selector) {
     weights_.insert(weights_.end(), family.inputs, first_weight(family.inputs));
@@ -200,28 +200,6 @@ void ModelBank::undo(const Change& change) {
   }
 }
 
-BankTrial::BankTrial(ModelBank& bank, std::size_t vertices)
-    : bank_(bank), begin_(bank.changes_.size()) {
-  // Coding a vertex changes some hundred numbers, and noting a change costs several times as much
-  // as copying a number.
-  constexpr std::size_t kCountersPerVertex = 1000;
-  if (vertices > bank.counter_count() / kCountersPerVertex) {
-    before_ = bank;
-  } else {
-    ++bank.trials_;
-  }
-}
-
-BankTrial::~BankTrial() {
-  if (before_) {
-    bank_ = *std::move(before_);
-    return;
-  }
-  std::vector<ModelBank::Change>& changes = bank_.changes_;
-  for (; changes.size() > begin_; changes.pop_back()) bank_.undo(changes.back());
-  --bank_.trials_;
-}
-
 std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selector,
                                      std::span<const std::uint32_t> contexts) const {
   WATERTIGHT_ASSERT(family < number_base_ && contexts.size() == families_[family].inputs);
@@ -236,8 +214,8 @@ bool ModelBank::code(EntropyStream& stream, std::uint32_t family, std::uint32_t 
 
 std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number,
                                      std::uint32_t selector,
-                                     std::initializer_list<std::uint32_t> contexts,
-                                     std::uint64_t value, int max_length) {
+                                     std::span<const std::uint32_t> contexts, std::uint64_t value,
+                                     int max_length) {
   const Family& lengths = families_[number_base_ + 3 * std::size_t{number}];
   const Family& mantissas = families_[number_base_ + 3 * std::size_t{number} + 1];
   WATERTIGHT_ASSERT(contexts.size() == lengths.inputs);
@@ -281,15 +259,14 @@ std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number
 }
 
 std::int64_t ModelBank::code_signed(EntropyStream& stream, std::uint32_t number,
-                                    std::uint32_t selector,
-                                    std::initializer_list<std::uint32_t> contexts,
+                                    std::uint32_t selector, std::span<const std::uint32_t> contexts,
                                     std::int64_t value, int max_length) {
   const std::uint64_t magnitude =
       code_number(stream, number, selector, contexts,
                   static_cast<std::uint64_t>(value < 0 ? -value : value), max_length);
   if (magnitude == 0) return 0;
   const Family& signs = families_[number_base_ + 3 * std::size_t{number} + 2];
-  const bool is_negative = code_at(stream, signs, selector, contexts.begin(), value < 0);
+  const bool is_negative = code_at(stream, signs, selector, contexts.data(), value < 0);
   const auto result = static_cast<std::int64_t>(magnitude);
   return is_negative ? -result : result;
 }

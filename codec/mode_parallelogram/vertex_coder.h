@@ -6,13 +6,16 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/limits.h"
 #include "base/result.h"
+#include "codec/entropy/context.h"
 #include "codec/entropy/entropy_stream.h"
 #include "codec/entropy/model_bank.h"
 #include "codec/mode_parallelogram/axis_places.h"
+#include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/tip_prediction.h"
 #include "codec/mode_parallelogram/vectors.h"
@@ -46,16 +49,43 @@ class VertexCoder {
   const std::vector<Vector>& centres() const { return centres_; }
 
  private:
+  static constexpr std::uint32_t kGuesses = TipPrediction::kGuesses;
+  static constexpr std::uint32_t kSpans = TipPrediction::kSpanClasses;
+  static constexpr std::uint32_t kErrors = 16;  // classes of misses and lengths
+  static constexpr std::uint32_t kMisses = 6;
+  static constexpr std::uint32_t kSpreads = 8;  // of the distance of two guesses
+
+  using Guess = Context<kGuesses>;
+  struct Axis {
+    std::size_t number;
+    Context<3> rank;  // the place of the axis in the order of coding
+  };
+  /// What is known about a tip before its coordinates are coded.
+  struct TipContexts {
+    double expected;                    // miss
+    Guess guess;                        // the prediction
+    Context<kSpans + kGuesses> source;  // the set of coefficients, or the guess if tips name one
+    Context<kErrors> size;              // of the gate
+    Context<kSpreads> spread;           // of the first two guesses
+    Context<kErrors> least_error;       // of the ends of the gate
+    Context<kErrors> apex_error;        // of the vertices opposite the gate
+    Context<kMisses> missed{0U};        // the greatest of the coordinates so far
+  };
+
   GridPoint relative(const GridPoint* position) const;
   Status add_vertex(const GridPoint& cell, double error);
-  GridPoint code_cell(const GridPoint& near, const GridPoint& truth, std::uint32_t number,
-                      std::uint32_t context);
-  /// Which of the guesses the residuals are from.
-  std::uint32_t code_guess(const SurfaceFront& front, const Gate& gate, const GridPoint* truth,
-                           std::uint32_t scale);
-  /// Whether the coordinate is that of a vertex beside the gate, and which one.
-  bool code_repeat(const SurfaceFront& front, const Gate& gate, std::uint32_t rank, std::size_t k,
-                   std::int64_t truth, std::int64_t& value);
+  template <Number number, std::uint32_t size>
+  GridPoint code_cell(const GridPoint& near, const GridPoint& truth, Context<size> context);
+  /// Codes which of the guesses is the prediction of the tip.
+  Guess code_guess(const SurfaceFront& front, const Gate& gate, const GridPoint* truth,
+                   Context<kErrors> scale);
+  /// Codes that the coordinate is that of a vertex beside the gate, and of which one. Nothing if it
+  /// is not.
+  std::optional<std::int64_t> code_repeat(const SurfaceFront& front, const Gate& gate,
+                                          const Axis& axis, std::int64_t truth);
+  TipContexts contexts_of_tip(const SurfaceFront& front, const Gate& gate, const GridPoint* truth);
+  std::int64_t code_coordinate(const TipContexts& tip, const Axis& axis, double expectation,
+                               std::int64_t truth);
 
   EntropyStream& stream_;
   ModelBank& models_;
@@ -73,9 +103,9 @@ class VertexCoder {
   std::vector<std::uint8_t> guesses_;  // which guess it was
   std::vector<std::uint8_t> repeats_;  // by axis, bits
   TipPrediction prediction_;
-  std::uint32_t last_guesses_ = 0;          // of the two tips before
-  std::array<std::uint32_t, 3> history_{};  // of each axis, whether the last three repeated
-  std::uint32_t now_repeats_ = 0;           // the same of this tip so far
+  Context<kGuesses * kGuesses> last_guesses_{0U};  // of the two tips before
+  std::array<Answers<3>, 3> history_;              // axis -> the last answers of Repeat
+  std::uint32_t now_repeats_ = 0;                  // the answers for this tip, latest lowest
 };
 
 }  // namespace watertight::codec::parallelogram

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "codec/entropy/context.h"
 #include "codec/mode_polygon/surface.h"
 
 namespace watertight::codec::polygon {
@@ -22,7 +23,17 @@ inline constexpr Index kGateReach = 4096;  // half-edges among which those are l
 inline constexpr Index kChainLimit = 64;   // unfinished fans of facets at one vertex
 inline constexpr Index kUnaryLimit = 24;   // of ring sizes and degrees
 inline constexpr int kCountBits = 28;      // of ring sizes and degrees
-inline constexpr std::uint32_t kLevels = 3;
+inline constexpr int kGateBits = 9;        // of the number of a gate
+inline constexpr int kLoopBits = 6;        // of the number of a step
+
+// Contexts (docs/format-polygon.md, "The surface").
+inline constexpr std::uint32_t kLevels = 3;      // of rings
+inline constexpr Context<2> kNextShell{0U};      // of MoreShells: one more shell?
+inline constexpr Context<2> kNextComponent{1U};  // one more component?
+inline constexpr Context<2> kAtNewVertex{0U};    // of RingStart
+inline constexpr Context<2> kAtGate{1U};
+inline constexpr Context<2> kLongSize{0U};  // of Long
+inline constexpr Context<2> kLongDegree{1U};
 
 /// Facets around a vertex that are known and follow each other: `in` comes to the vertex and
 /// `out` leaves it, both without twin.
@@ -93,10 +104,7 @@ class SurfaceWalk {
     stream_.fail();
   }
   bool stopped() const { return error_.has_value() || stream_.failed(); }
-  bool code(std::uint32_t family, std::uint32_t selector,
-            std::initializer_list<std::uint32_t> contexts, bool value) {
-    return models_.code(stream_, family, selector, contexts, value);
-  }
+  Context<kLevels> level() const { return Context<kLevels>(ring_level_); }
 
   EntropyStream& stream_;
   ModelBank& models_;

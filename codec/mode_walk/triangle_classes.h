@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "codec/entropy/context.h"
 #include "geometry/point.h"
 #include "geometry/vector3.h"
 
@@ -35,11 +36,12 @@ struct Gate {
 
 /// How the triangle (b, a, w) continues a gate.
 struct Continuation {
-  std::uint32_t bend;           // angle between the normals, in twelfths of a half turn
-  std::uint32_t side;           // of w: below the gate's plane, in it, above it
-  std::uint32_t deviation;      // distance of w from that plane in grid steps
-  std::uint32_t radius;         // circumradius by the gate's length, steps of sqrt(2)
-  std::uint32_t parallelogram;  // distance of w from a + b - o by the gate's length, likewise
+  Context<kBendClasses> bend;            // angle between the normals, in twelfths of a half turn
+  Context<kSideClasses> side;            // of w: below the gate's plane, in it, above it
+  Context<kDeviationClasses> deviation;  // distance of w from that plane in grid steps
+  Context<kRadiusClasses> radius;        // circumradius by the gate's length, steps of sqrt(2)
+  /// Distance of w from a + b - o by the gate's length, likewise.
+  Context<kParallelogramClasses> parallelogram;
 };
 Continuation continuation(const Gate& gate, const Point& w);
 

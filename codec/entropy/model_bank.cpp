@@ -12,7 +12,7 @@ namespace {
 // In the logistic domain an integer x from -2047 to 2047 stands for the probability p with
 // ln(p / (1 - p)) = x / 256.
 constexpr std::int32_t kDomain = 2047;
-constexpr std::uint32_t kLeastProbability = 32;  // of 65536; the greatest likewise
+constexpr std::uint32_t kLeastProbability = 32;  // of 65536, of either answer
 
 /// round(65536 / (1 + exp((32 - i) / 4))) for i = 0 to 64: part of the format.
 constexpr std::array<std::int32_t, 65> kSquash{
@@ -44,9 +44,9 @@ constexpr auto kStretch = [] {
 
 // A counter has 22 bits for its probability, and below them 10 bits for the number of observations.
 constexpr std::uint32_t kMaxCount = 250;
-constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, never observed
+constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, nothing observed
 
-/// 65536 / (n + 1.5).
+/// How far a counter that observed n decisions moves towards the next one: 65536 / (n + 1.5).
 constexpr auto kRates = [] {
   std::array<std::int32_t, kMaxCount + 1> rates{};
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(rates.size()); ++n) {
@@ -82,12 +82,13 @@ constexpr std::int32_t kBiasInput = 64;
 constexpr std::int64_t kWeightLimit = 8 << 16;
 constexpr std::uint32_t kMaxMixed = 1000;
 
-/// The step size of a weight set that has seen `mixed` decisions, in 1/4096.
+/// How far the weights of a set move that has seen `mixed` decisions, in 1/4096.
 std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
 
-// The families of a number: its length in unary, the bits after the first, the sign.
-constexpr std::uint32_t kLengths = 48;        // longer ones share the last context
-constexpr std::uint32_t kMantissaStates = 7;  // none, one or two of the bits after the first known
+// A number has three families: its length in unary, the bits after the first, the sign.
+constexpr std::uint32_t kLengths = 48;  // greater lengths share the last context
+constexpr std::uint32_t kMantissaStates =
+    7;  // what is known of the bits after the first: none, one, two
 constexpr std::uint32_t kMantissaLengths = 16;
 constexpr int kModelledBits = 3;
 
@@ -283,7 +284,7 @@ Bytes ModelBank::save(const PriorShape& shape) const {
       writer.u16(static_cast<std::uint16_t>(counters_[i++] >> 16));
       continue;
     }
-    std::size_t next = i;  // a run of counters that nobody observed
+    std::size_t next = i;  // the end of a run of counters that observed too little
     while (next < counters_.size() && !is_kept(next)) ++next;
     writer.u8(0);
     writer.varint(next - i);

@@ -20,11 +20,11 @@ class TipPrediction {
   static constexpr std::uint32_t kGuesses = 6;
   static constexpr std::uint32_t kSpanClasses = 16;
   static constexpr std::uint32_t kBendClasses = 64;
-  /// What is expected at a gate.
+  /// The prediction at a gate.
   struct Tip {
-    /// What the coefficients say; then, each by itself: the parallelogram beyond the gate, the one
-    /// beyond the next gate, the apex mirrored in the gate, the parallelogram of the triangle of
-    /// the next gate, and the previous gate prolonged.
+    /// First the sum of offsets with the coefficients; then, each alone: the parallelogram beyond
+    /// the gate, the one beyond the next gate, the apex mirrored in the gate, the parallelogram of
+    /// the triangle of the next gate, and the previous gate prolonged.
     std::array<Vector, kGuesses> guesses{};
     Vector normal{};                  // of the known triangle
     double size = 0;                  // of the gate

@@ -16,17 +16,17 @@ namespace {
 constexpr int kMostBits = 54;  // of the difference of two coordinates
 
 // Contexts (docs/format-parallelogram.md, "The stream" and "A tip"). The classes of misses and
-// lengths are logarithmic: each constant kZero... is the class of 1.
+// lengths are logarithmic: each constant that ends in Zero is the class of 1.
 constexpr std::uint32_t kLengths = 64;  // of a difference, in bits
-constexpr int kErrorZero = 4;
+constexpr int kMissZero = 4;
 constexpr int kSizeZero = 1;
-constexpr int kTwoErrorsZero = 2;
+constexpr int kTwoMissesZero = 2;
 constexpr int kSpreadZero = 3;
-constexpr double kSpreadPart = 0.3;  // of the expected miss, by which the spread is measured
-constexpr int kMissZero = 2;
+constexpr double kSpreadPart = 0.3;  // of the expected miss: with 1 more, the unit of spread
+constexpr int kAxisMissZero = 2;
 constexpr std::uint32_t kDistances = 8;  // of two guesses
 constexpr int kDistanceZero = 1;
-constexpr double kDistancePart = 0.1;            // of two misses, by which the distance is measured
+constexpr double kDistancePart = 0.1;            // of two misses: with 1 more, the unit of distance
 constexpr Scale<4> kParts{.per_unit = 2 * 4};    // between two places: 0 to 0.5
 constexpr Scale<8> kNormals{.per_unit = 7.999};  // of a component of a unit vector
 constexpr std::uint32_t kPlacesAround = 5;       // vertices that a repeat may be of
@@ -67,14 +67,14 @@ GridPoint VertexCoder::relative(const GridPoint* position) const {
   return cell;
 }
 
-Status VertexCoder::add_vertex(const GridPoint& cell, double error) {
+Status VertexCoder::add_vertex(const GridPoint& cell, double miss) {
   if (cells_.size() >= limits_.vertices) {
     return Error{ErrorCode::limit_exceeded, "the solid has too many vertices"};
   }
   cells_.push_back(cell);
   centres_.push_back(
       {static_cast<double>(cell[0]), static_cast<double>(cell[1]), static_cast<double>(cell[2])});
-  errors_.push_back(error);
+  misses_.push_back(miss);
   repeats_.push_back(0);
   guesses_.push_back(0);
   return Done{};
@@ -117,29 +117,29 @@ Status VertexCoder::code_seed(std::uint32_t number, const GridPoint* position) {
   if (Status added = add_vertex(cell, 0); !added) return added;
   if (number < 2) return Done{};
   const std::size_t first = cells_.size() - 3;
-  const double error = 0.5 * length(centres_[first + 1] - centres_[first]);
-  std::fill(errors_.end() - 3, errors_.end(), error);
+  const double miss = 0.5 * length(centres_[first + 1] - centres_[first]);
+  std::fill(misses_.end() - 3, misses_.end(), miss);
   return Done{};
 }
 
 VertexCoder::TipContexts VertexCoder::contexts_of_tip(const SurfaceFront& front, const Gate& gate,
                                                       const GridPoint* truth) {
   const TipPrediction::Tip& tip = prediction_.tip();
-  const double expected = 0.5 * (errors_[gate.start] + errors_[gate.end]);
+  const double expected = 0.5 * (misses_[gate.start] + misses_[gate.end]);
   Guess guess(0U);
   if (has_guesses_) {
-    guess = code_guess(front, gate, truth, log_bucket<kErrors>(expected, kErrorZero));
+    guess = code_guess(front, gate, truth, log_bucket<kMisses>(expected, kMissZero));
   }
   const double apart = length(tip.guesses[0] - tip.guesses[1]);
-  const double both = errors_[gate.apex] + errors_[front[gate.next].end];
+  const double both = misses_[gate.apex] + misses_[front[gate.next].end];
   return {.expected = expected,
           .guess = guess,
           .source = has_guesses_ ? trailing<kSpans>(guess) : leading<kGuesses>(tip.spans),
-          .size = log_bucket<kErrors>(tip.size, kSizeZero),
+          .size = log_bucket<kMisses>(tip.size, kSizeZero),
           .spread = log_bucket<kSpreads>(apart / (kSpreadPart * expected + 1), kSpreadZero),
-          .least_error =
-              log_bucket<kErrors>(std::min(errors_[gate.start], errors_[gate.end]), kErrorZero),
-          .apex_error = log_bucket<kErrors>(both, kTwoErrorsZero)};
+          .least_miss =
+              log_bucket<kMisses>(std::min(misses_[gate.start], misses_[gate.end]), kMissZero),
+          .apex_miss = log_bucket<kMisses>(both, kTwoMissesZero)};
 }
 
 /// A coordinate of a tip, by its difference from the place where it is expected.
@@ -151,14 +151,14 @@ std::int64_t VertexCoder::code_coordinate(const TipContexts& tip, const Axis& ax
   const double part = where - nearest;  // -0.5 to 0.5
   const std::int64_t side = part < 0 ? -1 : 1;
   const auto base = static_cast<std::int64_t>(nearest);
-  const auto miss = log_bucket<kErrors>(places.spread_of(expectation, tip.expected), kErrorZero);
+  const auto miss = log_bucket<kMisses>(places.spread_of(expectation, tip.expected), kMissZero);
   const auto parts = kParts(std::abs(part));
   const std::int64_t offset =
       side * models_.code_signed<kResidual>(
                  stream_, combine(Context<2>(has_guesses_), axis.rank),
                  {combine(miss, parts, axis.rank), combine(tip.size, tip.missed, axis.rank),
                   combine(tip.source, tip.missed, parts), combine(miss, tip.spread, tip.missed),
-                  combine(tip.least_error, tip.apex_error, axis.rank), miss},
+                  combine(tip.least_miss, tip.apex_miss, axis.rank), miss},
                  side * (places.place_of(truth) - base), kMostBits);
   std::int64_t value = 0;
   if (!places.find_value(base + offset, value)) stream_.fail();
@@ -189,7 +189,7 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
     slope += normal[k] * miss;
     if (repeated) continue;
     if (rank == 2) prediction_.learn_shift(miss, tip.expected);
-    const auto missed = log_bucket<kMisses>(std::abs(miss), kMissZero);
+    const auto missed = log_bucket<kAxisMisses>(std::abs(miss), kAxisMissZero);
     if (missed.value > tip.missed.value) tip.missed = missed;
   }
   if (!is_sane(cell) || stream_.failed()) return malformed();
@@ -203,14 +203,14 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
 }
 
 VertexCoder::Guess VertexCoder::code_guess(const SurfaceFront& front, const Gate& gate,
-                                           const GridPoint* truth, Context<kErrors> scale) {
+                                           const GridPoint* truth, Context<kMisses> scale) {
   const TipPrediction::Tip& tip = prediction_.tip();
   const auto guess_of = [&](Index vertex) { return Guess(guesses_[vertex]); };
   const Index x = front[gate.next].end;
   const Index p = front[gate.previous].start;
   const auto ends = combine(guess_of(gate.start), guess_of(gate.end));
   const auto others = combine(guess_of(gate.apex), guess_of(guesses_[x] > guesses_[p] ? x : p));
-  const double unit = kDistancePart * (errors_[gate.start] + errors_[gate.end]) + 1;
+  const double unit = kDistancePart * (misses_[gate.start] + misses_[gate.end]) + 1;
   const auto far = [&](std::uint32_t a, std::uint32_t b) {
     const double distance = length(tip.guesses[a] - tip.guesses[b]);
     return halved(log_bucket<2 * kDistances>(distance / unit, kDistanceZero));

@@ -98,7 +98,7 @@ void SurfaceWalk::code_facet(Index gate, Index truth_half) {
   surface.facet_offsets.push_back(static_cast<Index>(surface.ring_offsets.size() - 1));
 }
 
-/// Which of the rings of the last facet is the exterior one: most often the first.
+/// Codes which ring of the last facet is the exterior one. Most often it is the first.
 void SurfaceWalk::code_exterior(Index rings, Index truth_half) {
   Index exterior = 0;
   if (truth_ != nullptr) {

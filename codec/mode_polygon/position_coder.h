@@ -19,9 +19,9 @@ namespace watertight::codec::polygon {
 
 inline constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
 inline constexpr int kCoordinateBits = 55;
-inline constexpr std::size_t kFanLimit = 12;      // corners of a vertex that are looked at
+inline constexpr std::size_t kFanLimit = 12;      // corners of a vertex that predictions use
 inline constexpr std::size_t kLevelLimit = 12;    // heights that are remembered
-inline constexpr std::uint32_t kHeightLimit = 6;  // of them those that are offered
+inline constexpr std::uint32_t kHeightLimit = 6;  // heights that are offered
 inline constexpr int kRankBits = 12;              // of the rank of a known column
 
 // Fixed by the format (docs/format-polygon.md, "Positions").
@@ -42,7 +42,7 @@ inline constexpr std::uint32_t kPlaneKinds = 4;
 enum class Frame : std::uint8_t { start, bare, edge, corner, closing, wall, walls };
 inline constexpr std::uint32_t kFrames = 7;
 inline constexpr std::size_t kDirectionLimit = 8;
-/// Squared sine of what counts as the same direction.
+/// The squared sine of the greatest angle between two edges of one direction.
 inline constexpr double kDirectionSlack = 0.003 * 0.003;
 
 /// Whether `edge` has the direction of `line`, up to kDirectionSlack or two grid steps.
@@ -73,7 +73,7 @@ inline std::uint32_t bits_of(std::int64_t value) {
       std::bit_width(static_cast<std::uint64_t>(value < 0 ? -value : value)));
 }
 
-/// Of the greater of both coordinates.
+/// The bit length of the greater of both coordinates.
 inline std::uint32_t length_bits(Flat vector) {
   return std::max(bits_of(to_whole(vector.x)), bits_of(to_whole(vector.y)));
 }
@@ -156,16 +156,16 @@ class PositionCoder {
   std::vector<std::uint8_t> turns_;   // vertex -> how its edge turned: 1 left, 2 right, 3 not
   std::vector<std::int64_t> levels_;  // heights, the latest first
 
-  // Of the vertex being coded.
+  // About the vertex that is being coded.
   Index current_ = 0;
-  Index before_ = kNone;  // neighbours in the ring that it was met in, where known
+  Index before_ = kNone;  // its neighbours in the ring in which it was created, if known
   Index after_ = kNone;
   Index before_two_ = kNone;
   Index after_two_ = kNone;
   std::uint32_t ring_size_ = 0;
   Context<2> in_first_facet_{false};
   std::vector<Neighbor> neighbors_;
-  std::vector<Index> facets_;  // around it
+  std::vector<Index> facets_;  // around the vertex
   Index below_ = kNone;        // the neighbour in the same column
 };
 

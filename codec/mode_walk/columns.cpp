@@ -91,20 +91,20 @@ class Columns {
   const Limits& limits_;
 
   std::vector<Place> places_;
-  std::vector<std::size_t> first_;  // writing: place -> first point; one more entry
+  std::vector<std::size_t> first_;  // writing: place -> its first point; one more entry at the end
   std::vector<GridPoint> decoded_;
   std::size_t place_count_ = 0;
   std::array<int, 3> length_{};        // of the sides of the box
   std::array<std::int64_t, 3> min_{};  // of the box
   std::array<std::int64_t, 3> start_{};
-  std::vector<Height> heights_;  // the last used first
+  std::vector<Height> heights_;  // that were used, the latest first
   std::vector<std::int64_t> floors_before_;
-  std::size_t known_ = 0;  // place in memory_.columns behind the last column
+  std::size_t known_ = 0;  // the first of memory_.columns that is greater than the last column
   bool was_known_ = false;
   bool is_over_limit_ = false;
 };
 
-/// A number of `length` bits: the first three under models, the others plain.
+/// Codes a number of `length` bits: the first three with models, the others plain.
 std::int64_t Columns::code_top_bits(TopKind kind, std::int64_t value, int length) {
   constexpr int kModelled = 3;
   constexpr std::uint32_t kNodes = 1U << kModelled;
@@ -150,7 +150,7 @@ Status Columns::measure() {
   return Done{};
 }
 
-/// The first point, the box and the number of columns.
+/// Codes the first point, the box and the number of columns.
 Status Columns::code_frame() {
   stream_.enter(StreamPart::position);
   const Context<2> first(memory_.is_first());
@@ -184,7 +184,8 @@ Status Columns::code_frame() {
   return Done{};
 }
 
-/// A place that the page has, among those behind the last column in the box.
+/// Codes whether the place is a column of the page that lies in the box after the last column, and
+/// which one. False if it is none.
 bool Columns::code_known_place(Place truth, Place& place) {
   const auto& known = memory_.columns;
   const std::int64_t end_x = min_[0] + (std::int64_t{1} << length_[0]);
@@ -221,7 +222,8 @@ bool Columns::code_known_place(Place truth, Place& place) {
   return true;
 }
 
-/// A place near the fourth corner of a parallelogram of the last columns.
+/// Codes whether the place is near the fourth corner of a parallelogram of three of the last
+/// columns, and its offset from there. False if it is not.
 bool Columns::code_corner(std::size_t number, Place truth, Place& place) {
   std::array<Place, kReach*(kReach - 1) * (kReach - 2) / 2> corners;
   std::size_t count = 0;
@@ -280,7 +282,7 @@ bool Columns::code_corner(std::size_t number, Place truth, Place& place) {
   return true;
 }
 
-/// Any place: x by its distance from the last, y in the box.
+/// Codes a place without a prediction: x by its distance from the last one, y within the box.
 void Columns::code_free_place(std::size_t number, Place truth, Place& place) {
   const std::int64_t last_x = places_.back()[0];
   const std::int64_t left =
@@ -310,7 +312,7 @@ bool Columns::code_place(std::size_t number, Place truth) {
   return true;
 }
 
-/// One of the heights seen, or a new one.
+/// Codes a height: one of those remembered, or a new one.
 std::int64_t Columns::code_height(std::int64_t truth, bool has_below, std::int64_t below,
                                   std::uint64_t floor, std::uint64_t floors) {
   auto rank = capped<8>(0);

@@ -15,9 +15,10 @@
 
 namespace watertight::codec::walk {
 
-/// Codes points sorted lexicographically, at least one, all different. Reading: `points` is empty
-/// before and sorted after. Errors: not_encodable if the sides of their box are 2^30 or more;
-/// reading: malformed, limit_exceeded. Cost: linear but for the look-ups in the page's columns.
+/// Codes points, of which there is at least one and no two are equal, in lexicographic order.
+/// Reading: requires that `points` is empty, and fills it. Errors: not_encodable if the sides of
+/// their box are 2^30 or more; reading: malformed, limit_exceeded. Cost: linear in the points and
+/// in the columns of the page that are compared.
 Status code_columns(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
                     std::vector<GridPoint>& points, const Limits& limits);
 

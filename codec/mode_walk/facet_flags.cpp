@@ -45,7 +45,7 @@ Error not_encodable() {
           "mode walk cannot code the facets: their edges do not separate them"};
 }
 
-/// True if the differences of whole numbers below 2^31 span no volume, exactly.
+/// Whether three vectors lie in one plane, decided exactly. Requires whole coordinates below 2^31.
 bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
   const auto whole = [](double x) { return static_cast<Wide>(static_cast<std::int64_t>(x)); };
   return whole(w[0]) * (whole(u[1]) * whole(v[2]) - whole(u[2]) * whole(v[1])) +
@@ -200,7 +200,7 @@ void Facets::number_facets() {
   first_triangle_ = std::move(facets.first);
 }
 
-/// All rings, those of a facet together, the largest first.
+/// Finds all rings and sorts them by facet, those of one facet by size, the largest first.
 void Facets::find_rings() {
   for (FacetRing& ring : facet_rings(mesh_.triangles, inner_twin_)) {
     const double size = squared_diagonal(points_, ring.vertices);
@@ -214,7 +214,8 @@ void Facets::find_rings() {
   for (std::size_t f = 0; f < first_triangle_.size(); ++f) first_ring_[f + 1] += first_ring_[f];
 }
 
-/// Which of `count` alternatives is the one, in unary. Writing: `count` if none.
+/// Codes which of `count` alternatives matches: one decision for each until it is found. Writing:
+/// returns `count` if none does.
 template <class Matches>
 std::size_t Facets::code_choice(Context<3> question, std::size_t count, const Matches& matches) {
   std::size_t choice = 0;
@@ -229,7 +230,8 @@ std::size_t Facets::code_choice(Context<3> question, std::size_t count, const Ma
   return count - 1;
 }
 
-/// Puts the exterior ring of each facet first. False if the solid's is not there.
+/// Puts the exterior ring of each facet first. False if a facet has no ring or, when writing, if
+/// its exterior ring is not among those found.
 bool Facets::order_rings() {
   for (std::size_t f = 0; f + 1 < first_ring_.size(); ++f) {
     const auto begin = rings_.begin() + first_ring_[f];
@@ -246,7 +248,7 @@ bool Facets::order_rings() {
   return true;
 }
 
-/// Lists the components, the exterior one first. False unless each is one shell of the solid.
+/// Lists the components, that of the exterior shell first. Writing: false if there is none.
 bool Facets::order_shells() {
   struct Sized {
     Index component;

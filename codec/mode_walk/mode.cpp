@@ -2,7 +2,7 @@
 //
 // Mode walk: columns, the boundary among the Delaunay faces of the vertices, the facets of its
 // triangles. Based on: Verbree & Si 2008, section 4.1, in spirit: vertices first, then their
-// Delaunay tetrahedralization tells most of the boundary.
+// Delaunay tetrahedralization determines most of the boundary.
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -22,7 +22,7 @@ namespace {
 /// test data have up to 8.5 tetrahedra for each vertex.)
 std::uint64_t max_tetrahedra(std::size_t points) { return std::uint64_t{24} * points + 4096; }
 
-/// The vertices from the corner of their box.
+/// The vertices relative to the smallest corner of their box.
 std::vector<Point> points_of(const std::vector<GridPoint>& vertices) {
   GridPoint min = vertices.front();
   for (const GridPoint& v : vertices) {

@@ -38,7 +38,8 @@ Context<7> listed_among(std::size_t length) {
   return trailing<1>(leading<2>(capped<4>(length / 4)));
 }
 
-/// A class of a probability (of 65536): half octaves of it, or, above one half, of its complement.
+/// The class of a probability of 65536, two classes for each power of two. Above one half the
+/// classes are those of its complement, from the other end.
 Context<kLikelihoods> likelihood(std::uint32_t probability) {
   const bool is_high = probability > 32768;
   const std::uint32_t lesser = is_high ? 65536 - probability : probability;
@@ -49,7 +50,8 @@ Context<kLikelihoods> likelihood(std::uint32_t probability) {
   return Context<kLikelihoods>(is_high ? kLikelihoods - 1 - place : place);
 }
 
-/// An edge as certain as this is not scored again when a triangle comes beside it.
+/// An edge with a candidate as probable as this is not scored again when a triangle is added beside
+/// it.
 constexpr std::uint32_t kCertain = 32768;
 
 /// The most steps that a walk may take, whatever its bytes are: a vertex of degree d takes about
@@ -143,7 +145,8 @@ class Walk {
   void score(std::vector<Candidate>& list) const;
 
   EntropyStream& stream_;
-  EntropyStream lessons_ = EntropyStream::meter();  // decisions that models learn, not coded
+  EntropyStream lessons_ =
+      EntropyStream::meter();  // for decisions that models learn from and that are not coded
   ModelBank& models_;
   std::span<const Point> points_;
   const delaunay::CanonicalDelaunay& delaunay_;
@@ -154,13 +157,13 @@ class Walk {
   bool is_manifold_ = true;
   std::vector<Index> source_;  // writing: half-edge given for the first half-edge of each triangle
 
-  // About the gate at hand. A vertex is marked with the stamp once it is listed or ruled out.
+  // Of the gate at hand. A vertex is marked with the stamp when it is listed or ruled out.
   std::vector<Candidate> candidates_;
   std::vector<Candidate> distant_;
   std::vector<Index> mark_;
   Index stamp_ = 0;
-  std::vector<Index>
-      closing_;  // vertices beyond open edges; marked with the stamp, and which edges
+  // Vertices beyond open edges beside it are marked too, with the edges that a triangle closes.
+  std::vector<Index> closing_;
   std::vector<Index> closing_mark_;
   std::vector<std::uint8_t> closing_sides_;
   std::vector<Seed> seeds_;
@@ -177,8 +180,9 @@ const FaceShape& Walk::shape_of(Index face) {
   return shape;
 }
 
-/// Rules out the vertices to which an edge is used already, and notes those beyond open edges.
-/// The triangle (b, a, w) needs the half-edges a -> w and w -> b.
+/// Marks the vertices that cannot be beyond the gate, since the triangle would use a half-edge
+/// twice, and lists those beyond open edges. The triangle (b, a, w) needs the half-edges a -> w and
+/// w -> b.
 void Walk::mark_used(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -251,7 +255,8 @@ void Walk::score(std::vector<Candidate>& list) const {
   }
 }
 
-/// The Delaunay faces at the gate, then the vertices beyond open edges beside it.
+/// Lists the third corners of the Delaunay faces at the gate, then the vertices beyond open edges
+/// beside it.
 void Walk::list_candidates(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -284,7 +289,7 @@ void Walk::list_candidates(Index gate) {
   score<kCandidate>(candidates_);
 }
 
-/// All other Delaunay neighbours of the gate's ends. Requires list_candidates() before.
+/// Lists all other Delaunay neighbours of the ends of the gate. Requires list_candidates() before.
 void Walk::list_distant(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -325,8 +330,8 @@ void Walk::push(Index half_edge) {
   queue_.push({now, half_edge});
 }
 
-/// Puts the open edges at the corners of a new triangle into the queue, where they are not there
-/// already as more certain.
+/// Puts the open edges at the corners of a new triangle into the queue, unless they are in it with
+/// a greater probability.
 void Walk::push_open(Index triangle) {
   pushed_.resize(front_.twin.size(), 0);
   for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
@@ -362,7 +367,8 @@ Index Walk::code_distant(Index gate, Index truth) {
   return distant_.back().vertex;
 }
 
-/// Is it this candidate? The family that ranked it learns the answer too.
+/// Codes whether the vertex is this candidate. Family Candidate, which ranked it, learns from the
+/// answer too.
 bool Walk::code_candidate(std::size_t place, Index truth) {
   const Candidate& c = candidates_[place];
   const std::uint32_t next =
@@ -406,7 +412,8 @@ Status Walk::code_gate(Index gate) {
   return Done{};
 }
 
-/// First the faces on the hull seen from outside, then seen from inside, then all others.
+/// Lists the faces at a vertex in both directions: first those of the hull as seen from outside,
+/// then the same from inside, then all others.
 void Walk::list_seeds(Index seed) {
   seeds_.clear();
   const auto list = [&](Index face) {
@@ -457,7 +464,7 @@ Status Walk::code_seed(Index seed) {
     add(seeds_[i].triangle, truth);
     return Done{};
   }
-  // No Delaunay face there: any triangle.
+  // None of these faces: any triangle.
   if (!is_reading()) truth = truth_->any_unused_at(seed);
   if (!is_reading() && truth == kNone) return not_encodable("a vertex without triangles");
   Triangle triangle{seed, 0, 0};

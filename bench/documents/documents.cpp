@@ -69,7 +69,7 @@ void add_blobs(const pipeline::StoredDocument& document, Sizes& sizes) {
 /// The order of every closed solid.
 void add_orders(const Document& document, Sizes& sizes) {
   constexpr std::size_t kPage = 128;
-  const codec::ModelLayout layout{codec::order_families(), {}};
+  const codec::ModelLayout& layout = codec::order_layout();
   codec::ModelBank page(layout);
   for (const Feature& feature : document.features) {
     for (const SubmittedSolid& submitted : feature.solids) {

@@ -12,7 +12,7 @@ namespace {
 // In the logistic domain an integer x from -2047 to 2047 stands for the probability p with
 // ln(p / (1 - p)) = x / 256.
 constexpr std::int32_t kDomain = 2047;
-constexpr std::uint32_t kLeastProbability = 32;  // of 65536; the greatest likewise
+constexpr std::uint32_t kLeastProbability = 32;  // of 65536, of either answer
 
 /// round(65536 / (1 + exp((32 - i) / 4))) for i = 0 to 64: part of the format.
 constexpr std::array<std::int32_t, 65> kSquash{
@@ -44,9 +44,9 @@ constexpr auto kStretch = [] {
 
 // A counter has 22 bits for its probability, and below them 10 bits for the number of observations.
 constexpr std::uint32_t kMaxCount = 250;
-constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, never observed
+constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, nothing observed
 
-/// 65536 / (n + 1.5).
+/// How far a counter that observed n decisions moves towards the next one: 65536 / (n + 1.5).
 constexpr auto kRates = [] {
   std::array<std::int32_t, kMaxCount + 1> rates{};
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(rates.size()); ++n) {
@@ -82,12 +82,13 @@ constexpr std::int32_t kBiasInput = 64;
 constexpr std::int64_t kWeightLimit = 8 << 16;
 constexpr std::uint32_t kMaxMixed = 1000;
 
-/// The step size of a weight set that has seen `mixed` decisions, in 1/4096.
+/// How far the weights of a set move that has seen `mixed` decisions, in 1/4096.
 std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
 
-// The families of a number: its length in unary, the bits after the first, the sign.
-constexpr std::uint32_t kLengths = 48;        // longer ones share the last context
-constexpr std::uint32_t kMantissaStates = 7;  // none, one or two of the bits after the first known
+// A number has three families: its length in unary, the bits after the first, the sign.
+constexpr std::uint32_t kLengths = 48;  // greater lengths share the last context
+constexpr std::uint32_t kMantissaStates =
+    7;  // what is known of the bits after the first: none, one, two
 constexpr std::uint32_t kMantissaLengths = 16;
 constexpr int kModelledBits = 3;
 
@@ -97,13 +98,13 @@ ModelBank::ModelBank(const ModelLayout& layout) : is_agile_(layout.is_agile) {
   for (const FamilyShape& shape : layout.families) add_family(shape);
   number_base_ = families_.size();
   for (const NumberShape& number : layout.numbers) {
-    FamilyShape length{number.selectors, {}};
-    FamilyShape mantissa{kModelledBits, {kLengths * kMantissaStates}};
-    const FamilyShape sign{number.selectors, number.contexts};
-    for (std::size_t i = 0; i < kMaxInputs && number.contexts[i] != 0; ++i) {
-      WATERTIGHT_ASSERT(i + 1 < kMaxInputs);
-      length.contexts[i] = number.contexts[i] * kLengths;
-      mantissa.contexts[i + 1] = number.contexts[i] * kMantissaLengths * kMantissaStates;
+    FamilyShape length{.selectors = number.selectors};
+    FamilyShape mantissa{.selectors = kModelledBits, .inputs = {kLengths * kMantissaStates}};
+    const FamilyShape sign{.selectors = number.selectors, .inputs = number.inputs};
+    WATERTIGHT_ASSERT(input_count(number) < kMaxInputs);
+    for (std::size_t i = 0; i < input_count(number); ++i) {
+      length.inputs[i] = number.inputs[i] * kLengths;
+      mantissa.inputs[i + 1] = number.inputs[i] * kMantissaLengths * kMantissaStates;
     }
     add_family(length);
     add_family(mantissa);
@@ -120,11 +121,11 @@ void ModelBank::add_family(const FamilyShape& shape) {
   family.selectors = shape.selectors;
   family.first_weight = static_cast<std::uint32_t>(weights_.size());
   family.first_rate = static_cast<std::uint32_t>(mixed_.size());
-  while (family.inputs < kMaxInputs && shape.contexts[family.inputs] != 0) {
-    const std::uint32_t size = shape.contexts[family.inputs];
-    family.first_counter[family.inputs] = static_cast<std::uint32_t>(counters_.size());
-    family.sizes[family.inputs++] = size;
-    counters_.insert(counters_.end(), size, kUnknown);
+  family.inputs = static_cast<std::uint32_t>(input_count(shape));
+  family.sizes = shape.inputs;
+  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+    family.first_counter[i] = static_cast<std::uint32_t>(counters_.size());
+    counters_.insert(counters_.end(), shape.inputs[i], kUnknown);
   }
   for (std::uint32_t selector = 0; selector < shape.selectors; ++selector) {
     weights_.insert(weights_.end(), family.inputs, first_weight(family.inputs));
@@ -200,28 +201,6 @@ void ModelBank::undo(const Change& change) {
   }
 }
 
-BankTrial::BankTrial(ModelBank& bank, std::size_t vertices)
-    : bank_(bank), begin_(bank.changes_.size()) {
-  // Coding a vertex changes some hundred numbers, and noting a change costs several times as much
-  // as copying a number.
-  constexpr std::size_t kCountersPerVertex = 1000;
-  if (vertices > bank.counter_count() / kCountersPerVertex) {
-    before_ = bank;
-  } else {
-    ++bank.trials_;
-  }
-}
-
-BankTrial::~BankTrial() {
-  if (before_) {
-    bank_ = *std::move(before_);
-    return;
-  }
-  std::vector<ModelBank::Change>& changes = bank_.changes_;
-  for (; changes.size() > begin_; changes.pop_back()) bank_.undo(changes.back());
-  --bank_.trials_;
-}
-
 std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selector,
                                      std::span<const std::uint32_t> contexts) const {
   WATERTIGHT_ASSERT(family < number_base_ && contexts.size() == families_[family].inputs);
@@ -236,8 +215,8 @@ bool ModelBank::code(EntropyStream& stream, std::uint32_t family, std::uint32_t 
 
 std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number,
                                      std::uint32_t selector,
-                                     std::initializer_list<std::uint32_t> contexts,
-                                     std::uint64_t value, int max_length) {
+                                     std::span<const std::uint32_t> contexts, std::uint64_t value,
+                                     int max_length) {
   const Family& lengths = families_[number_base_ + 3 * std::size_t{number}];
   const Family& mantissas = families_[number_base_ + 3 * std::size_t{number} + 1];
   WATERTIGHT_ASSERT(contexts.size() == lengths.inputs);
@@ -281,15 +260,14 @@ std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number
 }
 
 std::int64_t ModelBank::code_signed(EntropyStream& stream, std::uint32_t number,
-                                    std::uint32_t selector,
-                                    std::initializer_list<std::uint32_t> contexts,
+                                    std::uint32_t selector, std::span<const std::uint32_t> contexts,
                                     std::int64_t value, int max_length) {
   const std::uint64_t magnitude =
       code_number(stream, number, selector, contexts,
                   static_cast<std::uint64_t>(value < 0 ? -value : value), max_length);
   if (magnitude == 0) return 0;
   const Family& signs = families_[number_base_ + 3 * std::size_t{number} + 2];
-  const bool is_negative = code_at(stream, signs, selector, contexts.begin(), value < 0);
+  const bool is_negative = code_at(stream, signs, selector, contexts.data(), value < 0);
   const auto result = static_cast<std::int64_t>(magnitude);
   return is_negative ? -result : result;
 }
@@ -306,7 +284,7 @@ Bytes ModelBank::save(const PriorShape& shape) const {
       writer.u16(static_cast<std::uint16_t>(counters_[i++] >> 16));
       continue;
     }
-    std::size_t next = i;  // a run of counters that nobody observed
+    std::size_t next = i;  // the end of a run of counters that observed too little
     while (next < counters_.size() && !is_kept(next)) ++next;
     writer.u8(0);
     writer.varint(next - i);

@@ -8,41 +8,16 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
-#include <initializer_list>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/bytes.h"
 #include "codec/entropy/entropy_stream.h"
+#include "codec/entropy/model_layout.h"
 
 namespace watertight::codec {
-
-/// The most inputs that a family may have.
-inline constexpr std::size_t kMaxInputs = 24;
-
-/// The shape of a family: it has one set of weights for each selector, and input i has a table of
-/// `contexts[i]` counters. Inputs end at the first 0.
-struct FamilyShape {
-  std::uint32_t selectors = 1;
-  std::array<std::uint32_t, kMaxInputs> contexts{};
-};
-
-/// The shape of a family of numbers (code_number), with at most kMaxInputs - 1 inputs. Each context
-/// takes about 160 counters.
-struct NumberShape {
-  std::uint32_t selectors = 1;
-  std::array<std::uint32_t, kMaxInputs> contexts{};
-};
-
-/// The models of a bank. A family is named by its place in `families`, a number by its place in
-/// `numbers`.
-struct ModelLayout {
-  std::span<const FamilyShape> families;
-  std::span<const NumberShape> numbers;
-  bool is_agile = false;  // weights begin at the mean of the inputs and move twice as fast
-};
 
 /// Says how much of a trained bank a prior keeps.
 struct PriorShape {
@@ -55,36 +30,73 @@ class ModelBank {
  public:
   explicit ModelBank(const ModelLayout& layout);
 
-  /// Codes one decision of `family`, then learns from it. Requires selector and contexts below
-  /// what the shape says, and as many contexts as it has tables. Cost: linear in the contexts.
-  bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
-            std::span<const std::uint32_t> contexts, bool value);
-  bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
-            std::initializer_list<std::uint32_t> contexts, bool value) {
-    return code(stream, family, selector, std::span(contexts.begin(), contexts.size()), value);
+  /// Codes one decision of `family`, an enumerator of the bank's Family, then learns from it.
+  /// Returns the answer: `value`, or the one that was read. Without a selector: requires a family
+  /// with one set of weights. Cost: linear in the contexts.
+  template <auto family>
+  bool code(EntropyStream& stream, SelectorOf<family> selector, const ContextsOf<family>& contexts,
+            bool value) {
+    static_assert(std::same_as<decltype(shape_of(family)), const FamilyShape&>);
+    return code(stream, family, selector.value, contexts.values, value);
+  }
+  template <auto family>
+  bool code(EntropyStream& stream, const ContextsOf<family>& contexts, bool value) {
+    return code<family>(stream, kNothingKnown, contexts, value);
   }
   /// The probability, of 65536, with which code() would code this decision.
+  template <auto family>
+  std::uint32_t probability(SelectorOf<family> selector, const ContextsOf<family>& contexts) const {
+    static_assert(std::same_as<decltype(shape_of(family)), const FamilyShape&>);
+    return probability(family, selector.value, contexts.values);
+  }
+
+  /// Codes a number that is not negative, by an enumerator of the bank's Number: its bit length in
+  /// unary and the three bits after the first under mixed models, the rest in plain bits. Requires
+  /// value < 2^62. A bit length above `max_length` fails the stream.
+  template <auto number>
+  std::uint64_t code_number(EntropyStream& stream, SelectorOf<number> selector,
+                            const ContextsOf<number>& contexts, std::uint64_t value,
+                            int max_length = 62) {
+    static_assert(std::same_as<decltype(shape_of(number)), const NumberShape&>);
+    return code_number(stream, number, selector.value, contexts.values, value, max_length);
+  }
+  template <auto number>
+  std::uint64_t code_number(EntropyStream& stream, const ContextsOf<number>& contexts,
+                            std::uint64_t value, int max_length = 62) {
+    return code_number<number>(stream, kNothingKnown, contexts, value, max_length);
+  }
+  /// Codes the magnitude in the same way, then the sign under the same contexts.
+  template <auto number>
+  std::int64_t code_signed(EntropyStream& stream, SelectorOf<number> selector,
+                           const ContextsOf<number>& contexts, std::int64_t value,
+                           int max_length = 62) {
+    static_assert(std::same_as<decltype(shape_of(number)), const NumberShape&>);
+    return code_signed(stream, number, selector.value, contexts.values, value, max_length);
+  }
+  template <auto number>
+  std::int64_t code_signed(EntropyStream& stream, const ContextsOf<number>& contexts,
+                           std::int64_t value, int max_length = 62) {
+    return code_signed<number>(stream, kNothingKnown, contexts, value, max_length);
+  }
+
+  /// The same by numbers that are not checked, for banks of any layout. Requires as many contexts
+  /// as the family has inputs, each below the size of its table, and a selector that the family
+  /// has.
+  bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
+            std::span<const std::uint32_t> contexts, bool value);
   std::uint32_t probability(std::uint32_t family, std::uint32_t selector,
                             std::span<const std::uint32_t> contexts) const;
-
-  /// Codes a number that is not negative: its bit length in unary and the three bits after the
-  /// first under mixed models, the rest in plain bits. Requires value < 2^62. A bit length above
-  /// `max_length` fails the stream.
   std::uint64_t code_number(EntropyStream& stream, std::uint32_t number, std::uint32_t selector,
-                            std::initializer_list<std::uint32_t> contexts, std::uint64_t value,
+                            std::span<const std::uint32_t> contexts, std::uint64_t value,
                             int max_length = 62);
-  /// Codes the magnitude in the same way, then the sign under the same contexts.
   std::int64_t code_signed(EntropyStream& stream, std::uint32_t number, std::uint32_t selector,
-                           std::initializer_list<std::uint32_t> contexts, std::int64_t value,
+                           std::span<const std::uint32_t> contexts, std::int64_t value,
                            int max_length = 62);
 
   /// save() returns the state as bytes, load() sets it. load() returns false and leaves the bank
   /// neutral if the bytes are no state of this layout.
   Bytes save(const PriorShape& shape) const;
   bool load(ByteView state);
-
-  /// For reports on sizes.
-  std::size_t counter_count() const { return counters_.size(); }
 
  private:
   struct Family {
@@ -104,11 +116,10 @@ class ModelBank {
     std::array<std::int32_t, kMaxInputs + 1> input;
     std::uint32_t ones;
   };
-  /// A change that a trial made: its place (counters, then weights, then decisions seen) and the
-  /// value before.
+  /// A change during a trial.
   struct Change {
-    std::uint32_t place = 0;
-    std::uint32_t before = 0;
+    std::uint32_t place = 0;   // among all counters, then all weights, then all of mixed_
+    std::uint32_t before = 0;  // the number that was there
   };
   friend class BankTrial;
   [[gnu::noinline]] void note_changes(const Family& family, std::uint32_t selector,
@@ -127,23 +138,7 @@ class ModelBank {
   std::vector<std::int32_t> weights_;    // 16.16
   std::vector<std::uint32_t> mixed_;     // decisions seen by each weight set
   std::vector<Change> changes_;          // since the beginning of the outermost trial
-  int trials_ = 0;                       // trials that live now
-};
-
-/// While a trial lives, the bank may code what is only measured; when the trial ends, the bank is
-/// as it was before. Trials may be nested. Cost: for a solid of few vertices each change is noted,
-/// for one of many the bank is copied.
-class BankTrial {
- public:
-  BankTrial(ModelBank& bank, std::size_t vertices);
-  ~BankTrial();
-  BankTrial(const BankTrial&) = delete;
-  BankTrial& operator=(const BankTrial&) = delete;
-
- private:
-  ModelBank& bank_;
-  std::optional<ModelBank> before_;  // for many vertices: the copy
-  std::size_t begin_;                // for few: where the changes of this trial begin
+  int trials_ = 0;                       // trials that live now and note changes
 };
 
 }  // namespace watertight::codec

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/vectors.h"
 
 namespace watertight::codec::parallelogram {
@@ -20,14 +21,18 @@ constexpr int kShiftBits = 6;
 constexpr int kMostShift = 40;
 constexpr int kStepBits = 61;
 constexpr int kMostBits = 54;
-constexpr std::uint32_t kLengths = 16;
+constexpr int kCountBits = 32;
+// Contexts of Place (docs/format-parallelogram.md, "Values of an axis"). Its selector: a number
+// that stands alone, or the distance of a value from the one before it in a list.
+constexpr Context<2> kAlone{0U};
+constexpr Context<2> kInList{1U};
+constexpr std::uint32_t kLengths = 16;  // of such a distance, in bits
+// Numbers that stand alone have the contexts before those of the lengths.
+constexpr Context<2 * kLengths> kOfStep{0U};
+constexpr Context<2 * kLengths> kOfCount{1U};
+constexpr Context<kLengths * kLengths> kNoneBefore{0U};
 /// The part of the bits between two values that a residual saves, for the writer's choice alone.
 constexpr double kShare = 0.7;
-
-std::uint32_t length_of(std::int64_t value) {
-  return std::min(static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint64_t>(value))),
-                  kLengths - 1);
-}
 
 /// A line of equal steps: every coordinate value is floor(offset + k * step) for some integer k.
 struct Line {
@@ -161,11 +166,12 @@ double AxisPlaces::spread_of(double coordinate, double distance) const {
   return 0.5 * (position_of(coordinate + distance) - position_of(coordinate - distance));
 }
 
-bool AxisPlaces::code_steps(EntropyStream& stream, ModelBank& models, std::uint32_t number) {
+bool AxisPlaces::code_steps(EntropyStream& stream, ModelBank& models) {
   shift_ = static_cast<int>(stream.code_bits(static_cast<std::uint64_t>(shift_), kShiftBits));
   if (shift_ > kMostShift) return false;
-  const std::uint64_t whole = models.code_number(
-      stream, number, 0, {0, 0}, static_cast<std::uint64_t>(step_ >> shift_), kMostBits);
+  const std::uint64_t whole =
+      models.code_number<kPlace>(stream, kAlone, {kOfStep, kNoneBefore},
+                                 static_cast<std::uint64_t>(step_ >> shift_), kMostBits);
   if (whole == 0 || (whole >> (kStepBits - shift_)) != 0) return false;
   const std::uint64_t rest = stream.code_bits(static_cast<std::uint64_t>(step_), shift_);
   step_ = static_cast<std::int64_t>((whole << shift_) | rest);
@@ -176,47 +182,50 @@ bool AxisPlaces::code_steps(EntropyStream& stream, ModelBank& models, std::uint3
 
 /// Codes the values below 0, then those above: how many there are, and the distance of each from
 /// the one before it, going away from 0.
-bool AxisPlaces::code_list(EntropyStream& stream, ModelBank& models, std::uint32_t number,
-                           const Limits& limits) {
+bool AxisPlaces::code_list(EntropyStream& stream, ModelBank& models, const Limits& limits) {
   const std::vector<std::int64_t> truth = std::move(list_);
   const auto zero = std::lower_bound(truth.begin(), truth.end(), 0) - truth.begin();
   list_ = {0};
   for (const std::int64_t sign : {-1, 1}) {
     const auto there = static_cast<std::uint64_t>(sign < 0 ? zero : std::ssize(truth) - zero - 1);
-    const std::uint64_t count = models.code_number(stream, number, 0, {1, 0}, there, 32);
+    const std::uint64_t count =
+        models.code_number<kPlace>(stream, kAlone, {kOfCount, kNoneBefore}, there, kCountBits);
     if (count > limits.vertices) return false;
     std::int64_t value = 0;
-    std::uint32_t before = 0;
-    std::uint32_t earlier = 0;
+    auto before = capped<kLengths>(0);
+    auto earlier = capped<kLengths>(0);
     for (std::int64_t i = 1; i <= static_cast<std::int64_t>(count); ++i) {
       const std::int64_t gap =
           stream.is_reading() ? 1
                               : sign * (truth[static_cast<std::size_t>(zero + sign * i)] - value);
-      const auto coded = static_cast<std::int64_t>(
-          models.code_number(stream, number, 1, {kLengths + before, before * kLengths + earlier},
-                             static_cast<std::uint64_t>(gap - 1), kMostBits));
+      const auto coded = static_cast<std::int64_t>(models.code_number<kPlace>(
+          stream, kInList, {trailing<kLengths>(before), combine(before, earlier)},
+          static_cast<std::uint64_t>(gap - 1), kMostBits));
       value += sign * (coded + 1);
       if (stream.failed() || value <= -kRange || value >= kRange) return false;
       list_.push_back(value);
       earlier = before;
-      before = length_of(coded);
+      before = capped<kLengths>(std::bit_width(static_cast<std::uint64_t>(coded)));
     }
     if (sign < 0) std::reverse(list_.begin(), list_.end());
   }
   return true;
 }
 
-Result<AxisPlaces> AxisPlaces::code(EntropyStream& stream, ModelBank& models, std::uint32_t family,
-                                    std::uint32_t number, Kind before, const AxisPlaces& places,
-                                    const Limits& limits) {
+Result<AxisPlaces> AxisPlaces::code(EntropyStream& stream, ModelBank& models, Kind before,
+                                    const AxisPlaces& places, const Limits& limits) {
+  constexpr Context<2> kIsNotEvery{0U};
+  constexpr Context<2> kIsListed{1U};
   AxisPlaces result = places;
-  const std::uint32_t context = 2 * static_cast<std::uint32_t>(before);
-  if (!models.code(stream, family, 0, {context}, places.kind_ != Kind::every)) return AxisPlaces{};
+  const Context<3> kind(before);
+  if (!models.code<kPlaces>(stream, {combine(kind, kIsNotEvery)}, places.kind_ != Kind::every)) {
+    return AxisPlaces{};
+  }
   const bool is_listed =
-      models.code(stream, family, 0, {context + 1}, places.kind_ == Kind::listed);
+      models.code<kPlaces>(stream, {combine(kind, kIsListed)}, places.kind_ == Kind::listed);
   result.kind_ = is_listed ? Kind::listed : Kind::stepped;
-  const bool is_sound = is_listed ? result.code_list(stream, models, number, limits)
-                                  : result.code_steps(stream, models, number);
+  const bool is_sound =
+      is_listed ? result.code_list(stream, models, limits) : result.code_steps(stream, models);
   if (!is_sound || stream.failed()) {
     return Error{ErrorCode::malformed, "an axis has no list of values"};
   }

@@ -36,9 +36,8 @@ class AxisPlaces {
 
   /// Writes, reads or measures what the list is. The first vertex of the solid has the value 0.
   /// Errors: malformed; limit_exceeded.
-  static Result<AxisPlaces> code(EntropyStream& stream, ModelBank& models, std::uint32_t family,
-                                 std::uint32_t number, Kind before, const AxisPlaces& places,
-                                 const Limits& limits);
+  static Result<AxisPlaces> code(EntropyStream& stream, ModelBank& models, Kind before,
+                                 const AxisPlaces& places, const Limits& limits);
 
   /// Estimates the kind that gives the smallest residuals for these coordinates, which are relative
   /// to the first vertex. Returns Kind::every if no other kind is likely to save bytes.
@@ -46,9 +45,8 @@ class AxisPlaces {
   static AxisPlaces suggest(std::vector<std::int64_t> values);
 
  private:
-  bool code_steps(EntropyStream& stream, ModelBank& models, std::uint32_t number);
-  bool code_list(EntropyStream& stream, ModelBank& models, std::uint32_t number,
-                 const Limits& limits);
+  bool code_steps(EntropyStream& stream, ModelBank& models);
+  bool code_list(EntropyStream& stream, ModelBank& models, const Limits& limits);
   static AxisPlaces stepped(const std::vector<std::int64_t>& values);
 
   Kind kind_ = Kind::every;
@@ -57,9 +55,5 @@ class AxisPlaces {
   int shift_ = 0;
   std::vector<std::int64_t> list_;
 };
-
-/// The shapes of the family and the number that AxisPlaces::code takes.
-inline constexpr FamilyShape kPlacesFamily{1, {6}};
-inline constexpr NumberShape kPlacesNumber{2, {2 * 16, 16 * 16}};
 
 }  // namespace watertight::codec::parallelogram

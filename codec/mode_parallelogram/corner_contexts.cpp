@@ -3,101 +3,207 @@
 
 #include <algorithm>
 
+#include "codec/mode_parallelogram/classes.h"
+
 namespace watertight::codec::parallelogram {
+namespace {
 
-using namespace parallelogram;
+// The classes were fitted on meshes and are fixed by the format. bench/dead-ends.md lists contexts
+// that were tried beside these.
+constexpr std::uint32_t kDegrees = 10;
+// Angles, in classes for each radian.
+constexpr Scale<32> kRooms{.per_unit = 8};
+constexpr Scale<16> kAngles{.per_unit = 5};
+constexpr Scale<16> kCoarseOpposites{.per_unit = 5, .from = 1.2};
+constexpr Scale<12> kFewOpposites{.per_unit = 5, .from = 2};
+constexpr Scale<20> kGreaterOpposites{.per_unit = 10, .from = 2.2};
+constexpr Scale<20> kLesserOpposites{.per_unit = 10, .from = 1.2};
+constexpr std::uint32_t kRests = 14;  // of the room that is left beside a closing triangle
+constexpr double kRestsPerRadian = 4;
+constexpr double kRestZero = 2;  // class of no room
+// Triangles that are missing in a corner.
+constexpr Scale<16> kMissing{.per_unit = 4};
+constexpr Scale<12> kFewMissing{.per_unit = 4};
+// Lengths by another length, and parts of the room of a corner.
+constexpr Scale<32> kSpans{.per_unit = 12};
+constexpr Scale<24> kSides{.per_unit = 8};
+constexpr Scale<16> kTurns{.per_unit = 12};
+constexpr Scale<12> kMisses{.per_unit = 8};
+// The same, logarithmically: how many classes there are, and the class of equality.
+constexpr std::uint32_t kRatios = 12;
+constexpr int kRatioZero = 6;
+constexpr std::uint32_t kMissRatios = 14;
+constexpr int kMissZero = 8;
+// Areas by another area, logarithmically.
+constexpr std::uint32_t kNearAreas = 16;
+constexpr int kNearAreaZero = 8;
+constexpr std::uint32_t kMeanAreas = 20;
+constexpr int kMeanAreaZero = 10;
+// These keep divisors above 0.
+constexpr double kLeastLength = 1e-3;
+constexpr double kLeastRoom = 0.01;
+constexpr double kLeastArea = 1;
 
-CloseContexts corner_contexts(const CornerView& view) {
-  const SurfaceFront& front = view.front;
-  const std::vector<Vector>& centres = view.centres;
-  const Gate& gate = front[view.corner];
-  const Gate& after = front[gate.next];
-  const Gate& before = front[gate.previous];
-  const Vector& u = centres[gate.start];
-  const Vector& v = centres[gate.end];
-  const Vector& w = centres[after.end];
-  const Vector& apex = centres[gate.apex];
-  const Vector& next_apex = centres[after.apex];
-  const auto angle = [](const Vector& at, const Vector& a, const Vector& b) {
+/// The vertices around a corner, and the triangle that would close it: u v w. The letters are those
+/// of the format's text.
+struct Corner {
+  explicit Corner(const CornerView& view)
+      : gate(view.front[view.corner]),
+        after(view.front[gate.next]),
+        before(view.front[gate.previous]),
+        u(view.centres[gate.start]),
+        v(view.centres[gate.end]),
+        w(view.centres[after.end]),
+        apex(view.centres[gate.apex]),
+        next_apex(view.centres[after.apex]),
+        angle_u(angle(u, v, w)),
+        angle_v(angle(v, u, w)),
+        angle_w(angle(w, u, v)) {}
+
+  static double angle(const Vector& at, const Vector& a, const Vector& b) {
     return angle_between(a - at, b - at);
-  };
+  }
 
-  // The triangle that would close the corner, and what it would leave at its other corners.
-  const double room = gate.room;
-  const double angle_u = angle(u, v, w);
-  const double angle_v = angle(v, u, w);
-  const double angle_w = angle(w, u, v);
-  const double room_u = before.room - angle_u;
-  const double room_w = after.room - angle_w;
-  const Vector normal = cross(w - v, u - v);
-  const double area = length(normal);
-  const double span = length(w - u);
-  const double side_u = length(u - v);
-  const double side_w = length(w - v);
-  const double sides = 0.5 * (side_u + side_w) + 1e-3;
-  const double edge = view.mean_edge + 1e-3;
-  const double near_edge = (side_u + side_w + length(apex - u) + length(apex - v) +
-                            length(next_apex - v) + length(next_apex - w)) /
-                               6 +
-                           1e-3;
+  const Gate& gate;
+  const Gate& after;
+  const Gate& before;
+  const Vector& u;
+  const Vector& v;
+  const Vector& w;
+  const Vector& apex;
+  const Vector& next_apex;
+  double angle_u;
+  double angle_v;
+  double angle_w;
+};
 
-  // Its neighbours: how they bend away, how large they are.
-  const Vector first = cross(apex - u, v - u);
-  const Vector second = cross(next_apex - v, w - v);
-  const std::uint32_t bend = cosine_bucket(normal, first * -1.0);
-  const std::uint32_t next_bend = cosine_bucket(normal, second * -1.0);
-  const double near_area = 0.5 * (length(first) + length(second)) + 1;
+/// Degrees of the vertices of the closing triangle.
+struct Degrees {
+  Context<kDegrees> u;
+  Context<kDegrees> v;
+  Context<kDegrees> w;
+  Context<kDegrees> lesser;   // of those of u and w
+  Context<kDegrees> greater;  // likewise
+};
 
-  // The sum of the two angles opposite an edge: for the two edges that the triangle shares with
-  // known ones, and for its third edge, as if the triangle beyond that ended at the next vertex of
-  // the front. In a Delaunay triangulation of a plane no such sum exceeds a half turn.
-  const double opposite_u = angle(apex, u, v) + angle_w;
-  const double opposite_w = angle(next_apex, v, w) + angle_u;
-  const double opposite = std::max(opposite_u, opposite_w);
-  const double least_opposite = std::min(opposite_u, opposite_w);
-  const double over = angle_v + std::max(angle(centres[before.start], u, w),
-                                         angle(centres[front[after.next].end], u, w));
+Degrees degrees_at(const Corner& at, const SurfaceFront& front) {
+  const auto u = capped<kDegrees>(front.degree(at.gate.start));
+  const auto v = capped<kDegrees>(front.degree(at.gate.end));
+  const auto w = capped<kDegrees>(front.degree(at.after.end));
+  return {u, v, w, u.value < w.value ? u : w, u.value < w.value ? w : u};
+}
 
-  // The distances of the expected tips from the vertices that a closing triangle would have.
-  const double miss_u = length(view.tip - w) / sides;
-  const double miss_w = length(view.next_tip - u) / sides;
-  const double miss = std::min(miss_u, miss_w);
-  const double most_missed = std::max(miss_u, miss_w);
+struct Lengths {
+  double span;       // of the third edge of the closing triangle
+  double side_u;     // of the edges that it shares with known triangles
+  double side_w;     // likewise
+  double mean_side;  // of both
+  double mean_edge;  // of the surface
+  double near_edge;  // mean of the two known triangles
+};
 
-  const auto degree_of = [&](Index vertex) { return std::min(front.degree(vertex), kDegrees - 1); };
-  const std::uint32_t degree = degree_of(gate.end);
-  const std::uint32_t degree_u = degree_of(gate.start);
-  const std::uint32_t degree_w = degree_of(after.end);
+Lengths lengths_at(const Corner& at, double mean_edge) {
+  const double side_u = length(at.u - at.v);
+  const double side_w = length(at.w - at.v);
+  return {.span = length(at.w - at.u),
+          .side_u = side_u,
+          .side_w = side_w,
+          .mean_side = 0.5 * (side_u + side_w) + kLeastLength,
+          .mean_edge = mean_edge + kLeastLength,
+          .near_edge = (side_u + side_w + length(at.apex - at.u) + length(at.apex - at.v) +
+                        length(at.next_apex - at.v) + length(at.next_apex - at.w)) /
+                           6 +
+                       kLeastLength};
+}
+
+/// The closing triangle beside its known neighbours: its area, and how it bends away from them.
+struct Areas {
+  double own;
+  double near;  // mean of the neighbours
+  Context<kCosines> bend;
+  Context<kCosines> next_bend;
+};
+
+Areas areas_at(const Corner& at) {
+  const Vector normal = cross(at.w - at.v, at.u - at.v);
+  const Vector first = cross(at.apex - at.u, at.v - at.u);
+  const Vector second = cross(at.next_apex - at.v, at.w - at.v);
+  return {.own = length(normal),
+          .near = 0.5 * (length(first) + length(second)) + kLeastArea,
+          .bend = cosine_bucket(normal, first * -1.0),
+          .next_bend = cosine_bucket(normal, second * -1.0)};
+}
+
+/// The sum of the two angles opposite an edge: for the two edges that the closing triangle shares
+/// with known ones, and for its third edge, as if the triangle beyond that ended at the next vertex
+/// of the front. In a Delaunay triangulation of a plane no such sum exceeds a half turn.
+struct Opposites {
+  double greater;
+  double lesser;
+  double third;
+};
+
+Opposites opposites_at(const Corner& at, const CornerView& view) {
+  const double u = Corner::angle(at.apex, at.u, at.v) + at.angle_w;
+  const double w = Corner::angle(at.next_apex, at.v, at.w) + at.angle_u;
+  const Vector& behind = view.centres[at.before.start];
+  const Vector& ahead = view.centres[view.front[at.after.next].end];
+  return {.greater = std::max(u, w),
+          .lesser = std::min(u, w),
+          .third = at.angle_v +
+                   std::max(Corner::angle(behind, at.u, at.w), Corner::angle(ahead, at.u, at.w))};
+}
+
+}  // namespace
+
+ContextsOf<kClose> corner_contexts(const CornerView& view) {
+  const Corner at(view);
+  const Degrees degree = degrees_at(at, view.front);
+  const Lengths lengths = lengths_at(at, view.mean_edge);
+  const Areas area = areas_at(at);
+  const Opposites opposite = opposites_at(at, view);
+  const double span = lengths.span;
+  const double edge = lengths.mean_edge;
+
+  const double room = at.gate.room;
+  const double rest_u = at.before.room - at.angle_u;
+  const double rest_w = at.after.room - at.angle_w;
   // How many triangles are missing at v if they are as wide as the known ones.
-  const double missing = room * front.degree(gate.end) / (2 * kHalfTurn - room + 0.01);
+  const double missing =
+      room * view.front.degree(at.gate.end) / (2 * kHalfTurn - room + kLeastRoom);
+  // The distances of the expected tips from the vertices that a closing triangle would have.
+  const double miss_u = length(view.tip - at.w) / lengths.mean_side;
+  const double miss_w = length(view.next_tip - at.u) / lengths.mean_side;
+  const double miss = std::min(miss_u, miss_w);
 
-  const std::uint32_t rooms = bucket(room * 8, kRooms);
-  const std::uint32_t ratio = log_bucket(span / sides, 6, kRatios);
-  const std::uint32_t spans = bucket(span / edge * 12, 32);
-  const std::uint32_t least = bucket(std::min(room_u, room_w) * 4 + 2, 14);
-  const std::uint32_t overs = bucket((over - 2.2) * 10, 20);
-  const std::uint32_t turn = bucket(angle(v, u, view.tip) / (room + 0.01) * 12, 16);
-  const std::uint32_t next_turn = bucket(angle(v, w, view.next_tip) / (room + 0.01) * 12, 16);
-  return {
-      bucket(angle_v * 5, kAngles) * kRatios + ratio,
-      (bend * kCosines + next_bend) * 16 + rooms / 2,
-      (degree * kDegrees + std::min(degree_u, degree_w)) * kDegrees + std::max(degree_u, degree_w),
-      (least * kDegrees + (room_u < room_w ? degree_u : degree_w)) * kDegrees + degree,
-      rooms * kRatios + log_bucket(span / edge, 6, kRatios),
-      bucket(span / near_edge * 12, 32) * kRooms + rooms,
-      spans * kDegrees + degree,
-      bucket(std::min(side_u, side_w) / edge * 8, 24) * 24 +
-          bucket(std::max(side_u, side_w) / edge * 8, 24),
-      spans / 2 * 16 + bucket((opposite - 1.2) * 5, 16),
-      (spans / 2 * 16 + bucket(angle_v * 5, kAngles)) * 16 + bucket(missing * 4, 16),
-      log_bucket(area / near_area, 8, 16) * 16 + rooms / 2,
-      log_bucket(area / (edge * edge), 10, 20) * 16 + rooms / 2,
-      bucket((opposite - 2.2) * 10, 20) * 20 + overs,
-      bucket((least_opposite - 1.2) * 10, 20) * 20 + overs,
-      turn * 16 + next_turn,
-      log_bucket(miss, 8, 14) * 14 + log_bucket(most_missed, 8, 14),
-      (bucket(missing * 4, 12) * 12 + bucket(miss * 8, 12)) * 12 + bucket((opposite - 2) * 5, 12),
-      view.answers};
+  const auto rooms = kRooms(room);
+  const auto half_rooms = halved(rooms);
+  const auto wide = kAngles(at.angle_v);
+  const auto rest = bucket<kRests>(std::min(rest_u, rest_w) * kRestsPerRadian + kRestZero);
+  const auto spans = kSpans(span / edge);
+  const auto thirds = kGreaterOpposites(opposite.third);
+  const double turn = Corner::angle(at.v, at.u, view.tip) / (room + kLeastRoom);
+  const double next_turn = Corner::angle(at.v, at.w, view.next_tip) / (room + kLeastRoom);
+  return {combine(wide, log_bucket<kRatios>(span / lengths.mean_side, kRatioZero)),
+          combine(area.bend, area.next_bend, half_rooms),
+          combine(degree.v, degree.lesser, degree.greater),
+          combine(rest, rest_u < rest_w ? degree.u : degree.w, degree.v),
+          combine(rooms, log_bucket<kRatios>(span / edge, kRatioZero)),
+          combine(kSpans(span / lengths.near_edge), rooms),
+          combine(spans, degree.v),
+          combine(kSides(std::min(lengths.side_u, lengths.side_w) / edge),
+                  kSides(std::max(lengths.side_u, lengths.side_w) / edge)),
+          combine(halved(spans), kCoarseOpposites(opposite.greater)),
+          combine(halved(spans), wide, kMissing(missing)),
+          combine(log_bucket<kNearAreas>(area.own / area.near, kNearAreaZero), half_rooms),
+          combine(log_bucket<kMeanAreas>(area.own / (edge * edge), kMeanAreaZero), half_rooms),
+          combine(kGreaterOpposites(opposite.greater), thirds),
+          combine(kLesserOpposites(opposite.lesser), thirds),
+          combine(kTurns(turn), kTurns(next_turn)),
+          combine(log_bucket<kMissRatios>(miss, kMissZero),
+                  log_bucket<kMissRatios>(std::max(miss_u, miss_w), kMissZero)),
+          combine(kFewMissing(missing), kMisses(miss), kFewOpposites(opposite.greater)),
+          view.answers};
 }
 
 }  // namespace watertight::codec::parallelogram

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What mode parallelogram knows about a corner of the front before it says whether a triangle
-// closes it: angles, lengths, bends and degrees, each alone or with another, as contexts.
+// What mode parallelogram knows about a corner of the front before it codes whether a triangle
+// closes it: angles, lengths, bends and degrees, alone or combined, as contexts.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "codec/entropy/context.h"
 #include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/vectors.h"
@@ -17,14 +17,14 @@ namespace watertight::codec::parallelogram {
 struct CornerView {
   const SurfaceFront& front;
   const std::vector<Vector>& centres;  // of the vertices
-  Index corner = 0;                    // its gate
+  Index corner = 0;                    // the number of its gate
   Vector tip;                          // expected beyond its gate
   Vector next_tip;                     // expected beyond the next gate
   double mean_edge = 0;
-  std::uint32_t answers = 0;  // of the corners asked before, latest lowest
+  Context<256> answers;  // the last answers of Close
 };
 
-/// One context for each input of family Close (docs/format-parallelogram.md).
-CloseContexts corner_contexts(const CornerView& view);
+/// One context for each input of family Close (docs/format-parallelogram.md, "Contexts of Close").
+ContextsOf<kClose> corner_contexts(const CornerView& view);
 
 }  // namespace watertight::codec::parallelogram

@@ -1,49 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The families of decisions of mode parallelogram, and how many values their contexts take.
+// The families and numbers of mode parallelogram, with the names, the order and the sizes of
+// docs/format-parallelogram.md. Each call of code() says what its contexts mean.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-#include "codec/mode_parallelogram/tip_prediction.h"
+#include "codec/entropy/model_layout.h"
 
 namespace watertight::codec::parallelogram {
-
-inline constexpr std::uint32_t kRooms = 32;
-inline constexpr std::uint32_t kDegrees = 10;
-inline constexpr std::uint32_t kAngles = 16;
-inline constexpr std::uint32_t kRatios = 12;
-inline constexpr std::uint32_t kCosines = 8;
-inline constexpr std::uint32_t kSpans = TipPrediction::kSpanClasses;
-inline constexpr std::uint32_t kErrors = 16;
-inline constexpr std::uint32_t kSpreads = 8;
-inline constexpr std::uint32_t kPatterns = 16;
-inline constexpr std::uint32_t kParts = 4;
-inline constexpr std::uint32_t kMisses = 6;
-inline constexpr std::uint32_t kGuesses = TipPrediction::kGuesses;
-inline constexpr std::uint32_t kDistances = 8;
-
-/// How many values the contexts of Close take.
-inline constexpr std::array<std::uint32_t, 18> kCloseSizes{kAngles * kRatios,
-                                                           kCosines* kCosines * 16,
-                                                           kDegrees* kDegrees* kDegrees,
-                                                           14 * kDegrees* kDegrees,
-                                                           kRooms* kRatios,
-                                                           32 * kRooms,
-                                                           32 * kDegrees,
-                                                           24 * 24,
-                                                           16 * 16,
-                                                           16 * kAngles * 16,
-                                                           16 * 16,
-                                                           20 * 16,
-                                                           20 * 20,
-                                                           20 * 20,
-                                                           16 * 16,
-                                                           14 * 14,
-                                                           12 * 12 * 12,
-                                                           256};
-using CloseContexts = std::array<std::uint32_t, kCloseSizes.size()>;
 
 enum Family : std::uint32_t {
   kHasRepeats,
@@ -56,8 +21,32 @@ enum Family : std::uint32_t {
   kPlaces,
   kHasGuesses,
   kGuess,
-  kFamilyCount
 };
-enum Number : std::uint32_t { kOrigin, kSeed, kResidual, kRank, kPlace, kNumberCount };
+
+enum Number : std::uint32_t { kOrigin, kSeed, kResidual, kRank, kPlace };
+
+inline constexpr FamilyShape kFamilies[] = {
+    {kHasRepeats, 1, {1}},
+    {kMore, 1, {2}},
+    {kNewShell, 1, {1}},
+    {kClose,
+     3,
+     {192, 1024, 1000, 1400, 384, 1024, 320, 576, 256, 4096, 256, 320, 400, 400, 256, 196, 1728,
+      256}},
+    {kNew, 1, {32, 32, 64, 512}},
+    {kRepeat, 3, {192, 96, 384, 112}},
+    {kWhich, 5, {80, 120}},
+    {kPlaces, 1, {6}},
+    {kHasGuesses, 1, {1}},
+    {kGuess, 5, {216, 216, 216, 96, 96, 384}},
+};
+
+inline constexpr NumberShape kNumbers[] = {
+    {kOrigin, 1, {2, 64}}, {kSeed, 1, {3, 64}},    {kResidual, 6, {192, 288, 528, 768, 768, 16}},
+    {kRank, 1, {1}},       {kPlace, 2, {32, 256}},
+};
+
+constexpr const FamilyShape& shape_of(Family family) { return kFamilies[family]; }
+constexpr const NumberShape& shape_of(Number number) { return kNumbers[number]; }
 
 }  // namespace watertight::codec::parallelogram

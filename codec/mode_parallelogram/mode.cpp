@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "codec/entropy/bank_trial.h"
 #include "codec/mesh/cut_surface.h"
 #include "codec/mesh/half_edges.h"
+#include "codec/mode_parallelogram/classes.h"
 #include "codec/mode_parallelogram/corner_contexts.h"
 #include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/front.h"
@@ -13,11 +15,12 @@
 
 namespace watertight::codec::parallelogram {
 
-using namespace parallelogram;
-
 namespace {
 
 constexpr int kCandidateSteps = 256;
+constexpr int kRankBits = 32;
+constexpr Scale<32> kRooms{.per_unit = 4};  // of a corner, for New
+constexpr double kMostAveraged = 1000;      // vertices that the mean edge remembers
 
 Error malformed() { return {ErrorCode::malformed, "the triangles do not form a closed surface"}; }
 
@@ -45,14 +48,14 @@ class SurfaceCoder {
     bool has_more = true;
     for (Index component = 0; has_more; ++component) {
       if (component > 0) {
-        shells_.push_back(models_.code(stream_, kNewShell, 0, {0},
-                                       surface_ && surface_->is_new_shell[component]));
+        shells_.push_back(models_.code<kNewShell>(stream_, {kNothingKnown},
+                                                  surface_ && surface_->is_new_shell[component]));
       }
       starts_.push_back(static_cast<Index>(front_.triangles().size()));
       if (Status coded = code_component(component); !coded) return coded;
       if (triangle_count() >= most_triangles_) return Done{};
-      has_more = models_.code(stream_, kMore, 0, {component > 0 ? 1U : 0U},
-                              surface_ && component + 1 < surface_->component_first.size());
+      has_more = models_.code<kMore>(stream_, {Context<2>(component > 0)},
+                                     surface_ && component + 1 < surface_->component_first.size());
     }
     return is_writing() ? Status(Done{}) : finish(solid);
   }
@@ -143,13 +146,10 @@ class SurfaceCoder {
                           vertices_.predict(front_, corner),
                           vertices_.predict(front_, gate.next),
                           mean_edge_,
-                          closings_};
-    const bool closes = models_.code(stream_, kClose,
-                                     ends                               ? 2U
-                                     : front_[gate.previous].is_refused ? 1U
-                                                                        : 0U,
-                                     corner_contexts(view), truth);
-    closings_ = (closings_ * 2 + (closes ? 1U : 0U)) & 255U;
+                          closings_.last()};
+    const SelectorOf<kClose> selector(ends ? 2U : front_[gate.previous].is_refused ? 1U : 0U);
+    const bool closes = models_.code<kClose>(stream_, selector, corner_contexts(view), truth);
+    closings_.add(closes);
     if (closes) {
       front_.close_corner(corner, half_edge);
       if (!ends) note_gates(1);
@@ -174,11 +174,11 @@ class SurfaceCoder {
       tip = true_vertex(half_edges[1]);
     }
     const bool is_new =
-        models_.code(stream_, kNew, 0,
-                     {bucket(gate.room * 4, 32), bucket(front_[gate.previous].room * 4, 32), news_,
-                      (news_ & 7U) * 64 + (closings_ & 63U)},
-                     is_writing() && code_of_[tip] == kNone);
-    news_ = (news_ * 2 + (is_new ? 1U : 0U)) & 63U;
+        models_.code<kNew>(stream_,
+                           {kRooms(gate.room), kRooms(front_[gate.previous].room), news_.last(),
+                            combine(news_.last<3>(), closings_.last<6>())},
+                           is_writing() && code_of_[tip] == kNone);
+    news_.add(is_new);
     const Vector predicted = vertices_.predict(front_, corner);
     if (!is_new) return join(corner, half_edges, predicted);
     if (Status coded =
@@ -187,7 +187,7 @@ class SurfaceCoder {
       return coded;
     const Index vertex = note_vertex(tip);
     const double size = length(centres_[vertex] - centres_[gate.start]);
-    mean_edge_ += (size - mean_edge_) / (1.0 + std::min<double>(vertex, 1000));
+    mean_edge_ += (size - mean_edge_) / (1.0 + std::min<double>(vertex, kMostAveraged));
     front_.add_vertex(corner, vertex, half_edges);
     note_gates(2);
     return Done{};
@@ -231,8 +231,8 @@ class SurfaceCoder {
     const auto found = std::find_if(candidates_.begin(), candidates_.end(),
                                     [&](const auto& c) { return c.corner == truth; });
     const auto place = static_cast<std::uint64_t>(found - candidates_.begin());
-    const std::uint64_t rank =
-        models_.code_number(stream_, kRank, 0, {0}, found == candidates_.end() ? 0 : place + 1, 32);
+    const std::uint64_t rank = models_.code_number<kRank>(
+        stream_, {kNothingKnown}, found == candidates_.end() ? 0 : place + 1, kRankBits);
     if (rank > candidates_.size() || stream_.failed()) return malformed();
     const auto other = rank > 0
                            ? candidates_[rank - 1].corner
@@ -311,9 +311,9 @@ class SurfaceCoder {
   std::vector<Candidate> candidates_;
   std::size_t most_triangles_ = ~std::size_t{0};
   double mean_edge_ = 1;
-  std::uint32_t closings_ = 0;  // the last answers of Close, latest lowest
-  std::uint32_t news_ = 0;      // of New
-  bool is_stuck_ = false;       // writing: the surface has edges between the same two vertices
+  Answers<8> closings_;    // of Close
+  Answers<6> news_;        // of New
+  bool is_stuck_ = false;  // writing: the surface has edges between the same two vertices
 };
 
 /// Options are measured on this many triangles of a surface.
@@ -406,6 +406,11 @@ Result<VertexOptions> options_for(const CutSurface& surface, ModelBank& models,
 }
 
 }  // namespace
+
+const ModelLayout& model_layout() {
+  static constexpr ModelLayout layout{kFamilies, kNumbers, true};
+  return layout;
+}
 
 Result<VertexOptions> choose_options(const IntegerSolid& solid, ModelBank& models,
                                      const PageMemory& memory, const Limits& limits) {

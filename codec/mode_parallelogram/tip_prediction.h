@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "codec/entropy/context.h"
 #include "codec/entropy/least_squares.h"
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/vectors.h"
@@ -17,19 +18,19 @@ namespace watertight::codec::parallelogram {
 class TipPrediction {
  public:
   static constexpr std::uint32_t kGuesses = 6;
-  /// What is expected at a gate.
-  struct Tip {
-    /// What the coefficients say; then, each by itself: the parallelogram beyond the gate, the one
-    /// beyond the next gate, the apex mirrored in the gate, the parallelogram of the triangle of
-    /// the next gate, and the previous gate prolonged.
-    std::array<Vector, kGuesses> guesses{};
-    Vector normal{};          // of the known triangle
-    double size = 0;          // of the gate
-    std::uint32_t bends = 0;  // how flat the surface is at both sides, of kBendClasses
-    std::uint32_t spans = 0;  // how far both corners of the gate are open, of kSpanClasses
-  };
   static constexpr std::uint32_t kSpanClasses = 16;
   static constexpr std::uint32_t kBendClasses = 64;
+  /// The prediction at a gate.
+  struct Tip {
+    /// First the sum of offsets with the coefficients; then, each alone: the parallelogram beyond
+    /// the gate, the one beyond the next gate, the apex mirrored in the gate, the parallelogram of
+    /// the triangle of the next gate, and the previous gate prolonged.
+    std::array<Vector, kGuesses> guesses{};
+    Vector normal{};                  // of the known triangle
+    double size = 0;                  // of the gate
+    Context<kBendClasses> bends{0U};  // how flat the surface is at both sides
+    Context<kSpanClasses> spans{0U};  // how far both corners of the gate are open
+  };
 
   /// Predicts the tip beyond the gate of `corner`. `centres` are of the vertices.
   const Tip& predict(const SurfaceFront& front, const std::vector<Vector>& centres, Index corner);

@@ -43,37 +43,11 @@ inline double angle_between(const Vector& a, const Vector& b) {
   return along < 0 ? kHalfTurn - acute : acute;
 }
 
-/// floor(x) limited to 0 to size - 1.
-inline std::uint32_t bucket(double x, std::uint32_t size) {
-  if (!(x > 0)) return 0;
-  return x >= static_cast<double>(size) ? size - 1 : static_cast<std::uint32_t>(x);
-}
-
-/// floor(2 log2(x)) + zero, limited to 0 to size - 1.
-inline std::uint32_t log_bucket(double x, int zero, std::uint32_t size) {
-  if (!(x > 0)) return 0;
-  int exponent = 0;
-  const double fraction = std::frexp(x, &exponent);  // exact: x = fraction 2^exponent
-  const int steps = 2 * (exponent - 1) + (fraction >= 0.7071067811865476 ? 1 : 0) + zero;
-  return bucket(static_cast<double>(steps), size);
-}
-
 /// log2(x) for x > 0, linear between powers of two.
 inline double rough_log2(double x) {
   int exponent = 0;
   const double fraction = std::frexp(x, &exponent);
   return exponent - 2 + 2 * fraction;
-}
-
-/// Where a cosine stands between -1 and 1, finer near 1: 0 to 7.
-inline std::uint32_t cosine_bucket(const Vector& a, const Vector& b) {
-  constexpr std::array<double, 7> kBounds{-0.5, 0.0, 0.5, 0.8, 0.92, 0.98, 0.995};
-  const double sizes = std::sqrt(dot(a, a) * dot(b, b));
-  if (!(sizes > 0)) return 0;
-  const double cosine = dot(a, b) / sizes;
-  std::uint32_t at = 0;
-  while (at < 7 && cosine >= kBounds[at]) ++at;
-  return at;
 }
 
 }  // namespace watertight::codec::parallelogram

@@ -6,13 +6,16 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/limits.h"
 #include "base/result.h"
+#include "codec/entropy/context.h"
 #include "codec/entropy/entropy_stream.h"
 #include "codec/entropy/model_bank.h"
 #include "codec/mode_parallelogram/axis_places.h"
+#include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/tip_prediction.h"
 #include "codec/mode_parallelogram/vectors.h"
@@ -21,8 +24,8 @@
 
 namespace watertight::codec::parallelogram {
 
-/// Positions are given when writing or measuring and are nothing when reading. All others are
-/// relative to the first vertex of the solid, the origin.
+/// Codes vertices one after the other. The positions that functions take are null when reading. All
+/// positions inside are relative to the first vertex of the solid, the origin.
 class VertexCoder {
  public:
   VertexCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
@@ -42,20 +45,47 @@ class VertexCoder {
   Index count() const { return static_cast<Index>(cells_.size()); }
   const GridPoint& origin() const { return origin_; }
   const std::vector<GridPoint>& cells() const { return cells_; }
-  /// The same as doubles.
+  /// The cells as doubles.
   const std::vector<Vector>& centres() const { return centres_; }
 
  private:
+  static constexpr std::uint32_t kGuesses = TipPrediction::kGuesses;
+  static constexpr std::uint32_t kSpans = TipPrediction::kSpanClasses;
+  static constexpr std::uint32_t kMisses = 16;     // classes of misses and lengths
+  static constexpr std::uint32_t kAxisMisses = 6;  // of the miss on one axis
+  static constexpr std::uint32_t kSpreads = 8;     // of the distance of two guesses
+
+  using Guess = Context<kGuesses>;
+  struct Axis {
+    std::size_t number;
+    Context<3> rank;  // the place of the axis in the order of coding
+  };
+  /// What is known about a tip before its coordinates are coded.
+  struct TipContexts {
+    double expected;                    // miss
+    Guess guess;                        // the prediction
+    Context<kSpans + kGuesses> source;  // the set of coefficients, or the guess if tips name one
+    Context<kMisses> size;              // of the gate
+    Context<kSpreads> spread;           // of the first two guesses
+    Context<kMisses> least_miss;        // of the ends of the gate
+    Context<kMisses> apex_miss;         // of the vertices opposite the gate
+    Context<kAxisMisses> missed{0U};    // the greatest of the coordinates so far
+  };
+
   GridPoint relative(const GridPoint* position) const;
-  Status add_vertex(const GridPoint& cell, double error);
-  GridPoint code_cell(const GridPoint& near, const GridPoint& truth, std::uint32_t number,
-                      std::uint32_t context);
-  /// Which of the guesses the residuals are from.
-  std::uint32_t code_guess(const SurfaceFront& front, const Gate& gate, const GridPoint* truth,
-                           std::uint32_t scale);
-  /// Whether the coordinate is that of a vertex beside the gate, and which one.
-  bool code_repeat(const SurfaceFront& front, const Gate& gate, std::uint32_t rank, std::size_t k,
-                   std::int64_t truth, std::int64_t& value);
+  Status add_vertex(const GridPoint& cell, double miss);
+  template <Number number, std::uint32_t size>
+  GridPoint code_cell(const GridPoint& near, const GridPoint& truth, Context<size> context);
+  /// Codes which of the guesses is the prediction of the tip.
+  Guess code_guess(const SurfaceFront& front, const Gate& gate, const GridPoint* truth,
+                   Context<kMisses> scale);
+  /// Codes that the coordinate is that of a vertex beside the gate, and of which one. Nothing if it
+  /// is not.
+  std::optional<std::int64_t> code_repeat(const SurfaceFront& front, const Gate& gate,
+                                          const Axis& axis, std::int64_t truth);
+  TipContexts contexts_of_tip(const SurfaceFront& front, const Gate& gate, const GridPoint* truth);
+  std::int64_t code_coordinate(const TipContexts& tip, const Axis& axis, double expectation,
+                               std::int64_t truth);
 
   EntropyStream& stream_;
   ModelBank& models_;
@@ -65,17 +95,17 @@ class VertexCoder {
   bool has_guesses_ = false;
   double naming_weight_ = 0;                   // writing
   std::array<AxisPlaces, 3> chosen_places_{};  // writing
-  std::array<AxisPlaces, 3> places_{};         // of every number until the origin is known
+  std::array<AxisPlaces, 3> places_{};         // Kind::every until the origin is known
   GridPoint origin_{};
   std::vector<GridPoint> cells_;
   std::vector<Vector> centres_;
-  std::vector<double> errors_;         // what the prediction missed by
-  std::vector<std::uint8_t> guesses_;  // which guess it was
-  std::vector<std::uint8_t> repeats_;  // by axis, bits
+  std::vector<double> misses_;         // vertex -> the distance from its prediction
+  std::vector<std::uint8_t> guesses_;  // vertex -> the guess that was its prediction
+  std::vector<std::uint8_t> repeats_;  // vertex -> bit k: the coordinate on axis k was a repeat
   TipPrediction prediction_;
-  std::uint32_t last_guesses_ = 0;          // of the two tips before
-  std::array<std::uint32_t, 3> history_{};  // of each axis, whether the last three repeated
-  std::uint32_t now_repeats_ = 0;           // the same of this tip so far
+  Context<kGuesses * kGuesses> last_guesses_{0U};  // of the two tips before
+  std::array<Answers<3>, 3> history_;              // axis -> the last answers of Repeat
+  std::uint32_t now_repeats_ = 0;                  // the answers for this tip, latest lowest
 };
 
 }  // namespace watertight::codec::parallelogram

@@ -20,7 +20,8 @@ Result<WalkedSurface> SurfaceWalk::run() {
     PolygonSurface& surface = result_.surface;
     surface.shell_offsets.push_back(surface.facet_count());
     const bool more = truth_ != nullptr && shell + 1 < truth_->first_half.size();
-    if (!code(kMoreShells, 0, {capped(shell, 2)}, more)) break;
+    const auto shells = combine(kNextShell, capped<2>(shell));
+    if (!models_.code<kMoreShells>(stream_, {shells}, more)) break;
   }
   if (error_) return *error_;
   if (stream_.failed()) return Error{ErrorCode::malformed, "the walk over the facets ends early"};
@@ -33,9 +34,9 @@ void SurfaceWalk::code_shell(Index shell) {
     if (truth_ != nullptr) {
       truth_half = component == 0 ? truth_->first_half[shell] : unvisited_half(shell);
     }
-    if (component > 0 &&
-        !code(kMoreShells, 0, {2 + capped(component - 1, 2)}, truth_half != kNone)) {
-      return;
+    if (component > 0) {
+      const auto components = combine(kNextComponent, capped<2>(component - 1));
+      if (!models_.code<kMoreShells>(stream_, {components}, truth_half != kNone)) return;
     }
     code_component(truth_half);
   }
@@ -64,9 +65,11 @@ void SurfaceWalk::code_facet(Index gate, Index truth_half) {
     fail(ErrorCode::limit_exceeded, "a solid has more facets than allowed");
     return;
   }
-  ring_level_ = gate == kNone ? std::uint8_t{0}
-                              : static_cast<std::uint8_t>(capped(
-                                    level_[surface.facet_of[surface.ring_of[gate]]] + 1, kLevels));
+  ring_level_ = 0;
+  if (gate != kNone) {
+    const int before = level_[surface.facet_of[surface.ring_of[gate]]];
+    ring_level_ = static_cast<std::uint8_t>(capped<kLevels>(before + 1).value);
+  }
   level_.push_back(ring_level_);
   code_ring(gate, truth_half, false);
   const Index size = size_;
@@ -83,10 +86,9 @@ void SurfaceWalk::code_facet(Index gate, Index truth_half) {
   Index rings = 1;
   for (; !stopped(); ++rings) {
     const bool more = rings <= interiors.size();
-    if (!code(
-            kMoreRings, 0,
-            {capped(rings - 1, 3) * 3 + ring_level_, capped(rings - 1, 3) * 16 + capped(size, 16)},
-            more)) {
+    const auto interior = capped<3>(rings - 1);
+    if (!models_.code<kMoreRings>(
+            stream_, {combine(interior, level()), combine(interior, capped<16>(size))}, more)) {
       break;
     }
     code_ring(kNone, more ? interiors[rings - 1] : kNone, true);
@@ -96,7 +98,7 @@ void SurfaceWalk::code_facet(Index gate, Index truth_half) {
   surface.facet_offsets.push_back(static_cast<Index>(surface.ring_offsets.size() - 1));
 }
 
-/// Which of the rings of the last facet is the exterior one: most often the first.
+/// Codes which ring of the last facet is the exterior one. Most often it is the first.
 void SurfaceWalk::code_exterior(Index rings, Index truth_half) {
   Index exterior = 0;
   if (truth_ != nullptr) {
@@ -218,10 +220,11 @@ void SurfaceWalk::begin_interior(Index truth_half) {
       }
     }
   }
-  const bool is_fresh = code(kRingStart, 0, {0}, start == Start::fresh);
+  const bool is_fresh = models_.code<kRingStart>(stream_, {kAtNewVertex}, start == Start::fresh);
   if (is_fresh) return begin_at_vertex(kNone, truth_half);
-  if (code(kRingStart, 0, {1}, start == Start::gate)) {
-    steps = static_cast<Index>(models_.code_number(stream_, kGateSteps, 0, {0}, steps, 9));
+  if (models_.code<kRingStart>(stream_, {kAtGate}, start == Start::gate)) {
+    steps = static_cast<Index>(
+        models_.code_number<kGateSteps>(stream_, {kNothingKnown}, steps, kGateBits));
     Index gate = gate_;
     for (; gate < last_gate(); ++gate) {
       if (result_.surface.twin[gate] == kNone && steps-- == 0) break;
@@ -262,8 +265,8 @@ void SurfaceWalk::code_size(bool is_interior) {
   const Index least = std::max(run, Index{3});
   const Index truth_size =
       truth_ ? truth_->surface.ring_size(truth_->surface.ring_of[end_truth_]) : least;
-  const std::uint32_t place =
-      is_interior ? 3U : static_cast<std::uint32_t>(ring_level_);  // 0: the first ring of all
+  // The level, or that the ring is a further one of its facet.
+  const Context<kLevels + 1> kind(is_interior ? kLevels : ring_level_);
   // The size that would close the loop of the front.
   const std::int64_t closing =
       loop_reaches_start_ ? std::int64_t{run} + static_cast<std::int64_t>(loop_.size()) : 0;
@@ -271,22 +274,27 @@ void SurfaceWalk::code_size(bool is_interior) {
       forward_.empty() || forward_.front().twin == kNone
           ? 0
           : result_.surface.ring_size(result_.surface.ring_of[forward_.front().twin]);
+  const auto few_known = capped<3>(run - 1);
+  const auto known = capped<8>(run - 1);
+  const auto gate_class = capped<8>(gate_size);
+  const auto degree = capped<4>(last_degree_ - 2);
   for (size_ = least; size_ < least + kUnaryLimit; ++size_) {
-    const std::uint32_t step = capped(size_ - least, 12);
-    const std::uint32_t number = capped(size_ - 3, 16);
-    const std::uint32_t to_closing = closing == 0 ? 0U : 1 + capped(closing + 1 - size_, 4);
-    if (code(kRingSize, place,
-             {step * 32 + capped(run - 1, 8) * 4 + place, number * 4 + place,
-              (capped(run - 1, 8) * 5 + to_closing) * 4 + capped(step, 4),
-              (capped(gate_size, 8) * 4 + place) * 4 + capped(step, 4),
-              (number * 4 + capped(last_degree_ - 2, 4)) * 3 + capped(run - 1, 3)},
-             size_ == truth_size)) {
+    const auto step = capped<12>(size_ - least);
+    const auto few_steps = capped<4>(size_ - least);
+    const auto number = capped<16>(size_ - 3);
+    const Context<5> to_closing(closing == 0 ? 0U : 1 + capped<4>(closing + 1 - size_).value);
+    if (models_.code<kSize>(
+            stream_, kind,
+            {combine(step, known, kind), combine(number, kind),
+             combine(known, to_closing, few_steps), combine(gate_class, kind, few_steps),
+             combine(number, degree, few_known)},
+            size_ == truth_size)) {
       return;
     }
     if (stopped()) return;
   }
   const std::uint64_t rest =
-      models_.code_number(stream_, kLongRing, 0, {0}, truth_ ? truth_size - size_ : 0, kCountBits);
+      models_.code_number<kLong>(stream_, {kLongSize}, truth_ ? truth_size - size_ : 0, kCountBits);
   size_ += static_cast<Index>(rest);
 }
 

@@ -12,31 +12,42 @@
 #include <optional>
 #include <vector>
 
+#include "codec/entropy/context.h"
 #include "codec/mode_polygon/surface.h"
 
 namespace watertight::codec::polygon {
 
-inline constexpr Index kLoopLimit = 64;    // steps along the front that are looked at
+inline constexpr Index kLoopLimit = 64;    // steps along the front that a loop may have
 inline constexpr Index kGateLimit = 256;   // open half-edges among which an interior ring begins
-inline constexpr Index kGateReach = 4096;  // half-edges among which those are looked for
+inline constexpr Index kGateReach = 4096;  // half-edges, open or not, among which these are
 inline constexpr Index kChainLimit = 64;   // unfinished fans of facets at one vertex
-inline constexpr Index kUnaryLimit = 24;   // of ring sizes and degrees
+inline constexpr Index kUnaryLimit = 24;   // sizes and degrees that are asked one by one
 inline constexpr int kCountBits = 28;      // of ring sizes and degrees
-inline constexpr std::uint32_t kLevels = 3;
+inline constexpr int kGateBits = 9;        // of the number of a gate
+inline constexpr int kLoopBits = 6;        // of the number of a step
 
-/// Facets around a vertex that are known and follow each other: `in` comes to the vertex and
-/// `out` leaves it, both without twin.
+// Contexts (docs/format-polygon.md, "The surface").
+inline constexpr std::uint32_t kLevels = 3;      // of rings
+inline constexpr Context<2> kNextShell{0U};      // of MoreShells: one more shell?
+inline constexpr Context<2> kNextComponent{1U};  // one more component?
+inline constexpr Context<2> kAtNewVertex{0U};    // of RingStart
+inline constexpr Context<2> kAtGate{1U};
+inline constexpr Context<2> kLongSize{0U};  // of Long
+inline constexpr Context<2> kLongDegree{1U};
+
+/// Known facets around a vertex, each beside the next. The half-edge `in` comes to the vertex,
+/// `out` leaves it; neither has a twin yet.
 struct Chain {
   Index in = kNone;
   Index out = kNone;
   Index next = kNone;
 };
 
-/// An edge of the ring in the making, from `vertex` to that of the next one.
+/// An edge of the ring in the making, from `vertex` to the vertex of the next edge.
 struct Step {
   Index vertex = kNone;
   Index twin = kNone;   // the known half-edge that it pairs with
-  Index truth = kNone;  // the half-edge of the truth
+  Index truth = kNone;  // the same half-edge in the truth
 };
 
 enum class Start : std::uint8_t { fresh, gate, known };
@@ -64,7 +75,7 @@ class SurfaceWalk {
   void code_ring(Index gate, Index truth_half, bool is_interior);
   void begin_at_gate(Index gate, Index truth_half);
   void begin_interior(Index truth_half);
-  /// Behind the half-edges at which an interior ring may begin.
+  /// The end of the half-edges at which an interior ring may begin.
   Index last_gate() const {
     return gate_ + std::min(static_cast<Index>(result_.surface.vertex.size()) - gate_, kGateReach);
   }
@@ -93,10 +104,7 @@ class SurfaceWalk {
     stream_.fail();
   }
   bool stopped() const { return error_.has_value() || stream_.failed(); }
-  bool code(std::uint32_t family, std::uint32_t selector,
-            std::initializer_list<std::uint32_t> contexts, bool value) {
-    return models_.code(stream_, family, selector, contexts, value);
-  }
+  Context<kLevels> level() const { return Context<kLevels>(ring_level_); }
 
   EntropyStream& stream_;
   ModelBank& models_;
@@ -106,16 +114,16 @@ class SurfaceWalk {
   WalkedSurface result_;
 
   std::vector<Index> remaining_;    // vertex -> corners to come
-  std::vector<Index> chain_count_;  // vertex
-  std::vector<Index> first_chain_;  // vertex
+  std::vector<Index> chain_count_;  // vertex -> its chains
+  std::vector<Index> first_chain_;  // vertex -> the first of them
   std::vector<Chain> chains_;
   std::vector<Index> free_chains_;
   std::vector<Index> seen_in_ring_;  // vertex -> ring that visits it
-  std::vector<std::uint8_t> level_;  // facet
+  std::vector<std::uint8_t> level_;  // facet -> level
   Index gate_ = 0;                   // all half-edges before it have twins
   std::vector<Index> half_truth_;    // half-edge -> half-edge of the truth
   std::vector<Index> known_as_;      // fan of the truth -> vertex
-  std::vector<bool> facet_done_;     // of the truth
+  std::vector<bool> facet_done_;     // facet of the truth -> whether it is coded
   Index unvisited_ = 0;              // facets of the truth before it are done
 
   // The ring in the making: the steps backward from the gate, then those forward.

@@ -68,7 +68,8 @@ Index SurfaceWalk::chosen_chain(Index vertex, Index own) {
     }
   }
   if (can_be_new &&
-      !code(kFollow, 0, {capped(size_, 8), capped(remaining - chains, 4)}, truth_chain != kNone)) {
+      !models_.code<kFollow>(stream_, {capped<8>(size_), capped<4>(remaining - chains)},
+                             truth_chain != kNone)) {
     return kNone;
   }
   std::array<Index, kChainLimit> options{};
@@ -90,21 +91,21 @@ Index SurfaceWalk::coded_target(Index slots) {
   if (truth_ != nullptr) truth_target = known_as_[truth_vertex(end_truth_)];
   if (surface.vertex_count() == 0) return new_vertex();
   list_loop();
-  const std::uint32_t loop = capped(loop_.size(), 6) * 2 + (loop_reaches_start_ ? 1 : 0);
-  const std::uint32_t place = ring_level_;
-  const std::uint32_t left = capped(slots - 1, 6);
-  if (code(kNewVertex, 0,
-           {(loop * 6 + left) * 3 + place, (capped(size_ - 3, 12) * 6 + left) * 3 + place,
-            (capped(backward_.size(), 3) * 3 + capped(forward_.size(), 3)) * 12 + loop},
-           truth_ != nullptr && truth_target == kNone)) {
+  const auto loop = combine(capped<6>(loop_.size()), Context<2>(loop_reaches_start_));
+  const auto left = capped<6>(slots - 1);
+  if (models_.code<kNew>(
+          stream_,
+          {combine(loop, left, level()), combine(capped<12>(size_ - 3), left, level()),
+           combine(capped<3>(backward_.size()), capped<3>(forward_.size()), loop)},
+          truth_ != nullptr && truth_target == kNone)) {
     return new_vertex();
   }
   const auto found = std::find(loop_.begin(), loop_.end(), truth_target);
   const auto steps = static_cast<std::size_t>(found - loop_.begin());
   const bool on_loop = truth_ != nullptr && steps < loop_.size();
-  if (!loop_.empty() && code(kOnLoop, 0, {loop}, on_loop)) {
+  if (!loop_.empty() && models_.code<kOnLoop>(stream_, {loop}, on_loop)) {
     const std::uint64_t coded =
-        models_.code_number(stream_, kLoopSteps, 0, {left, loop}, truth_ ? steps : 0, 6);
+        models_.code_number<kLoopSteps>(stream_, {left, loop}, truth_ ? steps : 0, kLoopBits);
     if (coded >= loop_.size()) {
       fail(ErrorCode::malformed, "a ring goes beyond the front");
       return kNone;
@@ -124,21 +125,20 @@ Index SurfaceWalk::new_vertex() {
   }
   const Index truth_fan = truth_ ? truth_vertex(end_truth_) : kNone;
   const Index truth_degree = truth_ ? truth_->surface.degree[truth_fan] : 0;
-  const std::uint32_t place = ring_level_;
   Index degree = 2;
   for (; degree < kUnaryLimit; ++degree) {
-    const std::uint32_t step = capped(degree - 2, 8);
-    if (code(kDegree, 0,
-             {step * 3 + place, (step * 8 + capped(size_, 8)) * 3 + place,
-              (step * 6 + capped(last_degree_ - 2, 6)) * 3 + place},
-             degree == truth_degree)) {
+    const auto step = capped<8>(degree - 2);
+    if (models_.code<kDegree>(stream_,
+                              {combine(step, level()), combine(step, capped<8>(size_), level()),
+                               combine(step, capped<6>(last_degree_ - 2), level())},
+                              degree == truth_degree)) {
       break;
     }
     if (stopped()) return kNone;
   }
   if (degree == kUnaryLimit) {
-    const std::uint64_t rest = models_.code_number(
-        stream_, kLongRing, 0, {1}, truth_ ? truth_degree - kUnaryLimit : 0, kCountBits);
+    const std::uint64_t rest = models_.code_number<kLong>(
+        stream_, {kLongDegree}, truth_ ? truth_degree - kUnaryLimit : 0, kCountBits);
     degree += static_cast<Index>(rest);
   }
   last_degree_ = degree;

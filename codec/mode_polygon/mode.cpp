@@ -9,41 +9,6 @@
 namespace watertight::codec::polygon {
 namespace {
 
-// In the order of PolygonFamily: the number of weight sets, then the size of the table of each
-// context. The call of code() for a family says what its contexts mean.
-constexpr FamilyShape kFamilies[] = {
-    {4, {384, 64, 160, 128, 192}},  // kRingSize
-    {1, {24, 192, 144}},            // kDegree
-    {1, {216, 216, 108}},           // kNewVertex
-    {1, {12}},                      // kOnLoop
-    {1, {8, 4}},                    // kFollow
-    {1, {9, 48}},                   // kMoreRings
-    {1, {2}},                       // kRingStart
-    {1, {4}},                       // kMoreShells
-    {1, {1}},                       // kHasCopies
-    {1, {1}},                       // kIsCopy
-    {3, {48, 54, 162, 72}},         // kVertical
-    {1, {63, 36, 24}},              // kKnownColumn
-    {1, {112, 64}},                 // kAcrossSign
-    {1, {112, 128, 224}},           // kAlongSign
-    {2, {48, 128, 36}},             // kKnownHeight
-};
-static_assert(std::size(kFamilies) == kPolygonFamilies);
-
-constexpr NumberShape kNumbers[] = {
-    {1, {2}},           // kLongRing
-    {1, {6, 12}},       // kLoopSteps
-    {1, {1}},           // kGateSteps
-    {1, {3}},           // kFirstPosition
-    {1, {3}},           // kFirstOffset
-    {7, {56, 12, 32}},  // kAcross
-    {7, {42, 32, 32}},  // kAlong
-    {1, {21, 12}},      // kColumnRank
-    {2, {12, 4, 16}},   // kPlaneResidual
-    {2, {32, 2}},       // kHeightResidual
-};
-static_assert(std::size(kNumbers) == kPolygonNumbers);
-
 /// The solid with the fans of each vertex joined again.
 IntegerSolid assemble(const WalkedSurface& walked, const CodedPositions& positions) {
   const PolygonSurface& surface = walked.surface;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The columns of earlier solids of a page near a place, best first: a vertex that stands in one of
-// them is coded by its rank. For mode `polygon`.
+// The columns of earlier solids of a page that are near a predicted one, the best first. A vertex
+// that stands in one of them is coded by its rank. For mode `polygon`.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace watertight::codec::polygon {
 
-/// How little a column is to be expected, from its offset to a place: the sum of the absolute
-/// offsets along and `across_weight` times across the direction of `turn`.
+/// The score of a column, lower for those that are more likely: its distance from `base` along the
+/// direction of `turn`, plus `across_weight` times that across it.
 struct ColumnScore {
   GridColumn base{};
   Turn turn{Flat{}};

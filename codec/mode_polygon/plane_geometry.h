@@ -50,13 +50,14 @@ struct FacetPlane {
   Kind kind = Kind::unknown;
   GridPoint origin{};
 
-  /// Takes one more vertex into account: keeps those three that span the largest triangle.
+  /// Adds a vertex: keeps the three that span the largest triangle.
   void add(Index vertex, const std::vector<GridPoint>& points_of);
-  /// The height of the plane in a column, of its origin if that is 2^53 or more. Requires a kind
-  /// that is level or steep.
+  /// The height of the plane in a column, or that of its origin if it is 2^53 or more. Requires
+  /// that the plane is level or steep.
   std::int64_t height(GridColumn column) const;
   /// How uncertain height() is in that column: 16 times the squared distance from the origin,
-  /// divided by twice the area of the triangle of `points` seen from above. The same requirement.
+  /// divided by twice the area of the triangle of `points` seen from above. Requires
+  /// the same.
   double reach(GridColumn column) const;
 };
 

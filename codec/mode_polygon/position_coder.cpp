@@ -29,7 +29,7 @@ void PositionCoder::find_copies() {
 
 Result<CodedPositions> PositionCoder::run() {
   find_copies();
-  has_copies_ = models_.code(stream_, kHasCopies, 0, {0}, has_copies_);
+  has_copies_ = models_.code<kHasCopies>(stream_, {kNothingKnown}, has_copies_);
   points_.resize(surface_.vertex_count());
   stream_.enter(StreamPart::position);
   for (current_ = 0; current_ < surface_.vertex_count() && !stream_.failed(); ++current_) {
@@ -45,8 +45,7 @@ Result<CodedPositions> PositionCoder::run() {
 }
 
 bool PositionCoder::code_copy(Index vertex) {
-  const bool is_copy = models_.code(stream_, kIsCopy, 0, {0}, same_as_[vertex] != vertex);
-  if (!is_copy) return false;
+  if (!models_.code<kIsCopy>(stream_, {kNothingKnown}, same_as_[vertex] != vertex)) return false;
   below_ = kNone;
   same_as_[vertex] =
       static_cast<Index>(stream_.code_uniform(truth_.empty() ? 0 : same_as_[vertex], vertex));
@@ -77,7 +76,7 @@ void PositionCoder::look_around(Index vertex) {
   before_two_ = before_ == kNone ? kNone : known(surface_.vertex[surface_.previous(back)]);
   after_two_ = after_ == kNone ? kNone : known(surface_.vertex[surface_.next(ahead)]);
   ring_size_ = surface_.ring_size(ring);
-  in_first_facet_ = surface_.facet_of[ring] == 0;
+  in_first_facet_ = Context<2>(surface_.facet_of[ring] == 0);
   neighbors_.clear();
   facets_.clear();
   Index corner = half;
@@ -87,7 +86,7 @@ void PositionCoder::look_around(Index vertex) {
     const Index twin = surface_.twin[corner];
     const Index other = surface_.vertex[twin];
     if (is_known(other)) {
-      const std::uint32_t relation = other == before_ ? 0U : other == after_ ? 1U : 2U;
+      const Context<3> relation(other == before_ ? 0U : other == after_ ? 1U : 2U);
       neighbors_.push_back({other, facet, surface_.facet_of[surface_.ring_of[twin]], relation});
     }
     corner = surface_.twin[surface_.previous(corner)];
@@ -101,16 +100,18 @@ bool PositionCoder::code_upright(Index vertex) {
     const GridPoint& other = points_[neighbor.vertex];
     const bool is_upright =
         !truth_.empty() && truth_[vertex][0] == other[0] && truth_[vertex][1] == other[1];
-    const auto kind = static_cast<std::uint32_t>(planes_[neighbor.facet].kind);
-    const auto other_kind = static_cast<std::uint32_t>(planes_[neighbor.other_facet].kind);
-    const std::uint32_t first = in_first_facet_ ? 1 : 0;
-    const std::uint32_t uprights = uprights_[neighbor.facet] * 3U + uprights_[neighbor.other_facet];
-    const std::uint32_t own = has_upright_[neighbor.vertex];
-    if (models_.code(stream_, kVertical, neighbor.relation,
-                     {(kind * 4 + other_kind) * 3 + own, (uprights * 3 + own) * 2 + first,
-                      (capped(ring_size_ - 3, 6) * 3 + neighbor.relation) * 9 + uprights,
-                      (capped(number, 3) * 4 + capped(neighbors_.size(), 4)) * 6 + own * 2 + first},
-                     is_upright)) {
+    const Context<kPlaneKinds> kind(planes_[neighbor.facet].kind);
+    const Context<kPlaneKinds> other_kind(planes_[neighbor.other_facet].kind);
+    const auto uprights =
+        combine(Context<3>(uprights_[neighbor.facet]), Context<3>(uprights_[neighbor.other_facet]));
+    const Context<3> own(has_upright_[neighbor.vertex]);
+    const Context<2> first = in_first_facet_;
+    if (models_.code<kUpright>(
+            stream_, neighbor.relation,
+            {combine(kind, other_kind, own), combine(uprights, own, first),
+             combine(capped<6>(ring_size_ - 3), neighbor.relation, uprights),
+             combine(capped<3>(number), capped<4>(neighbors_.size()), own, first)},
+            is_upright)) {
       point()[0] = other[0];
       point()[1] = other[1];
       below_ = neighbor.vertex;
@@ -137,7 +138,7 @@ bool PositionCoder::predict_on_walls(Prediction& prediction) const {
     }
     const Flat one{first->normal[0], first->normal[1]};
     const double det = cross(one, normal);
-    if (det * det < 0.03 * dot(one, one) * dot(normal, normal)) continue;
+    if (det * det < kCrossing * dot(one, one) * dot(normal, normal)) continue;
     // Where both lines meet, from the first wall's origin.
     const Flat offset{static_cast<double>(plane.origin[0] - first->origin[0]),
                       static_cast<double>(plane.origin[1] - first->origin[1])};
@@ -186,7 +187,7 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
     const Flat one = a - p;
     const Flat two = b - q;
     const double det = cross(one, two);
-    if (det * det > 0.25 * dot(one, one) * dot(two, two)) {
+    if (det * det > kPerpendicular * dot(one, one) * dot(two, two)) {
       const double part = dot(two, b - a) / det;
       prediction.base[0] += to_whole(-one.y * part);
       prediction.base[1] += to_whole(one.x * part);
@@ -214,24 +215,25 @@ bool PositionCoder::code_known_column(const Prediction& prediction) {
   ColumnScore score;
   score.base = prediction.base;
   score.turn = Turn(prediction.direction);
-  score.across_weight = prediction.frame == Frame::corner ? 4 : 1;
+  score.across_weight = prediction.frame == Frame::corner ? kAcrossWeight : 1;
   const std::vector<GridColumn> near =
-      nearest_columns(memory_.columns, score, is_start ? 2048 : 64, is_start ? 2048 : 16);
+      nearest_columns(memory_.columns, score, is_start ? kFirstWindow : kWindow,
+                      is_start ? kFirstOffered : kOffered);
   const GridColumn truth{truth_at(0), truth_at(1)};
   const auto rank = static_cast<std::size_t>(
       truth_.empty() ? 0 : std::find(near.begin(), near.end(), truth) - near.begin());
-  const auto frame = static_cast<std::uint32_t>(prediction.frame);
-  const std::uint32_t before = before_ == kNone ? 0U : 1U + in_known_column_[before_];
-  const std::uint32_t distance =
-      near.empty() ? 0U : capped(std::bit_width(score(near.front())) / 2, 12);
-  const std::uint32_t context = (frame * 3 + before) * 3 + capped(known_columns_, 3);
-  if (!models_.code(stream_, kKnownColumn, 0,
-                    {context, distance * 3 + before, capped(current_, 8) * 3 + before},
-                    !truth_.empty() && rank < near.size())) {
+  const Context<kFrames> frame(prediction.frame);
+  const Context<3> before(before_ == kNone ? 0U : 1U + in_known_column_[before_]);
+  const std::uint64_t least_score = near.empty() ? 0 : score(near.front());
+  const auto distance = capped<12>(std::bit_width(least_score) / 2);
+  if (!models_.code<kKnownColumn>(stream_,
+                                  {combine(frame, before, capped<3>(known_columns_)),
+                                   combine(distance, before), combine(capped<8>(current_), before)},
+                                  !truth_.empty() && rank < near.size())) {
     return false;
   }
-  const std::uint64_t coded = models_.code_number(
-      stream_, kColumnRank, 0, {frame * 3 + before, distance}, truth_.empty() ? 0 : rank, 12);
+  const std::uint64_t coded = models_.code_number<kColumnRank>(
+      stream_, {combine(frame, before), distance}, truth_.empty() ? 0 : rank, kRankBits);
   if (coded >= near.size()) {
     stream_.fail();
     return true;
@@ -253,71 +255,72 @@ void PositionCoder::code_column(Index vertex) {
   if (!code_known_column(prediction)) code_offset(prediction);
 }
 
+/// A coordinate of the first vertex, from the last position of the page.
+void PositionCoder::code_first(std::uint32_t axis) {
+  const std::int64_t base = memory_.last_position[axis];
+  const std::int64_t truth = truth_at(axis) - base;
+  const Context<3> context(axis);
+  point()[axis] =
+      base + (memory_.is_first()
+                  ? models_.code_signed<kFirstPosition>(stream_, {context}, truth, kCoordinateBits)
+                  : models_.code_signed<kFirstOffset>(stream_, {context}, truth, kCoordinateBits));
+}
+
 void PositionCoder::code_offset(const Prediction& prediction) {
   if (prediction.frame == Frame::start) {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const auto number = memory_.is_first() ? kFirstPosition : kFirstOffset;
-      const std::int64_t base = memory_.last_position[axis];
-      point()[axis] =
-          base + models_.code_signed(stream_, number, 0, {static_cast<std::uint32_t>(axis)},
-                                     truth_at(axis) - base, kCoordinateBits);
-    }
+    code_first(0);
+    code_first(1);
     return;
   }
   const Turn turn(prediction.direction);
-  const auto frame = static_cast<std::uint32_t>(prediction.frame);
-  const std::uint32_t length = length_bits(prediction.direction);
-  GridColumn residual{};
+  GridColumn turned{};
   if (!truth_.empty()) {
-    residual = turn.forward({truth_at(0) - prediction.base[0], truth_at(1) - prediction.base[1]});
+    turned = turn.forward({truth_at(0) - prediction.base[0], truth_at(1) - prediction.base[1]});
   }
   const bool is_line = prediction.frame == Frame::wall;
-  const std::size_t small = is_line ? 1 : 0;
-  const std::size_t large = 1 - small;
-  const std::uint32_t degree = before_ == kNone ? 0 : capped(surface_.degree[before_] - 1, 4);
-  const std::uint32_t turned = before_ == kNone ? 0U : turns_[before_];
-  const std::uint32_t steady = prediction.is_steady ? 1 : 0;
+  if (is_line) std::swap(turned[0], turned[1]);
+  turned = code_residual(prediction, turned);
+  const auto [across, along] = turned;
+  turns_[current_] = bits_of(along) + 2 < bits_of(across) ? 3 : along < 0 ? 2 : 1;
+  if (is_line) std::swap(turned[0], turned[1]);
+  const GridColumn offset = turn.back(turned);
+  for (std::size_t axis = 0; axis < 2; ++axis) point()[axis] = prediction.base[axis] + offset[axis];
+}
+
+/// The offset from a prediction: across its direction, then along it.
+GridColumn PositionCoder::code_residual(const Prediction& prediction, const GridColumn& truth) {
+  const Context<kFrames> frame(prediction.frame);
+  const Context<2> steady(prediction.is_steady);
+  const Context<2> first = in_first_facet_;
+  const auto degree = before_ == kNone ? Context<4>(0U) : capped<4>(surface_.degree[before_] - 1);
+  const Context<4> turned(before_ == kNone ? std::uint8_t{0} : turns_[before_]);
+  const auto size = capped<4>(ring_size_ - 3);
+  const auto length = halved(capped<24>(length_bits(prediction.direction)));
   const auto magnitude = [](std::int64_t value) {
     return static_cast<std::uint64_t>(value < 0 ? -value : value);
   };
-  std::uint64_t size =
-      models_.code_number(stream_, kAcross, frame,
-                          {(capped(ring_size_ - 3, 4) * kFrames + frame) * 2 + steady,
-                           capped(length, 24) / 2, (turned * 4 + degree) * 2 + in_first_facet_},
-                          magnitude(residual[small]), kCoordinateBits);
-  const std::uint32_t across_bits = capped(std::bit_width(size), 16);
-  if (size > 0) {
-    const bool is_negative = models_.code(stream_, kAcrossSign, 0,
-                                          {across_bits * kFrames + frame, across_bits * 4 + turned},
-                                          residual[small] < 0);
-    residual[small] =
-        is_negative ? -static_cast<std::int64_t>(size) : static_cast<std::int64_t>(size);
-  } else {
-    residual[small] = 0;
+  auto across = static_cast<std::int64_t>(models_.code_number<kAcross>(
+      stream_, frame, {combine(size, frame, steady), length, combine(turned, degree, first)},
+      magnitude(truth[0]), kCoordinateBits));
+  const auto across_bits = capped<16>(bits_of(across));
+  if (across > 0 &&
+      models_.code<kAcrossSign>(
+          stream_, {combine(across_bits, frame), combine(across_bits, turned)}, truth[0] < 0)) {
+    across = -across;
   }
-  const std::uint32_t across = capped(bits_of(residual[small]), 6);
-  size = models_.code_number(
-      stream_, kAlong, frame,
-      {frame * 6 + across, (capped(ring_size_ - 3, 4) * 2 + in_first_facet_) * 4 + turned,
-       (capped(bits_of(residual[small]), 16) * 2 + steady)},
-      magnitude(residual[large]), kCoordinateBits);
-  if (size > 0) {
-    const std::uint32_t along_bits = capped(std::bit_width(size), 16);
-    const bool is_negative = models_.code(
-        stream_, kAlongSign, 0,
-        {along_bits * kFrames + frame, (across_bits * 4 + turned) * 2 + in_first_facet_,
-         (capped(ring_size_ - 3, 8) * kFrames + frame) * 4 + turned},
-        residual[large] < 0);
-    residual[large] =
-        is_negative ? -static_cast<std::int64_t>(size) : static_cast<std::int64_t>(size);
-  } else {
-    residual[large] = 0;
+  auto along = static_cast<std::int64_t>(
+      models_.code_number<kAlong>(stream_, frame,
+                                  {combine(frame, capped<6>(bits_of(across))),
+                                   combine(size, first, turned), combine(across_bits, steady)},
+                                  magnitude(truth[1]), kCoordinateBits));
+  if (along > 0 && models_.code<kAlongSign>(stream_,
+                                            {combine(capped<16>(bits_of(along)), frame),
+                                             combine(across_bits, turned, first),
+                                             combine(capped<8>(ring_size_ - 3), frame, turned)},
+                                            truth[1] < 0)) {
+    along = -along;
   }
-  turns_[current_] = bits_of(residual[large]) + 2 < bits_of(residual[small]) ? 3
-                     : residual[large] < 0                                   ? 2
-                                                                             : 1;
-  const GridColumn offset = turn.back(residual);
-  for (std::size_t axis = 0; axis < 2; ++axis) point()[axis] = prediction.base[axis] + offset[axis];
+  return {across, along};
 }
 
 /// Updates planes, heights, directions and vertical edges by the position of a vertex.

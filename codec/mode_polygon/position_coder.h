@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/entropy/context.h"
 #include "codec/mode_polygon/plane_geometry.h"
 #include "codec/mode_polygon/surface.h"
 
@@ -18,17 +19,30 @@ namespace watertight::codec::polygon {
 
 inline constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
 inline constexpr int kCoordinateBits = 55;
-inline constexpr std::size_t kFanLimit = 12;    // corners of a vertex that are looked at
-inline constexpr std::size_t kLevelLimit = 12;  // heights that are remembered
-inline constexpr std::size_t kHeightLimit = 6;  // of them those that are offered
+inline constexpr std::size_t kFanLimit = 12;      // corners of a vertex that predictions use
+inline constexpr std::size_t kLevelLimit = 12;    // heights that are remembered
+inline constexpr std::uint32_t kHeightLimit = 6;  // heights that are offered
+inline constexpr int kRankBits = 12;              // of the rank of a known column
+
+// Fixed by the format (docs/format-polygon.md, "Positions").
+inline constexpr double kCrossing = 0.03;       // least squared sine between two walls that cross
+inline constexpr double kPerpendicular = 0.25;  // the same between two edges
+// How many columns of the page are compared before and after the prediction, and how many of these
+// are offered: for the first vertex of a solid, then for all others.
+inline constexpr std::size_t kFirstWindow = 2048;
+inline constexpr std::size_t kFirstOffered = 2048;
+inline constexpr std::size_t kWindow = 64;
+inline constexpr std::size_t kOffered = 16;
+inline constexpr std::uint64_t kAcrossWeight = 4;  // of an offset across a corner's direction
 
 using Kind = FacetPlane::Kind;
+inline constexpr std::uint32_t kPlaneKinds = 4;
 
-/// What a column is predicted from: one model selector each.
+/// How the prediction of a column was found.
 enum class Frame : std::uint8_t { start, bare, edge, corner, closing, wall, walls };
 inline constexpr std::uint32_t kFrames = 7;
 inline constexpr std::size_t kDirectionLimit = 8;
-/// Squared sine of what counts as the same direction.
+/// The squared sine of the greatest angle between two edges of one direction.
 inline constexpr double kDirectionSlack = 0.003 * 0.003;
 
 /// Whether `edge` has the direction of `line`, up to kDirectionSlack or two grid steps.
@@ -42,9 +56,9 @@ inline Flat quarter_turned(Flat vector) { return {-vector.y, vector.x}; }
 
 struct Neighbor {
   Index vertex = kNone;
-  Index facet = kNone;         // left of the edge to it
-  Index other_facet = kNone;   // right of it
-  std::uint32_t relation = 2;  // 0: the one before in the ring, 1: the one after, 2: another
+  Index facet = kNone;        // left of the edge to it
+  Index other_facet = kNone;  // right of it
+  Context<3> relation{2U};    // 0: the one before in the ring, 1: the one after, 2: another
 };
 
 struct Prediction {
@@ -59,7 +73,7 @@ inline std::uint32_t bits_of(std::int64_t value) {
       std::bit_width(static_cast<std::uint64_t>(value < 0 ? -value : value)));
 }
 
-/// Of the greater of both coordinates.
+/// The bit length of the greater of both coordinates.
 inline std::uint32_t length_bits(Flat vector) {
   return std::max(bits_of(to_whole(vector.x)), bits_of(to_whole(vector.y)));
 }
@@ -100,6 +114,8 @@ class PositionCoder {
   void code_column(Index vertex);
   bool code_known_column(const Prediction& prediction);
   void code_offset(const Prediction& prediction);
+  GridColumn code_residual(const Prediction& prediction, const GridColumn& truth);
+  void code_first(std::uint32_t axis);
   Prediction predicted_column(Index vertex) const;
   bool predict_on_walls(Prediction& prediction) const;
   void code_height(Index vertex);
@@ -135,21 +151,21 @@ class PositionCoder {
   std::vector<std::uint8_t> has_upright_;      // vertex -> vertical edges known, at most 2
   std::vector<std::uint8_t> in_known_column_;  // vertex -> 1 if coded by a column of the page
   Index last_top_ = kNone;                     // the last vertex in the column of a neighbour
-  std::uint32_t known_columns_ = 0;
-  std::vector<Flat> directions_;      // of long edges, each the longest of its kind
+  std::uint32_t known_columns_ = 0;            // vertices coded by a column of the page
+  std::vector<Flat> directions_;               // of long edges, each the longest of its kind
   std::vector<std::uint8_t> turns_;   // vertex -> how its edge turned: 1 left, 2 right, 3 not
   std::vector<std::int64_t> levels_;  // heights, the latest first
 
-  // Of the vertex being coded.
+  // About the vertex that is being coded.
   Index current_ = 0;
-  Index before_ = kNone;  // neighbours in the ring that it was met in, where known
+  Index before_ = kNone;  // its neighbours in the ring in which it was created, if known
   Index after_ = kNone;
   Index before_two_ = kNone;
   Index after_two_ = kNone;
   std::uint32_t ring_size_ = 0;
-  bool in_first_facet_ = false;
+  Context<2> in_first_facet_{false};
   std::vector<Neighbor> neighbors_;
-  std::vector<Index> facets_;  // around it
+  std::vector<Index> facets_;  // around the vertex
   Index below_ = kNone;        // the neighbour in the same column
 };
 

@@ -9,6 +9,13 @@
 
 namespace watertight::codec::polygon {
 
+namespace {
+
+constexpr std::uint32_t kSources = 4;  // of an offered height
+constexpr int kLineLimit = 8;          // vertices before that may lie on one line with an edge
+
+}  // namespace
+
 /// The longest edge of the solid that is parallel or perpendicular to `direction`, turned to it.
 bool PositionCoder::follow_direction(Flat& direction) const {
   double longest = dot(direction, direction);
@@ -37,7 +44,7 @@ void PositionCoder::remember_direction(Index vertex) {
   // The longer edge, if the vertices before are on one line with this one.
   Index half = surface_.previous(surface_.out_half[vertex]);
   const Flat last = flat(before_);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLineLimit; ++i) {
     half = surface_.previous(half);
     const Index other = surface_.vertex[half];
     if (other >= vertex) break;
@@ -59,10 +66,7 @@ void PositionCoder::remember_direction(Index vertex) {
 
 void PositionCoder::code_height(Index vertex) {
   if (vertex == 0) {
-    const auto number = memory_.is_first() ? kFirstPosition : kFirstOffset;
-    const std::int64_t base = memory_.last_position[2];
-    point()[2] =
-        base + models_.code_signed(stream_, number, 0, {2}, truth_at(2) - base, kCoordinateBits);
+    code_first(2);
   } else if (!code_height_on_planes(vertex)) {
     code_other_height(vertex);
   }
@@ -88,15 +92,14 @@ bool PositionCoder::code_height_on_planes(Index /*vertex*/) {
     ++count;
   }
   if (best == nullptr) return false;
-  const std::uint32_t level = best->kind == Kind::level ? 1 : 0;
-  const std::uint32_t upright = below_ == kNone ? 0 : 1;
-  const std::uint32_t far =
-      capped(std::bit_width(static_cast<std::uint64_t>(to_whole(reach))) / 2, 8);
+  const Context<2> level(best->kind == Kind::level);
+  const Context<2> upright(below_ != kNone);
+  const auto far = capped<8>(std::bit_width(static_cast<std::uint64_t>(to_whole(reach))) / 2);
   const std::int64_t residual =
-      models_.code_signed(stream_, kPlaneResidual, level,
-                          {(level * 3 + capped(count - 1, 3)) * 2 + (agree ? 1U : 0U),
-                           upright * 2 + (in_first_facet_ ? 1U : 0U), far * 2 + level},
-                          truth_at(2) - height, kCoordinateBits);
+      models_.code_signed<kPlaneResidual>(stream_, level,
+                                          {combine(level, capped<3>(count - 1), Context<2>(agree)),
+                                           combine(upright, in_first_facet_), combine(far, level)},
+                                          truth_at(2) - height, kCoordinateBits);
   point()[2] = height + residual;
   return true;
 }
@@ -105,7 +108,7 @@ void PositionCoder::code_other_height(Index /*vertex*/) {
   // Heights of the neighbours in the ring, then those seen last.
   std::array<std::int64_t, kHeightLimit> offered{};
   std::array<std::uint32_t, kHeightLimit> source{};
-  std::size_t count = 0;
+  std::uint32_t count = 0;
   const auto offer = [&](std::int64_t height, std::uint32_t kind) {
     if (count == kHeightLimit) return;
     if (below_ != kNone && height == points_[below_][2]) return;
@@ -119,14 +122,14 @@ void PositionCoder::code_other_height(Index /*vertex*/) {
   if (after_ != kNone) offer(points_[after_][2], 1);
   for (const Neighbor& neighbor : neighbors_) offer(points_[neighbor.vertex][2], 2);
   for (const std::int64_t height : levels_) offer(height, 3);
-  const std::uint32_t upright = below_ == kNone ? 0 : 1;
-  const std::uint32_t first = in_first_facet_ ? 1 : 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t context = (static_cast<std::uint32_t>(i) * 4 + source[i]) * 2 + upright;
-    if (models_.code(stream_, kKnownHeight, upright,
-                     {context, ((source[i] * 2 + upright) * 2 + first) * 8 + capped(ring_size_, 8),
-                      capped(count - i, 6) * 6 + capped(levels_.size(), 6)},
-                     truth_at(2) == offered[i])) {
+  const Context<2> upright(below_ != kNone);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Context<kSources> from(source[i]);
+    if (models_.code<kKnownHeight>(stream_, upright,
+                                   {combine(Context<kHeightLimit>(i), from, upright),
+                                    combine(from, upright, in_first_facet_, capped<8>(ring_size_)),
+                                    combine(capped<6>(count - i), capped<6>(levels_.size()))},
+                                   truth_at(2) == offered[i])) {
       point()[2] = offered[i];
       return;
     }
@@ -152,9 +155,10 @@ void PositionCoder::code_other_height(Index /*vertex*/) {
     near = below_;
   }
   point()[2] = points_[near][2] +
-               models_.code_signed(stream_, kHeightResidual, upright,
-                                   {(upright * 4 + from) * 4 + capped(levels_.size(), 4), first},
-                                   truth_at(2) - points_[near][2], kCoordinateBits);
+               models_.code_signed<kHeightResidual>(
+                   stream_, upright,
+                   {combine(upright, Context<4>(from), capped<4>(levels_.size())), in_first_facet_},
+                   truth_at(2) - points_[near][2], kCoordinateBits);
 }
 
 void PositionCoder::remember_height(std::int64_t height) {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <span>
 
+#include "codec/mode_walk/families.h"
+
 namespace watertight::codec::walk {
 namespace {
 
@@ -14,24 +16,39 @@ using Place = std::array<std::int64_t, 2>;
 constexpr int kMaxLength = 30;  // bits of a side of the box
 constexpr std::int64_t kMaxMagnitude = std::int64_t{1} << 53;
 
-// Families.
-constexpr std::uint32_t kChoice = 0;  // is the place a known one, or that of a parallelogram?
-constexpr std::uint32_t kHeight = 1;  // is it this height, of those seen?
-constexpr std::uint32_t kTopBits = 2;
-constexpr std::uint32_t kTopNodes = 8;
-// Numbers.
-constexpr std::uint32_t kPosition = 0;
-constexpr std::uint32_t kSize = 1;
-constexpr std::uint32_t kGap = 2;
-constexpr std::uint32_t kResidual = 3;
-constexpr std::uint32_t kRank = 4;
-constexpr std::uint32_t kFloors = 5;
-// Kinds of kSize.
-constexpr std::uint32_t kSizeKinds = 6;
+constexpr int kPositionBits = 54;  // of a coordinate of the first point
+constexpr int kLengthBits = 5;     // of a length
+constexpr int kCountBits = 40;     // of a number of columns or vertices
+constexpr int kRankBits = 6;       // of a rank among known places
 
-constexpr std::size_t kHeights = 16;       // remembered
-constexpr std::size_t kReach = 5;          // columns back that parallelograms are made of
-constexpr std::size_t kKnownReach = 4096;  // of the page's columns that are looked at for one
+// Fixed by the format (docs/format-walk.md, "Columns").
+constexpr std::size_t kHeights = 16;        // that are remembered
+constexpr std::size_t kReach = 5;           // columns back that parallelograms are made of
+constexpr std::size_t kKnownReach = 4096;   // columns of the page among which known places are
+constexpr std::uint64_t kMostKnown = 64;    // of these, those in the box that are counted
+constexpr std::int64_t kCornerMargin = 32;  // steps around the box in which corners may lie
+constexpr std::uint64_t kMostFloors = 255;  // floors above count as this one
+
+/// The length of a number, or of the side of a box.
+using Length = Context<kMaxLength + 1>;
+
+// What is coded under Size. The first three are the sides of the box on each axis.
+using SizeKind = Context<6>;
+constexpr SizeKind kColumnCount{3U};
+constexpr SizeKind kFirstHeight{4U};
+
+// What is coded under TopBits.
+using TopKind = Context<3>;
+constexpr TopKind kFirstY{0U};
+constexpr TopKind kPlaceY{1U};
+constexpr TopKind kNewHeight{2U};
+
+// What is asked with Rank.
+constexpr Context<2> kOfKnownPlace{0U};
+constexpr Context<2> kOfCorner{1U};
+// Place has the contexts of known places, then those of corners.
+constexpr std::uint32_t kKnownPlaceContexts = 16;
+constexpr std::uint32_t kCornerContexts = 64;
 
 int length_of(std::int64_t value) {
   return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(value)));
@@ -39,7 +56,7 @@ int length_of(std::int64_t value) {
 
 class Columns {
  public:
-  Columns(EntropyStream& stream, const ColumnModels& models, const PageMemory& memory,
+  Columns(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
           std::vector<GridPoint>& points, const Limits& limits)
       : stream_(stream), models_(models), memory_(memory), points_(points), limits_(limits) {}
 
@@ -52,13 +69,11 @@ class Columns {
   };
 
   bool is_reading() const { return stream_.is_reading(); }
-  std::int64_t size(std::uint32_t kind, std::int64_t value, int before, int max_length) {
-    const auto context = static_cast<std::uint32_t>(before);
-    return static_cast<std::int64_t>(models_.bank.code_number(
-        stream_, models_.first_number + kSize, 0, {kind, kind * (kMaxLength + 1) + context},
-        static_cast<std::uint64_t>(value), max_length));
+  std::int64_t code_size(SizeKind kind, std::int64_t value, Length before, int max_length) {
+    return static_cast<std::int64_t>(models_.code_number<kSize>(
+        stream_, {kind, combine(kind, before)}, static_cast<std::uint64_t>(value), max_length));
   }
-  std::int64_t top_bits(std::uint32_t kind, std::int64_t value, int length);
+  std::int64_t code_top_bits(TopKind kind, std::int64_t value, int length);
   Status measure();
   Status code_frame();
   bool code_place(std::size_t number, Place truth);
@@ -67,42 +82,43 @@ class Columns {
   void code_free_place(std::size_t number, Place truth, Place& place);
   bool code_floors(std::size_t number, std::span<const GridPoint> truth);
   std::int64_t code_height(std::int64_t truth, bool has_below, std::int64_t below,
-                           std::uint32_t floor, std::uint32_t floors);
+                           std::uint64_t floor, std::uint64_t floors);
 
   EntropyStream& stream_;
-  const ColumnModels& models_;
+  ModelBank& models_;
   const PageMemory& memory_;
   std::vector<GridPoint>& points_;
   const Limits& limits_;
 
   std::vector<Place> places_;
-  std::vector<std::size_t> first_;  // writing: place -> first point; one more entry
+  std::vector<std::size_t> first_;  // writing: place -> its first point; one more entry at the end
   std::vector<GridPoint> decoded_;
   std::size_t place_count_ = 0;
   std::array<int, 3> length_{};        // of the sides of the box
   std::array<std::int64_t, 3> min_{};  // of the box
   std::array<std::int64_t, 3> start_{};
-  std::vector<Height> heights_;  // the last used first
+  std::vector<Height> heights_;  // that were used, the latest first
   std::vector<std::int64_t> floors_before_;
-  std::size_t known_ = 0;  // place in memory_.columns behind the last column
+  std::size_t known_ = 0;  // the first of memory_.columns that is greater than the last column
   bool was_known_ = false;
   bool is_over_limit_ = false;
 };
 
-/// A number of `length` bits: the first three under models, the others plain.
-std::int64_t Columns::top_bits(std::uint32_t kind, std::int64_t value, int length) {
-  std::uint32_t node = 1;
-  std::int64_t result = 0;
-  const int modelled = std::min(length, 3);
+/// Codes a number of `length` bits: the first three with models, the others plain.
+std::int64_t Columns::code_top_bits(TopKind kind, std::int64_t value, int length) {
+  constexpr int kModelled = 3;
+  constexpr std::uint32_t kNodes = 1U << kModelled;
+  std::uint32_t node = 1;  // the bits so far, below a leading 1
+  const int modelled = std::min(length, kModelled);
   for (int bit = 0; bit < modelled; ++bit) {
+    const Context<kNodes> known(node);
+    const Length size(static_cast<std::uint32_t>(length));
     const bool one =
-        models_.bank.code(stream_, models_.first_family + kTopBits, 0,
-                          {kind * kTopNodes + node,
-                           (kind * 31 + static_cast<std::uint32_t>(length)) * kTopNodes + node},
-                          ((value >> (length - 1 - bit)) & 1) != 0);
+        models_.code<kTopBits>(stream_, {combine(kind, known), combine(kind, size, known)},
+                               ((value >> (length - 1 - bit)) & 1) != 0);
     node = 2 * node + (one ? 1 : 0);
-    result = 2 * result + (one ? 1 : 0);
   }
+  const std::int64_t result = node - (std::int64_t{1} << modelled);
   const int rest = length - modelled;
   if (rest == 0) return result;
   return (result << rest) |
@@ -134,39 +150,42 @@ Status Columns::measure() {
   return Done{};
 }
 
-/// The first point, the box and the number of columns.
+/// Codes the first point, the box and the number of columns.
 Status Columns::code_frame() {
   stream_.enter(StreamPart::position);
-  const std::uint32_t first = memory_.is_first() ? 1 : 0;
+  const Context<2> first(memory_.is_first());
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     const std::int64_t truth = is_reading() ? 0 : points_[0][axis] - memory_.last_position[axis];
     start_[axis] = memory_.last_position[axis] +
-                   models_.bank.code_signed(stream_, models_.first_number + kPosition, 0,
-                                            {2 * axis + first}, truth, 54);
+                   models_.code_signed<kPosition>(stream_, {combine(Context<3>(axis), first)},
+                                                  truth, kPositionBits);
     if (start_[axis] >= kMaxMagnitude || start_[axis] <= -kMaxMagnitude) stream_.fail();
   }
   stream_.enter(StreamPart::coordinates);
-  int before = 0;
+  Length before(0U);
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    length_[axis] = static_cast<int>(size(axis, length_[axis], before, 5));
+    length_[axis] = static_cast<int>(code_size(SizeKind(axis), length_[axis], before, kLengthBits));
     if (length_[axis] > kMaxLength) {
       stream_.fail();
       length_[axis] = 0;
     }
-    before = length_[axis];
+    before = Length(static_cast<std::uint32_t>(length_[axis]));
   }
+  const auto columns = static_cast<std::int64_t>(place_count_) - 1;
   place_count_ =
-      static_cast<std::size_t>(size(3, static_cast<std::int64_t>(place_count_) - 1, 0, 40)) + 1;
+      static_cast<std::size_t>(code_size(kColumnCount, columns, Length(0U), kCountBits)) + 1;
   if (place_count_ > limits_.vertices) {
     return Error{ErrorCode::limit_exceeded, "too many vertices"};
   }
   min_[0] = start_[0];
-  min_[1] = start_[1] - top_bits(0, is_reading() ? 0 : start_[1] - min_[1], length_[1]);
-  min_[2] = start_[2] - size(4, is_reading() ? 0 : start_[2] - min_[2], 0, kMaxLength);
+  min_[1] = start_[1] - code_top_bits(kFirstY, is_reading() ? 0 : start_[1] - min_[1], length_[1]);
+  min_[2] = start_[2] -
+            code_size(kFirstHeight, is_reading() ? 0 : start_[2] - min_[2], Length(0U), kMaxLength);
   return Done{};
 }
 
-/// A place that the page has, among those behind the last column in the box.
+/// Codes whether the place is a column of the page that lies in the box after the last column, and
+/// which one. False if it is none.
 bool Columns::code_known_place(Place truth, Place& place) {
   const auto& known = memory_.columns;
   const std::int64_t end_x = min_[0] + (std::int64_t{1} << length_[0]);
@@ -175,9 +194,8 @@ bool Columns::code_known_place(Place truth, Place& place) {
   std::uint64_t count = 0;
   std::uint64_t rank = 0;
   bool is_known = false;
-  constexpr std::uint64_t kMost = 64;
   const std::size_t end = std::min(known.size(), known_ + kKnownReach);
-  for (std::size_t i = known_; i < end && known[i][0] < end_x && count < kMost; ++i) {
+  for (std::size_t i = known_; i < end && known[i][0] < end_x && count < kMostKnown; ++i) {
     if (known[i][1] < min_[1] || known[i][1] >= end_y) continue;
     if (known[i] == truth) {
       is_known = true;
@@ -186,12 +204,12 @@ bool Columns::code_known_place(Place truth, Place& place) {
     ++count;
   }
   if (count == 0) return false;
-  const auto amount = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, 7));
-  is_known = models_.bank.code(stream_, models_.first_family + kChoice, 0,
-                               {amount * 2 + (was_known_ ? 1 : 0)}, is_known);
+  const auto amount = capped<8>(count);
+  is_known = models_.code<kPlace>(
+      stream_, {leading<kCornerContexts>(combine(amount, Context<2>(was_known_)))}, is_known);
   was_known_ = is_known;
   if (!is_known) return false;
-  rank = models_.bank.code_number(stream_, models_.first_number + kRank, 0, {amount}, rank, 6);
+  rank = models_.code_number<kRank>(stream_, {combine(kOfKnownPlace, amount)}, rank, kRankBits);
   std::uint64_t place_rank = 0;
   for (std::size_t i = known_; i < end && known[i][0] < end_x; ++i) {
     if (known[i][1] < min_[1] || known[i][1] >= end_y) continue;
@@ -204,7 +222,8 @@ bool Columns::code_known_place(Place truth, Place& place) {
   return true;
 }
 
-/// A place near the fourth corner of a parallelogram of the last columns.
+/// Codes whether the place is near the fourth corner of a parallelogram of three of the last
+/// columns, and its offset from there. False if it is not.
 bool Columns::code_corner(std::size_t number, Place truth, Place& place) {
   std::array<Place, kReach*(kReach - 1) * (kReach - 2) / 2> corners;
   std::size_t count = 0;
@@ -218,8 +237,9 @@ bool Columns::code_corner(std::size_t number, Place truth, Place& place) {
         if (a == c || b == c) continue;
         const Place corner{places_[a][0] + places_[b][0] - places_[c][0],
                            places_[a][1] + places_[b][1] - places_[c][1]};
-        const bool is_possible = corner[0] >= last_x - 32 && corner[0] < end_x + 32 &&
-                                 corner[1] >= min_[1] - 32 && corner[1] < end_y + 32;
+        const bool is_possible =
+            corner[0] >= last_x - kCornerMargin && corner[0] < end_x + kCornerMargin &&
+            corner[1] >= min_[1] - kCornerMargin && corner[1] < end_y + kCornerMargin;
         if (is_possible) corners[count++] = corner;
       }
     }
@@ -238,43 +258,42 @@ bool Columns::code_corner(std::size_t number, Place truth, Place& place) {
       2 * length_of(is_reading() ? 0 : best_off) + length_of(static_cast<std::int64_t>(count)) + 3;
   const int free_bits =
       length_[0] + length_[1] - length_of(static_cast<std::int64_t>(place_count_ - number));
-  const auto amount = static_cast<std::uint32_t>(std::min<std::size_t>(count, 7));
-  const bool is_corner = models_.bank.code(
-      stream_, models_.first_family + kChoice, 0,
-      {16 + amount * 8 + static_cast<std::uint32_t>(std::min<std::size_t>(number, 7))},
+  const auto amount = capped<8>(count);
+  const bool is_corner = models_.code<kPlace>(
+      stream_, {trailing<kKnownPlaceContexts>(combine(amount, capped<8>(number)))},
       bits < free_bits);
   if (!is_corner) return false;
-  const std::uint64_t rank =
-      models_.bank.code_number(stream_, models_.first_number + kRank, 0, {8 + amount}, best,
-                               length_of(static_cast<std::int64_t>(count)));
+  const std::uint64_t rank = models_.code_number<kRank>(
+      stream_, {combine(kOfCorner, amount)}, best, length_of(static_cast<std::int64_t>(count)));
   if (rank >= count) {
     stream_.fail();
     place = places_.back();
     return true;
   }
-  std::uint32_t before = 0;
+  Context<8> before(0U);
   for (std::uint32_t axis = 0; axis < 2; ++axis) {
-    const std::int64_t off = models_.bank.code_signed(
-        stream_, models_.first_number + kResidual, axis, {axis * 8 + before},
+    const Context<2> along(axis);
+    const std::int64_t off = models_.code_signed<kResidual>(
+        stream_, along, {combine(along, before)},
         is_reading() ? 0 : truth[axis] - corners[rank][axis], kMaxLength);
     place[axis] = corners[rank][axis] + off;
-    before = static_cast<std::uint32_t>(std::min(length_of(std::abs(off)), 7));
+    before = capped<8>(length_of(std::abs(off)));
   }
   return true;
 }
 
-/// Any place: x by its distance from the last, y in the box.
+/// Codes a place without a prediction: x by its distance from the last one, y within the box.
 void Columns::code_free_place(std::size_t number, Place truth, Place& place) {
   const std::int64_t last_x = places_.back()[0];
   const std::int64_t left =
       std::max<std::int64_t>(min_[0] + (std::int64_t{1} << length_[0]) - last_x, 1);
-  const auto gap = static_cast<std::uint32_t>(
-      std::min(length_of(left / static_cast<std::int64_t>(place_count_ - number)), kMaxLength));
+  const std::int64_t mean = left / static_cast<std::int64_t>(place_count_ - number);
+  const auto gap = capped<kMaxLength + 1>(length_of(mean));
   place[0] =
-      last_x + static_cast<std::int64_t>(models_.bank.code_number(
-                   stream_, models_.first_number + kGap, 0, {gap},
-                   is_reading() ? 0 : static_cast<std::uint64_t>(truth[0] - last_x), kMaxLength));
-  place[1] = min_[1] + top_bits(1, is_reading() ? 0 : truth[1] - min_[1], length_[1]);
+      last_x + static_cast<std::int64_t>(models_.code_number<kGap>(
+                   stream_, {gap}, is_reading() ? 0 : static_cast<std::uint64_t>(truth[0] - last_x),
+                   kMaxLength));
+  place[1] = min_[1] + code_top_bits(kPlaceY, is_reading() ? 0 : truth[1] - min_[1], length_[1]);
 }
 
 bool Columns::code_place(std::size_t number, Place truth) {
@@ -293,41 +312,38 @@ bool Columns::code_place(std::size_t number, Place truth) {
   return true;
 }
 
-/// One of the heights seen, or a new one.
+/// Codes a height: one of those remembered, or a new one.
 std::int64_t Columns::code_height(std::int64_t truth, bool has_below, std::int64_t below,
-                                  std::uint32_t floor, std::uint32_t floors) {
-  std::uint32_t rank = 0;
-  const std::uint32_t at = std::min(floor, 2U);
-  const std::uint32_t of = std::min(floors, 4U) - 1;
+                                  std::uint64_t floor, std::uint64_t floors) {
+  auto rank = capped<8>(0);
+  const auto at = capped<3>(floor);
+  const auto of = capped<4>(floors - 1);
   for (std::size_t i = 0; i < heights_.size(); ++i) {
     const Height height = heights_[i];
     if (has_below && height.z <= below) continue;
-    const bool is_same = floor < floors_before_.size() && floors_before_[floor] == height.z;
-    const std::uint32_t uses = std::min(height.uses, 4U) - 1;
-    const bool is_this =
-        models_.bank.code(stream_, models_.first_family + kHeight, 0,
-                          {(rank * 3 + at) * 4 + of, ((is_same ? 1U : 0U) * 8 + rank) * 3 + at,
-                           (uses * 8 + rank) * 4 + of},
-                          height.z == truth);
+    const Context<2> is_same(floor < floors_before_.size() && floors_before_[floor] == height.z);
+    const auto uses = capped<4>(height.uses - 1);
+    const bool is_this = models_.code<kHeight>(
+        stream_, {combine(rank, at, of), combine(is_same, rank, at), combine(uses, rank, of)},
+        height.z == truth);
     if (is_this) {
       std::rotate(heights_.begin(), heights_.begin() + static_cast<std::ptrdiff_t>(i),
                   heights_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       ++heights_[0].uses;
       return height.z;
     }
-    rank = std::min(rank + 1, 7U);
+    rank = capped<8>(rank.value + 1);
   }
-  const std::int64_t z = min_[2] + top_bits(2, truth - min_[2], length_[2]);
+  const std::int64_t z = min_[2] + code_top_bits(kNewHeight, truth - min_[2], length_[2]);
   if (heights_.size() == kHeights) heights_.pop_back();
   heights_.insert(heights_.begin(), {z, 1});
   return z;
 }
 
 bool Columns::code_floors(std::size_t number, std::span<const GridPoint> truth) {
-  const auto before = static_cast<std::uint32_t>(std::min<std::size_t>(floors_before_.size(), 5));
   const std::uint64_t count =
-      models_.bank.code_number(stream_, models_.first_number + kFloors, 0, {before},
-                               is_reading() ? 0 : truth.size() - 1, 40) +
+      models_.code_number<kFloors>(stream_, {capped<6>(floors_before_.size())},
+                                   is_reading() ? 0 : truth.size() - 1, kCountBits) +
       1;
   if (count > limits_.vertices - decoded_.size()) {
     is_over_limit_ = true;
@@ -341,8 +357,7 @@ bool Columns::code_floors(std::size_t number, std::span<const GridPoint> truth) 
     std::int64_t z = start_[2];
     if (number > 0 || i > 0) {
       z = code_height(is_reading() ? 0 : truth[i][2], has_below, below,
-                      static_cast<std::uint32_t>(std::min<std::uint64_t>(i, 255)),
-                      static_cast<std::uint32_t>(std::min<std::uint64_t>(count, 255)));
+                      std::min<std::uint64_t>(i, kMostFloors), count);
     } else {
       heights_.push_back({z, 1});
     }
@@ -378,15 +393,7 @@ Status Columns::run() {
 
 }  // namespace
 
-const std::array<FamilyShape, kColumnFamilyCount> kColumnFamilies{
-    FamilyShape{1, {80}}, FamilyShape{1, {8 * 3 * 4, 2 * 8 * 3, 4 * 8 * 4}},
-    FamilyShape{1, {3 * kTopNodes, 3 * 31 * kTopNodes}}};
-const std::array<NumberShape, kColumnNumberCount> kColumnNumbers{
-    NumberShape{1, {6}},  NumberShape{1, {kSizeKinds, kSizeKinds*(kMaxLength + 1)}},
-    NumberShape{1, {31}}, NumberShape{2, {16}},
-    NumberShape{1, {16}}, NumberShape{1, {6}}};
-
-Status code_columns(EntropyStream& stream, const ColumnModels& models, const PageMemory& memory,
+Status code_columns(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
                     std::vector<GridPoint>& points, const Limits& limits) {
   return Columns(stream, models, memory, points, limits).run();
 }

@@ -5,8 +5,6 @@
 // (docs/format-walk.md, "Columns").
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "base/limits.h"
@@ -17,23 +15,11 @@
 
 namespace watertight::codec::walk {
 
-/// The families and numbers of the columns, to be put next to each other into a mode's layout.
-inline constexpr std::uint32_t kColumnFamilyCount = 3;
-inline constexpr std::uint32_t kColumnNumberCount = 6;
-extern const std::array<FamilyShape, kColumnFamilyCount> kColumnFamilies;
-extern const std::array<NumberShape, kColumnNumberCount> kColumnNumbers;
-
-/// Where they stand in the layout.
-struct ColumnModels {
-  ModelBank& bank;
-  std::uint32_t first_family;
-  std::uint32_t first_number;
-};
-
-/// Codes points sorted lexicographically, at least one, all different. Reading: `points` is empty
-/// before and sorted after. Errors: not_encodable if the sides of their box are 2^30 or more;
-/// reading: malformed, limit_exceeded. Cost: linear but for the look-ups in the page's columns.
-Status code_columns(EntropyStream& stream, const ColumnModels& models, const PageMemory& memory,
+/// Codes points, of which there is at least one and no two are equal, in lexicographic order.
+/// Reading: requires that `points` is empty, and fills it. Errors: not_encodable if the sides of
+/// their box are 2^30 or more; reading: malformed, limit_exceeded. Cost: linear in the points and
+/// in the columns of the page that are compared.
+Status code_columns(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
                     std::vector<GridPoint>& points, const Limits& limits);
 
 }  // namespace watertight::codec::walk

@@ -8,6 +8,7 @@
 
 #include "codec/mesh/facet_rings.h"
 #include "codec/mesh/half_edges.h"
+#include "codec/mode_walk/families.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/vector3.h"
 
@@ -20,26 +21,31 @@ using geometry::cross;
 using geometry::difference;
 using geometry::dot;
 
-// The families of the facets.
-constexpr std::uint32_t kIsInterior = 0;
-constexpr std::uint32_t kRare = 1;
-// Contexts of kRare.
-constexpr std::uint32_t kAllTriangles = 0;
-constexpr std::uint32_t kIsNotExteriorShell = 1;
-constexpr std::uint32_t kIsNotExteriorRing = 2;
+// What is asked with Exterior.
+constexpr Context<3> kAllTriangles{0U};
+constexpr Context<3> kIsNotExteriorShell{1U};
+constexpr Context<3> kIsNotExteriorRing{2U};
 
-constexpr std::uint32_t kOffsets = 9;
-constexpr std::uint32_t kAngles = 7;
-constexpr std::uint32_t kSlopes = 3;
+// Fixed by the format (docs/format-walk.md, "Facets of triangles").
+constexpr std::array<double, 7> kDistances2{0.36, 1.44, 6.25, 25, 100, 900, 10000};  // squared
+constexpr std::array<double, 6> kCosines{0.9999999, 0.99999, 0.999, 0.99, 0.9, 0.0};
+constexpr std::uint32_t kOffsets = kDistances2.size() + 2;
+constexpr std::uint32_t kAngles = kCosines.size() + 1;
+constexpr std::uint32_t kDirections = 3;  // of a normal or an edge
 constexpr std::uint32_t kLengths = 16;
 constexpr std::uint32_t kKnown = 16;
+constexpr std::uint32_t kHistory = 4;           // flags that are remembered
+constexpr std::uint32_t kRememberedOffset = 3;  // offsets below it, whose flags are remembered
+// What a flag adds to what is known of both its triangles.
+constexpr std::uint8_t kInteriorEdge = 1;
+constexpr std::uint8_t kOtherEdge = 4;
 
 Error not_encodable() {
   return {ErrorCode::not_encodable,
           "mode walk cannot code the facets: their edges do not separate them"};
 }
 
-/// True if the differences of whole numbers below 2^31 span no volume, exactly.
+/// Whether three vectors lie in one plane, decided exactly. Requires whole coordinates below 2^31.
 bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
   const auto whole = [](double x) { return static_cast<Wide>(static_cast<std::int64_t>(x)); };
   return whole(w[0]) * (whole(u[1]) * whole(v[2]) - whole(u[2]) * whole(v[1])) +
@@ -50,12 +56,18 @@ bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
 
 /// How two triangles meet at an edge.
 struct Meeting {
-  std::uint32_t offset;  // of either's corner from the other's plane, in grid steps; 0: in plane
-  std::uint32_t angle;   // between the normals
-  std::uint32_t slope;   // of the first triangle: horizontal, vertical, other
-  std::uint32_t course;  // of the edge: vertical, horizontal, other
-  std::uint32_t length;  // of the edge, octaves
+  /// Of the corner of either triangle from the plane of the other, in grid steps; 0: in the plane.
+  Context<kOffsets> offset;
+  Context<kAngles> angle;       // between the normals
+  Context<kDirections> slope;   // of the first triangle: horizontal, vertical, other
+  Context<kDirections> course;  // of the edge: vertical, horizontal, other
+  Context<kLengths> length;     // of the edge, octaves
 };
+
+/// Along the z axis, in the xy plane, or neither.
+Context<kDirections> direction_of(const Vector& v) {
+  return Context<kDirections>(v[0] == 0 && v[1] == 0 ? 0U : v[2] == 0 ? 1U : 2U);
+}
 
 Meeting meeting(const Point& a, const Point& b, const Point& o, const Point& w) {
   const Vector along = difference(b, a);
@@ -65,23 +77,23 @@ Meeting meeting(const Point& a, const Point& b, const Point& o, const Point& w) 
   const Vector second = cross(to_w, along);
   const double first2 = dot(first, first);
   const double second2 = dot(second, second);
-  Meeting m{};
+  std::uint32_t offset = 0;
   if (!is_flat(along, to_o, to_w)) {
-    constexpr std::array<double, 7> kSquares{0.36, 1.44, 6.25, 25, 100, 900, 10000};
     const double volume = dot(first, to_w);
     const double most = std::max(first2, second2);
-    m.offset = 1;
-    for (const double square : kSquares) m.offset += volume * volume > square * most ? 1U : 0U;
+    offset = 1;
+    for (const double square : kDistances2) offset += volume * volume > square * most ? 1U : 0U;
   }
-  constexpr std::array<double, 6> kCosines{0.9999999, 0.99999, 0.999, 0.99, 0.9, 0.0};
   const double product = dot(first, second);
   const double both = std::sqrt(first2 * second2);
-  while (m.angle < kCosines.size() && !(product > kCosines[m.angle] * both)) ++m.angle;
-  m.slope = first[0] == 0 && first[1] == 0 ? 0 : first[2] == 0 ? 1 : 2;
-  m.course = along[0] == 0 && along[1] == 0 ? 0 : along[2] == 0 ? 1 : 2;
+  std::uint32_t angle = 0;
+  while (angle < kCosines.size() && !(product > kCosines[angle] * both)) ++angle;
   const auto squared = static_cast<std::uint64_t>(std::min(dot(along, along), 0x1p62));
-  m.length = std::min(static_cast<std::uint32_t>(std::bit_width(squared)) / 2, kLengths - 1);
-  return m;
+  return {.offset = Context<kOffsets>(offset),
+          .angle = Context<kAngles>(angle),
+          .slope = direction_of(first),
+          .course = direction_of(along),
+          .length = capped<kLengths>(std::bit_width(squared) / 2)};
 }
 
 /// A ring of a facet of the mesh, its smallest vertex first.
@@ -100,12 +112,10 @@ double squared_diagonal(std::span<const Point> points, std::span<const Index> ve
 
 class Facets {
  public:
-  Facets(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-         std::span<const Point> points, const BoundaryMesh& mesh, std::span<const Index> facet_of,
-         IntegerSolid& solid)
+  Facets(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
+         const BoundaryMesh& mesh, std::span<const Index> facet_of, IntegerSolid& solid)
       : stream_(stream),
         models_(models),
-        family_(first_family),
         points_(points),
         mesh_(mesh),
         facet_of_(facet_of),
@@ -118,8 +128,8 @@ class Facets {
 
  private:
   bool is_reading() const { return stream_.is_reading(); }
-  bool rare(std::uint32_t context, bool value) {
-    return models_.code(stream_, family_ + kRare, 0, {context}, value);
+  bool code_exterior(Context<3> question, bool value) {
+    return models_.code<kExterior>(stream_, {question}, value);
   }
   void code_flags();
   void code_flag(Index half_edge);
@@ -128,21 +138,20 @@ class Facets {
   bool order_rings();
   bool order_shells();
   template <class Matches>
-  std::size_t code_choice(std::uint32_t context, std::size_t count, const Matches& matches);
+  std::size_t code_choice(Context<3> question, std::size_t count, const Matches& matches);
   bool matches_solid() const;
   void write_arrays();
 
   EntropyStream& stream_;
   ModelBank& models_;
-  std::uint32_t family_;
   std::span<const Point> points_;
   const BoundaryMesh& mesh_;
   std::span<const Index> facet_of_;
   IntegerSolid& solid_;
   geometry::DisjointSets facets_;      // of triangles
   std::vector<Index> inner_twin_;      // half-edge -> its twin if inside a facet, else kNone
-  std::vector<std::uint8_t> known_;    // per triangle: interior edges so far, 4 times those not
-  std::uint32_t history_ = 0;          // of the flags of flat edges
+  std::vector<std::uint8_t> known_;    // triangle -> sum over the flags of its edges so far
+  Answers<kHistory> history_;          // flags of flat edges
   std::vector<Index> facet_;           // triangle -> facet
   std::vector<Index> first_triangle_;  // facet -> its first triangle
   std::vector<FlagRing> rings_;
@@ -157,19 +166,19 @@ void Facets::code_flag(Index half_edge) {
   const Meeting m = meeting(
       points_[start_of(mesh_.triangles, twin)], points_[end_of(mesh_.triangles, twin)],
       points_[corner_of(mesh_.triangles, twin)], points_[corner_of(mesh_.triangles, half_edge)]);
-  const std::uint32_t linked = facets_.root(t) == facets_.root(u) ? 1 : 0;
-  const std::uint32_t direction = m.slope * 3 + m.course;
-  const bool interior =
-      models_.code(stream_, family_ + kIsInterior, m.offset,
-                   {((m.offset * kAngles + m.angle) * kKnown + known_[t]) * kKnown + known_[u],
-                    (m.offset * 9 + direction) * 2 + linked, (m.angle * 9 + direction) * 2 + linked,
-                    (m.offset * kAngles + m.angle) * 9 + direction,
-                    (m.offset * kLengths + m.length) * kSlopes + m.course,
-                    (m.offset * 16 + history_) * 2 + linked},
-                   !facet_of_.empty() && facet_of_[t] == facet_of_[u]);
-  if (m.offset < 3) history_ = (history_ * 2 + (interior ? 1U : 0U)) & 15U;
-  known_[t] = static_cast<std::uint8_t>(known_[t] + (interior ? 1 : 4));
-  known_[u] = static_cast<std::uint8_t>(known_[u] + (interior ? 1 : 4));
+  const Context<2> linked(facets_.root(t) == facets_.root(u));
+  const Context<kKnown> known_t(known_[t]);
+  const Context<kKnown> known_u(known_[u]);
+  const bool interior = models_.code<kInterior>(
+      stream_, m.offset,
+      {combine(m.offset, m.angle, known_t, known_u), combine(m.offset, m.slope, m.course, linked),
+       combine(m.angle, m.slope, m.course, linked), combine(m.offset, m.angle, m.slope, m.course),
+       combine(m.offset, m.length, m.course), combine(m.offset, history_.last(), linked)},
+      !facet_of_.empty() && facet_of_[t] == facet_of_[u]);
+  if (m.offset.value < kRememberedOffset) history_.add(interior);
+  const std::uint8_t flag = interior ? kInteriorEdge : kOtherEdge;
+  known_[t] = static_cast<std::uint8_t>(known_[t] + flag);
+  known_[u] = static_cast<std::uint8_t>(known_[u] + flag);
   if (!interior) return;
   inner_twin_[half_edge] = twin;
   inner_twin_[twin] = half_edge;
@@ -179,7 +188,7 @@ void Facets::code_flag(Index half_edge) {
 void Facets::code_flags() {
   bool all_triangles = false;
   if (!is_reading()) all_triangles = solid_.facet_count() == mesh_.triangles.size();
-  if (rare(kAllTriangles, all_triangles)) return;
+  if (code_exterior(kAllTriangles, all_triangles)) return;
   for (Index h = 0; h < mesh_.twin.size(); ++h) {
     if (mesh_.twin[h] < h && !stream_.failed()) code_flag(h);
   }
@@ -191,7 +200,7 @@ void Facets::number_facets() {
   first_triangle_ = std::move(facets.first);
 }
 
-/// All rings, those of a facet together, the largest first.
+/// Finds all rings and sorts them by facet, those of one facet by size, the largest first.
 void Facets::find_rings() {
   for (FacetRing& ring : facet_rings(mesh_.triangles, inner_twin_)) {
     const double size = squared_diagonal(points_, ring.vertices);
@@ -205,22 +214,24 @@ void Facets::find_rings() {
   for (std::size_t f = 0; f < first_triangle_.size(); ++f) first_ring_[f + 1] += first_ring_[f];
 }
 
-/// Which of `count` alternatives is the one, in unary. Writing: `count` if none.
+/// Codes which of `count` alternatives matches: one decision for each until it is found. Writing:
+/// returns `count` if none does.
 template <class Matches>
-std::size_t Facets::code_choice(std::uint32_t context, std::size_t count, const Matches& matches) {
+std::size_t Facets::code_choice(Context<3> question, std::size_t count, const Matches& matches) {
   std::size_t choice = 0;
   if (!is_reading()) {
     while (choice < count && !matches(choice)) ++choice;
     if (choice == count) return count;
   }
   for (std::size_t i = 0; i + 1 < count; ++i) {
-    if (!rare(context, i != choice)) return i;
+    if (!code_exterior(question, i != choice)) return i;
     if (stream_.failed()) return 0;
   }
   return count - 1;
 }
 
-/// Puts the exterior ring of each facet first. False if the solid's is not there.
+/// Puts the exterior ring of each facet first. False if a facet has no ring or, when writing, if
+/// its exterior ring is not among those found.
 bool Facets::order_rings() {
   for (std::size_t f = 0; f + 1 < first_ring_.size(); ++f) {
     const auto begin = rings_.begin() + first_ring_[f];
@@ -237,7 +248,7 @@ bool Facets::order_rings() {
   return true;
 }
 
-/// Lists the components, the exterior one first. False unless each is one shell of the solid.
+/// Lists the components, that of the exterior shell first. Writing: false if there is none.
 bool Facets::order_shells() {
   struct Sized {
     Index component;
@@ -322,17 +333,10 @@ Status Facets::run() {
 
 }  // namespace
 
-const std::array<FamilyShape, kFacetFamilyCount> kFacetFamilies{
-    FamilyShape{kOffsets,
-                {kOffsets * kAngles * kKnown * kKnown, kOffsets * 9 * 2, kAngles * 9 * 2,
-                 kOffsets* kAngles * 9, kOffsets* kLengths* kSlopes, kOffsets * 16 * 2}},
-    FamilyShape{1, {3}}};
-
-Status code_facets(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-                   std::span<const Point> points, const BoundaryMesh& mesh,
-                   std::span<const Index> facet_of, IntegerSolid& solid) {
+Status code_facets(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
+                   const BoundaryMesh& mesh, std::span<const Index> facet_of, IntegerSolid& solid) {
   stream.enter(StreamPart::facets);
-  return Facets(stream, models, first_family, points, mesh, facet_of, solid).run();
+  return Facets(stream, models, points, mesh, facet_of, solid).run();
 }
 
 }  // namespace watertight::codec::walk

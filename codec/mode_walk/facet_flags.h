@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // From a triangulated boundary to its polygons: one decision per edge says whether it lies inside a
-// facet; rings follow, and a few bits say which ring of a facet and which shell is the exterior
-// one. For mode walk (docs/format-walk.md, "Facets of triangles").
+// facet. The rings follow from that; a few more decisions say which ring of a facet and which shell
+// is the exterior one. For mode walk (docs/format-walk.md, "Facets of triangles").
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,17 +17,12 @@
 
 namespace watertight::codec::walk {
 
-/// The families of the facets, to be put next to each other into the layout of a mode.
-inline constexpr std::uint32_t kFacetFamilyCount = 2;
-extern const std::array<FamilyShape, kFacetFamilyCount> kFacetFamilies;
-
-/// Codes the facets of the surface that `mesh` triangulates, and fills the arrays of `solid` other
-/// than its vertices when reading. Writing: `facet_of[t]` is the facet in `solid` of triangle t of
-/// `mesh`. A flag says first whether all facets are triangles. `points` are those of the mesh.
-/// Errors: not_encodable where flags cannot tell the facets (rings that touch themselves, shells
-/// that are not connected); reading: malformed. Cost: O(n log n).
-Status code_facets(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-                   std::span<const Point> points, const BoundaryMesh& mesh,
-                   std::span<const Index> facet_of, IntegerSolid& solid);
+/// Codes the facets of the surface that `mesh` triangulates. `points` are those of the mesh.
+/// Writing: `facet_of[t]` is the facet in `solid` of triangle t of `mesh`. Reading: fills all
+/// arrays of `solid` but its vertices. Errors: not_encodable where flags do not determine the
+/// facets (rings that touch themselves, shells that are not connected); reading: malformed. Cost:
+/// O(n log n).
+Status code_facets(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
+                   const BoundaryMesh& mesh, std::span<const Index> facet_of, IntegerSolid& solid);
 
 }  // namespace watertight::codec::walk

@@ -2,13 +2,14 @@
 //
 // Mode walk: columns, the boundary among the Delaunay faces of the vertices, the facets of its
 // triangles. Based on: Verbree & Si 2008, section 4.1, in spirit: vertices first, then their
-// Delaunay tetrahedralization tells most of the boundary.
+// Delaunay tetrahedralization determines most of the boundary.
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 
 #include "codec/mode_walk/columns.h"
 #include "codec/mode_walk/facet_flags.h"
+#include "codec/mode_walk/families.h"
 #include "codec/mode_walk/walk.h"
 #include "codec/page/modes.h"
 #include "delaunay/canonical/follow_delaunay.h"
@@ -17,16 +18,11 @@
 namespace watertight::codec::walk {
 namespace {
 
-constexpr std::uint32_t kFirstWalk = 0;
-constexpr std::uint32_t kFirstFacets = kFirstWalk + kWalkFamilyCount;
-constexpr std::uint32_t kFirstColumns = kFirstFacets + kFacetFamilyCount;
-constexpr std::uint32_t kFamilies = kFirstColumns + kColumnFamilyCount;
-
 /// More tetrahedra than solids have, so that hostile vertices cannot take much time. (Solids of the
 /// test data have up to 8.5 tetrahedra for each vertex.)
 std::uint64_t max_tetrahedra(std::size_t points) { return std::uint64_t{24} * points + 4096; }
 
-/// The vertices from the corner of their box.
+/// The vertices relative to the smallest corner of their box.
 std::vector<Point> points_of(const std::vector<GridPoint>& vertices) {
   GridPoint min = vertices.front();
   for (const GridPoint& v : vertices) {
@@ -83,14 +79,7 @@ Result<BoundaryMesh> triangulate(const std::vector<Point>& points, const Integer
 }  // namespace
 
 const ModelLayout& model_layout() {
-  static const std::array<FamilyShape, kFamilies> families = [] {
-    std::array<FamilyShape, kFamilies> all;
-    std::copy(kWalkFamilies.begin(), kWalkFamilies.end(), all.begin() + kFirstWalk);
-    std::copy(kFacetFamilies.begin(), kFacetFamilies.end(), all.begin() + kFirstFacets);
-    std::copy(kColumnFamilies.begin(), kColumnFamilies.end(), all.begin() + kFirstColumns);
-    return all;
-  }();
-  static const ModelLayout layout{families, kColumnNumbers};
+  static constexpr ModelLayout layout{kFamilies, kNumbers};
   return layout;
 }
 
@@ -99,8 +88,7 @@ Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& me
   if (!stream.is_reading() && solid.vertices.size() < 4) {
     return Error{ErrorCode::not_encodable, "the vertices span no volume"};
   }
-  const ColumnModels columns{models, kFirstColumns, 0};
-  if (Status status = code_columns(stream, columns, memory, solid.vertices, limits); !status) {
+  if (Status status = code_columns(stream, models, memory, solid.vertices, limits); !status) {
     return status;
   }
   const ErrorCode failure = stream.is_reading() ? ErrorCode::malformed : ErrorCode::not_encodable;
@@ -122,8 +110,7 @@ Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& me
     mesh = std::move(triangulated).value();
   }
   stream.enter(StreamPart::connectivity);
-  if (Status status = code_boundary_walk(stream, models, kFirstWalk, points, *delaunay, mesh);
-      !status) {
+  if (Status status = code_boundary_walk(stream, models, points, *delaunay, mesh); !status) {
     return status;
   }
   if (mesh.component_count() > limits.shells || mesh.triangles.size() > 4 * limits.facets) {
@@ -131,7 +118,7 @@ Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& me
   }
   std::vector<Index> facet_of;
   for (const Index source : mesh.source) facet_of.push_back(given_facet_of[source]);
-  return code_facets(stream, models, kFirstFacets, points, mesh, facet_of, solid);
+  return code_facets(stream, models, points, mesh, facet_of, solid);
 }
 
 }  // namespace watertight::codec::walk

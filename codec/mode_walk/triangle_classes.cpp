@@ -24,6 +24,14 @@ constexpr std::array<double, 11> kBends{0.96592582628906828,  0.8660254037844386
 /// cos(k pi / 12) again, for the spheres.
 constexpr auto& kAngles = kBends;
 
+// Fixed by the format (docs/format-walk.md, "Contexts of Candidate and Distant").
+constexpr double kFlat = 1e-18;  // squared distance in grid steps that counts as in the plane
+constexpr std::array<double, 4> kDistances2{1, 9, 100, 2500};  // squared, in grid steps
+constexpr int kLeastRadius = -2;         // log2 of the squares at which the first class ends
+constexpr int kLeastParallelogram = -6;  // likewise
+constexpr double kGabriel2 = 1.69;       // square of the ratio of radii from which a side counts
+constexpr std::array<double, 4> kShares2{0.64, 0.36, 0.16, 0.04};  // squares of ratios of radii
+
 /// How many of the descending bounds lie above x.
 template <std::size_t size>
 std::uint32_t class_below(const std::array<double, size>& bounds, double x) {
@@ -33,10 +41,11 @@ std::uint32_t class_below(const std::array<double, size>& bounds, double x) {
 }
 
 /// floor(log2(x)) - least, clamped to the classes; x <= 0 is in the first class.
-std::uint32_t octave(double x, int least, std::uint32_t classes) {
-  if (!(x > 0)) return 0;
+template <std::uint32_t classes>
+Context<classes> octave(double x, int least) {
+  if (!(x > 0)) return Context<classes>(0U);
   const int exponent = static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 2047U) - 1023;
-  return static_cast<std::uint32_t>(std::clamp(exponent - least, 0, static_cast<int>(classes) - 1));
+  return capped<classes>(exponent - least);
 }
 
 /// The squared radius of the sphere through the origin, b, c and d, and its centre; a radius of 0
@@ -86,22 +95,25 @@ Continuation continuation(const Gate& gate, const Point& w) {
   const Vector off{from_a[0] - (gate.b.x - gate.o.x), from_a[1] - (gate.b.y - gate.o.y),
                    from_a[2] - (gate.b.z - gate.o.z)};
 
-  Continuation result{};
-  result.bend = both > 0 ? class_below(kBends, product / both) : kBendClasses - 1;
-  const bool is_flat = height2 <= 1e-18 * gate.normal2;
-  result.side = is_flat ? 1 : height < 0 ? 0 : 2;
-  constexpr std::array<double, 4> kDistances{1, 9, 100, 2500};  // squared
+  const bool is_flat = height2 <= kFlat * gate.normal2;
+  std::uint32_t deviation = 0;
   if (!is_flat) {
-    result.deviation = 1;
-    for (const double distance : kDistances) {
-      if (height2 > distance * gate.normal2) ++result.deviation;
+    deviation = 1;
+    for (const double distance2 : kDistances2) {
+      if (height2 > distance2 * gate.normal2) ++deviation;
     }
   }
   const double sides = dot(from_a, from_a) * dot(from_b, from_b);
-  result.radius =
-      normal2 > 0 ? octave(sides / (4 * normal2), -2, kRadiusClasses) : kRadiusClasses - 1;
-  result.parallelogram = octave(dot(off, off) / gate.length2, -6, kParallelogramClasses);
-  return result;
+  return {.bend = Context<kBendClasses>(both > 0 ? class_below(kBends, product / both)
+                                                 : kBendClasses - 1),
+          .side = Context<kSideClasses>(is_flat      ? 1U
+                                        : height < 0 ? 0U
+                                                     : 2U),
+          .deviation = Context<kDeviationClasses>(deviation),
+          .radius = normal2 > 0 ? octave<kRadiusClasses>(sides / (4 * normal2), kLeastRadius)
+                                : Context<kRadiusClasses>(kRadiusClasses - 1),
+          .parallelogram =
+              octave<kParallelogramClasses>(dot(off, off) / gate.length2, kLeastParallelogram)};
 }
 
 FaceShape face_shape(std::span<const Point> points, const Triangle& face,
@@ -117,7 +129,7 @@ FaceShape face_shape(std::span<const Point> points, const Triangle& face,
   std::uint32_t larger = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     if (apexes[i] != kNone) spheres[i] = circumsphere(b, c, difference(points[apexes[i]], origin));
-    if (spheres[i].radius2 == 0 || spheres[i].radius2 > 1.69 * radius2) ++larger;
+    if (spheres[i].radius2 == 0 || spheres[i].radius2 > kGabriel2 * radius2) ++larger;
   }
   FaceShape shape{};
   shape.gabriel = static_cast<std::uint8_t>(larger);
@@ -129,12 +141,11 @@ FaceShape face_shape(std::span<const Point> points, const Triangle& face,
     const Vector between = spheres[0].centre - spheres[1].centre;
     const double cosine = (r0 + r1 - dot(between, between)) / (2 * std::sqrt(r0 * r1));
     shape.sphere = static_cast<std::uint8_t>(class_below(kAngles, cosine));
-    shape.ratio = static_cast<std::uint8_t>(octave(most / least, 0, kRatioClasses - 2));
+    shape.ratio = static_cast<std::uint8_t>(octave<kRatioClasses - 2>(most / least, 0).value);
   } else {
     // On the hull: how much of the only sphere the face cuts off.
-    constexpr std::array<double, 4> kShares{0.64, 0.36, 0.16, 0.04};  // squared
     const double share = most > 0 ? radius2 / most : 0;
-    shape.sphere = static_cast<std::uint8_t>(kBendClasses + class_below(kShares, share));
+    shape.sphere = static_cast<std::uint8_t>(kBendClasses + class_below(kShares2, share));
     shape.ratio = static_cast<std::uint8_t>(kRatioClasses - 2);
   }
   return shape;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the pivot walk sees of the geometry: small classes that say how well a triangle continues a
-// surface. From IEEE + - * / and sqrt in a fixed order, compared with constants: the same on every
+// How well a triangle continues a surface, in a few classes: all that the walk knows of the
+// geometry. From IEEE + - * / and sqrt in a fixed order, compared with constants: the same on every
 // machine. Part of the format (docs/format-walk.md, "The walk").
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "codec/entropy/context.h"
 #include "geometry/point.h"
 #include "geometry/vector3.h"
 
@@ -35,22 +36,23 @@ struct Gate {
 
 /// How the triangle (b, a, w) continues a gate.
 struct Continuation {
-  std::uint32_t bend;           // angle between the normals, in twelfths of a half turn
-  std::uint32_t side;           // of w: below the gate's plane, in it, above it
-  std::uint32_t deviation;      // distance of w from that plane in grid steps
-  std::uint32_t radius;         // circumradius by the gate's length, steps of sqrt(2)
-  std::uint32_t parallelogram;  // distance of w from a + b - o by the gate's length, likewise
+  Context<kBendClasses> bend;            // angle between the normals, in twelfths of a half turn
+  Context<kSideClasses> side;            // of w: below the gate's plane, in it, above it
+  Context<kDeviationClasses> deviation;  // distance of w from that plane in grid steps
+  Context<kRadiusClasses> radius;        // circumradius by the gate's length, steps of sqrt(2)
+  /// Distance of w from a + b - o by the gate's length, likewise.
+  Context<kParallelogramClasses> parallelogram;
 };
 Continuation continuation(const Gate& gate, const Point& w);
 
-/// What a face is among the tetrahedra beside it.
+/// How a face lies between the tetrahedra on its two sides.
 struct FaceShape {
   std::uint8_t sphere;   // angle between the circumspheres of its two tetrahedra
   std::uint8_t ratio;    // of their radii, steps of sqrt(2)
   std::uint8_t gabriel;  // how many of the radii exceed 1.3 times that of the face
 };
-/// Of a triangle that is no face: `edges` tells which of its two edges beyond the gate are Delaunay
-/// edges, 0 to 3.
+/// The same for a triangle that is no face. `edges`: 1 if its edge at the start of the gate is a
+/// Delaunay edge, plus 2 if that at the end is one.
 constexpr FaceShape no_face(std::uint32_t edges) {
   return {static_cast<std::uint8_t>(kSphereClasses - 4 + edges), kRatioClasses - 1,
           kGabrielClasses - 1};

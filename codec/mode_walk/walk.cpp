@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <concepts>
 #include <queue>
 #include <utility>
 
 #include "codec/mesh/half_edges.h"
 #include "codec/mode_walk/delaunay_edges.h"
+#include "codec/mode_walk/families.h"
 #include "codec/mode_walk/front.h"
 #include "codec/mode_walk/given_surface.h"
 #include "codec/mode_walk/triangle_classes.h"
@@ -15,56 +17,41 @@
 namespace watertight::codec::walk {
 namespace {
 
-// The families of the walk.
-constexpr std::uint32_t kCandidate = 0;  // is it this vertex, of those near at hand?
-constexpr std::uint32_t kDistant = 1;    // the same of the other Delaunay neighbours
-constexpr std::uint32_t kRare = 2;
-constexpr std::uint32_t kSeed = 3;
-constexpr std::uint32_t kChoice = 4;  // kCandidate again, knowing how likely it and the next are
-
-/// What a candidate is to the front: new, used, closing the left or right edge or both, or out of
-/// the question in a manifold.
+// Contexts (docs/format-walk.md, "The walk").
+/// Of a candidate: unused, used, closing the left or the right edge or both, or closed.
 constexpr std::uint32_t kStates = 6;
-constexpr std::uint32_t kCounts = 7;
-constexpr std::uint32_t kHalfSpheres = (kSphereClasses + 1) / 2;
-constexpr std::uint32_t kKinds = 3;  // a face, the only face, no face
+/// Of a candidate: one of several faces at the gate, the only face, no face.
+constexpr std::uint32_t kKinds = 3;
+/// Which edges beside the gate a candidate closes.
 constexpr std::uint32_t kCloses = 4;
-
-// Contexts of kRare.
-constexpr std::uint32_t kIsManifold = 0;
-constexpr std::uint32_t kIsListed = 1;  // 4 by the length of the list
-constexpr std::uint32_t kIsMore = 5;
-constexpr std::uint32_t kRares = 7;
-
-constexpr std::size_t kInputs = 8;
-constexpr FamilyShape kCandidateShape{
-    kStates * kKinds,
-    {kBendClasses * kStates * kCounts, kSphereClasses* kBendClasses / 2 * kStates,
-     kRadiusClasses* kParallelogramClasses* kCloses* kGabrielClasses,
-     kSphereClasses* kRadiusClasses* kSideClasses,
-     kStates* kGabrielClasses* kDeviationClasses* kSideClasses,
-     kRatioClasses* kSphereClasses* kStates, kParallelogramClasses* kHalfSpheres* kStates * 5,
-     kRadiusClasses* kBendClasses* kCloses* kGabrielClasses}};
-
+/// Of the number of candidates from faces.
+constexpr std::uint32_t kCounts = 7;
+constexpr std::uint32_t kFewCounts = 5;
 constexpr std::uint32_t kLikelihoods = 64;
 constexpr std::uint32_t kRanks = 4;
-constexpr FamilyShape kChoiceShape{
-    kRanks,
-    {kLikelihoods * kRanks * kKinds, kLikelihoods / 2 * kLikelihoods / 2,
-     kLikelihoods / 2 * kStates* kRanks}};
 
-/// A class of a probability (of 65536): half octaves of it, or, above one half, of its complement.
-std::uint32_t likelihood(std::uint32_t probability) {
+// What is asked with Rare; one of its contexts is not used.
+constexpr Context<7> kIsManifold{0U};
+constexpr Context<7> kIsMore{5U};
+/// Is the vertex in the distant list? By the length of the list.
+Context<7> listed_among(std::size_t length) {
+  return trailing<1>(leading<2>(capped<4>(length / 4)));
+}
+
+/// The class of a probability of 65536, two classes for each power of two. Above one half the
+/// classes are those of its complement, from the other end.
+Context<kLikelihoods> likelihood(std::uint32_t probability) {
   const bool is_high = probability > 32768;
   const std::uint32_t lesser = is_high ? 65536 - probability : probability;
-  if (lesser == 0) return 0;
+  if (lesser == 0) return Context<kLikelihoods>(0U);
   const auto width = static_cast<std::uint32_t>(std::bit_width(lesser));  // 1 to 16
   const std::uint32_t half = width > 1 ? (lesser >> (width - 2)) & 1U : 0;
   const std::uint32_t place = std::min(2 * (width - 1) + half, kLikelihoods / 2 - 1);
-  return is_high ? kLikelihoods - 1 - place : place;
+  return Context<kLikelihoods>(is_high ? kLikelihoods - 1 - place : place);
 }
 
-/// An edge as certain as this is not scored again when a triangle comes beside it.
+/// An edge with a candidate as probable as this is not scored again when a triangle is added beside
+/// it.
 constexpr std::uint32_t kCertain = 32768;
 
 /// The most steps that a walk may take, whatever its bytes are: a vertex of degree d takes about
@@ -73,12 +60,17 @@ constexpr std::uint32_t kCertain = 32768;
 constexpr std::uint64_t kStepsPerPoint = 256;
 constexpr std::uint64_t kFreeSteps = 1U << 20;
 
+/// A vertex that may be the third corner of the triangle beyond the gate.
 struct Candidate {
   Index vertex = 0;
   std::uint32_t probability = 0;
-  std::uint32_t selector = 0;
-  std::array<std::uint32_t, kInputs> contexts{};
+  Context<kStates> state;
+  Context<kKinds> kind;
+  ContextsOf<kCandidate> contexts;
+
+  SelectorOf<kCandidate> selector() const { return combine(state, kind); }
 };
+static_assert(std::same_as<ContextsOf<kCandidate>, ContextsOf<kDistant>>);
 
 bool is_more_likely(const Candidate& x, const Candidate& y) {
   return x.probability != y.probability ? x.probability > y.probability : x.vertex < y.vertex;
@@ -88,11 +80,10 @@ Error not_encodable(const char* reason) { return {ErrorCode::not_encodable, reas
 
 class Walk {
  public:
-  Walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-       std::span<const Point> points, const delaunay::CanonicalDelaunay& delaunay, WalkTruth* truth)
+  Walk(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
+       const delaunay::CanonicalDelaunay& delaunay, WalkTruth* truth)
       : stream_(stream),
         models_(models),
-        family_(first_family),
         points_(points),
         delaunay_(delaunay),
         edges_(delaunay, static_cast<Index>(points.size())),
@@ -108,6 +99,12 @@ class Walk {
 
  private:
   static constexpr FaceShape kUnknownShape{255, 0, 0};
+  /// A face in one of its directions, as the first triangle of a component.
+  struct Seed {
+    Triangle triangle;
+    Context<4> kind;  // first and second direction of a face of the hull, then of an inner face
+    Context<kSphereClasses> sphere;
+  };
   struct Entry {
     std::uint32_t probability;
     Index half_edge;
@@ -117,8 +114,8 @@ class Walk {
     }
   };
 
-  bool rare(std::uint32_t context, bool value) {
-    return models_.code(stream_, family_ + kRare, 0, {context}, value);
+  bool code_rare(Context<7> question, bool value) {
+    return models_.code<kRare>(stream_, {question}, value);
   }
   bool is_reading() const { return truth_ == nullptr; }
   Error broken() const {
@@ -141,16 +138,16 @@ class Walk {
   bool is_possible(Index w) const;
   void list_candidates(Index gate);
   void list_distant(Index gate);
-  void describe(const Gate& gate, Index from, Index to, Index w, Index face, std::uint32_t faces,
-                Candidate& candidate);
+  Candidate describe(const Gate& gate, Index half_edge, Index w, Index face, std::uint32_t faces);
   const FaceShape& shape_of(Index face);
-  std::uint32_t state_of(Index w) const;
-  void score(std::uint32_t family, std::vector<Candidate>& list);
+  Context<kStates> state_of(Index w) const;
+  template <Family family>
+  void score(std::vector<Candidate>& list) const;
 
   EntropyStream& stream_;
-  EntropyStream lessons_ = EntropyStream::meter();  // decisions that models learn, not coded
+  EntropyStream lessons_ =
+      EntropyStream::meter();  // for decisions that models learn from and that are not coded
   ModelBank& models_;
-  std::uint32_t family_;
   std::span<const Point> points_;
   const delaunay::CanonicalDelaunay& delaunay_;
   DelaunayEdges edges_;
@@ -160,16 +157,16 @@ class Walk {
   bool is_manifold_ = true;
   std::vector<Index> source_;  // writing: half-edge given for the first half-edge of each triangle
 
-  // About the gate at hand. A vertex is marked with the stamp once it is listed or ruled out.
+  // Of the gate at hand. A vertex is marked with the stamp when it is listed or ruled out.
   std::vector<Candidate> candidates_;
   std::vector<Candidate> distant_;
   std::vector<Index> mark_;
   Index stamp_ = 0;
-  std::vector<Index>
-      closing_;  // vertices beyond open edges; marked with the stamp, and which edges
+  // Vertices beyond open edges beside it are marked too, with the edges that a triangle closes.
+  std::vector<Index> closing_;
   std::vector<Index> closing_mark_;
   std::vector<std::uint8_t> closing_sides_;
-  std::vector<std::pair<Triangle, std::uint32_t>> seeds_;  // with the context
+  std::vector<Seed> seeds_;
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> pushed_;  // half-edge -> its probability in the queue
   std::uint64_t steps_left_;
@@ -183,8 +180,9 @@ const FaceShape& Walk::shape_of(Index face) {
   return shape;
 }
 
-/// Rules out the vertices to which an edge is used already, and notes those beyond open edges.
-/// The triangle (b, a, w) needs the half-edges a -> w and w -> b.
+/// Marks the vertices that cannot be beyond the gate, since the triangle would use a half-edge
+/// twice, and lists those beyond open edges. The triangle (b, a, w) needs the half-edges a -> w and
+/// w -> b.
 void Walk::mark_used(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -216,46 +214,49 @@ bool Walk::is_possible(Index w) const {
   return mark_[w] != stamp_ && !(is_manifold_ && front_.is_closed(w));
 }
 
-std::uint32_t Walk::state_of(Index w) const {
-  if (closing_mark_[w] == stamp_) return 1U + closing_sides_[w];
-  if (front_.is_closed(w)) return 5;
-  return front_.is_used(w) ? 1 : 0;
+Context<kStates> Walk::state_of(Index w) const {
+  if (closing_mark_[w] == stamp_) return Context<kStates>(1U + closing_sides_[w]);
+  if (front_.is_closed(w)) return Context<kStates>(5U);
+  return Context<kStates>(front_.is_used(w));
 }
 
-void Walk::describe(const Gate& gate, Index from, Index to, Index w, Index face,
-                    std::uint32_t faces, Candidate& candidate) {
-  const FaceShape shape = face == kNone ? no_face((edges_.faces_at(from, w).empty() ? 0U : 1U) +
-                                                  (edges_.faces_at(to, w).empty() ? 0U : 2U))
-                                        : shape_of(face);
+/// The vertex w as a candidate beyond a gate, the third corner of `face` or, if that is kNone, of
+/// no face there. `faces` counts the candidates from faces.
+Candidate Walk::describe(const Gate& gate, Index half_edge, Index w, Index face,
+                         std::uint32_t faces) {
+  const FaceShape shape =
+      face == kNone ? no_face((edges_.faces_at(front_.from(half_edge), w).empty() ? 0U : 1U) +
+                              (edges_.faces_at(front_.to(half_edge), w).empty() ? 0U : 2U))
+                    : shape_of(face);
+  const Context<kSphereClasses> sphere(shape.sphere);
+  const Context<kRatioClasses> ratio(shape.ratio);
+  const Context<kGabrielClasses> gabriel(shape.gabriel);
   const Continuation c = continuation(gate, points_[w]);
-  const std::uint32_t state = state_of(w);
-  const std::uint32_t closes = state >= 2 && state <= 4 ? state - 1 : 0;
-  const std::uint32_t count = std::min(faces, kCounts - 1);
-  const std::uint32_t kind = face == kNone ? 2 : faces == 1 ? 1 : 0;
-  candidate.vertex = w;
-  candidate.selector = state * kKinds + kind;
-  candidate.contexts = {
-      (c.bend * kStates + state) * kCounts + count,
-      (shape.sphere * (kBendClasses / 2) + c.bend / 2) * kStates + state,
-      ((c.radius * kParallelogramClasses + c.parallelogram) * kCloses + closes) * kGabrielClasses +
-          shape.gabriel,
-      (shape.sphere * kRadiusClasses + c.radius) * kSideClasses + c.side,
-      ((state * kGabrielClasses + shape.gabriel) * kDeviationClasses + c.deviation) * kSideClasses +
-          c.side,
-      (shape.ratio * kSphereClasses + shape.sphere) * kStates + state,
-      ((c.parallelogram * kHalfSpheres + shape.sphere / 2U) * kStates + state) * 5 +
-          std::min(count, 4U),
-      ((c.radius * kBendClasses + c.bend) * kCloses + closes) * kGabrielClasses + shape.gabriel};
+  const Context<kStates> state = state_of(w);
+  const Context<kCloses> closes(state.value >= 2 && state.value <= 4 ? state.value - 1 : 0);
+  const auto count = capped<kCounts>(faces);
+  const auto few = capped<kFewCounts>(faces);
+  const Context<kKinds> kind(face == kNone ? 2U : faces == 1 ? 1U : 0U);
+  return {w,
+          0,
+          state,
+          kind,
+          {combine(c.bend, state, count), combine(sphere, halved(c.bend), state),
+           combine(c.radius, c.parallelogram, closes, gabriel), combine(sphere, c.radius, c.side),
+           combine(state, gabriel, c.deviation, c.side), combine(ratio, sphere, state),
+           combine(c.parallelogram, halved(sphere), state, few),
+           combine(c.radius, c.bend, closes, gabriel)}};
 }
 
-void Walk::score(std::uint32_t family, std::vector<Candidate>& list) {
+template <Family family>
+void Walk::score(std::vector<Candidate>& list) const {
   for (Candidate& candidate : list) {
-    candidate.probability =
-        models_.probability(family_ + family, candidate.selector, candidate.contexts);
+    candidate.probability = models_.probability<family>(candidate.selector(), candidate.contexts);
   }
 }
 
-/// The Delaunay faces at the gate, then the vertices beyond open edges beside it.
+/// Lists the third corners of the Delaunay faces at the gate, then the vertices beyond open edges
+/// beside it.
 void Walk::list_candidates(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -276,19 +277,19 @@ void Walk::list_candidates(Index gate) {
     const Index w = opposite(face);
     const bool possible = is_possible(w);
     mark_[w] = stamp_;
-    if (possible) describe(frame, a, b, w, face, count, candidates_.emplace_back());
+    if (possible) candidates_.push_back(describe(frame, gate, w, face, count));
   }
   for (std::size_t i = 0; i < closing_.size(); ++i) {
     const Index w = closing_[i];
     if (!is_possible(w)) continue;
     mark_[w] = stamp_;
-    describe(frame, a, b, w, kNone, count, candidates_.emplace_back());
+    candidates_.push_back(describe(frame, gate, w, kNone, count));
   }
   steps_left_ -= std::min<std::uint64_t>(faces.size(), steps_left_);
-  score(kCandidate, candidates_);
+  score<kCandidate>(candidates_);
 }
 
-/// All other Delaunay neighbours of the gate's ends. Requires list_candidates() before.
+/// Lists all other Delaunay neighbours of the ends of the gate. Requires list_candidates() before.
 void Walk::list_distant(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -300,11 +301,11 @@ void Walk::list_distant(Index gate) {
       for (const Index w : neighbours) {
         if (!is_possible(w)) continue;
         mark_[w] = stamp_;
-        describe(frame, a, b, w, kNone, 0, distant_.emplace_back());
+        distant_.push_back(describe(frame, gate, w, kNone, 0));
       }
     }
   }
-  score(kDistant, distant_);
+  score<kDistant>(distant_);
   std::sort(distant_.begin(), distant_.end(), is_more_likely);
 }
 
@@ -329,8 +330,8 @@ void Walk::push(Index half_edge) {
   queue_.push({now, half_edge});
 }
 
-/// Puts the open edges at the corners of a new triangle into the queue, where they are not there
-/// already as more certain.
+/// Puts the open edges at the corners of a new triangle into the queue, unless they are in it with
+/// a greater probability.
 void Walk::push_open(Index triangle) {
   pushed_.resize(front_.twin.size(), 0);
   for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
@@ -349,37 +350,37 @@ void Walk::push_open(Index triangle) {
 Index Walk::code_distant(Index gate, Index truth) {
   list_distant(gate);
   const auto is_truth = [&](const Candidate& c) { return c.vertex == truth; };
-  const bool is_listed =
-      !distant_.empty() &&
-      rare(kIsListed + static_cast<std::uint32_t>(std::min<std::size_t>(distant_.size() / 4, 3)),
-           std::any_of(distant_.begin(), distant_.end(), is_truth));
-  if (!is_listed) {
+  const bool is_in_list =
+      !distant_.empty() && code_rare(listed_among(distant_.size()),
+                                     std::any_of(distant_.begin(), distant_.end(), is_truth));
+  if (!is_in_list) {
     const Index w =
         static_cast<Index>(stream_.code_uniform(truth == kNone ? 0 : truth, points_.size()));
     return w;
   }
   for (std::size_t i = 0; i + 1 < distant_.size(); ++i) {
     const Candidate& c = distant_[i];
-    if (models_.code(stream_, family_ + kDistant, c.selector, c.contexts, is_truth(c))) {
+    if (models_.code<kDistant>(stream_, c.selector(), c.contexts, is_truth(c))) {
       return c.vertex;
     }
   }
   return distant_.back().vertex;
 }
 
-/// Is it this candidate? The family that ranked it learns the answer too.
+/// Codes whether the vertex is this candidate. Family Candidate, which ranked it, learns from the
+/// answer too.
 bool Walk::code_candidate(std::size_t place, Index truth) {
   const Candidate& c = candidates_[place];
   const std::uint32_t next =
       place + 1 < candidates_.size() ? candidates_[place + 1].probability : 0;
-  const std::uint32_t own = likelihood(c.probability);
-  const auto rank = static_cast<std::uint32_t>(std::min<std::size_t>(place, kRanks - 1));
-  const bool is_it = models_.code(stream_, family_ + kChoice, rank,
-                                  {(own * kRanks + rank) * kKinds + c.selector % kKinds,
-                                   own / 2 * (kLikelihoods / 2) + likelihood(next) / 2,
-                                   (own / 2 * kStates + c.selector / kKinds) * kRanks + rank},
-                                  c.vertex == truth);
-  models_.code(lessons_, family_ + kCandidate, c.selector, c.contexts, is_it);
+  const auto own = likelihood(c.probability);
+  const auto rank = capped<kRanks>(place);
+  const bool is_it = models_.code<kChoice>(
+      stream_, rank,
+      {combine(own, rank, c.kind), combine(halved(own), halved(likelihood(next))),
+       combine(halved(own), c.state, rank)},
+      c.vertex == truth);
+  models_.code<kCandidate>(lessons_, c.selector(), c.contexts, is_it);
   return is_it;
 }
 
@@ -411,20 +412,21 @@ Status Walk::code_gate(Index gate) {
   return Done{};
 }
 
-/// First the faces on the hull seen from outside, then seen from inside, then all others.
+/// Lists the faces at a vertex in both directions: first those of the hull as seen from outside,
+/// then the same from inside, then all others.
 void Walk::list_seeds(Index seed) {
   seeds_.clear();
   const auto list = [&](Index face) {
     const Triangle& t = delaunay_.faces[face];
     const auto& apexes = delaunay_.apexes[face];
-    const std::uint32_t sphere = shape_of(face).sphere;
+    const Context<kSphereClasses> sphere(shape_of(face).sphere);
     // The first apex sees the triangle turn clockwise from outside: it lies inside beside it.
     const Triangle reverse{t[0], t[2], t[1]};
     const bool hull = apexes[0] == kNone || apexes[1] == kNone;
     const bool first_inside = apexes[1] == kNone;
-    const std::uint32_t base = hull ? 0 : 2 * kSphereClasses;
-    seeds_.emplace_back(first_inside ? reverse : t, base + sphere);
-    seeds_.emplace_back(first_inside ? t : reverse, base + kSphereClasses + sphere);
+    const Context<2> inner(!hull);
+    seeds_.push_back({first_inside ? reverse : t, combine(inner, Context<2>(false)), sphere});
+    seeds_.push_back({first_inside ? t : reverse, combine(inner, Context<2>(true)), sphere});
   };
   Index last = kNone;
   std::vector<Index> faces;
@@ -439,8 +441,8 @@ void Walk::list_seeds(Index seed) {
     if (face != last) list(face);
     last = face;
   }
-  std::stable_sort(seeds_.begin(), seeds_.end(), [](const auto& x, const auto& y) {
-    return std::min(x.second / kSphereClasses, 2U) < std::min(y.second / kSphereClasses, 2U);
+  std::stable_sort(seeds_.begin(), seeds_.end(), [](const Seed& x, const Seed& y) {
+    return std::min(x.kind.value, 2U) < std::min(y.kind.value, 2U);
   });
   steps_left_ -= std::min<std::uint64_t>(seeds_.size(), steps_left_);
 }
@@ -451,17 +453,18 @@ Status Walk::code_seed(Index seed) {
   std::size_t place = seeds_.size();
   if (!is_reading()) {
     for (std::size_t i = 0; i < seeds_.size() && truth == kNone; ++i) {
-      truth = truth_->find_unused(seeds_[i].first);
+      truth = truth_->find_unused(seeds_[i].triangle);
       place = i;
     }
     if (truth == kNone) place = seeds_.size();
   }
   for (std::size_t i = 0; i < seeds_.size(); ++i) {
-    if (!models_.code(stream_, family_ + kSeed, 0, {seeds_[i].second}, i == place)) continue;
-    add(seeds_[i].first, truth);
+    const auto context = combine(seeds_[i].kind, seeds_[i].sphere);
+    if (!models_.code<kSeed>(stream_, {context}, i == place)) continue;
+    add(seeds_[i].triangle, truth);
     return Done{};
   }
-  // No Delaunay face there: any triangle.
+  // None of these faces: any triangle.
   if (!is_reading()) truth = truth_->any_unused_at(seed);
   if (!is_reading() && truth == kNone) return not_encodable("a vertex without triangles");
   Triangle triangle{seed, 0, 0};
@@ -501,7 +504,7 @@ Status Walk::code_component(Index seed) {
 }
 
 Status Walk::run(BoundaryMesh& mesh) {
-  is_manifold_ = rare(kIsManifold, !is_reading() && truth_->is_manifold());
+  is_manifold_ = code_rare(kIsManifold, !is_reading() && truth_->is_manifold());
   std::vector<Index> component_first;
   Index next = 0;
   while (true) {
@@ -509,7 +512,7 @@ Status Walk::run(BoundaryMesh& mesh) {
     Index seed = next;
     if (next == points_.size()) {
       seed = is_reading() ? kNone : truth_->unused_vertex();
-      if (!rare(kIsMore, seed != kNone)) break;
+      if (!code_rare(kIsMore, seed != kNone)) break;
       seed = static_cast<Index>(stream_.code_uniform(seed == kNone ? 0 : seed, points_.size()));
     }
     component_first.push_back(static_cast<Index>(front_.triangles.size()));
@@ -528,21 +531,16 @@ Status Walk::run(BoundaryMesh& mesh) {
 
 }  // namespace
 
-const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies{
-    kCandidateShape, kCandidateShape, FamilyShape{1, {kRares}},
-    FamilyShape{1, {4 * kSphereClasses}}, kChoiceShape};
-
-Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-                          std::span<const Point> points,
+Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
                           const delaunay::CanonicalDelaunay& delaunay, BoundaryMesh& mesh) {
   if (stream.is_reading()) {
-    return Walk(stream, models, first_family, points, delaunay, nullptr).run(mesh);
+    return Walk(stream, models, points, delaunay, nullptr).run(mesh);
   }
   WalkTruth truth;
   if (!truth.take(mesh, static_cast<Index>(points.size()))) {
     return not_encodable("the triangles of the boundary do not meet in pairs");
   }
-  return Walk(stream, models, first_family, points, delaunay, &truth).run(mesh);
+  return Walk(stream, models, points, delaunay, &truth).run(mesh);
 }
 
 }  // namespace watertight::codec::walk

@@ -8,8 +8,6 @@
 // al., "GEncode: geometry-driven compression for general meshes" (2006).
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,11 +33,7 @@ struct BoundaryMesh {
   Index component_count() const { return static_cast<Index>(component_first.size() - 1); }
 };
 
-/// The families of the walk, to be put next to each other into the layout of a mode.
-inline constexpr std::uint32_t kWalkFamilyCount = 5;
-extern const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies;
-
-/// Codes the triangles, the families of `models` from `first_family` on being kWalkFamilies.
+/// Codes the triangles of a boundary.
 /// Writing: `mesh.triangles` and `mesh.component_first` hold closed oriented surfaces that use each
 /// point; a component given may turn out to be several. Requires distinct points, whole numbers
 /// that differ by less than 2^30, and `delaunay` = canonical_delaunay(points), not empty.
@@ -47,8 +41,7 @@ extern const std::array<FamilyShape, kWalkFamilyCount> kWalkFamilies;
 /// Errors: not_encodable (a surface that is not closed, has equal triangles, or edges that meet
 /// more than twice in one component; vertices of extreme degrees); reading: malformed.
 /// Cost: O(n log n), a few microseconds per triangle; bounded by 256 steps per point.
-Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::uint32_t first_family,
-                          std::span<const Point> points,
+Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
                           const delaunay::CanonicalDelaunay& delaunay, BoundaryMesh& mesh);
 
 }  // namespace watertight::codec::walk

@@ -6,6 +6,7 @@
 
 #include "codec/page/modes.h"
 #include "codec/page/solid_coder.h"
+#include "codec/page/source_order.h"
 
 namespace watertight::codec {
 

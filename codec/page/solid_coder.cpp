@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "codec/entropy/bank_trial.h"
 #include "codec/page/source_order.h"
 #include "codec/sections/coordinates.h"
 #include "codec/sections/facet_listing.h"
@@ -15,40 +16,42 @@
 namespace watertight::codec {
 namespace {
 
+// The families and numbers, with the names, the order and the sizes of docs/format.md, "Frame".
 enum Family : std::uint32_t { kImplied, kProof, kKind, kOneStep, kPhase, kMode, kOrigin, kOrder };
+enum Number : std::uint32_t { kRuleSet, kSrid, kMantissa, kExponent, kOffset, kSection };
+
 constexpr FamilyShape kFamilies[] = {
-    {1, {1}},      // kImplied: the tolerances are the implied ones
-    {1, {1}},      // kProof
-    {1, {3}},      // kKind: by the bits so far
-    {1, {1}},      // kOneStep
-    {1, {1}},      // kPhase: it is 0
-    {1, {8 * 8}},  // kMode: by the bits so far and the mode of the solid before
-    {1, {2 * 4}},  // kOrigin: which question, by the answer for the solid before
-    {1, {2}},      // kOrder: by the answer for the solid before
+    {kImplied, 1, {1}}, {kProof, 1, {1}}, {kKind, 1, {3}},   {kOneStep, 1, {1}},
+    {kPhase, 1, {1}},   {kMode, 1, {64}}, {kOrigin, 1, {8}}, {kOrder, 1, {2}},
 };
-enum Number : std::uint32_t { kRuleSetNumber, kSrid, kMantissa, kExponent, kOffset, kSection };
 constexpr NumberShape kNumbers[] = {
-    {1, {1}},  // kRuleSetNumber
-    {1, {1}},  // kSrid
-    {1, {2}},  // kMantissa: of a step; of a phase
-    {1, {2}},  // kExponent: likewise
-    {1, {3}},  // kOffset: by axis
-    {1, {1}},  // kSection: its length
+    {kRuleSet, 1, {1}},  {kSrid, 1, {1}},   {kMantissa, 1, {2}},
+    {kExponent, 1, {2}}, {kOffset, 1, {3}}, {kSection, 1, {1}},
 };
-constexpr ModelLayout kLayout{kFamilies, kNumbers};
+
+constexpr const FamilyShape& shape_of(Family family) { return kFamilies[family]; }
+constexpr const NumberShape& shape_of(Number number) { return kNumbers[number]; }
+
+// What is coded under Mantissa and Exponent.
+constexpr Context<2> kOfStep{0U};
+constexpr Context<2> kOfPhase{1U};
+// What is asked with Origin.
+constexpr Context<2> kIsCorner{0U};
+constexpr Context<2> kIsLastOrigin{1U};
 
 // What a solid whose tolerances are not stated was accepted under. Part of the format.
 constexpr Tolerances kImpliedTolerances{0.01, 20.0, 0.0};
 
-constexpr std::uint32_t kNoMode = 7;
 constexpr int kModeBits = 3;
+constexpr std::uint32_t kModes = 1U << kModeBits;
 
 double code_double(EntropyStream& stream, double value) {
   return std::bit_cast<double>(stream.code_bits(std::bit_cast<std::uint64_t>(value), 64));
 }
 
 Status code_tolerances(EntropyStream& stream, ModelBank& models, Tolerances& tolerances) {
-  const bool implied = models.code(stream, kImplied, 0, {0}, tolerances == kImpliedTolerances);
+  const bool implied =
+      models.code<kImplied>(stream, {kNothingKnown}, tolerances == kImpliedTolerances);
   if (implied) {
     tolerances = kImpliedTolerances;
     return Done{};
@@ -67,40 +70,41 @@ Status code_tolerances(EntropyStream& stream, ModelBank& models, Tolerances& tol
   return Done{};
 }
 
-void code_grid_number(EntropyStream& stream, ModelBank& models, std::uint32_t which,
+void code_grid_number(EntropyStream& stream, ModelBank& models, Context<2> which,
                       GridNumber& number) {
-  number.mantissa = models.code_signed(stream, kMantissa, 0, {which}, number.mantissa, 63);
+  number.mantissa = models.code_signed<kMantissa>(stream, {which}, number.mantissa, 63);
   number.exponent = static_cast<std::int32_t>(
-      models.code_signed(stream, kExponent, 0, {which}, number.exponent, 20));
+      models.code_signed<kExponent>(stream, {which}, number.exponent, 20));
 }
 
 Status code_grid(EntropyStream& stream, ModelBank& models, PageGrid& grid) {
   const auto kind = static_cast<unsigned>(grid.kind);
-  const bool high = models.code(stream, kKind, 0, {0}, (kind & 2U) != 0);
-  const bool low = models.code(stream, kKind, 0, {high ? 2U : 1U}, (kind & 1U) != 0);
+  const bool high = models.code<kKind>(stream, {Context<3>(0U)}, (kind & 2U) != 0);
+  const bool low = models.code<kKind>(stream, {Context<3>(high ? 2U : 1U)}, (kind & 1U) != 0);
   if (high && low) return Error{ErrorCode::malformed, "the kind of the lattice is unknown"};
   grid.kind = high ? LatticeKind::float64 : low ? LatticeKind::binary : LatticeKind::decimal;
   if (grid.kind == LatticeKind::float64) return Done{};
-  const bool one_step = models.code(stream, kOneStep, 0, {0},
-                                    grid.step[0] == grid.step[1] && grid.step[1] == grid.step[2]);
-  code_grid_number(stream, models, 0, grid.step[0]);
+  const bool one_step = models.code<kOneStep>(
+      stream, {kNothingKnown}, grid.step[0] == grid.step[1] && grid.step[1] == grid.step[2]);
+  code_grid_number(stream, models, kOfStep, grid.step[0]);
   for (std::size_t axis = 1; axis < 3; ++axis) {
     if (one_step) {
       grid.step[axis] = grid.step[0];
     } else {
-      code_grid_number(stream, models, 0, grid.step[axis]);
+      code_grid_number(stream, models, kOfStep, grid.step[axis]);
     }
   }
   for (GridNumber& phase : grid.phase) {
-    if (models.code(stream, kPhase, 0, {0}, phase == GridNumber{})) continue;
-    code_grid_number(stream, models, 1, phase);
+    if (models.code<kPhase>(stream, {kNothingKnown}, phase == GridNumber{})) continue;
+    code_grid_number(stream, models, kOfPhase, phase);
   }
   return Done{};
 }
 
 /// Code the bytes of a section as they are.
 void code_section(EntropyStream& stream, ModelBank& models, Bytes& section) {
-  const std::uint64_t size = models.code_number(stream, kSection, 0, {0}, section.size(), 40);
+  const std::uint64_t size =
+      models.code_number<kSection>(stream, {kNothingKnown}, section.size(), 40);
   for (std::uint64_t i = 0; i < size && !stream.failed(); ++i) {
     const std::uint8_t byte = stream.is_reading() ? std::uint8_t{0} : section[i];
     const auto coded = static_cast<std::uint8_t>(stream.code_bits(byte, 8));
@@ -213,23 +217,22 @@ bool is_large_mesh(const IntegerSolid& solid) {
 
 }  // namespace
 
-const ModelLayout& frame_layout() { return kLayout; }
-
-const ModelLayout& order_layout() {
-  static const ModelLayout layout{order_families(), {}};
+const ModelLayout& frame_layout() {
+  static constexpr ModelLayout layout{kFamilies, kNumbers};
   return layout;
 }
 
 Status code_frame(EntropyStream& stream, ModelBank& models, Frame& frame) {
   Acceptance& acceptance = frame.acceptance;
   if (auto status = code_tolerances(stream, models, acceptance.tolerances); !status) return status;
-  acceptance.proof = models.code(stream, kProof, 0, {0}, acceptance.proof == Proof::boundary)
-                         ? Proof::boundary
-                         : Proof::tetrahedralization;
+  acceptance.proof =
+      models.code<kProof>(stream, {kNothingKnown}, acceptance.proof == Proof::boundary)
+          ? Proof::boundary
+          : Proof::tetrahedralization;
   acceptance.rule_set = static_cast<std::uint16_t>(
-      models.code_number(stream, kRuleSetNumber, 0, {0}, acceptance.rule_set, 16));
-  frame.srid =
-      static_cast<std::uint32_t>(models.code_number(stream, kSrid, 0, {0}, frame.srid, 32));
+      models.code_number<kRuleSet>(stream, {kNothingKnown}, acceptance.rule_set, 16));
+  frame.srid = static_cast<std::uint32_t>(
+      models.code_number<kSrid>(stream, {kNothingKnown}, frame.srid, 32));
   if (auto status = code_grid(stream, models, frame.grid); !status) return status;
   if (!stream.is_reading()) return Done{};
   if (stream.failed()) return Error{ErrorCode::malformed, "truncated or malformed frame"};
@@ -239,13 +242,14 @@ Status code_frame(EntropyStream& stream, ModelBank& models, Frame& frame) {
 
 Mode SolidCoder::code_mode(Mode mode) {
   ModelBank& models = models_[ModelPart::frame];
-  std::uint32_t bits = 1;
+  std::uint32_t bits = 1;  // below a leading 1
   for (int bit = kModeBits - 1; bit >= 0; --bit) {
+    const auto known = combine(last_mode_, Context<kModes>(bits));
     const bool one = ((static_cast<unsigned>(mode) >> bit) & 1U) != 0;
-    bits = 2 * bits + (models.code(stream_, kMode, 0, {8 * last_mode_ + bits}, one) ? 1U : 0U);
+    bits = 2 * bits + (models.code<kMode>(stream_, {known}, one) ? 1U : 0U);
   }
-  last_mode_ = bits & kNoMode;
-  return static_cast<Mode>(last_mode_);
+  last_mode_ = Context<kModes>(bits - kModes);
+  return static_cast<Mode>(last_mode_.value);
 }
 
 Status SolidCoder::code_geometry(StoredSolid& solid, const WriterChoice& choice) {
@@ -292,19 +296,18 @@ void SolidCoder::code_origin(StoredSolid& solid) {
   GridPoint& origin = solid.origin;
   const GridPoint corner = is_plain ? memory_.last_position : smallest_corner(*solid.integers);
   std::uint32_t which = 0;
-  if (!is_plain && !models.code(stream_, kOrigin, 0, {2 * last_origin_case_}, origin == corner)) {
-    which = models.code(stream_, kOrigin, 0, {2 * last_origin_case_ + 1}, origin == last_origin_)
-                ? 1
-                : 2;
+  const auto known = [&](Context<2> question) { return combine(last_origin_case_, question); };
+  if (!is_plain && !models.code<kOrigin>(stream_, {known(kIsCorner)}, origin == corner)) {
+    which = models.code<kOrigin>(stream_, {known(kIsLastOrigin)}, origin == last_origin_) ? 1 : 2;
   }
   if (is_plain) which = 2;
   if (which == 0) origin = corner;
   if (which == 1) origin = last_origin_;
   for (std::uint32_t axis = 0; axis < 3 && which == 2; ++axis) {
-    origin[axis] = corner[axis] +
-                   models.code_signed(stream_, kOffset, 0, {axis}, origin[axis] - corner[axis], 55);
+    origin[axis] = corner[axis] + models.code_signed<kOffset>(stream_, {Context<3>(axis)},
+                                                              origin[axis] - corner[axis], 55);
   }
-  if (!is_plain) last_origin_case_ = 1 + which;
+  if (!is_plain) last_origin_case_ = Context<4>(1 + which);
   last_origin_ = origin;
 }
 
@@ -339,8 +342,8 @@ Status SolidCoder::rebuild(StoredSolid& solid) const {
 
 Status SolidCoder::code_order(StoredSolid& solid) {
   solid.keeps_order =
-      models_[ModelPart::frame].code(stream_, kOrder, 0, {last_order_}, solid.keeps_order);
-  last_order_ = solid.keeps_order ? 1 : 0;
+      models_[ModelPart::frame].code<kOrder>(stream_, {last_order_}, solid.keeps_order);
+  last_order_ = Context<2>(solid.keeps_order);
   if (!solid.keeps_order) return Done{};
   watertight::codec::code_order(stream_, models_[ModelPart::order],
                                 solid.canonical->boundary.solid(), solid.canonical->order);

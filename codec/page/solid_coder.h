@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "codec/blob.h"
+#include "codec/entropy/context.h"
 #include "codec/entropy/entropy_stream.h"
 #include "codec/mode_bitmap/compose.h"
 #include "codec/page/integer_solid.h"
@@ -26,7 +27,6 @@ struct Frame {
 };
 
 const ModelLayout& frame_layout();
-const ModelLayout& order_layout();
 
 /// Errors, when reading: malformed.
 Status code_frame(EntropyStream& stream, ModelBank& models, Frame& frame);
@@ -105,9 +105,9 @@ class SolidCoder {
   Limits limits_;
   PageMemory memory_;
   GridPoint last_origin_{};
-  std::uint32_t last_mode_ = 7;  // none
-  std::uint32_t last_origin_case_ = 0;
-  std::uint32_t last_order_ = 0;
+  Context<8> last_mode_{7U};         // no mode
+  Context<4> last_origin_case_{0U};  // 0: none; else 1 + the case of code_origin()
+  Context<2> last_order_{0U};
 };
 
 }  // namespace watertight::codec

@@ -13,24 +13,30 @@
 namespace watertight::codec {
 namespace {
 
+// The families, with the names, the order and the sizes of docs/format.md, "Order".
 enum Family : std::uint32_t { kStraight, kCandidate, kScan, kStart };
+
+constexpr FamilyShape kFamilies[] = {
+    {kStraight, 1, {8}},
+    {kCandidate, 6, {216, 150, 576}},
+    {kScan, 1, {50, 80, 64}},
+    {kStart, 5, {720, 120, 135, 648, 256, 144}},
+};
+
+constexpr const FamilyShape& shape_of(Family family) { return kFamilies[family]; }
 
 /// The rule by which a candidate for the next facet was found.
 enum Habit : std::uint32_t { kNextEdge, kLastEdge, kNeighbour, kSuccessor, kFirstLeft, kNoHabit };
-constexpr std::uint32_t kHabits = 6;
-constexpr std::uint32_t kFacings = 5;    // of facets: up, down, upright, slanting up, slanting down
-constexpr std::uint32_t kRelations = 9;  // of a ring place to the facets before
 constexpr Index kMostScanned = 64;
 constexpr Index kMostNeighbours = 12;
 
-constexpr std::array<FamilyShape, 4> kShapes{{
-    {1, {8}},
-    {kHabits, {kHabits * kHabits * kHabits, kFacings* kFacings* kHabits, 16 * kHabits* kHabits}},
-    {1, {kFacings * kFacings * 2, kFacings * 2 * 8, 64}},
-    {kFacings,
-     {8 * 2 * kFacings * kRelations, 2 * 2 * 3 * kFacings * 2, 27 * kFacings,
-      kRelations* kRelations * 8, 16 * 16, 2 * 2 * 3 * 3 * 4}},
-}};
+// What is arranged, as the context of Straight.
+constexpr Context<8> kShells{0U};
+constexpr Context<8> kRings{1U};
+constexpr Context<8> kVertices{2U};
+using HabitContext = Context<6>;
+using Facing = Context<5>;    // up, down, upright, slanting up, slanting down
+using Relation = Context<9>;  // of a place in a ring to the facets before
 
 std::vector<Index> inverse_of(const std::vector<Index>& order) {
   std::vector<Index> inverse(order.size());
@@ -75,7 +81,9 @@ class Left {
 };
 
 /// 0, 1 or 2: the second number is less, equal or greater.
-std::uint32_t sign_of(double from, double to) { return to < from ? 0U : to > from ? 2U : 1U; }
+Context<3> sign_of(double from, double to) {
+  return Context<3>(to < from ? 0U : to > from ? 2U : 1U);
+}
 
 class OrderCoder {
  public:
@@ -94,11 +102,6 @@ class OrderCoder {
   }
 
  private:
-  bool decide(Family family, std::uint32_t selector, std::initializer_list<std::uint32_t> contexts,
-              bool value) {
-    return bank_.code(stream_, family, selector, contexts, value);
-  }
-
   void prepare() {
     if (stream_.is_reading()) {
       order_.vertex.resize(solid_.vertex_count());
@@ -174,17 +177,17 @@ class OrderCoder {
 
   std::vector<Index> shells_in_source_order() {
     std::vector<Index> source = inverse_of(order_.shell);
-    code_arrangement(source, 1, 0);
+    code_arrangement(source, 1, kShells);
     if (stream_.is_reading()) order_.shell = inverse_of(source);
     return source;
   }
 
   /// Codes a permutation of 0 .. size-1 whose first `fixed` elements stay: as one decision if it is
   /// the identity, else in plain bits.
-  void code_arrangement(std::vector<Index>& sequence, Index fixed, std::uint32_t context) {
+  void code_arrangement(std::vector<Index>& sequence, Index fixed, Context<8> what) {
     if (sequence.size() < std::size_t{fixed} + 2) return;
     const bool is_straight =
-        decide(kStraight, 0, {context}, std::is_sorted(sequence.begin(), sequence.end()));
+        bank_.code<kStraight>(stream_, {what}, std::is_sorted(sequence.begin(), sequence.end()));
     if (is_straight || stream_.failed()) {
       std::iota(sequence.begin(), sequence.end(), Index{0});
       return;
@@ -210,7 +213,7 @@ class OrderCoder {
     Left left(facets.begin, facets.end);
     reference_ = kNone;
     last_ = kNone;
-    habits_ = {kNoHabit, kNoHabit};
+    habits_ = {HabitContext(kNoHabit), HabitContext(kNoHabit)};
     for (Index i = 0; i < facets.size(); ++i) {
       Index facet = source_facet_[source_facet];
       facet = next_facet(left, facets, facet);
@@ -265,26 +268,27 @@ class OrderCoder {
   Index next_facet(Left& left, IndexRange facets, Index wanted) {
     if (left.count() == 1) return left.from(facets.begin);
     collect_candidates(left, facets);
-    const std::uint32_t last_facing = last_ == kNone ? 0 : facing_[last_];
+    const Facing last_facing(last_ == kNone ? 0U : facing_[last_]);
     std::uint32_t index = 0;
     for (const Candidate& candidate : candidates_) {
-      const bool is_it =
-          decide(kCandidate, candidate.habit,
-                 {(habits_[0] * kHabits + habits_[1]) * kHabits + candidate.habit,
-                  (last_facing * kFacings + facing_[candidate.facet]) * kHabits + candidate.habit,
-                  (std::min(index, 15U) * kHabits + candidate.habit) * kHabits + habits_[0]},
-                 candidate.facet == wanted);
+      const HabitContext habit(candidate.habit);
+      const Facing facing(facing_[candidate.facet]);
+      const bool is_it = bank_.code<kCandidate>(
+          stream_, habit,
+          {combine(habits_[0], habits_[1], habit), combine(last_facing, facing, habit),
+           combine(capped<16>(index), habit, habits_[0])},
+          candidate.facet == wanted);
       if (stream_.failed()) return left.from(facets.begin);
       ++index;
       if (!is_it) continue;
-      habits_ = {candidate.habit, habits_[0]};
+      habits_ = {habit, habits_[0]};
       // The neighbours of the old reference were asked about first: the reference changes only if
       // none of them is next.
       reference_ = candidate.reference;
       place_ = candidate.place;
       return candidate.facet;
     }
-    habits_ = {kNoHabit, habits_[0]};
+    habits_ = {HabitContext(kNoHabit), habits_[0]};
     reference_ = kNone;
     return scanned_facet(left, facets, wanted, last_facing);
   }
@@ -296,7 +300,7 @@ class OrderCoder {
 
   /// Codes a facet that follows no habit: it is looked for among the facets that are left, by
   /// facing and size.
-  Index scanned_facet(Left& left, IndexRange facets, Index wanted, std::uint32_t last_facing) {
+  Index scanned_facet(Left& left, IndexRange facets, Index wanted, Facing last_facing) {
     scanned_.clear();
     for (Index facet = left.from(facets.begin);
          facet < facets.end && scanned_.size() <= kMostScanned; facet = left.from(facet + 1)) {
@@ -307,20 +311,20 @@ class OrderCoder {
       return left.from(facets.begin);
     }
     if (scanned_.size() > kMostScanned) return any_facet(left, facets, wanted);
-    std::array<double, kFacings> largest{};
+    std::array<double, 5> largest{};  // facing -> size
     for (const Index facet : scanned_) {
       largest[facing_[facet]] = std::max(largest[facing_[facet]], size_[facet]);
     }
     for (std::size_t i = 0; i + 1 < scanned_.size(); ++i) {
       const Index facet = scanned_[i];
-      const std::uint32_t facing = facing_[facet];
-      const std::uint32_t is_largest = size_[facet] >= largest[facing] ? 1 : 0;
-      const auto rest = static_cast<std::uint32_t>(scanned_.size() - i);
-      const bool is_it = decide(
-          kScan, 0,
-          {(last_facing * kFacings + facing) * 2 + is_largest,
-           (facing * 2 + is_largest) * 8 + (last_ == kNone ? 1U : 0U) * 4 + std::min(rest / 4, 3U),
-           std::min(rest, 63U)},
+      const Facing facing(facing_[facet]);
+      const Context<2> is_largest(size_[facet] >= largest[facing.value]);
+      const Context<2> is_first(last_ == kNone);
+      const std::size_t rest = scanned_.size() - i;
+      const bool is_it = bank_.code<kScan>(
+          stream_,
+          {combine(last_facing, facing, is_largest),
+           combine(facing, is_largest, is_first, capped<4>(rest / 4)), capped<64>(rest)},
           facet == wanted);
       if (is_it || stream_.failed()) return facet;
     }
@@ -342,7 +346,7 @@ class OrderCoder {
     for (Index i = 0; i < rings.size(); ++i) {
       arrangement[i] = stream_.is_reading() ? i : source_ring_[source_ring + i] - rings.begin;
     }
-    code_arrangement(arrangement, 1, 1);
+    code_arrangement(arrangement, 1, kRings);
     for (const Index member : arrangement) {
       const Index ring = rings.begin + member;
       order_.ring[ring] = source_ring;
@@ -355,13 +359,13 @@ class OrderCoder {
   /// A class of the facets across the edges after and before a corner. Each counts 1 if it is the
   /// facet of the ring that was placed last, 2 if another placed one, else 0 (so do none and the
   /// facet at hand).
-  std::uint32_t relation(Index across_this, Index across_last) const {
+  Relation relation(Index across_this, Index across_last) const {
     const auto of = [this](Index facet) {
-      if (facet == kNone || facet == last_) return 0U;
-      if (facet == before_last_) return 1U;
-      return order_known(facet) ? 2U : 0U;
+      if (facet == kNone || facet == last_) return Context<3>(0U);
+      if (facet == before_last_) return Context<3>(1U);
+      return Context<3>(order_known(facet) ? 2U : 0U);
     };
-    return of(across_this) * 3 + of(across_last);
+    return combine(of(across_this), of(across_last));
   }
   bool order_known(Index facet) const { return is_placed_[facet]; }
 
@@ -375,7 +379,7 @@ class OrderCoder {
       oldest = std::min(oldest, number_[vertex]);
       low = std::min(low, solid_.vertices()[vertex].z);
     }
-    const std::uint32_t facing = facing_[facet];
+    const Facing facing(facing_[facet]);
     Index place = 0;
     for (; place + 1 < size; ++place) {
       const Index before = vertices[(place + size - 1) % size];
@@ -383,25 +387,27 @@ class OrderCoder {
       const Index after = vertices[(place + 1) % size];
       const Point& p = solid_.vertices()[here];
       const Point& q = solid_.vertices()[after];
-      const std::uint32_t seen =
-          (is_seen_[before] ? 4U : 0U) + (is_seen_[here] ? 2U : 0U) + (is_seen_[after] ? 1U : 0U);
-      const std::uint32_t is_oldest = oldest != kNone && number_[here] == oldest ? 1 : 0;
-      const std::uint32_t related =
+      const auto seen =
+          combine(Context<2>(bool{is_seen_[before]}), Context<2>(bool{is_seen_[here]}),
+                  Context<2>(bool{is_seen_[after]}));
+      const auto seen_from_here =
+          combine(Context<2>(bool{is_seen_[here]}), Context<2>(bool{is_seen_[after]}));
+      const Context<2> is_oldest(oldest != kNone && number_[here] == oldest);
+      const Relation related =
           relation(across_[solid_.arrays().ring_offsets[ring] + place],
                    across_[solid_.arrays().ring_offsets[ring] + (place + size - 1) % size]);
-      const std::uint32_t rise = sign_of(p.z, q.z);
-      const std::uint32_t is_low = p.z <= low ? 1 : 0;
-      const std::uint32_t first = place == 0 ? 1 : 0;
-      const std::uint32_t turn = (sign_of(p.x, q.x) * 3 + sign_of(p.y, q.y)) * 3 + rise;
-      const std::uint32_t fall = sign_of(solid_.vertices()[before].z, p.z);
-      const bool is_it =
-          decide(kStart, facing,
-                 {((seen * 2 + is_oldest) * kFacings + facing) * kRelations + related,
-                  (((first * 2 + is_low) * 3 + rise) * kFacings + facing) * 2 + is_oldest,
-                  turn * kFacings + facing, (last_relation_ * kRelations + related) * 8 + seen,
-                  std::min(place, Index{15}) * 16 + std::min(size, Index{15}),
-                  (((first * 2 + is_low) * 3 + rise) * 3 + fall) * 4 + (seen & 3U)},
-                 place == start);
+      const Context<2> first(place == 0);
+      const Context<2> is_low(p.z <= low);
+      const auto rise = sign_of(p.z, q.z);
+      const auto fall = sign_of(solid_.vertices()[before].z, p.z);
+      const auto turn = combine(sign_of(p.x, q.x), sign_of(p.y, q.y), rise);
+      const bool is_it = bank_.code<kStart>(
+          stream_, facing,
+          {combine(seen, is_oldest, facing, related),
+           combine(first, is_low, rise, facing, is_oldest), combine(turn, facing),
+           combine(last_relation_, related, seen), combine(capped<16>(place), capped<16>(size)),
+           combine(first, is_low, rise, fall, seen_from_here)},
+          place == start);
       if (stream_.failed()) {
         place = 0;
         break;
@@ -440,7 +446,7 @@ class OrderCoder {
     for (Index vertex = 0; vertex < solid_.vertex_count(); ++vertex) {
       if (!stream_.is_reading()) sequence[order_.vertex[vertex]] = number_[vertex];
     }
-    code_arrangement(sequence, 0, 2);
+    code_arrangement(sequence, 0, kVertices);
     for (Index source = 0; source < sequence.size(); ++source) {
       order_.vertex[first_use_[sequence[source]]] = source;
     }
@@ -466,13 +472,16 @@ class OrderCoder {
   Index before_last_ = kNone;
   Index reference_ = kNone;
   Index place_ = 0;  // of the reference's edge, from its ring start
-  std::array<std::uint32_t, 2> habits_{kNoHabit, kNoHabit};
-  std::uint32_t last_relation_ = 0;
+  std::array<HabitContext, 2> habits_{HabitContext(kNoHabit), HabitContext(kNoHabit)};
+  Relation last_relation_{0U};
 };
 
 }  // namespace
 
-std::span<const FamilyShape> order_families() { return kShapes; }
+const ModelLayout& order_layout() {
+  static constexpr ModelLayout layout{kFamilies, {}};
+  return layout;
+}
 
 void code_order(EntropyStream& stream, ModelBank& bank, const Solid& canonical,
                 geometry::SourceOrder& order) {

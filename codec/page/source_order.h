@@ -7,22 +7,19 @@
 // follows none of them costs as much as a permutation.
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "codec/entropy/entropy_stream.h"
 #include "codec/entropy/model_bank.h"
 #include "geometry/canonical_form.h"
 
 namespace watertight::codec {
 
-/// The families of decisions, for the layout of a bank. There are no numbers.
-std::span<const FamilyShape> order_families();
+/// The models of the order, for a bank that may live for a whole page.
+const ModelLayout& order_layout();
 
-/// Writes or measures the order of a canonical solid, or reads it into `order`. Requires that the
-/// bank's first families are order_families() and, unless reading, an order made by
-/// canonical_form(). Even when the stream has failed, `order` holds permutations. Cost: O(n log n),
-/// and up to 64 decisions for each facet that follows no habit.
+/// Writes or measures the order of a canonical solid, or reads it into `order`. Requires a bank of
+/// order_layout() and, unless reading, an order made by canonical_form(). Even when the stream has
+/// failed, `order` holds permutations. Cost: O(n log n), and up to 64 decisions for each facet that
+/// follows no habit.
 void code_order(EntropyStream& stream, ModelBank& bank, const Solid& canonical,
                 geometry::SourceOrder& order);
 

@@ -115,11 +115,11 @@ class Forger {
     return *this;
   }
   Forger& number(std::uint32_t number, std::uint64_t value) {
-    models_[0].code_number(stream_, number, 0, {0}, value);
+    models_[0].code_number(stream_, number, 0, std::array{0U}, value);
     return *this;
   }
   Forger& difference(std::uint32_t number, std::uint32_t context, std::int64_t value) {
-    models_[0].code_signed(stream_, number, 0, {context}, value, 63);
+    models_[0].code_signed(stream_, number, 0, std::array{context}, value, 63);
     return *this;
   }
   Forger& mode(unsigned mode) {
@@ -148,12 +148,12 @@ class Forger {
   Forger& columns(std::uint64_t count) {
     codec::ModelBank& bank = models_[3];
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      bank.code_signed(stream_, 0, 0, {2 * axis + 1}, 0, 54);
+      bank.code_signed(stream_, 0, 0, std::array{2 * axis + 1}, 0, 54);
     }
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      bank.code_number(stream_, 1, 0, {axis, 31 * axis}, 0, 5);
+      bank.code_number(stream_, 1, 0, std::array{axis, 31 * axis}, 0, 5);
     }
-    bank.code_number(stream_, 1, 0, {3, 93}, count - 1, 40);
+    bank.code_number(stream_, 1, 0, std::array{3U, 93U}, count - 1, 40);
     return *this;
   }
   /// A blob with a checksum of 0.

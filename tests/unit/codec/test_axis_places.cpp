@@ -19,21 +19,17 @@ namespace {
 
 using Kind = codec::parallelogram::AxisPlaces::Kind;
 
-constexpr std::array<codec::FamilyShape, 1> kFamilies{codec::parallelogram::kPlacesFamily};
-constexpr std::array<codec::NumberShape, 1> kNumbers{codec::parallelogram::kPlacesNumber};
-constexpr codec::ModelLayout kLayout{kFamilies, kNumbers};
-
 Bytes write(const codec::parallelogram::AxisPlaces& places) {
-  codec::ModelBank models(kLayout);
+  codec::ModelBank models(codec::parallelogram::model_layout());
   codec::EntropyStream stream = codec::EntropyStream::writer();
-  REQUIRE(codec::parallelogram::AxisPlaces::code(stream, models, 0, 0, Kind::every, places, {}));
+  REQUIRE(codec::parallelogram::AxisPlaces::code(stream, models, Kind::every, places, {}));
   return std::move(stream).finish();
 }
 
 Result<codec::parallelogram::AxisPlaces> read(ByteView bytes, const Limits& limits = {}) {
-  codec::ModelBank models(kLayout);
+  codec::ModelBank models(codec::parallelogram::model_layout());
   codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
-  return codec::parallelogram::AxisPlaces::code(stream, models, 0, 0, Kind::every, {}, limits);
+  return codec::parallelogram::AxisPlaces::code(stream, models, Kind::every, {}, limits);
 }
 
 /// Each value has a place that gives it back, and places ascend with values.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
 #include <random>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "codec/entropy/bank_trial.h"
 #include "codec/entropy/entropy_stream.h"
 #include "codec/entropy/model_bank.h"
 #include "codec/page/model_sets.h"
@@ -12,8 +14,12 @@ using namespace watertight;
 
 namespace {
 
-constexpr codec::FamilyShape kFamilies[] = {{2, {3, 16}}};
-constexpr codec::NumberShape kNumbers[] = {{1, {4, 2}}};
+enum Family : std::uint32_t { kBit };
+enum Number : std::uint32_t { kNumber };
+constexpr codec::FamilyShape kFamilies[] = {{kBit, 2, {3, 16}}};
+constexpr codec::NumberShape kNumbers[] = {{kNumber, 1, {4, 2}}};
+constexpr const codec::FamilyShape& shape_of(Family family) { return kFamilies[family]; }
+constexpr const codec::NumberShape& shape_of(Number number) { return kNumbers[number]; }
 constexpr codec::ModelLayout kLayout{kFamilies, kNumbers};
 
 struct Sample {
@@ -44,14 +50,41 @@ std::vector<Sample> samples(std::uint32_t seed, int count) {
 void code(codec::EntropyStream& stream, codec::ModelBank& models, std::vector<Sample>& all) {
   std::uint32_t last = 0;
   for (Sample& sample : all) {
-    sample.bit = models.code(stream, 0, last & 1U, {sample.context, last % 16}, sample.bit);
-    sample.number = models.code_signed(stream, 0, 0, {sample.context, last & 1U}, sample.number);
+    const codec::Context<2> parity(last & 1U);
+    sample.bit = models.code<kBit>(
+        stream, parity, {codec::Context<3>(sample.context), codec::Context<16>(last % 16)},
+        sample.bit);
+    sample.number = models.code_signed<kNumber>(stream, {codec::Context<4>(sample.context), parity},
+                                                sample.number);
     sample.uniform = stream.code_uniform(sample.uniform, sample.size);
     last = static_cast<std::uint32_t>(sample.uniform);
   }
 }
 
 }  // namespace
+
+TEST_CASE("contexts are combined in mixed radix, and their sizes with them") {
+  using codec::Context;
+  constexpr auto combined = codec::combine(Context<5>(3U), Context<2>(true), Context<7>(6U));
+  static_assert(std::is_same_v<decltype(combined), const Context<5 * 2 * 7>>);
+  CHECK(combined.value == (3 * 2 + 1) * 7 + 6);
+  CHECK(codec::capped<4>(-1).value == 0);
+  CHECK(codec::capped<4>(3U).value == 3);
+  CHECK(codec::capped<4>(std::uint64_t{1} << 40).value == 3);
+  static_assert(std::is_same_v<decltype(codec::halved(Context<21>(20U))), Context<11>>);
+  CHECK(codec::halved(Context<21>(20U)).value == 10);
+  static_assert(std::is_same_v<decltype(codec::leading<4>(Context<3>(2U))), Context<7>>);
+  CHECK(codec::leading<4>(Context<3>(2U)).value == 2);
+  CHECK(codec::trailing<4>(Context<3>(2U)).value == 6);
+}
+
+TEST_CASE("the latest answers are the lowest bits, and older ones are forgotten") {
+  codec::Answers<3> answers;
+  CHECK(answers.last().value == 0);
+  for (const bool answer : {true, false, true, true}) answers.add(answer);
+  CHECK(answers.last().value == 0b011);
+  CHECK(answers.last<1>().value == 1);
+}
 
 TEST_CASE("what an entropy stream writes it reads, and ends where it ended") {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
@@ -159,7 +192,7 @@ TEST_CASE("after a trial, and trials within it, a bank goes on as if there had b
 }
 
 TEST_CASE("a prior of another layout is refused") {
-  constexpr codec::FamilyShape families[] = {{1, {3}}};
+  constexpr codec::FamilyShape families[] = {{0, 1, {3}}};
   codec::ModelBank other(codec::ModelLayout{families, {}});
   codec::ModelBank models(kLayout);
   CHECK_FALSE(other.load(models.save({.max_count = 30})));

@@ -271,14 +271,14 @@ TEST_CASE("of the columns of a page only those nearby are looked at for each of 
   for (std::int64_t i = 0; i < 2'000'000; ++i) memory.columns.push_back({i / 4, 1'000'000 + i % 4});
   std::vector<codec::GridPoint> points;
   for (std::int64_t i = 0; i < 20'000; ++i) points.push_back({i * 25, i % 7, 0});
-  const codec::ModelLayout layout{codec::walk::kColumnFamilies, codec::walk::kColumnNumbers};
+  const codec::ModelLayout& layout = codec::walk::model_layout();
   codec::ModelBank writing(layout);
   codec::EntropyStream writer = codec::EntropyStream::writer();
-  REQUIRE(codec::walk::code_columns(writer, {writing, 0, 0}, memory, points, {}));
+  REQUIRE(codec::walk::code_columns(writer, writing, memory, points, {}));
   const Bytes bytes = std::move(writer).finish();
   codec::ModelBank reading(layout);
   codec::EntropyStream reader = codec::EntropyStream::reader(bytes);
   std::vector<codec::GridPoint> read;
-  REQUIRE(codec::walk::code_columns(reader, {reading, 0, 0}, memory, read, {}));
+  REQUIRE(codec::walk::code_columns(reader, reading, memory, read, {}));
   CHECK(read == points);
 }

@@ -13,7 +13,7 @@ namespace {
 
 using generated::Random;
 
-codec::ModelBank neutral_bank() { return codec::ModelBank({codec::order_families(), {}}); }
+codec::ModelBank neutral_bank() { return codec::ModelBank(codec::order_layout()); }
 
 Bytes written(const Solid& canonical, const geometry::SourceOrder& order) {
   auto stream = codec::EntropyStream::writer();

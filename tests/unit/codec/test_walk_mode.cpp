@@ -142,14 +142,14 @@ TEST_CASE("the walk refuses surfaces that are not closed") {
   const std::vector<Point> points{{0, 0, 0}, {0, 0, 9}, {0, 9, 0}, {9, 0, 0}};
   const auto delaunay = delaunay::canonical_delaunay(points);
   REQUIRE(delaunay);
-  const codec::ModelLayout layout{codec::walk::kWalkFamilies, {}};
+  const codec::ModelLayout& layout = codec::walk::model_layout();
   const auto measure = [&](std::vector<Triangle> triangles) {
     codec::ModelBank models(layout);
     codec::EntropyStream meter = codec::EntropyStream::meter();
     codec::walk::BoundaryMesh mesh;
     mesh.component_first.push_back(static_cast<Index>(triangles.size()));
     mesh.triangles = std::move(triangles);
-    return codec::walk::code_boundary_walk(meter, models, 0, points, *delaunay, mesh);
+    return codec::walk::code_boundary_walk(meter, models, points, *delaunay, mesh);
   };
   const Triangle a{0, 1, 2};
   const Triangle b{0, 2, 3};

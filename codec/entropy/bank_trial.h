@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A trial: a stretch of measuring after which a bank of models is as it was before.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "codec/entropy/model_bank.h"
+
+namespace watertight::codec {
+
+/// While a trial lives, the bank codes what is only measured; its end undoes what the bank learned.
+/// Trials may be nested. Cost: for a solid of few vertices, noting and undoing each change of the
+/// bank; for one of many vertices, a copy of the bank.
+class BankTrial {
+ public:
+  BankTrial(ModelBank& bank, std::size_t vertices);
+  ~BankTrial();
+  BankTrial(const BankTrial&) = delete;
+  BankTrial& operator=(const BankTrial&) = delete;
+
+ private:
+  ModelBank& bank_;
+  std::optional<ModelBank> before_;  // the copy, for a solid of many vertices
+  std::size_t first_change_;  // else: where the changes of this trial begin in the bank's list
+};
+
+}  // namespace watertight::codec

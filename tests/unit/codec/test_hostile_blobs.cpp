@@ -12,6 +12,7 @@
 #include "codec/encode_boundary.h"
 #include "codec/mode_walk/columns.h"
 #include "codec/page.h"
+#include "codec/page/modes.h"
 #include "codec/page_file.h"
 #include "geometry/canonical_form.h"
 #include "tests/generated/mutated_blobs.h"

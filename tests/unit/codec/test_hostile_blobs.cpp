@@ -11,6 +11,7 @@
 #include "codec/blob.h"
 #include "codec/encode_boundary.h"
 #include "codec/mode_walk/columns.h"
+#include "codec/page/modes.h"
 #include "codec/page.h"
 #include "codec/page/modes.h"
 #include "codec/page_file.h"

@@ -11,7 +11,6 @@
 #include "codec/blob.h"
 #include "codec/encode_boundary.h"
 #include "codec/mode_walk/columns.h"
-#include "codec/page/modes.h"
 #include "codec/page.h"
 #include "codec/page/modes.h"
 #include "codec/page_file.h"

@@ -135,7 +135,10 @@ TEST_CASE("the parts of a blob add up to its size") {
     REQUIRE(info);
     double sum = 0;
     for (const auto& part : info->parts) sum += part.bytes;
-    CHECK(std::abs(sum - static_cast<double>(blob.size())) < 3);
+    // A stream ends on a whole byte, and parts are estimates of fractions.
+    const double rest = static_cast<double>(blob.size()) - sum;
+    CHECK(rest > -0.5);
+    CHECK(rest < 2);
     CHECK(info->marked_faces > 0);
     CHECK(info->delaunay_faces >= info->marked_faces);
   }

@@ -25,9 +25,10 @@ class Random {
   }
   /// In [0, end), uniform enough. Requires end > 0.
   std::uint64_t below(std::uint64_t end) { return next() % end; }
-  /// In [low, high].
+  /// In [low, high], which does not span all integers. Without signs: high - low may be too large.
   std::int64_t between(std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(below(static_cast<std::uint64_t>(high - low) + 1));
+    const auto first = static_cast<std::uint64_t>(low);
+    return static_cast<std::int64_t>(first + below(static_cast<std::uint64_t>(high) - first + 1));
   }
   /// The same as a coordinate.
   double within(std::int64_t low, std::int64_t high) {

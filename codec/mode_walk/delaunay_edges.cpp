@@ -7,22 +7,39 @@
 
 namespace watertight::codec::walk {
 
+namespace {
+
+/// Lists of items, one list after the other: list i is [first[i], first[i + 1]) of the items.
+struct Lists {
+  std::vector<Index> first;
+  std::vector<Index> items;
+};
+
+/// Vertex -> its faces: twice those of which it is the smallest, once those of which it is the
+/// middle one. So each edge of a face is counted at its smaller vertex.
+Lists faces_by_smaller_vertex(const std::vector<Triangle>& faces, Index vertex_count) {
+  Lists lists{std::vector<Index>(vertex_count + std::size_t{1}, 0), {}};
+  for (const Triangle& face : faces) {
+    lists.first[face[0] + 1] += 2;
+    lists.first[face[1] + 1] += 1;
+  }
+  for (Index v = 0; v < vertex_count; ++v) lists.first[v + 1] += lists.first[v];
+  lists.items.resize(lists.first[vertex_count]);
+  std::vector<Index> end(lists.first.begin(), lists.first.end() - 1);
+  for (Index i = 0; i < faces.size(); ++i) {
+    lists.items[end[faces[i][0]]++] = i;
+    lists.items[end[faces[i][0]]++] = i;
+    lists.items[end[faces[i][1]]++] = i;
+  }
+  return lists;
+}
+
+}  // namespace
+
 DelaunayEdges::DelaunayEdges(const delaunay::CanonicalDelaunay& delaunay, Index vertex_count) {
-  // Each face under the lesser vertex of each of its edges.
-  std::vector<Index> first(vertex_count + std::size_t{1}, 0);
-  for (const Triangle& face : delaunay.faces) {
-    first[face[0] + 1] += 2;
-    first[face[1] + 1] += 1;
-  }
-  for (Index v = 0; v < vertex_count; ++v) first[v + 1] += first[v];
-  faces_.resize(first[vertex_count]);
-  std::vector<Index> end(first.begin(), first.end() - 1);
-  for (Index i = 0; i < delaunay.faces.size(); ++i) {
-    const Triangle& face = delaunay.faces[i];
-    faces_[end[face[0]]++] = i;
-    faces_[end[face[0]]++] = i;
-    faces_[end[face[1]]++] = i;
-  }
+  Lists lists = faces_by_smaller_vertex(delaunay.faces, vertex_count);
+  const std::vector<Index>& first = lists.first;
+  faces_ = std::move(lists.items);
 
   // Vertices and faces are one more than edges and tetrahedra (Euler).
   const std::size_t edges = vertex_count + delaunay.faces.size() - delaunay.tetrahedra.size();
@@ -33,9 +50,7 @@ DelaunayEdges::DelaunayEdges(const delaunay::CanonicalDelaunay& delaunay, Index 
     Index greater;
     Index face;
   };
-  std::vector<Use> uses;                  // of one vertex: its edges with their faces
-  std::vector<Index>& smaller_end = end;  // reused: per vertex the count of smaller neighbours
-  std::fill(smaller_end.begin(), smaller_end.end(), 0);
+  std::vector<Use> uses;  // the edges of one vertex with their faces
   for (Index v = 0; v < vertex_count; ++v) {
     first_edge_.push_back(static_cast<Index>(greater_.size()));
     uses.clear();
@@ -51,22 +66,23 @@ DelaunayEdges::DelaunayEdges(const delaunay::CanonicalDelaunay& delaunay, Index 
       if (i == 0 || uses[i].greater != uses[i - 1].greater) {
         first_face_.push_back(first[v] + static_cast<Index>(i));
         greater_.push_back(uses[i].greater);
-        ++smaller_end[uses[i].greater];
       }
       faces_[first[v] + i] = uses[i].face;
     }
   }
   first_edge_.push_back(static_cast<Index>(greater_.size()));
   first_face_.push_back(static_cast<Index>(faces_.size()));
+  turn_edges(vertex_count);
+}
 
+void DelaunayEdges::turn_edges(Index vertex_count) {
   first_smaller_.assign(vertex_count + std::size_t{1}, 0);
-  for (Index v = 0; v < vertex_count; ++v) {
-    first_smaller_[v + 1] = first_smaller_[v] + smaller_end[v];
-    smaller_end[v] = first_smaller_[v];
-  }
+  for (const Index w : greater_) ++first_smaller_[w + 1];
+  for (Index v = 0; v < vertex_count; ++v) first_smaller_[v + 1] += first_smaller_[v];
+  std::vector<Index> end(first_smaller_.begin(), first_smaller_.end() - 1);
   smaller_.resize(greater_.size());
   for (Index v = 0; v < vertex_count; ++v) {
-    for (const Index w : greater_neighbours(v)) smaller_[smaller_end[w]++] = v;
+    for (const Index w : greater_neighbours(v)) smaller_[end[w]++] = v;
   }
 }
 

@@ -31,6 +31,9 @@ class DelaunayEdges {
   }
 
  private:
+  /// From each vertex's greater neighbours to each vertex's smaller ones.
+  void turn_edges(Index vertex_count);
+
   std::vector<Index> first_edge_;  // vertex -> its first edge to a greater one
   std::vector<Index> greater_;     // edge -> its greater vertex
   std::vector<Index> first_face_;  // edge -> into faces_

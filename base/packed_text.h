@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A compressed text, which its type separates from plain text: skeletons as a store keeps them.
+// A skeleton as a store keeps it, which its type separates from plain text: compressed, or plain in
+// databases of the first program.
 #pragma once
 
 #include "base/bytes.h"

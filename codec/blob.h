@@ -46,7 +46,7 @@ struct EncodeOptions {
 /// Errors: not_encodable if the mode cannot hold the solid (automatic always can).
 Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options = {});
 
-/// What a blob is made of, for `info` and `bench/ratio`.
+/// The parts of a blob, for `info` and `bench/ratio`.
 struct BlobInfo {
   std::uint8_t version = 0;
   std::uint8_t models = 0;  // number of the set of priors; 0: neutral

@@ -27,7 +27,7 @@ constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
 /// The number of the first solid that does not come back, or the number of solids if all do.
 Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
                                      const std::vector<Source>& sources,
-                                     const std::vector<StoredSolid>& stored,
+                                     const std::vector<PageSolid>& stored,
                                      const EncodeOptions& options) {
   const auto page = read_page_bytes(bytes, kind, kNoLimits);
   if (!page) return page.error();
@@ -58,7 +58,7 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
   PageContents page;
   page.models = options.models;
   for (const Source& source : sources) {
-    page.solids.push_back(stored_solid(*source.boundary, options.keep_order));
+    page.solids.push_back(page_solid(*source.boundary, options.keep_order));
   }
   std::vector<Plan> plans(sources.size(), Plan{.mode = options.mode});
   page.frame = frame_of(sources.front().boundary->solid(), sources.front().acceptance);

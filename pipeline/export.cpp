@@ -94,7 +94,7 @@ Result<Bytes> CollectionExport::next() {
 Status CollectionExport::add(const StoredFeature& feature, Bytes& bytes) {
   if (!container_) return add_line(feature, bytes);
   auto encoded = unpack(feature);
-  if (!encoded) return std::move(encoded).error();
+  if (!encoded) return about(feature, encoded.error());
   if (Status status = container_->add(*std::move(encoded)); !status) return status;
   append(bytes, container_->take());
   return Done{};

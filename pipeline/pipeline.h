@@ -121,7 +121,7 @@ struct StoredDocument {
 };
 
 /// Encodes a feature whose verdict is valid. For contract boundary, document.header must be a
-/// boundary_header(). Of the options only collection, encode, steiner and contract count.
+/// boundary_header(). Only these options count: collection, encode, steiner and contract.
 /// Errors: invalid_argument when a solid is not valid; those of encode().
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
                                       const IngestOptions& options);

@@ -12,7 +12,7 @@ namespace {
 /// Where a solid stands: its smallest corner and its extent in x and y, to 500 steps.
 using Site = std::array<std::int64_t, 4>;
 
-Site site_of(const codec::StoredSolid& stored) {
+Site site_of(const codec::PageSolid& stored) {
   std::array<std::int64_t, 2> low{INT64_MAX, INT64_MAX};
   std::array<std::int64_t, 2> high{INT64_MIN, INT64_MIN};
   for (const codec::GridPoint& vertex : stored.integers->vertices) {
@@ -39,7 +39,7 @@ CorpusPage& page_for(std::vector<CorpusPage>& pages, const CorpusPage& wanted, s
 }  // namespace
 
 std::vector<CorpusPage> split_corpus(const std::vector<CorpusSolid>& corpus,
-                                     const std::vector<codec::StoredSolid>& stored,
+                                     const std::vector<codec::PageSolid>& stored,
                                      const std::set<std::string>& excluded, std::size_t most) {
   std::map<std::string, std::size_t> seen;  // solids of a set so far
   std::vector<bool> is_test(corpus.size(), false);

@@ -29,7 +29,7 @@ struct CorpusPage {
 /// Pages of at most `most` solids, which are neighbours within the training or the test half.
 /// Solids without a grid are in none. `stored` are the corpus' solids as stored_solid() makes them.
 std::vector<CorpusPage> split_corpus(const std::vector<CorpusSolid>& corpus,
-                                     const std::vector<codec::StoredSolid>& stored,
+                                     const std::vector<codec::PageSolid>& stored,
                                      const std::set<std::string>& excluded, std::size_t most);
 
 }  // namespace watertight

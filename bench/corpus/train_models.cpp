@@ -27,6 +27,7 @@
 #include "codec/page/container.h"
 #include "codec/page/modes.h"
 #include "codec/page/solid_coder.h"
+#include "codec/page/writer_choice.h"
 
 using namespace watertight;
 
@@ -38,7 +39,7 @@ struct Page {
   std::string set;
   bool is_test = false;
   codec::Frame frame;
-  std::vector<const codec::StoredSolid*> solids;
+  std::vector<const codec::PageSolid*> solids;
 };
 
 struct Options {
@@ -79,8 +80,8 @@ double bytes_of(std::uint64_t cost) {
 }
 
 /// Codes one solid with a set of models; false if the mode cannot hold it, which spoils the coder.
-bool learn(codec::SolidCoder& coder, const codec::StoredSolid& solid, Mode mode) {
-  codec::StoredSolid copy = solid;
+bool learn(codec::SolidCoder& coder, const codec::PageSolid& solid, Mode mode) {
+  codec::PageSolid copy = solid;
   copy.mode = mode;
   return coder.code(copy).has_value();
 }
@@ -99,7 +100,7 @@ void train(const std::vector<Page>& pages, codec::ModelSet& models, const Choose
   for (const Page& page : pages) {
     if (page.is_test) continue;
     MeteredCoder paged(models, page.frame);
-    for (const codec::StoredSolid* solid : page.solids) {
+    for (const codec::PageSolid* solid : page.solids) {
       MeteredCoder alone(models, page.frame);
       codec::Frame frame = page.frame;
       if (!codec::code_frame(alone.meter, models[codec::ModelPart::frame], frame)) std::abort();
@@ -117,7 +118,7 @@ Sums measure_page(const Page& page, const std::array<codec::ModelBank, codec::kM
   Sums sum;
   codec::ModelSet models(priors);
   MeteredCoder paged(models, page.frame);
-  for (const codec::StoredSolid* solid : page.solids) {
+  for (const codec::PageSolid* solid : page.solids) {
     codec::ModelSet own(priors);
     MeteredCoder alone(own, page.frame);
     codec::Frame frame = page.frame;
@@ -184,7 +185,7 @@ std::array<codec::ModelBank, codec::kModelParts> banks_of(codec::ModelSet& model
 }
 
 std::vector<Page> pages_of(const std::vector<CorpusSolid>& corpus,
-                           const std::vector<codec::StoredSolid>& stored, const Options& options) {
+                           const std::vector<codec::PageSolid>& stored, const Options& options) {
   std::vector<Page> pages;
   for (const CorpusPage& page : split_corpus(corpus, stored, options.excluded, kBlock)) {
     pages.push_back(Page{page.set, page.is_test, page.frame, {}});
@@ -243,7 +244,7 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   for (const Mode mode : kModes) {
     if (!options.only.empty() && options.only != codec::to_string(mode)) continue;
     const auto start = std::chrono::steady_clock::now();
-    const auto choose = [mode](const codec::SolidCoder& coder, const codec::StoredSolid& solid) {
+    const auto choose = [mode](const codec::SolidCoder& coder, const codec::PageSolid& solid) {
       return coder.measure(solid, mode) ? mode : Mode::automatic;
     };
     for (int pass = 0; pass < options.passes; ++pass) train(pages, first, choose);
@@ -256,7 +257,7 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
   if (!options.only.empty()) return;
 
   const std::array<codec::ModelBank, codec::kModelParts> chosen_by = banks_of(first);
-  const auto cheapest = [](const codec::SolidCoder& coder, const codec::StoredSolid& solid) {
+  const auto cheapest = [](const codec::SolidCoder& coder, const codec::PageSolid& solid) {
     return coder.cheapest(solid).mode;
   };
   codec::ModelSet second(chosen_by);
@@ -286,9 +287,9 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::vector<CorpusSolid> corpus = read_corpus(options.corpus);
-  std::vector<codec::StoredSolid> stored;
+  std::vector<codec::PageSolid> stored;
   for (const CorpusSolid& solid : corpus) {
-    stored.push_back(codec::stored_solid(solid.source, false));
+    stored.push_back(codec::page_solid(solid.source, false));
   }
   std::printf("%zu solids\n", corpus.size());
   train_all(pages_of(corpus, stored, options), options);

@@ -31,8 +31,7 @@ using namespace watertight;
 /// The bytes that a peer does not need: three varints of the origin and two bytes of grid.
 std::size_t placement_bytes(const OrientedBoundary& boundary) {
   ByteWriter writer;
-  for (const std::int64_t number : codec::stored_solid(boundary, false).origin)
-    writer.zigzag(number);
+  for (const std::int64_t number : codec::page_solid(boundary, false).origin) writer.zigzag(number);
   return writer.size() + 2;
 }
 

@@ -82,7 +82,7 @@ void add_peers(const Solid& solid, const codec::GridPoint& origin, const codec::
 }
 
 Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
-             const std::vector<codec::StoredSolid>& stored) {
+             const std::vector<codec::PageSolid>& stored) {
   Sums sums;
   codec::PageContents contents;
   contents.frame = page.frame;
@@ -110,7 +110,7 @@ Sums measure(const CorpusPage& page, const std::vector<CorpusSolid>& corpus,
     sums.alone += static_cast<double>(blob->size());
     add_peers(solid, stored[number].origin, before, sums);
     before = stored[number].origin;
-    contents.solids.push_back(codec::stored_solid(corpus[number].canonical.boundary, false));
+    contents.solids.push_back(codec::page_solid(corpus[number].canonical.boundary, false));
   }
   if (contents.solids.empty()) return sums;
   std::vector<codec::Plan> plans(contents.solids.size());
@@ -181,9 +181,9 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::vector<CorpusSolid> corpus = read_corpus(options.corpus);
-  std::vector<codec::StoredSolid> stored;
+  std::vector<codec::PageSolid> stored;
   for (const CorpusSolid& solid : corpus) {
-    stored.push_back(codec::stored_solid(solid.source, false));
+    stored.push_back(codec::page_solid(solid.source, false));
   }
   std::map<std::string, Sums> sets;
   std::size_t wide = 0;

@@ -14,7 +14,7 @@
 namespace watertight::codec {
 
 /// A half-edge as one side of the edge between two vertices. Sides are ordered by edge; of one
-/// edge, the upward sides come before the downward ones, each by number.
+/// edge, the upward sides come before the downward ones, each by half-edge.
 struct EdgeSide {
   Index low = 0;             // the smaller vertex
   Index high = 0;            // the greater one

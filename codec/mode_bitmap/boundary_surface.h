@@ -50,7 +50,7 @@ class BoundarySurface {
 
   /// The rings of each facet, sorted. Requires set_interior() and orient(). A walk along the edge
   /// of a facet that visits a vertex twice is split there, so that holes that touch come apart.
-  /// Cost: linear.
+  /// Cost: O(n log n).
   std::vector<std::vector<VertexRing>> rings_of_facets() const;
 
   /// The arrays of the solid, without vertices. Each component is a shell, and `exterior_component`

@@ -21,7 +21,7 @@ constexpr Scale<20> kLesserOpposites{.per_unit = 10, .from = 1.2};
 constexpr std::uint32_t kRests = 14;  // of the room that is left beside a closing triangle
 constexpr double kRestsPerRadian = 4;
 constexpr double kRestZero = 2;  // class of no room
-// Triangles that are missing in a corner.
+// Classes of how many triangles fit into the room of a corner.
 constexpr Scale<16> kMissing{.per_unit = 4};
 constexpr Scale<12> kFewMissing{.per_unit = 4};
 // Lengths by another length, and parts of the room of a corner.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What mode parallelogram knows about a corner of the front before it codes whether a triangle
-// closes it: angles, lengths, bends and degrees, alone or combined, as contexts.
+// The knowledge of mode parallelogram about a corner of the front before it codes whether a
+// triangle closes it: angles, lengths, bends and degrees, alone or combined, as contexts.
 #pragma once
 
 #include <vector>

@@ -12,6 +12,7 @@
 #include "codec/mode_parallelogram/vectors.h"
 #include "codec/mode_parallelogram/vertex_coder.h"
 #include "codec/page/modes.h"
+#include "codec/page/writer_choice.h"
 
 namespace watertight::codec::parallelogram {
 

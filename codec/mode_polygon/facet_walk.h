@@ -75,7 +75,7 @@ class SurfaceWalk {
   void code_ring(Index gate, Index truth_half, bool is_interior);
   void begin_at_gate(Index gate, Index truth_half);
   void begin_interior(Index truth_half);
-  /// The end of the half-edges at which an interior ring may begin.
+  /// One past the last half-edge that may be the gate of an interior ring.
   Index last_gate() const {
     return gate_ + std::min(static_cast<Index>(result_.surface.vertex.size()) - gate_, kGateReach);
   }

@@ -132,7 +132,7 @@ bool PositionCoder::predict_on_walls(Prediction& prediction) const {
     const Flat normal{plane.normal[0], plane.normal[1]};
     if (first == nullptr) {
       first = &plane;
-      prediction.frame = Frame::wall;
+      prediction.frame = PredictionFrame::wall;
       prediction.direction = {-normal.y, normal.x};
       continue;
     }
@@ -144,7 +144,7 @@ bool PositionCoder::predict_on_walls(Prediction& prediction) const {
                       static_cast<double>(plane.origin[1] - first->origin[1])};
     const double distance = dot(normal, offset);
     const Flat meet{-one.y * distance / det, one.x * distance / det};
-    prediction.frame = Frame::walls;
+    prediction.frame = PredictionFrame::walls;
     prediction.base = {first->origin[0] + to_whole(meet.x), first->origin[1] + to_whole(meet.y)};
     return true;
   }
@@ -174,7 +174,7 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
     const Flat a = flat(before_);
     const Flat b = flat(after_);
     const Flat q = flat(after_two_);
-    prediction.frame = Frame::closing;
+    prediction.frame = PredictionFrame::closing;
     prediction.direction = a - p;
     prediction.base = column_of(points_[before_]);
     if (ring_size_ == 4) {
@@ -193,17 +193,17 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
       prediction.base[1] += to_whole(one.x * part);
       return prediction;
     }
-    prediction.frame = Frame::corner;
+    prediction.frame = PredictionFrame::corner;
     return prediction;
   }
   if (before_ != kNone) {
     prediction.base = column_of(points_[before_]);
-    prediction.frame = before_two_ != kNone ? Frame::corner : Frame::edge;
+    prediction.frame = before_two_ != kNone ? PredictionFrame::corner : PredictionFrame::edge;
     if (before_two_ != kNone) prediction.direction = flat(before_) - flat(before_two_);
     prediction.is_steady = follow_direction(prediction.direction);
     return prediction;
   }
-  prediction.frame = Frame::bare;
+  prediction.frame = PredictionFrame::bare;
   prediction.base = column_of(points_[neighbors_.empty() ? vertex - 1 : neighbors_.front().vertex]);
   return prediction;
 }
@@ -211,11 +211,11 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
 /// Whether the vertex stands in a column of an earlier solid.
 bool PositionCoder::code_known_column(const Prediction& prediction) {
   if (memory_.columns.empty()) return false;
-  const bool is_start = prediction.frame == Frame::start;
+  const bool is_start = prediction.frame == PredictionFrame::start;
   ColumnScore score;
   score.base = prediction.base;
   score.turn = Turn(prediction.direction);
-  score.across_weight = prediction.frame == Frame::corner ? kAcrossWeight : 1;
+  score.across_weight = prediction.frame == PredictionFrame::corner ? kAcrossWeight : 1;
   const std::vector<GridColumn> near =
       nearest_columns(memory_.columns, score, is_start ? kFirstWindow : kWindow,
                       is_start ? kFirstOffered : kOffered);
@@ -251,7 +251,8 @@ void PositionCoder::code_column(Index vertex) {
     if (coordinate < kCoordinateLimit && coordinate > -kCoordinateLimit) continue;
     prediction.base = column_of(points_[0]);  // out of all bounds: no prediction
   }
-  if (prediction.frame == Frame::start) prediction.base = column_of(memory_.last_position);
+  if (prediction.frame == PredictionFrame::start)
+    prediction.base = column_of(memory_.last_position);
   if (!code_known_column(prediction)) code_offset(prediction);
 }
 
@@ -267,7 +268,7 @@ void PositionCoder::code_first(std::uint32_t axis) {
 }
 
 void PositionCoder::code_offset(const Prediction& prediction) {
-  if (prediction.frame == Frame::start) {
+  if (prediction.frame == PredictionFrame::start) {
     code_first(0);
     code_first(1);
     return;
@@ -277,7 +278,7 @@ void PositionCoder::code_offset(const Prediction& prediction) {
   if (!truth_.empty()) {
     turned = turn.forward({truth_at(0) - prediction.base[0], truth_at(1) - prediction.base[1]});
   }
-  const bool is_line = prediction.frame == Frame::wall;
+  const bool is_line = prediction.frame == PredictionFrame::wall;
   if (is_line) std::swap(turned[0], turned[1]);
   turned = code_residual(prediction, turned);
   const auto [across, along] = turned;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The positions of the vertices of a walked surface in mode `polygon`: columns by vertical edges,
-// walls and right angles, heights by planes and levels (docs/format.md). For the mode only.
+// walls and right angles, heights by planes and levels (docs/format-polygon.md). For the mode only.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ using Kind = FacetPlane::Kind;
 inline constexpr std::uint32_t kPlaneKinds = 4;
 
 /// How the prediction of a column was found.
-enum class Frame : std::uint8_t { start, bare, edge, corner, closing, wall, walls };
+enum class PredictionFrame : std::uint8_t { start, bare, edge, corner, closing, wall, walls };
 inline constexpr std::uint32_t kFrames = 7;
 inline constexpr std::size_t kDirectionLimit = 8;
 /// The squared sine of the greatest angle between two edges of one direction.
@@ -62,7 +62,7 @@ struct Neighbor {
 };
 
 struct Prediction {
-  Frame frame = Frame::start;
+  PredictionFrame frame = PredictionFrame::start;
   GridColumn base{};
   Flat direction{};
   bool is_steady = false;  // the direction is that of a longer edge

@@ -3,7 +3,7 @@
 // The connectivity of a solid in mode `polygon`: oriented surfaces without boundary, each half-edge
 // with its twin. A vertex where several fans of facets meet counts once per fan, so that the
 // surface is a manifold whatever touches. Written and read by the same walk over its facets
-// (docs/format.md). For the mode only.
+// (docs/format-polygon.md). For the mode only.
 #pragma once
 
 #include <vector>

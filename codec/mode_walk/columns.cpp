@@ -32,18 +32,18 @@ constexpr std::uint64_t kMostFloors = 255;  // floors above count as this one
 /// The length of a number, or of the side of a box.
 using Length = Context<kMaxLength + 1>;
 
-// What is coded under Size. The first three are the sides of the box on each axis.
+// The values coded under Size. The first three are the sides of the box on each axis.
 using SizeKind = Context<6>;
 constexpr SizeKind kColumnCount{3U};
 constexpr SizeKind kFirstHeight{4U};
 
-// What is coded under TopBits.
+// The values coded under TopBits.
 using TopKind = Context<3>;
 constexpr TopKind kFirstY{0U};
 constexpr TopKind kPlaceY{1U};
 constexpr TopKind kNewHeight{2U};
 
-// What is asked with Rank.
+// The questions asked with Rank.
 constexpr Context<2> kOfKnownPlace{0U};
 constexpr Context<2> kOfCorner{1U};
 // Place has the contexts of known places, then those of corners.
@@ -75,7 +75,7 @@ class Columns {
   }
   std::int64_t code_top_bits(TopKind kind, std::int64_t value, int length);
   Status measure();
-  Status code_frame();
+  Status code_box();
   bool code_place(std::size_t number, Place truth);
   bool code_known_place(Place truth, Place& place);
   bool code_corner(std::size_t number, Place truth, Place& place);
@@ -151,7 +151,7 @@ Status Columns::measure() {
 }
 
 /// Codes the first point, the box and the number of columns.
-Status Columns::code_frame() {
+Status Columns::code_box() {
   stream_.enter(StreamPart::position);
   const Context<2> first(memory_.is_first());
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -376,7 +376,7 @@ Status Columns::run() {
   }
   const std::vector<Place> truth = std::move(places_);
   places_.clear();
-  if (Status status = code_frame(); !status) return status;
+  if (Status status = code_box(); !status) return status;
   const Error malformed{ErrorCode::malformed, "the columns of the vertices"};
   for (std::size_t i = 0; i < place_count_; ++i) {
     if (!code_place(i, is_reading() ? Place{} : truth[i])) return malformed;

@@ -21,7 +21,7 @@ using geometry::cross;
 using geometry::difference;
 using geometry::dot;
 
-// What is asked with Exterior.
+// The questions asked with Exterior.
 constexpr Context<3> kAllTriangles{0U};
 constexpr Context<3> kIsNotExteriorShell{1U};
 constexpr Context<3> kIsNotExteriorRing{2U};
@@ -36,7 +36,7 @@ constexpr std::uint32_t kLengths = 16;
 constexpr std::uint32_t kKnown = 16;
 constexpr std::uint32_t kHistory = 4;           // flags that are remembered
 constexpr std::uint32_t kRememberedOffset = 3;  // offsets below it, whose flags are remembered
-// What a flag adds to what is known of both its triangles.
+// The classes that a flag adds to those of its two triangles.
 constexpr std::uint8_t kInteriorEdge = 1;
 constexpr std::uint8_t kOtherEdge = 4;
 
@@ -56,7 +56,7 @@ bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
 
 /// How two triangles meet at an edge.
 struct Meeting {
-  /// Of the corner of either triangle from the plane of the other, in grid steps; 0: in the plane.
+  /// Distance of a triangle's corner from the plane of the other, in grid steps; 0: in the plane.
   Context<kOffsets> offset;
   Context<kAngles> angle;       // between the normals
   Context<kDirections> slope;   // of the first triangle: horizontal, vertical, other

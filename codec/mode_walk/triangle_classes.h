@@ -40,7 +40,7 @@ struct Continuation {
   Context<kSideClasses> side;            // of w: below the gate's plane, in it, above it
   Context<kDeviationClasses> deviation;  // distance of w from that plane in grid steps
   Context<kRadiusClasses> radius;        // circumradius by the gate's length, steps of sqrt(2)
-  /// Distance of w from a + b - o by the gate's length, likewise.
+  /// Class of |w - (a + b - o)| / |gate|, in octaves.
   Context<kParallelogramClasses> parallelogram;
 };
 Continuation continuation(const Gate& gate, const Point& w);

@@ -18,19 +18,19 @@ namespace watertight::codec::walk {
 namespace {
 
 // Contexts (docs/format-walk.md, "The walk").
-/// Of a candidate: unused, used, closing the left or the right edge or both, or closed.
+/// The state of a candidate: unused, used, closing the left or the right edge or both, or closed.
 constexpr std::uint32_t kStates = 6;
-/// Of a candidate: one of several faces at the gate, the only face, no face.
+/// The faces of a candidate: one of several faces at the gate, the only face, no face.
 constexpr std::uint32_t kKinds = 3;
 /// Which edges beside the gate a candidate closes.
 constexpr std::uint32_t kCloses = 4;
-/// Of the number of candidates from faces.
+/// Classes of the number of candidates from faces.
 constexpr std::uint32_t kCounts = 7;
 constexpr std::uint32_t kFewCounts = 5;
 constexpr std::uint32_t kLikelihoods = 64;
 constexpr std::uint32_t kRanks = 4;
 
-// What is asked with Rare; one of its contexts is not used.
+// The questions asked with Rare; one of its contexts is not used.
 constexpr Context<7> kIsManifold{0U};
 constexpr Context<7> kIsMore{5U};
 /// Is the vertex in the distant list? By the length of the list.
@@ -157,7 +157,8 @@ class Walk {
   bool is_manifold_ = true;
   std::vector<Index> source_;  // writing: half-edge given for the first half-edge of each triangle
 
-  // Of the gate at hand. A vertex is marked with the stamp when it is listed or ruled out.
+  // The candidates of the present gate. A vertex is marked with the stamp when it is listed or
+  // ruled out.
   std::vector<Candidate> candidates_;
   std::vector<Candidate> distant_;
   std::vector<Index> mark_;
@@ -262,7 +263,7 @@ void Walk::list_candidates(Index gate) {
   const Index b = front_.to(gate);
   mark_used(gate);
   candidates_.clear();
-  const Gate frame(points_[a], points_[b], points_[front_.corner(gate)]);
+  const Gate shape(points_[a], points_[b], points_[front_.corner(gate)]);
   const auto faces = edges_.faces_at(a, b);
   std::uint32_t count = 0;
   const auto opposite = [&](Index face) {
@@ -277,13 +278,13 @@ void Walk::list_candidates(Index gate) {
     const Index w = opposite(face);
     const bool possible = is_possible(w);
     mark_[w] = stamp_;
-    if (possible) candidates_.push_back(describe(frame, gate, w, face, count));
+    if (possible) candidates_.push_back(describe(shape, gate, w, face, count));
   }
   for (std::size_t i = 0; i < closing_.size(); ++i) {
     const Index w = closing_[i];
     if (!is_possible(w)) continue;
     mark_[w] = stamp_;
-    candidates_.push_back(describe(frame, gate, w, kNone, count));
+    candidates_.push_back(describe(shape, gate, w, kNone, count));
   }
   steps_left_ -= std::min<std::uint64_t>(faces.size(), steps_left_);
   score<kCandidate>(candidates_);
@@ -293,7 +294,7 @@ void Walk::list_candidates(Index gate) {
 void Walk::list_distant(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
-  const Gate frame(points_[a], points_[b], points_[front_.corner(gate)]);
+  const Gate shape(points_[a], points_[b], points_[front_.corner(gate)]);
   distant_.clear();
   for (const Index end : {a, b}) {
     for (const auto neighbours : {edges_.smaller_neighbours(end), edges_.greater_neighbours(end)}) {
@@ -301,7 +302,7 @@ void Walk::list_distant(Index gate) {
       for (const Index w : neighbours) {
         if (!is_possible(w)) continue;
         mark_[w] = stamp_;
-        distant_.push_back(describe(frame, gate, w, kNone, 0));
+        distant_.push_back(describe(shape, gate, w, kNone, 0));
       }
     }
   }

@@ -21,7 +21,7 @@ constexpr std::uint8_t kMagic[2] = {'W', 'T'};
 constexpr std::uint8_t kPageFlag = 0x80;  // of the version byte
 constexpr std::size_t kHeaderBytes = 4;
 
-// What a stream of so many bytes may bring forth: docs/format.md, "Limits".
+// The most that a stream of so many bytes may decode to: docs/format.md, "Limits".
 constexpr std::uint64_t kFreeVertices = 4096;
 constexpr std::uint64_t kVerticesPerByte = 64;
 
@@ -37,7 +37,7 @@ std::size_t size_of(const PlainSections& plain) {
 std::uint32_t page_checksum(const PageContents& page, PageKind kind) {
   ByteWriter writer;
   std::uint32_t sum = 0;
-  for (const StoredSolid& solid : page.solids) {
+  for (const PageSolid& solid : page.solids) {
     sum = checksum_of(page.frame.acceptance, solid.canonical->boundary.solid(),
                       solid.keeps_order ? solid.canonical->order : geometry::SourceOrder{});
     writer.u32(sum);
@@ -80,7 +80,7 @@ Result<PlainSections> plain_sections(const geometry::CanonicalSolid& canonical, 
 }
 
 /// The shorter of modes raw and bitmap, with its sections.
-Result<Mode> choose_plain(StoredSolid& solid, const Plan& plan) {
+Result<Mode> choose_plain(PageSolid& solid, const Plan& plan) {
   auto raw = plain_sections(*solid.canonical, Mode::raw, nullptr);
   if (!raw) return raw.error();
   solid.plain = std::move(raw).value();
@@ -93,7 +93,7 @@ Result<Mode> choose_plain(StoredSolid& solid, const Plan& plan) {
 
 /// The plan with the mode that costs least, if it leaves the mode open. Makes the sections of modes
 /// raw and bitmap, unless they are there.
-Result<Plan> complete(const SolidCoder& coder, StoredSolid& solid, Plan plan,
+Result<Plan> complete(const SolidCoder& coder, PageSolid& solid, Plan plan,
                       const delaunay::Certificate* certificate) {
   if (plan.mode == Mode::automatic) {
     plan = coder.cheapest(solid, plan);
@@ -158,8 +158,8 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
 
 }  // namespace
 
-StoredSolid stored_solid(const OrientedBoundary& boundary, bool keeps_order) {
-  StoredSolid solid;
+PageSolid page_solid(const OrientedBoundary& boundary, bool keeps_order) {
+  PageSolid solid;
   solid.canonical = geometry::canonical_form(boundary);
   solid.keeps_order = keeps_order && !solid.canonical->order.is_identity();
   if (auto gridded = grid_solid(solid.canonical->boundary.solid())) {
@@ -191,7 +191,7 @@ Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, Pag
   }
   SolidCoder coder(stream, *models, page.frame, none);
   for (std::size_t i = 0; i < page.solids.size(); ++i) {
-    StoredSolid& solid = page.solids[i];
+    PageSolid& solid = page.solids[i];
     auto plan = complete(coder, solid, plans[i], certificate);
     if (!plan) return plan.error();
     plans[i] = std::move(plan).value();
@@ -250,7 +250,7 @@ Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& 
   page.frame_cost = stream.cost();
   SolidCoder coder(stream, *models, page.contents.frame, limits_of_stream(size, limits));
   for (std::uint64_t i = 0; i < count; ++i) {
-    StoredSolid solid;
+    PageSolid solid;
     const StreamCosts before = stream.costs();
     if (auto status = coder.code(solid); !status) {
       Error error = std::move(status).error();
@@ -273,7 +273,7 @@ Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& 
 }
 
 Result<Decoded> decoded_of(const StoredPage& page, std::size_t number) {
-  const StoredSolid& stored = page.contents.solids[number];
+  const PageSolid& stored = page.contents.solids[number];
   const Solid& canonical = stored.canonical->boundary.solid();
   BlobInfo info;
   info.version = kFormatVersion;

@@ -19,7 +19,7 @@ enum class PageKind : std::uint8_t {
 struct PageContents {
   Frame frame;
   std::uint8_t models = kModelNumber;
-  std::vector<StoredSolid> solids;
+  std::vector<PageSolid> solids;
 };
 
 /// A page as it was read.
@@ -37,19 +37,19 @@ struct StoredPage {
 Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, PageKind kind,
                                const delaunay::Certificate* certificate);
 
-/// What a stream of so many bytes may bring forth, whatever its caller allows (docs/format.md,
-/// "Limits").
+/// The most that a stream of so many bytes may decode to, whatever its caller allows
+/// (docs/format.md, "Limits").
 Limits limits_of_stream(std::size_t bytes, const Limits& limits);
 
 /// The limits hold for all solids together. Errors: malformed; unsupported; limit_exceeded.
 Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& limits);
 
 /// The stored form of a solid but for its mode: its canonical form, on its grid.
-StoredSolid stored_solid(const OrientedBoundary& boundary, bool keeps_order);
-/// What a page must share with this solid. Cost: linear.
+PageSolid page_solid(const OrientedBoundary& boundary, bool keeps_order);
+/// The frame of a page that may hold this solid. Cost: linear.
 Frame frame_of(const Solid& solid, const Acceptance& acceptance);
 
-/// What decode() answers for one solid of a page.
+/// The answer of decode() for one solid of a page.
 Result<Decoded> decoded_of(const StoredPage& page, std::size_t number);
 
 }  // namespace watertight::codec

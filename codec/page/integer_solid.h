@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the entropy coded modes code: a solid whose coordinates are whole numbers of lattice steps
-// in the frame of its page, as flat arrays like those of Solid.
+// The input of the entropy coded modes: a solid whose coordinates are whole numbers of lattice
+// steps in the frame of its page, as flat arrays like those of Solid.
 #pragma once
 
 #include <array>
@@ -65,7 +65,7 @@ std::optional<GriddedSolid> grid_solid(const Solid& canonical);
 /// Errors: malformed if a coordinate or the lattice leaves its range; limit_exceeded.
 Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, const Limits& limits);
 
-/// What the solids of a page before this one have left behind for it; empty in a blob of its own.
+/// Values that the earlier solids of a page leave for this one; empty in a blob of its own.
 struct PageMemory {
   GridPoint last_position{};  // the smallest vertex of the solid before
   std::vector<std::array<std::int64_t, 2>>

@@ -4,24 +4,17 @@
 // measures a solid on its page's grid (docs/format.md). For encode, decode and training.
 #pragma once
 
-#include <optional>
-
 #include "base/limits.h"
 #include "base/result.h"
 #include "codec/entropy/entropy_stream.h"
 #include "codec/entropy/model_bank.h"
-#include "codec/mode_parallelogram/vertex_options.h"
 #include "codec/page/integer_solid.h"
 
 namespace watertight::codec {
 
-/// What a mode may choose for a solid before it is written.
-struct WriterChoice {
-  /// Of mode parallelogram; nothing: code_solid() chooses by itself.
-  std::optional<parallelogram::VertexOptions> vertex_options;
-};
+struct WriterChoice;  // codec/page/writer_choice.h
 
-/// What every mode takes. `memory` is only looked at; the caller extends it after each solid.
+/// The function of a mode. It only reads `memory`; the caller extends that after each solid.
 /// Writing and measuring: requires a canonical solid and leaves it as it is; errors: not_encodable
 /// where the mode cannot hold it (the stream and the bank are then useless). Reading: `solid` must
 /// be empty; its vertices and facets come in any order; errors: malformed; limit_exceeded before
@@ -45,6 +38,8 @@ CodeSolid code_solid;
 
 /// Mode `parallelogram`: a front over triangles, each vertex predicted from those around it.
 namespace watertight::codec::parallelogram {
+struct VertexOptions;  // codec/mode_parallelogram/vertex_options.h
+
 const ModelLayout& model_layout();
 CodeSolid code_solid;
 /// The options that write a canonical solid in fewest bytes, from trials on a part of it. `models`

@@ -32,14 +32,14 @@ constexpr NumberShape kNumbers[] = {
 constexpr const FamilyShape& shape_of(Family family) { return kFamilies[family]; }
 constexpr const NumberShape& shape_of(Number number) { return kNumbers[number]; }
 
-// What is coded under Mantissa and Exponent.
+// The values coded under Mantissa and Exponent.
 constexpr Context<2> kOfStep{0U};
 constexpr Context<2> kOfPhase{1U};
-// What is asked with Origin.
+// The questions asked with Origin.
 constexpr Context<2> kIsCorner{0U};
 constexpr Context<2> kIsLastOrigin{1U};
 
-// What a solid whose tolerances are not stated was accepted under. Part of the format.
+// The acceptance of a solid whose tolerances are not stated. Part of the format.
 constexpr Tolerances kImpliedTolerances{0.01, 20.0, 0.0};
 
 constexpr int kModeBits = 3;
@@ -207,8 +207,8 @@ bool are_in_range(const IntegerSolid& solid) {
   });
 }
 
-/// Of triangles only, and so large that mode walk is not tried: it takes twice the time and memory
-/// of mode parallelogram and has been larger on every such mesh (bench/results/dense.md).
+/// True for a solid of triangles so large that mode walk is not tried: it takes twice the time and
+/// memory of mode parallelogram and has been larger on every such mesh (bench/results/dense.md).
 bool is_large_mesh(const IntegerSolid& solid) {
   constexpr std::size_t kMostVertices = 20'000;
   return solid.vertices.size() > kMostVertices &&
@@ -252,7 +252,7 @@ Mode SolidCoder::code_mode(Mode mode) {
   return static_cast<Mode>(last_mode_.value);
 }
 
-Status SolidCoder::code_geometry(StoredSolid& solid, const WriterChoice& choice) {
+Status SolidCoder::code_geometry(PageSolid& solid, const WriterChoice& choice) {
   const ModeCoder coder = coder_of(solid.mode);
   if (coder.code == nullptr) {
     return Error{ErrorCode::unsupported,
@@ -268,7 +268,7 @@ Status SolidCoder::code_geometry(StoredSolid& solid, const WriterChoice& choice)
   return coder.code(stream_, models_[coder.part], memory_, *solid.integers, choice, limits_);
 }
 
-Status SolidCoder::code_plain(StoredSolid& solid) {
+Status SolidCoder::code_plain(PageSolid& solid) {
   PlainSections& plain = solid.plain;
   if (solid.mode == Mode::bitmap) {
     plain.flags = static_cast<std::uint8_t>(stream_.code_bits(plain.flags, 8));
@@ -289,7 +289,7 @@ Status SolidCoder::code_plain(StoredSolid& solid) {
 
 /// The origin of the solid's lattice: the smallest corner of the solid (0), the origin of the solid
 /// before (1), or any (2).
-void SolidCoder::code_origin(StoredSolid& solid) {
+void SolidCoder::code_origin(PageSolid& solid) {
   if (frame_.grid.kind == LatticeKind::float64) return;
   ModelBank& models = models_[ModelPart::frame];
   const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
@@ -311,7 +311,7 @@ void SolidCoder::code_origin(StoredSolid& solid) {
   last_origin_ = origin;
 }
 
-Status SolidCoder::rebuild(StoredSolid& solid) const {
+Status SolidCoder::rebuild(PageSolid& solid) const {
   if (stream_.failed()) return Error{ErrorCode::malformed, "truncated or malformed solid"};
   if (solid.mode != Mode::raw && solid.mode != Mode::bitmap) {
     if (!are_in_range(*solid.integers)) {
@@ -340,7 +340,7 @@ Status SolidCoder::rebuild(StoredSolid& solid) const {
   return Done{};
 }
 
-Status SolidCoder::code_order(StoredSolid& solid) {
+Status SolidCoder::code_order(PageSolid& solid) {
   solid.keeps_order =
       models_[ModelPart::frame].code<kOrder>(stream_, {last_order_}, solid.keeps_order);
   last_order_ = Context<2>(solid.keeps_order);
@@ -364,7 +364,7 @@ void SolidCoder::take_from_limits(const Solid& solid) {
   take(limits_.shells, solid.shell_count());
 }
 
-Status SolidCoder::code(StoredSolid& solid, const WriterChoice& choice) {
+Status SolidCoder::code(PageSolid& solid, const WriterChoice& choice) {
   stream_.enter(StreamPart::frame);
   solid.mode = code_mode(solid.mode);
   const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
@@ -384,7 +384,7 @@ Status SolidCoder::code(StoredSolid& solid, const WriterChoice& choice) {
   return Done{};
 }
 
-std::optional<SolidCoder::Measure> SolidCoder::measure(const StoredSolid& solid, Mode mode,
+std::optional<SolidCoder::Measure> SolidCoder::measure(const PageSolid& solid, Mode mode,
                                                        const WriterChoice& choice) const {
   const ModeCoder coder = coder_of(mode);
   if (coder.code == nullptr || !solid.integers) return std::nullopt;
@@ -404,7 +404,7 @@ std::optional<SolidCoder::Measure> SolidCoder::measure(const StoredSolid& solid,
   return result;
 }
 
-Plan SolidCoder::cheapest(const StoredSolid& solid, const Plan& plan) const {
+Plan SolidCoder::cheapest(const PageSolid& solid, const Plan& plan) const {
   Plan best = plan;
   best.mode = Mode::automatic;
   std::uint64_t least = ~std::uint64_t{0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What stands around the solids of a page (docs/format.md, "Frame" and "Solid"): what they have in
-// common, and of each solid its mode, where its lattice begins, and its order. A blob is a page of
+// The parts of a page around its solids (docs/format.md, "Frame" and "Solid"): the values that they
+// share, and for each solid its mode, the origin of its lattice, and its order. A blob is a page of
 // one solid. Each function writes, reads or measures.
 #pragma once
 
@@ -14,11 +14,12 @@
 #include "codec/page/integer_solid.h"
 #include "codec/page/model_sets.h"
 #include "codec/page/modes.h"
+#include "codec/page/writer_choice.h"
 #include "geometry/canonical_form.h"
 
 namespace watertight::codec {
 
-/// What the solids of a page share.
+/// The values that the solids of a page share.
 struct Frame {
   Acceptance acceptance;
   std::uint32_t srid = 0;
@@ -47,8 +48,8 @@ struct PlainSections {
   bitmap::FaceCounts counts;  // of mode bitmap
 };
 
-/// A solid as it stands in a page: the same when it is written and when it has been read.
-struct StoredSolid {
+/// A solid as it stands in a page.
+struct PageSolid {
   Mode mode = Mode::raw;
   std::optional<geometry::CanonicalSolid> canonical;  // nothing before it is read
   bool keeps_order = false;  // the page has the source order; when read, another is the identity
@@ -74,29 +75,29 @@ class SolidCoder {
   /// Writing or measuring: requires a solid of this frame with all that its mode needs, which stays
   /// as it is; errors: not_encodable (the coder is then useless). Reading: requires an empty solid;
   /// errors: malformed; limit_exceeded.
-  Status code(StoredSolid& solid, const WriterChoice& choice = {});
+  Status code(PageSolid& solid, const WriterChoice& choice = {});
 
-  /// What a mode for integers would take for a solid.
+  /// The cost of a solid in a mode for integers.
   struct Measure {
     std::uint64_t cost = 0;  // of the solid's own part of the stream, in 1/65536 bit
     WriterChoice choice;     // with which it costs that
   };
   /// With `choice`, where it is made already. Nothing if the mode cannot hold the solid or is not
   /// for integers.
-  std::optional<Measure> measure(const StoredSolid& solid, Mode mode,
+  std::optional<Measure> measure(const PageSolid& solid, Mode mode,
                                  const WriterChoice& choice = {}) const;
 
   /// `plan` with the mode for integers that costs least, of those that it does not decline, and
   /// with the choices made for that; with Mode::automatic if none can hold the solid.
-  Plan cheapest(const StoredSolid& solid, const Plan& plan = {}) const;
+  Plan cheapest(const PageSolid& solid, const Plan& plan = {}) const;
 
  private:
   Mode code_mode(Mode mode);
-  Status code_geometry(StoredSolid& solid, const WriterChoice& choice);
-  Status code_plain(StoredSolid& solid);
-  void code_origin(StoredSolid& solid);
-  Status rebuild(StoredSolid& solid) const;
-  Status code_order(StoredSolid& solid);
+  Status code_geometry(PageSolid& solid, const WriterChoice& choice);
+  Status code_plain(PageSolid& solid);
+  void code_origin(PageSolid& solid);
+  Status rebuild(PageSolid& solid) const;
+  Status code_order(PageSolid& solid);
   void take_from_limits(const Solid& solid);
 
   EntropyStream& stream_;

@@ -30,7 +30,7 @@ enum Habit : std::uint32_t { kNextEdge, kLastEdge, kNeighbour, kSuccessor, kFirs
 constexpr Index kMostScanned = 64;
 constexpr Index kMostNeighbours = 12;
 
-// What is arranged, as the context of Straight.
+// The things that are arranged, as the context of Straight.
 constexpr Context<8> kShells{0U};
 constexpr Context<8> kRings{1U};
 constexpr Context<8> kVertices{2U};

@@ -136,8 +136,8 @@ std::string header_text(const Json& root) {
   return out + '}';
 }
 
-/// Notes how the feature's text differs from the one we would write. Of a feature that cannot be
-/// written the layout keeps the whole text.
+/// Notes how the feature's text differs from the one we would write. If the feature
+/// cannot be written, the layout keeps the whole text.
 void keep_text(const CityHeader& header, std::string_view text, Feature& feature) {
   const auto plain = write_city_json_feature(header, feature);
   feature.layout = describe_layout(plain ? *plain : std::string(), text);

@@ -8,7 +8,7 @@
 
 Rules, one function each:
   layers       a folder includes only itself, base, and the folders its CMakeLists.txt DEPENDS on
-  modes        no mode of the codec includes another
+  modes        no mode of the codec includes another, nor a header that does
   existence    a quoted include of the product names a file from the repository's root (tests and
                benches may also name a header beside them)
   homes        third-party headers stay in their folders
@@ -145,12 +145,18 @@ MODE = re.compile(r"codec/(mode_\w+)/")
 
 
 def check_modes(tree):
-    for name, includes in tree.includes.items():
+    for name in tree.includes:
         own = MODE.match(name)
-        for _, path in includes:
-            other = MODE.match(path)
-            if own and other and own.group(1) != other.group(1):
-                yield f"{name}: modes: includes \"{path}\" of another mode"
+        seen, pending = {name}, [name] if own else []
+        while pending:
+            for _, path in tree.includes[pending.pop()]:
+                if path in seen or path not in tree.includes:
+                    continue
+                seen.add(path)
+                pending.append(path)
+                other = MODE.match(path)
+                if other and own.group(1) != other.group(1):
+                    yield f"{name}: modes: includes \"{path}\" of another mode, at least through a header"
 
 
 def check_existence(tree):

@@ -50,7 +50,10 @@ build gxx-O0 "$work_directory/gxx-O0" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS
 build gxx-Os "$work_directory/gxx-Os" -DCMAKE_BUILD_TYPE=MinSizeRel
 build gxx-LTO "$work_directory/gxx-LTO" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON
 build clang-O3 "$work_directory/clang-O3" -DCMAKE_BUILD_TYPE=Release -DWATERTIGHT_SERVER=OFF \
-  -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
+  -DWATERTIGHT_ENGINES=OFF -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
+for engine in watertight-worker watertight-tetgen; do # black boxes, the same for all builds
+  ln -sf "$release/bin/$engine" "$work_directory/clang-O3/bin/"
+done
 build gxx-checked "$source_directory/build/checked" --preset checked
 
 print_fingerprint gxx-O3 "$release" "$@"

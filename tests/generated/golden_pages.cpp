@@ -323,7 +323,7 @@ Result<Bytes> encode_golden_page(const GoldenPage& golden) {
   page.frame = codec::frame_of(golden.solids.front().solid(), {});
   std::vector<codec::Plan> plans;
   for (std::size_t i = 0; i < golden.solids.size(); ++i) {
-    page.solids.push_back(codec::stored_solid(golden.solids[i], true));
+    page.solids.push_back(codec::page_solid(golden.solids[i], true));
     plans.push_back({.mode = golden.modes[i % golden.modes.size()]});
   }
   return codec::write_page_bytes(page, plans, codec::PageKind::page, nullptr);

@@ -141,7 +141,7 @@ Result<std::vector<Decoded>> decode_unchecked(ByteView bytes, const Limits& limi
                           codec::limits_of_stream(rest.size(), limits));
   std::vector<Decoded> solids;
   for (std::uint64_t i = 0; i < count; ++i) {
-    codec::StoredSolid solid;
+    codec::PageSolid solid;
     if (auto status = coder.code(solid); !status) break;
     page.contents.solids.push_back(std::move(solid));
     page.costs.emplace_back();

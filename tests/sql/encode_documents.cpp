@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The library's results for the solids of files, as rows for COPY: name, EWKB, blob (\N when the
-// solid is not valid). Of a blob (a golden), the solid that it decodes to. run_regress.sh compares
+// solid is not valid). For a blob (a golden), the solid that it decodes to. run_regress.sh compares
 // them with what the extension makes of the same EWKB. Undecided solids and files that cannot be
 // read are left out.
 #include <cstdio>

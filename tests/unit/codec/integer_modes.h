@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/page/modes.h"
+#include "codec/page/writer_choice.h"
 #include "tests/generated/generated_solids.h"
 
 namespace watertight::test {

@@ -11,6 +11,7 @@
 
 #include "codec/mode_parallelogram/axis_places.h"
 #include "codec/page/modes.h"
+#include "codec/page/writer_choice.h"
 #include "geometry/canonical_form.h"
 #include "tests/generated/generated_solids.h"
 

@@ -109,7 +109,7 @@ TEST_CASE("what an entropy stream writes it reads, and ends where it ended") {
   }
 }
 
-TEST_CASE("a measuring stream tells the bytes that a writing one takes") {
+TEST_CASE("a measuring stream measures the bytes that a writing one takes") {
   std::vector<Sample> all = samples(7, 5000);
   codec::EntropyStream writer = codec::EntropyStream::writer();
   codec::EntropyStream meter = codec::EntropyStream::meter();

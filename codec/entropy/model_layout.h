@@ -4,6 +4,9 @@
 // the format's text, in its order, and a table of shapes for each. Beside the tables, two functions
 // shape_of(Family) and shape_of(Number) return a row; through them ModelBank::code<family>() checks
 // the type of each context against the table when it is compiled.
+//
+// None of these is in an anonymous namespace: g++ 12 instantiates ModelBank::code<family>() of an
+// enumerator without linkage as a symbol that the linker merges with that of another file.
 #pragma once
 
 #include <array>

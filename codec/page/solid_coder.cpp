@@ -14,23 +14,33 @@
 #include "codec/sections/facet_listing.h"
 
 namespace watertight::codec {
-namespace {
 
 // The families and numbers, with the names, the order and the sizes of docs/format.md, "Frame".
-enum Family : std::uint32_t { kImplied, kProof, kKind, kOneStep, kPhase, kMode, kOrigin, kOrder };
-enum Number : std::uint32_t { kRuleSet, kSrid, kMantissa, kExponent, kOffset, kSection };
+enum FrameFamily : std::uint32_t {
+  kImplied,
+  kProof,
+  kKind,
+  kOneStep,
+  kPhase,
+  kMode,
+  kOrigin,
+  kOrder
+};
+enum FrameNumber : std::uint32_t { kRuleSet, kSrid, kMantissa, kExponent, kOffset, kSection };
 
-constexpr FamilyShape kFamilies[] = {
+constexpr FamilyShape kFrameFamilies[] = {
     {kImplied, 1, {1}}, {kProof, 1, {1}}, {kKind, 1, {3}},   {kOneStep, 1, {1}},
     {kPhase, 1, {1}},   {kMode, 1, {64}}, {kOrigin, 1, {8}}, {kOrder, 1, {2}},
 };
-constexpr NumberShape kNumbers[] = {
+constexpr NumberShape kFrameNumbers[] = {
     {kRuleSet, 1, {1}},  {kSrid, 1, {1}},   {kMantissa, 1, {2}},
     {kExponent, 1, {2}}, {kOffset, 1, {3}}, {kSection, 1, {1}},
 };
 
-constexpr const FamilyShape& shape_of(Family family) { return kFamilies[family]; }
-constexpr const NumberShape& shape_of(Number number) { return kNumbers[number]; }
+constexpr const FamilyShape& shape_of(FrameFamily family) { return kFrameFamilies[family]; }
+constexpr const NumberShape& shape_of(FrameNumber number) { return kFrameNumbers[number]; }
+
+namespace {
 
 // The values coded under Mantissa and Exponent.
 constexpr Context<2> kOfStep{0U};
@@ -218,7 +228,7 @@ bool is_large_mesh(const IntegerSolid& solid) {
 }  // namespace
 
 const ModelLayout& frame_layout() {
-  static constexpr ModelLayout layout{kFamilies, kNumbers};
+  static constexpr ModelLayout layout{kFrameFamilies, kFrameNumbers};
   return layout;
 }
 

@@ -11,19 +11,20 @@
 #include "codec/mesh/edge_sides.h"
 
 namespace watertight::codec {
-namespace {
 
 // The families, with the names, the order and the sizes of docs/format.md, "Order".
-enum Family : std::uint32_t { kStraight, kCandidate, kScan, kStart };
+enum OrderFamily : std::uint32_t { kStraight, kCandidate, kScan, kStart };
 
-constexpr FamilyShape kFamilies[] = {
+constexpr FamilyShape kOrderFamilies[] = {
     {kStraight, 1, {8}},
     {kCandidate, 6, {216, 150, 576}},
     {kScan, 1, {50, 80, 64}},
     {kStart, 5, {720, 120, 135, 648, 256, 144}},
 };
 
-constexpr const FamilyShape& shape_of(Family family) { return kFamilies[family]; }
+constexpr const FamilyShape& shape_of(OrderFamily family) { return kOrderFamilies[family]; }
+
+namespace {
 
 /// The rule by which a candidate for the next facet was found.
 enum Habit : std::uint32_t { kNextEdge, kLastEdge, kNeighbour, kSuccessor, kFirstLeft, kNoHabit };
@@ -479,7 +480,7 @@ class OrderCoder {
 }  // namespace
 
 const ModelLayout& order_layout() {
-  static constexpr ModelLayout layout{kFamilies, {}};
+  static constexpr ModelLayout layout{kOrderFamilies, {}};
   return layout;
 }
 

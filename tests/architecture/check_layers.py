@@ -22,6 +22,8 @@ Rules, one function each:
   namespaces   a file of a folder puts its names into the folder's namespace, a file of a mode of the
                codec into the mode's; namespace watertight has base/ and the names that headers
                export to it, which docs/architecture.md lists
+  families     the codec's enumerations of model families are in no anonymous namespace
+               (codec/entropy/model_layout.h says why)
   names        no two files of the product define one qualified type, constant or function
 """
 import collections
@@ -348,7 +350,20 @@ def check_names(tree):
                 yield f"{name}:{number}: names: {defined} is defined in {other} too"
 
 
-RULES = [check_layers, check_modes, check_existence, check_homes, check_cgal, check_licence, check_places,
+ENUMERATION = re.compile(r"enum (?:class )?\w*(?:Family|Number)\b")
+
+
+def check_families(tree):
+    for name, text in tree.text.items():
+        if not name.startswith("codec/") or name not in tree.includes:
+            continue
+        for path, lines in namespace_blocks(text):
+            for number, line in lines:
+                if "(anonymous)" in path and ENUMERATION.match(line):
+                    yield f"{name}:{number}: families: in an anonymous namespace, where the linker merges templates"
+
+
+RULES = [check_layers, check_families, check_modes, check_existence, check_homes, check_cgal, check_licence, check_places,
          check_unfinished, check_length, check_rooms, check_pairs,
          check_namespaces, check_names]
 
@@ -431,6 +446,8 @@ BREAKS = [
      "}  // namespace watertight::geometry\n", "names", "watertight::geometry::Solid"),
     ("geometry/kernel.h", SPDX + "namespace watertight::geometry {\nusing Solid = int;\n"
      "}  // namespace watertight::geometry\n", "names", "watertight::geometry::Solid"),
+    ("codec/blob.cpp", SPDX + "namespace watertight::codec {\nnamespace {\nenum Family : int { kA };\n}  // namespace\n"
+     "}  // namespace watertight::codec\n", "families", "anonymous"),
     ("codec/mode_walk/shapes.h", SPDX + "namespace watertight::codec::walk {\nstruct Gate {\n};\n"
      "}  // namespace watertight::codec::walk\n", "names", "watertight::codec::walk::Gate"),
 ]

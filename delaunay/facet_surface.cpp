@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "delaunay/shell_contacts.h"
+#include "geometry/mesh/edge_sides.h"
 #include "geometry/predicates/predicates.h"
 
 namespace watertight::delaunay {
@@ -26,14 +27,6 @@ namespace {
 
 /// Rounding of the double arithmetic below, in relative terms: at most 32 operations each.
 constexpr double kArithmetic = 32 * 0x1p-53;
-
-struct FaceEdge {
-  Index low = 0;
-  Index high = 0;
-  Index face = 0;
-  bool is_forward = false;  // the face, as given, runs from low to high
-  friend auto operator<=>(const FaceEdge&, const FaceEdge&) = default;
-};
 
 }  // namespace
 
@@ -64,21 +57,13 @@ class FacetSurfaces::Mesh {
   explicit Mesh(std::span<const ConstrainedFace> faces) {
     faces_.reserve(faces.size());
     vertices_.reserve(3 * faces.size());
-    edges_.reserve(3 * faces.size());
     for (const ConstrainedFace& face : faces) {
       faces_.push_back(face.vertices);
       vertices_.insert(vertices_.end(), face.vertices.begin(), face.vertices.end());
     }
     std::sort(vertices_.begin(), vertices_.end());
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-    for (Index f = 0; f < faces_.size(); ++f) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index a = faces_[f][k];
-        const Index b = faces_[f][(k + 1) % 3];
-        edges_.push_back({std::min(a, b), std::max(a, b), f, a < b});
-      }
-    }
-    std::sort(edges_.begin(), edges_.end());
+    sides_ = geometry::sides_of_triangles(faces_, 0, static_cast<Index>(faces_.size()));
   }
 
   const std::vector<Triangle>& faces() const { return faces_; }
@@ -147,37 +132,28 @@ class FacetSurfaces::Mesh {
   }
 
  private:
-  /// Finds each face's neighbours. False if an edge has three faces.
+  using EdgeSides = std::span<const geometry::EdgeSide>;
+
+  /// Finds each face's neighbours. False if an edge has three faces. Requires the faces as given.
   bool link() {
     neighbour_.assign(faces_.size(), {kNone, kNone, kNone});
-    by_vertex_.reserve(2 * edges_.size());
-    for (std::size_t i = 0; i < edges_.size();) {
-      std::size_t end = i + 1;
-      while (end < edges_.size() && edges_[end].low == edges_[i].low &&
-             edges_[end].high == edges_[i].high) {
-        ++end;
-      }
-      if (end - i > 2) return false;
-      if (end - i == 2) {
-        neighbour_[edges_[i].face][slot(edges_[i])] = edges_[i + 1].face;
-        neighbour_[edges_[i + 1].face][slot(edges_[i + 1])] = edges_[i].face;
+    by_vertex_.reserve(2 * sides_.size());
+    bool is_surface = true;
+    geometry::for_each_edge(std::span(std::as_const(sides_)), [&](EdgeSides edge) {
+      is_surface = is_surface && edge.size() <= 2;
+      if (edge.size() == 2) {
+        neighbour_of(edge[0].half_edge) = edge[1].half_edge / 3;
+        neighbour_of(edge[1].half_edge) = edge[0].half_edge / 3;
       }
       ++edge_count_;
-      by_vertex_.emplace_back(edges_[i].low, edges_[i].high);
-      by_vertex_.emplace_back(edges_[i].high, edges_[i].low);
-      i = end;
-    }
+      by_vertex_.emplace_back(edge[0].low, edge[0].high);
+      by_vertex_.emplace_back(edge[0].high, edge[0].low);
+    });
     std::sort(by_vertex_.begin(), by_vertex_.end());
-    return true;
+    return is_surface;
   }
 
-  /// Position of an edge in its face, as the face was given.
-  std::size_t slot(const FaceEdge& edge) const {
-    const Index from = edge.is_forward ? edge.low : edge.high;
-    std::size_t k = 0;
-    while (faces_[edge.face][k] != from) ++k;
-    return k;
-  }
+  Index& neighbour_of(Index half_edge) { return neighbour_[half_edge / 3][half_edge % 3]; }
 
   bool runs(Index face, Index from, Index to) const {
     const std::size_t k = corner(face, from);
@@ -229,7 +205,7 @@ class FacetSurfaces::Mesh {
   }
 
   void collect_boundary() {
-    boundary_.reserve(2 * edge_count_ - edges_.size());
+    boundary_.reserve(2 * edge_count_ - sides_.size());
     for (Index f = 0; f < faces_.size(); ++f) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (neighbour_[f][k] == kNone) boundary_.emplace_back(faces_[f][k], faces_[f][(k + 1) % 3]);
@@ -240,7 +216,7 @@ class FacetSurfaces::Mesh {
 
   std::vector<Triangle> faces_;
   std::vector<Index> vertices_;
-  std::vector<FaceEdge> edges_;
+  std::vector<geometry::EdgeSide> sides_;  // of the faces as given
   std::vector<std::array<Index, 3>> neighbour_;
   std::vector<std::pair<Index, Index>> by_vertex_;
   std::vector<std::pair<Index, Index>> boundary_;

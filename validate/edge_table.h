@@ -16,6 +16,7 @@ struct EdgeUse {
   Index high = 0;  // the larger vertex
   Index facet = 0;
   Index corner = 0;  // index in ring_vertices of the vertex where it starts
+  bool has_edge_of(const EdgeUse& other) const { return low == other.low && high == other.high; }
 };
 
 /// Where a corner stands.
@@ -55,20 +56,5 @@ class EdgeTable {
   std::vector<Index> vertices_;
   std::vector<EdgeUse> uses_;
 };
-
-/// Calls visit(span of the uses of one edge) for each edge in order.
-template <class Visit>
-void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
-  std::size_t begin = 0;
-  while (begin < uses.size()) {
-    std::size_t end = begin + 1;
-    while (end < uses.size() && uses[end].low == uses[begin].low &&
-           uses[end].high == uses[begin].high) {
-      ++end;
-    }
-    visit(uses.subspan(begin, end - begin));
-    begin = end;
-  }
-}
 
 }  // namespace watertight::validate

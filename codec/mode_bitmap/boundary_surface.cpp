@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "codec/mesh/edge_sides.h"
-#include "codec/mesh/facet_rings.h"
-#include "codec/mesh/half_edges.h"
+#include "geometry/mesh/edge_sides.h"
+#include "geometry/mesh/facet_rings.h"
+#include "geometry/mesh/half_edges.h"
 
 namespace watertight::codec::bitmap {
 namespace {
@@ -35,20 +35,22 @@ BoundarySurface::BoundarySurface(std::span<const Triangle> triangles, Index vert
 
 void BoundarySurface::find_joints() {
   const auto count = static_cast<Index>(triangles_.size());
-  const std::vector<EdgeSide> sides = sides_of_triangles(triangles_, 0, count);
+  const std::vector<geometry::EdgeSide> sides = geometry::sides_of_triangles(triangles_, 0, count);
   joints_of_.assign(count, {});
-  for_each_edge(std::span<const EdgeSide>(sides), [&](std::span<const EdgeSide> edge) {
-    if (edge.size() != 2) return;
-    const Index first = std::min(edge[0].half_edge, edge[1].half_edge);
-    const Index second = std::max(edge[0].half_edge, edge[1].half_edge);
-    const auto joint = static_cast<Index>(joints_.size());
-    joints_.push_back({edge[0].low,
-                       edge[0].high,
-                       {first / 3, second / 3},
-                       {corner_of(triangles_, first), corner_of(triangles_, second)}});
-    joints_of_[first / 3].push_back(joint);
-    joints_of_[second / 3].push_back(joint);
-  });
+  geometry::for_each_edge(
+      std::span<const geometry::EdgeSide>(sides), [&](std::span<const geometry::EdgeSide> edge) {
+        if (edge.size() != 2) return;
+        const Index first = std::min(edge[0].half_edge, edge[1].half_edge);
+        const Index second = std::max(edge[0].half_edge, edge[1].half_edge);
+        const auto joint = static_cast<Index>(joints_.size());
+        joints_.push_back(
+            {edge[0].low,
+             edge[0].high,
+             {first / 3, second / 3},
+             {geometry::corner_of(triangles_, first), geometry::corner_of(triangles_, second)}});
+        joints_of_[first / 3].push_back(joint);
+        joints_of_[second / 3].push_back(joint);
+      });
 }
 
 void BoundarySurface::find_components() {
@@ -99,7 +101,7 @@ Status BoundarySurface::orient(const std::vector<bool>& is_flipped) {
 Index BoundarySurface::half_edge_of(Index triangle, Index corner_vertex) const {
   const Triangle& t = turned_[triangle];
   const Index corner = t[0] == corner_vertex ? 0 : t[1] == corner_vertex ? 1 : 2;
-  return next_half_edge(triangle * 3 + corner);  // opposite the corner
+  return geometry::next_half_edge(triangle * 3 + corner);  // opposite the corner
 }
 
 std::vector<Index> BoundarySurface::interior_twins() const {
@@ -117,7 +119,7 @@ std::vector<Index> BoundarySurface::interior_twins() const {
 
 std::vector<std::vector<VertexRing>> BoundarySurface::rings_of_facets() const {
   std::vector<std::vector<VertexRing>> rings(facet_count());
-  for (FacetRing& ring : facet_rings(turned_, interior_twins())) {
+  for (geometry::FacetRing& ring : geometry::facet_rings(turned_, interior_twins())) {
     std::erase_if(ring.vertices, [&](Index vertex) { return vertex >= vertex_count_; });
     rings[facets_.set_of[ring.triangle]].push_back(std::move(ring.vertices));
   }

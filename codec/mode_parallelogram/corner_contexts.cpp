@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "codec/mode_parallelogram/corner_contexts.h"
+#include "codec/mode_parallelogram/vectors.h"
 
 #include <algorithm>
-
-#include "codec/mode_parallelogram/classes.h"
 
 namespace watertight::codec::parallelogram {
 namespace {

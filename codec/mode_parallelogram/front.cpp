@@ -18,9 +18,9 @@ double SurfaceFront::angle(Index at, Index from, Index to) const {
 
 Index SurfaceFront::add_gate(Index side, Index half_edge) {
   Gate gate;
-  gate.start = start_of(triangles_, side);
-  gate.end = end_of(triangles_, side);
-  gate.apex = corner_of(triangles_, side);
+  gate.start = geometry::start_of(triangles_, side);
+  gate.end = geometry::end_of(triangles_, side);
+  gate.apex = geometry::corner_of(triangles_, side);
   gate.side = side;
   gate.half_edge = half_edge;
   gates_.push_back(gate);

@@ -9,8 +9,8 @@
 #include <deque>
 #include <vector>
 
-#include "codec/mesh/half_edges.h"
 #include "codec/mode_parallelogram/vectors.h"
+#include "geometry/mesh/half_edges.h"
 #include "geometry/point.h"
 
 namespace watertight::codec::parallelogram {
@@ -45,7 +45,7 @@ class SurfaceFront {
   /// The third vertex of the triangle beyond a half-edge, kNone while a gate.
   Index beyond(Index half_edge) const {
     const Index opposite = twin_[half_edge];
-    return opposite == kNone ? kNone : corner_of(triangles_, opposite);
+    return opposite == kNone ? kNone : geometry::corner_of(triangles_, opposite);
   }
   std::uint32_t degree(Index vertex) const { return degrees_[vertex]; }
 

@@ -3,16 +3,15 @@
 #include <numeric>
 
 #include "codec/entropy/bank_trial.h"
-#include "codec/mesh/cut_surface.h"
-#include "codec/mesh/half_edges.h"
-#include "codec/mode_parallelogram/classes.h"
 #include "codec/mode_parallelogram/corner_contexts.h"
+#include "codec/mode_parallelogram/cut_surface.h"
 #include "codec/mode_parallelogram/families.h"
 #include "codec/mode_parallelogram/front.h"
 #include "codec/mode_parallelogram/vectors.h"
 #include "codec/mode_parallelogram/vertex_coder.h"
 #include "codec/page/modes.h"
 #include "codec/page/writer_choice.h"
+#include "geometry/mesh/half_edges.h"
 
 namespace watertight::codec::parallelogram {
 
@@ -63,7 +62,9 @@ class SurfaceCoder {
 
  private:
   bool is_writing() const { return surface_ != nullptr; }
-  Index true_vertex(Index half_edge) const { return start_of(surface_->triangles, half_edge); }
+  Index true_vertex(Index half_edge) const {
+    return geometry::start_of(surface_->triangles, half_edge);
+  }
   const GridPoint* true_position(Index true_index) const {
     return is_writing() ? &surface_->positions[true_index] : nullptr;
   }
@@ -133,8 +134,8 @@ class SurfaceCoder {
     bool truth = false;
     if (is_writing()) {
       const Index beyond = surface_->twin[gate.half_edge];
-      truth = surface_->twin[previous_half_edge(beyond)] == after.half_edge;
-      half_edge = next_half_edge(beyond);
+      truth = surface_->twin[geometry::previous_half_edge(beyond)] == after.half_edge;
+      half_edge = geometry::next_half_edge(beyond);
       if (ends && truth) {
         // A loop of three gates ends with one triangle beyond all of them. A triangle beyond only
         // two of them cannot be coded.
@@ -171,7 +172,7 @@ class SurfaceCoder {
     Index tip = kNone;
     if (is_writing()) {
       const Index beyond = surface_->twin[gate.half_edge];
-      half_edges = {next_half_edge(beyond), previous_half_edge(beyond)};
+      half_edges = {geometry::next_half_edge(beyond), geometry::previous_half_edge(beyond)};
       tip = true_vertex(half_edges[1]);
     }
     const bool is_new =
@@ -204,7 +205,7 @@ class SurfaceCoder {
       Index incoming = surface_->twin[half_edges[1]];
       const Index first = incoming;
       while (gate_of_[incoming] == kNone || !front_[gate_of_[incoming]].is_open) {
-        incoming = surface_->twin[next_half_edge(incoming)];
+        incoming = surface_->twin[geometry::next_half_edge(incoming)];
         if (incoming == first) return stuck();
       }
       truth = gate_of_[incoming];

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "codec/mesh/half_edges.h"
-#include "codec/mode_parallelogram/classes.h"
+#include "codec/mode_parallelogram/vectors.h"
+#include "geometry/mesh/half_edges.h"
 
 namespace watertight::codec::parallelogram {
 namespace {
@@ -37,8 +37,8 @@ const TipPrediction::Tip& TipPrediction::predict(const SurfaceFront& front,
   tip_.bends = combine(cosine_bucket(tip_.normal, normal_of(after, centres)),
                        cosine_bucket(tip_.normal, normal_of(before, centres)));
   const Vector outward = unit_by_reciprocal(cross(along, tip_.normal));
-  const Index right = front.beyond(next_half_edge(gate.side));
-  const Index left = front.beyond(previous_half_edge(gate.side));
+  const Index right = front.beyond(geometry::next_half_edge(gate.side));
+  const Index left = front.beyond(geometry::previous_half_edge(gate.side));
   const std::array<Vector, kOffsets> offsets{
       u + v - apex - middle,
       u + centres[after.end] - v - middle,

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "codec/mode_parallelogram/classes.h"
 #include "codec/mode_parallelogram/families.h"
+#include "codec/mode_parallelogram/vectors.h"
 
 namespace watertight::codec::parallelogram {
 

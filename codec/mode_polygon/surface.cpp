@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "codec/mesh/edge_sides.h"
-#include "codec/mesh/fans.h"
+#include "geometry/mesh/edge_sides.h"
+#include "geometry/mesh/fans.h"
 
 namespace watertight::codec::polygon {
 namespace {
@@ -17,8 +17,9 @@ std::optional<std::vector<Index>> twins_of(const IntegerSolid& solid) {
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
     const Index first = solid.facet_offsets[solid.shell_offsets[shell]];
     const Index last = solid.facet_offsets[solid.shell_offsets[shell + 1]];
-    const auto sides = sides_of_rings(solid.ring_vertices, solid.ring_offsets, first, last);
-    const auto twins = paired(sides, solid.ring_offsets[first]);
+    const auto sides =
+        geometry::sides_of_rings(solid.ring_vertices, solid.ring_offsets, first, last);
+    const auto twins = geometry::paired(sides, solid.ring_offsets[first]);
     if (!twins) return std::nullopt;
     twin.insert(twin.end(), twins->begin(), twins->end());
   }
@@ -93,7 +94,8 @@ Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& mem
                  "the ring edges of a shell are not matched by those of the same shell"};
   }
   surface.twin = std::move(*twins);
-  Fans fans = number_fans(surface.twin, [&surface](Index half) { return surface.previous(half); });
+  geometry::Fans fans = geometry::number_fans(
+      surface.twin, [&surface](Index half) { return surface.previous(half); });
   for (const Index half : fans.first) truth.vertex_of.push_back(solid.ring_vertices[half]);
   surface.vertex = std::move(fans.fan_of);
   surface.out_half = std::move(fans.first);

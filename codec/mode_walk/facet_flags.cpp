@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "codec/mesh/facet_rings.h"
-#include "codec/mesh/half_edges.h"
 #include "codec/mode_walk/families.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/mesh/facet_rings.h"
+#include "geometry/mesh/half_edges.h"
 #include "geometry/vector3.h"
 
 namespace watertight::codec::walk {
@@ -163,9 +163,10 @@ void Facets::code_flag(Index half_edge) {
   const Index twin = mesh_.twin[half_edge];
   const Index t = half_edge / 3;
   const Index u = twin / 3;
-  const Meeting m = meeting(
-      points_[start_of(mesh_.triangles, twin)], points_[end_of(mesh_.triangles, twin)],
-      points_[corner_of(mesh_.triangles, twin)], points_[corner_of(mesh_.triangles, half_edge)]);
+  const Meeting m = meeting(points_[geometry::start_of(mesh_.triangles, twin)],
+                            points_[geometry::end_of(mesh_.triangles, twin)],
+                            points_[geometry::corner_of(mesh_.triangles, twin)],
+                            points_[geometry::corner_of(mesh_.triangles, half_edge)]);
   const Context<2> linked(facets_.root(t) == facets_.root(u));
   const Context<kKnown> known_t(known_[t]);
   const Context<kKnown> known_u(known_[u]);
@@ -202,7 +203,7 @@ void Facets::number_facets() {
 
 /// Finds all rings and sorts them by facet, those of one facet by size, the largest first.
 void Facets::find_rings() {
-  for (FacetRing& ring : facet_rings(mesh_.triangles, inner_twin_)) {
+  for (geometry::FacetRing& ring : geometry::facet_rings(mesh_.triangles, inner_twin_)) {
     const double size = squared_diagonal(points_, ring.vertices);
     rings_.push_back({facet_[ring.triangle], std::move(ring.vertices), size});
   }

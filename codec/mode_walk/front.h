@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "codec/mesh/half_edges.h"
+#include "geometry/mesh/half_edges.h"
 #include "geometry/point.h"
 
 namespace watertight::codec::walk {
@@ -27,9 +27,9 @@ class WalkFront {
   /// Adds a triangle, whose half-edges must be unused, and joins them to open ones.
   void add(const Triangle& triangle);
 
-  Index from(Index half_edge) const { return start_of(triangles, half_edge); }
-  Index to(Index half_edge) const { return end_of(triangles, half_edge); }
-  Index corner(Index half_edge) const { return corner_of(triangles, half_edge); }
+  Index from(Index half_edge) const { return geometry::start_of(triangles, half_edge); }
+  Index to(Index half_edge) const { return geometry::end_of(triangles, half_edge); }
+  Index corner(Index half_edge) const { return geometry::corner_of(triangles, half_edge); }
   bool is_open(Index half_edge) const { return twin[half_edge] == kNone; }
 
   /// The half-edges of the component that leave `v`: this one first, then next_at().

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "codec/mesh/edge_sides.h"
-#include "codec/mesh/fans.h"
-#include "codec/mesh/half_edges.h"
 #include "codec/mode_walk/walk.h"
+#include "geometry/mesh/edge_sides.h"
+#include "geometry/mesh/fans.h"
+#include "geometry/mesh/half_edges.h"
 
 namespace watertight::codec::walk {
 
@@ -36,12 +36,12 @@ bool WalkTruth::take(BoundaryMesh& mesh, Index vertex_count) {
 
   for (std::size_t c = 0; c + 1 < mesh.component_first.size(); ++c) {
     const Index first = mesh.component_first[c];
-    const auto sides = sides_of_triangles(triangles_, first, mesh.component_first[c + 1]);
-    const auto is_again = [](const EdgeSide& a, const EdgeSide& b) {
+    const auto sides = geometry::sides_of_triangles(triangles_, first, mesh.component_first[c + 1]);
+    const auto is_again = [](const geometry::EdgeSide& a, const geometry::EdgeSide& b) {
       return a.has_edge_of(b) && a.is_downward == b.is_downward;
     };
     if (std::adjacent_find(sides.begin(), sides.end(), is_again) != sides.end()) return false;
-    const auto twins = paired(sides, 3 * first);
+    const auto twins = geometry::paired(sides, 3 * first);
     if (!twins) return false;
     twin_.insert(twin_.end(), twins->begin(), twins->end());
   }
@@ -51,7 +51,8 @@ bool WalkTruth::take(BoundaryMesh& mesh, Index vertex_count) {
 }
 
 bool WalkTruth::is_manifold() const {
-  return number_fans(twin_, previous_half_edge).first.size() + 1 == first_.size();
+  return geometry::number_fans(twin_, geometry::previous_half_edge).first.size() + 1 ==
+         first_.size();
 }
 
 Index WalkTruth::find_unused(const Triangle& triangle) const {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "codec/mesh/half_edges.h"
+#include "geometry/mesh/half_edges.h"
 #include "geometry/point.h"
 
 namespace watertight::codec::walk {
@@ -23,9 +23,9 @@ class WalkTruth {
   /// True if the triangles at each vertex form one fan.
   bool is_manifold() const;
 
-  Index from(Index half_edge) const { return start_of(triangles_, half_edge); }
-  Index to(Index half_edge) const { return end_of(triangles_, half_edge); }
-  Index corner(Index half_edge) const { return corner_of(triangles_, half_edge); }
+  Index from(Index half_edge) const { return geometry::start_of(triangles_, half_edge); }
+  Index to(Index half_edge) const { return geometry::end_of(triangles_, half_edge); }
+  Index corner(Index half_edge) const { return geometry::corner_of(triangles_, half_edge); }
   Index twin_of(Index half_edge) const { return twin_[half_edge]; }
 
   void use(Index half_edge) { is_used_[half_edge / 3] = true; }

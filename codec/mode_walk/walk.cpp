@@ -7,12 +7,12 @@
 #include <queue>
 #include <utility>
 
-#include "codec/mesh/half_edges.h"
 #include "codec/mode_walk/delaunay_edges.h"
 #include "codec/mode_walk/families.h"
 #include "codec/mode_walk/front.h"
 #include "codec/mode_walk/given_surface.h"
 #include "codec/mode_walk/triangle_classes.h"
+#include "geometry/mesh/half_edges.h"
 
 namespace watertight::codec::walk {
 namespace {
@@ -201,11 +201,11 @@ void Walk::mark_used(Index gate) {
   std::uint64_t steps = 1;
   for (Index h = front_.first_at(a); h != kNone; h = front_.next_at(h), ++steps) {
     mark_[front_.to(h)] = stamp_;
-    const Index incoming = previous_half_edge(h);
+    const Index incoming = geometry::previous_half_edge(h);
     if (front_.is_open(incoming)) close(front_.from(incoming), 1);
   }
   for (Index h = front_.first_at(b); h != kNone; h = front_.next_at(h), ++steps) {
-    mark_[front_.from(previous_half_edge(h))] = stamp_;
+    mark_[front_.from(geometry::previous_half_edge(h))] = stamp_;
     if (front_.is_open(h)) close(front_.to(h), 2);
   }
   steps_left_ -= std::min(steps, steps_left_);
@@ -340,7 +340,7 @@ void Walk::push_open(Index triangle) {
   }
   for (const Index v : front_.triangles[triangle]) {
     for (Index h = front_.first_at(v); h != kNone; h = front_.next_at(h)) {
-      const Index incoming = previous_half_edge(h);
+      const Index incoming = geometry::previous_half_edge(h);
       if (h / 3 == triangle) continue;
       if (front_.is_open(h) && pushed_[h] < kCertain) push(h);
       if (front_.is_open(incoming) && pushed_[incoming] < kCertain) push(incoming);
@@ -392,7 +392,7 @@ Status Walk::code_gate(Index gate) {
   Index source = kNone;
   Index truth = kNone;
   if (!is_reading()) {
-    source = truth_->twin_of(turned_half_edge(source_[gate / 3], gate % 3));
+    source = truth_->twin_of(geometry::turned_half_edge(source_[gate / 3], gate % 3));
     truth = truth_->corner(source);
   }
   std::sort(candidates_.begin(), candidates_.end(), is_more_likely);
@@ -470,7 +470,7 @@ Status Walk::code_seed(Index seed) {
   if (!is_reading() && truth == kNone) return not_encodable("a vertex without triangles");
   Triangle triangle{seed, 0, 0};
   for (Index k = 1; k < 3; ++k) {
-    const Index v = truth == kNone ? 0 : truth_->from(turned_half_edge(truth, k));
+    const Index v = truth == kNone ? 0 : truth_->from(geometry::turned_half_edge(truth, k));
     triangle[k] = static_cast<Index>(stream_.code_uniform(v, points_.size()));
   }
   if (triangle[1] == seed || triangle[2] == seed || triangle[1] == triangle[2]) return broken();

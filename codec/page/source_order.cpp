@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/mesh/edge_sides.h"
+#include "geometry/mesh/edge_sides.h"
 
 namespace watertight::codec {
 
@@ -134,16 +134,17 @@ class OrderCoder {
       }
     }
     across_.assign(facet_of_corner.size(), kNone);
-    const auto sides = sides_of_rings(solid_.arrays().ring_vertices, solid_.arrays().ring_offsets,
-                                      0, solid_.ring_count());
-    for_each_edge(std::span<const EdgeSide>(sides), [&](std::span<const EdgeSide> edge) {
-      const std::size_t upward = upward_count(edge);
-      if (upward == 0 || upward == edge.size()) return;
-      for (const EdgeSide& side : edge) {
-        const EdgeSide& twin = side.is_downward ? edge.front() : edge[upward];
-        across_[side.half_edge] = facet_of_corner[twin.half_edge];
-      }
-    });
+    const auto sides = geometry::sides_of_rings(
+        solid_.arrays().ring_vertices, solid_.arrays().ring_offsets, 0, solid_.ring_count());
+    geometry::for_each_edge(
+        std::span<const geometry::EdgeSide>(sides), [&](std::span<const geometry::EdgeSide> edge) {
+          const std::size_t upward = geometry::upward_count(edge);
+          if (upward == 0 || upward == edge.size()) return;
+          for (const geometry::EdgeSide& side : edge) {
+            const geometry::EdgeSide& twin = side.is_downward ? edge.front() : edge[upward];
+            across_[side.half_edge] = facet_of_corner[twin.half_edge];
+          }
+        });
   }
 
   /// Finds the facing of each facet and its size, twice the projected area, by Newell's sums over

@@ -8,6 +8,7 @@
 #include "base/quantity.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
+#include "geometry/mesh/edge_sides.h"
 #include "validate/edge_table.h"
 #include "validate/overlap/wedges.h"
 #include "validate/rules/open_edges.h"
@@ -76,7 +77,7 @@ class ShellExaminer {
   /// Calls visit(a, b) for the two uses of each edge that has two.
   template <class Visit>
   void for_each_pair(Visit visit) const {
-    for_each_edge(uses_, [&](EdgeSpan edge) {
+    geometry::for_each_edge(uses_, [&](EdgeSpan edge) {
       if (edge.size() == 2) visit(edge[0], edge[1]);
     });
   }
@@ -106,7 +107,7 @@ void ShellExaminer::check_facet_count() {
 
 void ShellExaminer::sort_edges() {
   topology_.is_manifold = true;
-  for_each_edge(uses_, [&](EdgeSpan edge) {
+  geometry::for_each_edge(uses_, [&](EdgeSpan edge) {
     if (edge.size() == 1) {
       open_.push_back(edge[0]);
     } else if (edge.size() > 2) {

@@ -10,7 +10,7 @@
 #include "codec/page/integer_solid.h"
 #include "geometry/point.h"
 
-namespace watertight::codec {
+namespace watertight::codec::parallelogram {
 
 /// Half-edge 3 t + k runs from corner k of triangle t to the next corner.
 struct CutSurface {
@@ -24,4 +24,4 @@ struct CutSurface {
 /// Errors: not_encodable unless all facets are triangles and each shell is closed.
 Result<CutSurface> cut_surface(const IntegerSolid& solid);
 
-}  // namespace watertight::codec
+}  // namespace watertight::codec::parallelogram

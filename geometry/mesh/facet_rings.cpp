@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "codec/mesh/facet_rings.h"
+#include "geometry/mesh/facet_rings.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "codec/mesh/half_edges.h"
+#include "geometry/mesh/half_edges.h"
 
-namespace watertight::codec {
+namespace watertight::geometry {
 namespace {
 
 class RingWalk {
@@ -87,4 +87,4 @@ std::vector<FacetRing> facet_rings(std::span<const Triangle> triangles,
   return RingWalk(triangles, inner_twin).run();
 }
 
-}  // namespace watertight::codec
+}  // namespace watertight::geometry

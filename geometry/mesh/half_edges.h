@@ -7,7 +7,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight::codec {
+namespace watertight::geometry {
 
 /// The half-edge of the same triangle that begins where this one ends.
 constexpr Index next_half_edge(Index half_edge) {
@@ -39,4 +39,4 @@ inline Index corner_of(std::span<const Triangle> triangles, Index half_edge) {
   return triangles[half_edge / 3][(half_edge % 3 + 2) % 3];
 }
 
-}  // namespace watertight::codec
+}  // namespace watertight::geometry

@@ -9,7 +9,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight::codec {
+namespace watertight::geometry {
 
 struct Fans {
   std::vector<Index> fan_of;  // half-edge -> the fan of the corner at which it begins
@@ -36,4 +36,4 @@ Fans number_fans(std::span<const Index> twin, const Previous& previous) {
   return fans;
 }
 
-}  // namespace watertight::codec
+}  // namespace watertight::geometry

@@ -11,7 +11,7 @@
 
 #include "geometry/point.h"
 
-namespace watertight::codec {
+namespace watertight::geometry {
 
 /// A half-edge as one side of the edge between two vertices. Sides are ordered by edge; of one
 /// edge, the upward sides come before the downward ones, each by half-edge.
@@ -24,7 +24,7 @@ struct EdgeSide {
   bool has_edge_of(const EdgeSide& other) const { return low == other.low && high == other.high; }
 };
 
-/// The sides of the half-edges of triangles `first` to `last` - 1 (codec/mesh/half_edges.h),
+/// The sides of the half-edges of triangles `first` to `last` - 1 (geometry/mesh/half_edges.h),
 /// sorted. Cost: O(n log n).
 std::vector<EdgeSide> sides_of_triangles(std::span<const Triangle> triangles, Index first,
                                          Index last);
@@ -54,4 +54,4 @@ std::size_t upward_count(std::span<const EdgeSide> edge);
 /// first. Returns the twin of half-edge `first_half_edge` + i as element i. Cost: linear.
 std::optional<std::vector<Index>> paired(std::span<const EdgeSide> sides, Index first_half_edge);
 
-}  // namespace watertight::codec
+}  // namespace watertight::geometry

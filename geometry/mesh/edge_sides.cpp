@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "codec/mesh/edge_sides.h"
+#include "geometry/mesh/edge_sides.h"
 
 #include <algorithm>
 
-#include "codec/mesh/half_edges.h"
+#include "geometry/mesh/half_edges.h"
 
-namespace watertight::codec {
+namespace watertight::geometry {
 namespace {
 
 EdgeSide side_of(Index half_edge, Index from, Index to) {
@@ -63,4 +63,4 @@ std::optional<std::vector<Index>> paired(std::span<const EdgeSide> sides, Index 
   return twin;
 }
 
-}  // namespace watertight::codec
+}  // namespace watertight::geometry

@@ -1,45 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "codec/mesh/cut_surface.h"
+#include "codec/mode_parallelogram/cut_surface.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "codec/mesh/edge_sides.h"
-#include "codec/mesh/fans.h"
-#include "codec/mesh/half_edges.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/mesh/edge_sides.h"
+#include "geometry/mesh/fans.h"
+#include "geometry/mesh/half_edges.h"
 
-namespace watertight::codec {
+namespace watertight::codec::parallelogram {
 namespace {
 
 /// The sides of the triangles of a shell, in the order in which they pair up. Where more than two
 /// meet in one edge, two pair up if their triangles are also connected across other edges. So
 /// bodies that touch along an edge are separated.
-std::vector<EdgeSide> sides_of_shell(std::span<const Triangle> triangles, Index first, Index last) {
-  std::vector<EdgeSide> sides = sides_of_triangles(triangles, first, last);
-  const std::span<EdgeSide> all(sides);
-  const auto place_of = [first](const EdgeSide& side) { return side.half_edge / 3 - first; };
+std::vector<geometry::EdgeSide> sides_of_shell(std::span<const Triangle> triangles, Index first,
+                                               Index last) {
+  std::vector<geometry::EdgeSide> sides = geometry::sides_of_triangles(triangles, first, last);
+  const std::span<geometry::EdgeSide> all(sides);
+  const auto place_of = [first](const geometry::EdgeSide& side) {
+    return side.half_edge / 3 - first;
+  };
   geometry::DisjointSets parts(last - first);
-  for_each_edge(all, [&](std::span<EdgeSide> edge) {
+  geometry::for_each_edge(all, [&](std::span<geometry::EdgeSide> edge) {
     if (edge.size() == 2) parts.join(place_of(edge[0]), place_of(edge[1]));
   });
-  for_each_edge(all, [&](std::span<EdgeSide> edge) {
+  geometry::for_each_edge(all, [&](std::span<geometry::EdgeSide> edge) {
     if (edge.size() == 2) return;
-    std::sort(edge.begin(), edge.end(), [&](const EdgeSide& a, const EdgeSide& b) {
-      if (a.is_downward != b.is_downward) return b.is_downward;
-      const Index part_of_a = parts.root(place_of(a));
-      const Index part_of_b = parts.root(place_of(b));
-      return part_of_a != part_of_b ? part_of_a < part_of_b : a.half_edge < b.half_edge;
-    });
+    std::sort(edge.begin(), edge.end(),
+              [&](const geometry::EdgeSide& a, const geometry::EdgeSide& b) {
+                if (a.is_downward != b.is_downward) return b.is_downward;
+                const Index part_of_a = parts.root(place_of(a));
+                const Index part_of_b = parts.root(place_of(b));
+                return part_of_a != part_of_b ? part_of_a < part_of_b : a.half_edge < b.half_edge;
+              });
   });
   return sides;
 }
 
 /// Gives each fan of triangles around a vertex a vertex of its own.
 void cut_fans(CutSurface& surface, const std::vector<GridPoint>& vertices) {
-  const Fans fans = number_fans(surface.twin, previous_half_edge);
+  const geometry::Fans fans = geometry::number_fans(surface.twin, geometry::previous_half_edge);
   for (const Index h : fans.first) {
-    surface.positions.push_back(vertices[start_of(surface.triangles, h)]);
+    surface.positions.push_back(vertices[geometry::start_of(surface.triangles, h)]);
   }
   for (Index h = 0; h < fans.fan_of.size(); ++h) surface.triangles[h / 3][h % 3] = fans.fan_of[h];
 }
@@ -75,7 +79,7 @@ Result<CutSurface> cut_surface(const IntegerSolid& solid) {
       shell_of.push_back(shell);
     }
     const auto end = static_cast<Index>(surface.triangles.size());
-    const auto twins = paired(sides_of_shell(surface.triangles, begin, end), 3 * begin);
+    const auto twins = geometry::paired(sides_of_shell(surface.triangles, begin, end), 3 * begin);
     if (!twins) return Error{ErrorCode::not_encodable, "the surface of a shell is not closed"};
     surface.twin.insert(surface.twin.end(), twins->begin(), twins->end());
   }
@@ -84,4 +88,4 @@ Result<CutSurface> cut_surface(const IntegerSolid& solid) {
   return surface;
 }
 
-}  // namespace watertight::codec
+}  // namespace watertight::codec::parallelogram

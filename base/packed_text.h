@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A skeleton as a store keeps it, which its type separates from plain text: compressed, or plain in
-// databases of the first program.
+// A skeleton as a store keeps it: compressed, which its type separates from plain text.
 #pragma once
 
 #include "base/bytes.h"

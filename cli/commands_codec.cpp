@@ -75,7 +75,7 @@ Mode mode_named(const std::string& name) {
   return Mode::automatic;
 }
 
-Result<Bytes> pack(const EncodeCommand& command, const pipeline::StoredDocument& document) {
+Result<Bytes> pack(const EncodeCommand& command, const pipeline::EncodedDocument& document) {
   if (!command.is_bare) {
     EncodeOptions pages;
     pages.mode = mode_named(command.mode);

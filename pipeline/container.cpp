@@ -176,7 +176,7 @@ Result<Bytes> ContainerWriter::finish() && {
   return std::move(written_);
 }
 
-Result<Bytes> write_container(const StoredDocument& document, const EncodeOptions& pages) {
+Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages) {
   ContainerWriter writer(pages);
   writer.add_document(document.format, document.header, document.framing);
   for (const EncodedFeature& feature : document.features) {

@@ -49,7 +49,7 @@ class ContainerWriter {
 
 /// A whole document. Features must have format and header of the document.
 /// Errors: invalid_argument if they do not; as ContainerWriter::add().
-Result<Bytes> write_container(const StoredDocument& document, const EncodeOptions& pages = {});
+Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages = {});
 
 /// The documents in a Watertight file, with all their features. Trusts nothing.
 /// Errors: malformed (with byte offset), unsupported (version), limit_exceeded; those of decode().

@@ -9,8 +9,8 @@ namespace {
 constexpr std::uint64_t kBatch = 500;
 constexpr std::size_t kWorthSending = 64U << 10U;
 
-Error about(const StoredFeature& feature, Error error) {
-  error.message.insert(0, "feature '" + feature.id + "': ");
+Error about(const std::string& id, Error error) {
+  error.message.insert(0, "feature '" + id + "': ");
   return error;
 }
 
@@ -76,10 +76,10 @@ Result<Bytes> CollectionExport::next() {
     }
     if (is_first_ && !container_) append(bytes, as_bytes(header_ + '\n'));
     is_first_ = false;
-    for (const StoredFeature& feature : batch->features) {
-      if (Status status = add(feature, bytes); !status) return status.error();
+    for (StoredFeature& feature : batch->features) {
       ++exported_.features;
       exported_.solids += feature.solids.size();
+      if (Status status = add(std::move(feature), bytes); !status) return status.error();
     }
     after_ = std::move(batch->next);
     is_last_ = after_.empty();
@@ -91,24 +91,26 @@ Result<Bytes> CollectionExport::next() {
   return bytes;
 }
 
-Status CollectionExport::add(const StoredFeature& feature, Bytes& bytes) {
-  if (!container_) return add_line(feature, bytes);
-  auto encoded = unpack(feature);
-  if (!encoded) return about(feature, encoded.error());
+Status CollectionExport::add(StoredFeature feature, Bytes& bytes) {
+  if (!container_) return add_line(std::move(feature), bytes);
+  const std::string id = feature.id;
+  auto encoded = unpack(std::move(feature));
+  if (!encoded) return about(id, encoded.error());
   if (Status status = container_->add(*std::move(encoded)); !status) return status;
   append(bytes, container_->take());
   return Done{};
 }
 
-Status CollectionExport::add_line(const StoredFeature& feature, Bytes& bytes) {
+Status CollectionExport::add_line(StoredFeature feature, Bytes& bytes) {
+  const std::string id = feature.id;
   // Only features that were put after start() can have another one.
   if (!is_city_model(feature.format) || feature.header != header_) {
-    return about(feature, {ErrorCode::unsupported, kOtherDocument});
+    return about(id, {ErrorCode::unsupported, kOtherDocument});
   }
-  const auto document = from_stored(feature);
-  if (!document) return about(feature, document.error());
+  const auto document = from_stored(std::move(feature));
+  if (!document) return about(id, document.error());
   auto line = formats::write_city_json_feature(*city_header_, document->features.front());
-  if (!line) return about(feature, line.error());
+  if (!line) return about(id, line.error());
   append(bytes, as_bytes(*line + '\n'));
   return Done{};
 }

@@ -50,8 +50,8 @@ class CollectionExport {
  private:
   CollectionExport(SolidStore& store, std::string collection)
       : store_(&store), collection_(std::move(collection)) {}
-  Status add(const StoredFeature& feature, Bytes& bytes);
-  Status add_line(const StoredFeature& feature, Bytes& bytes);
+  Status add(StoredFeature feature, Bytes& bytes);
+  Status add_line(StoredFeature feature, Bytes& bytes);
 
   SolidStore* store_;
   std::string collection_;

@@ -209,13 +209,13 @@ CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions
   return own;
 }
 
-Result<EncodedDocument> encode_document(Document document, delaunay::EngineWorkers* workers,
-                                        const IngestOptions& options) {
+Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers* workers,
+                                      const IngestOptions& options) {
   Status status = reduce_to(options.contract, document);
   if (!status) return std::move(status).error();
   auto processed = process_all(document, workers, options);
   if (!processed) return std::move(processed).error();
-  EncodedDocument encoded;
+  EncodeOutcome encoded;
   encoded.document.format = std::string(formats::to_string(document.format));
   encoded.document.header = std::move(document.header);
   encoded.document.framing = std::move(document.framing);

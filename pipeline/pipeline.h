@@ -94,13 +94,17 @@ using Progress = std::function<void(std::size_t, std::size_t)>;
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };
 
-struct IngestOptions {
+/// How a feature is encoded, and for which collection.
+struct FeatureEncoding {
   std::string collection;
-  CertifyOptions certify;
-  validate::GroupOptions groups;
   EncodeOptions encode;
   SteinerVertices steiner = SteinerVertices::leave_out;
   formats::Contract contract = formats::Contract::exact;
+};
+
+struct IngestOptions : FeatureEncoding {
+  CertifyOptions certify;
+  validate::GroupOptions groups;
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
   std::size_t threads = 1;
   CancelPoll is_cancelled = {};
@@ -113,7 +117,7 @@ struct EncodedFeature : store::FeatureRecord {
 };
 
 /// A document with its solids encoded: what the features share, as Document has it, and they.
-struct StoredDocument {
+struct EncodedDocument {
   std::string format;  // to_string(Format)
   SharedText header;
   Bytes framing;
@@ -121,10 +125,10 @@ struct StoredDocument {
 };
 
 /// Encodes a feature whose verdict is valid. For contract boundary, document.header must be a
-/// boundary_header(). Only these options count: collection, encode, steiner and contract.
+/// boundary_header().
 /// Errors: invalid_argument when a solid is not valid; those of encode().
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
-                                      const IngestOptions& options);
+                                      const FeatureEncoding& options);
 
 /// The document (with one feature) that encode_feature() was given.
 /// Errors: malformed when the feature is not as encode_feature() makes them; those of decode().
@@ -139,7 +143,7 @@ Result<StoredFeature> pack(EncodedFeature feature);
 /// The feature that pack() was given. Errors: those of unpack_text().
 Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {});
 /// The document of a stored feature: unpack(), then decode_feature().
-Result<Document> from_stored(const StoredFeature& stored, const Limits& limits = {});
+Result<Document> from_stored(StoredFeature stored, const Limits& limits = {});
 
 struct IngestOutcome {
   std::vector<FeatureOutcome> features;  // in document order
@@ -148,14 +152,14 @@ struct IngestOutcome {
 };
 
 /// A document encoded feature by feature, but not stored.
-struct EncodedDocument {
-  StoredDocument document;  // features in document order; none unless all are valid
+struct EncodeOutcome {
+  EncodedDocument document;  // features in document order; none unless all are valid
   IngestOutcome outcome;
 };
 
 /// Validates and encodes. Errors: cancelled; those of encode().
-Result<EncodedDocument> encode_document(Document document, delaunay::EngineWorkers* workers,
-                                        const IngestOptions& options);
+Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers* workers,
+                                      const IngestOptions& options);
 
 /// Validates, encodes and stores a document in one transaction: all features if all are valid,
 /// else none (refuse_document) or the valid ones (skip). Nothing is stored when it fails.

@@ -79,7 +79,7 @@ Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleto
 }  // namespace
 
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
-                                      const IngestOptions& options) {
+                                      const FeatureEncoding& options) {
   const bool is_exact = options.contract == formats::Contract::exact;
   EncodedFeature encoded;
   encoded.collection = options.collection;
@@ -178,17 +178,14 @@ Result<StoredFeature> pack(EncodedFeature feature) {
 }
 
 Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits) {
-  const ByteView bytes = stored.skeleton.bytes;
-  // The first databases have plain skeletons, which never begin like a packed text.
-  auto skeleton = formats::is_packed_text(bytes) ? formats::unpack_text(bytes, limits.bytes)
-                                                 : Result<std::string>(std::string(as_text(bytes)));
+  auto skeleton = formats::unpack_text(stored.skeleton.bytes, limits.bytes);
   if (!skeleton) return std::move(skeleton).error();
   store::FeatureRecord& record = stored;
   return EncodedFeature{std::move(record), *std::move(skeleton)};
 }
 
-Result<Document> from_stored(const StoredFeature& stored, const Limits& limits) {
-  const auto feature = unpack(stored, limits);
+Result<Document> from_stored(StoredFeature stored, const Limits& limits) {
+  const auto feature = unpack(std::move(stored), limits);
   if (!feature) return feature.error();
   return decode_feature(*feature, limits);
 }

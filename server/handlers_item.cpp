@@ -88,15 +88,17 @@ Result<Bytes> blob_of(const StoredFeature& feature, const Target& target) {
   return feature.solids[solid].blob;
 }
 
-Result<Bytes> represent(const StoredFeature& feature, const ItemFormat& format,
+Result<Bytes> represent(StoredFeature feature, const ItemFormat& format,
                         const RoutedRequest& request) {
   if (format.parameter == "blob") return blob_of(feature, request.target);
   if (format.parameter == "wt") {
-    auto encoded = pipeline::unpack(feature);
+    auto encoded = pipeline::unpack(std::move(feature));
     if (!encoded) return std::move(encoded).error();
-    return pipeline::write_container({feature.format, feature.header, {}, {*std::move(encoded)}});
+    pipeline::EncodedDocument document{encoded->format, encoded->header, {}, {}};
+    document.features.push_back(*std::move(encoded));
+    return pipeline::write_container(document);
   }
-  auto document = pipeline::from_stored(feature, request.service.options.limits);
+  auto document = pipeline::from_stored(std::move(feature), request.service.options.limits);
   if (!document) {
     return Error{ErrorCode::unavailable,
                  "the stored feature cannot be decoded: " + to_string(document.error())};
@@ -121,15 +123,14 @@ Response get_item(const RoutedRequest& request) {
   if (request.target.parameter("solid") != nullptr && format->parameter != "blob") {
     return refuse(400, "invalid-argument", "the parameter solid is for f=blob only");
   }
-  const auto feature =
-      request.service.store->get(request.target.segments[1], request.target.segments[3]);
+  auto feature = request.service.store->get(request.target.segments[1], request.target.segments[3]);
   if (!feature) return to_response(to_problem(feature.error()));
   const std::string etag = etag_of(*feature, request, *format);
   const std::vector<HeaderField> headers{
       {"ETag", etag}, {"Vary", "Accept"}, {"Content-Crs", crs_header(feature->srid)}};
   const std::string* known = request.request.header("if-none-match");
   if (known != nullptr && is_listed(*known, etag)) return Response{304, "", "", headers};
-  auto body = represent(*feature, *format, request);
+  auto body = represent(*std::move(feature), *format, request);
   if (!body) {
     Problem problem = to_problem(body.error());
     // The feature is there, but not in this format.

@@ -52,7 +52,7 @@ void add_texts(const Document& document, Sizes& sizes) {
   if (packed) sizes.together = packed->bytes.size();
 }
 
-void add_blobs(const pipeline::StoredDocument& document, Sizes& sizes) {
+void add_blobs(const pipeline::EncodedDocument& document, Sizes& sizes) {
   for (const pipeline::EncodedFeature& feature : document.features) {
     for (const StoredSolid& solid : feature.solids) {
       ++sizes.solids;

@@ -37,12 +37,10 @@ Result<PackedText> pack_text(std::string_view text) {
   return PackedText{std::move(packed)};
 }
 
-bool is_packed_text(ByteView bytes) {
-  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
-}
-
 Result<std::string> unpack_text(ByteView packed, std::uint64_t most_bytes) {
-  if (!is_packed_text(packed)) return malformed("compressed text: not a Zstandard frame");
+  const bool is_frame =
+      packed.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), packed.begin());
+  if (!is_frame) return malformed("compressed text: not a Zstandard frame");
   const std::unique_ptr<ZSTD_DCtx, FreeContext> context(ZSTD_createDCtx());
   if (context == nullptr ||
       ZSTD_isError(ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, kWindowLog)) != 0) {

@@ -16,9 +16,6 @@ namespace watertight::formats {
 /// One Zstandard frame. Errors: limit_exceeded when there is no memory for it. Cost: linear.
 Result<PackedText> pack_text(std::string_view text);
 
-/// True if the bytes start like pack_text()'s; no JSON text does.
-bool is_packed_text(ByteView bytes);
-
 /// The text of one frame that takes all of the bytes. Memory grows with what comes out, never with
 /// what the frame says of itself; a frame that needs a window of more than 128 MiB is refused.
 /// Errors: malformed; limit_exceeded as soon as more than `most_bytes` come out.

@@ -18,8 +18,8 @@
 namespace watertight {
 namespace {
 
-pipeline::StoredDocument encoded(const std::string& text,
-                                 const pipeline::IngestOptions& options = {}) {
+pipeline::EncodedDocument encoded(const std::string& text,
+                                  const pipeline::IngestOptions& options = {}) {
   formats::ReadOptions read;
   read.keep_text = true;
   auto document = formats::read_document(as_bytes(text), Format::city_json_seq, read);
@@ -62,7 +62,7 @@ std::string row_of_boxes(int count) {
 void put(samples::MemoryStore& store, const std::string& text) {
   pipeline::IngestOptions options;
   options.collection = "town";
-  pipeline::StoredDocument document = encoded(text, options);
+  pipeline::EncodedDocument document = encoded(text, options);
   std::vector<StoredFeature> features;
   for (pipeline::EncodedFeature& feature : document.features) {
     auto packed = pipeline::pack(std::move(feature));
@@ -136,7 +136,7 @@ TEST_CASE("a Watertight file returns its document") {
 
 TEST_CASE("a Watertight file has its solids in pages when that is smaller") {
   const std::string text = row_of_boxes(300);
-  const pipeline::StoredDocument document = encoded(text);
+  const pipeline::EncodedDocument document = encoded(text);
   std::size_t blob_bytes = 0;
   for (const pipeline::EncodedFeature& feature : document.features) {
     for (const StoredSolid& solid : feature.solids) blob_bytes += solid.blob.size();
@@ -161,7 +161,7 @@ TEST_CASE("a Watertight file has its solids in pages when that is smaller") {
 TEST_CASE("a file of several parts has its features in order") {
   const auto blob = codec::encode_boundary(generated::box(), {});
   REQUIRE(blob);
-  pipeline::StoredDocument document;
+  pipeline::EncodedDocument document;
   document.format = "off";
   for (int i = 0; i < 9000; ++i) {
     pipeline::EncodedFeature& feature = document.features.emplace_back();
@@ -220,10 +220,10 @@ TEST_CASE("a file of several documents gives back each") {
   const std::string first = samples::sequence({samples::feature("a"), samples::feature("c")});
   std::string second = samples::sequence({samples::feature("b"), samples::feature("d")});
   second.replace(second.find("100.0"), 5, "900.0");
-  const pipeline::StoredDocument documents[2] = {encoded(first), encoded(second)};
+  const pipeline::EncodedDocument documents[2] = {encoded(first), encoded(second)};
   pipeline::ContainerWriter writer;
   for (std::size_t i = 0; i < 2; ++i) {
-    for (const pipeline::StoredDocument& document : documents)
+    for (const pipeline::EncodedDocument& document : documents)
       REQUIRE(writer.add(document.features[i]));
   }
   const auto file = std::move(writer).finish();
@@ -236,7 +236,7 @@ TEST_CASE("a file of several documents gives back each") {
 }
 
 TEST_CASE("the features of a document hold one copy of its header") {
-  const pipeline::StoredDocument document =
+  const pipeline::EncodedDocument document =
       encoded(samples::sequence({samples::feature("a"), samples::feature("b")}));
   REQUIRE(document.features.size() == 2);
   CHECK(&document.features[0].header.str() == &document.features[1].header.str());
@@ -246,8 +246,8 @@ TEST_CASE("documents that differ in their line ends only are one") {
   const std::string plain = samples::sequence({samples::feature("a"), samples::feature("b")});
   std::string other;
   for (const char c : plain) other += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  const pipeline::StoredDocument one = encoded(plain);
-  const pipeline::StoredDocument two = encoded(other);
+  const pipeline::EncodedDocument one = encoded(plain);
+  const pipeline::EncodedDocument two = encoded(other);
   CHECK(one.header == two.header);
   const auto decoded = pipeline::decode_container(container_of(other));
   REQUIRE(decoded);
@@ -255,7 +255,7 @@ TEST_CASE("documents that differ in their line ends only are one") {
 }
 
 TEST_CASE("features of several documents are no document") {
-  pipeline::StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
+  pipeline::EncodedDocument document = encoded(samples::sequence({samples::feature("a")}));
   document.header = document.header.str() + " ";
   CHECK(pipeline::write_container(document).error().code == ErrorCode::invalid_argument);
 }
@@ -288,7 +288,7 @@ TEST_CASE("changed bytes under the right checksum are read or refused") {
 }
 
 TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
-  const pipeline::StoredDocument document = encoded(samples::sequence({samples::feature("a")}));
+  const pipeline::EncodedDocument document = encoded(samples::sequence({samples::feature("a")}));
   const Bytes& blob = document.features[0].solids[0].blob;
   codec::PageFileWriter writer;
   REQUIRE(writer.add_blob(blob));

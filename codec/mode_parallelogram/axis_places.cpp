@@ -116,18 +116,16 @@ bool fit_line(const std::vector<std::int64_t>& values, const std::vector<std::in
 
 }  // namespace
 
-bool AxisPlaces::find_value(std::int64_t place, std::int64_t& value) const {
+std::optional<std::int64_t> AxisPlaces::value_of(std::int64_t place) const {
   if (kind_ == Kind::listed) {
-    if (place < 0 || place >= static_cast<std::int64_t>(list_.size())) return false;
-    value = list_[static_cast<std::size_t>(place)];
-    return true;
+    if (place < 0 || place >= static_cast<std::int64_t>(list_.size())) return std::nullopt;
+    return list_[static_cast<std::size_t>(place)];
   }
   const Wide wide = kind_ == Kind::every
                         ? Wide{place}
                         : (Wide{place} * step_ + offset_) >> shift_;  // step and place below 2^63
-  if (wide <= -kRange || wide >= kRange) return false;
-  value = static_cast<std::int64_t>(wide);
-  return true;
+  if (wide <= -kRange || wide >= kRange) return std::nullopt;
+  return static_cast<std::int64_t>(wide);
 }
 
 std::int64_t AxisPlaces::place_of(std::int64_t value) const {
@@ -250,8 +248,7 @@ AxisPlaces AxisPlaces::stepped(const std::vector<std::int64_t>& values) {
     result.offset_ = std::clamp<std::int64_t>(static_cast<std::int64_t>(offset * unit), 0,
                                               (std::int64_t{1} << shift) - 1);
     const bool fits = std::all_of(values.begin(), values.end(), [&](std::int64_t value) {
-      std::int64_t found = 0;
-      return result.find_value(result.place_of(value), found) && found == value;
+      return result.value_of(result.place_of(value)) == value;
     });
     if (fits) return result;
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/limits.h"
@@ -24,8 +25,8 @@ class AxisPlaces {
   AxisPlaces() = default;
 
   Kind kind() const { return kind_; }
-  /// Whether `place` has a value, which goes to `value`: within 2^54 and, if listed, on the list.
-  bool find_value(std::int64_t place, std::int64_t& value) const;
+  /// The value of a place: within 2^54 and, if listed, on the list. Nothing if it has none.
+  std::optional<std::int64_t> value_of(std::int64_t place) const;
   /// The place of a value that has one. Cost: logarithmic in the list.
   std::int64_t place_of(std::int64_t value) const;
   /// Where a coordinate lies among the places, between them in proportion; 0 to the last place if

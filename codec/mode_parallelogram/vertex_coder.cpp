@@ -89,7 +89,9 @@ GridPoint VertexCoder::code_cell(const GridPoint& near, const GridPoint& truth,
     const std::int64_t place = places_[k].place_of(near[k]);
     const std::int64_t offset = models_.code_signed<number>(
         stream_, {context, before}, places_[k].place_of(truth[k]) - place, kMostBits);
-    if (!places_[k].find_value(place + offset, cell[k])) stream_.fail();
+    const auto value = places_[k].value_of(place + offset);
+    if (!value) stream_.fail();
+    cell[k] = value.value_or(near[k]);
     before = capped<kLengths>(std::bit_width(static_cast<std::uint64_t>(std::abs(offset))));
   }
   return cell;
@@ -160,9 +162,9 @@ std::int64_t VertexCoder::code_coordinate(const TipContexts& tip, const Axis& ax
                   combine(tip.source, tip.missed, parts), combine(miss, tip.spread, tip.missed),
                   combine(tip.least_miss, tip.apex_miss, axis.rank), miss},
                  side * (places.place_of(truth) - base), kMostBits);
-  std::int64_t value = 0;
-  if (!places.find_value(base + offset, value)) stream_.fail();
-  return value;
+  const auto value = places.value_of(base + offset);
+  if (!value) stream_.fail();
+  return value.value_or(0);
 }
 
 Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const GridPoint* position) {

@@ -13,6 +13,7 @@ namespace watertight::codec::walk {
 
 bool WalkTruth::take(BoundaryMesh& mesh, Index vertex_count) {
   triangles_ = std::move(mesh.triangles);
+  twin_.clear();
   const auto half_edge_count = static_cast<Index>(3 * triangles_.size());
   first_.assign(vertex_count + std::size_t{1}, 0);
   for (const Triangle& t : triangles_) {

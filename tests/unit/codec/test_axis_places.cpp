@@ -40,9 +40,7 @@ void check_values(const codec::parallelogram::AxisPlaces& places,
   std::int64_t before = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::int64_t place = places.place_of(values[i]);
-    std::int64_t found = 0;
-    REQUIRE(places.find_value(place, found));
-    CHECK(found == values[i]);
+    CHECK(places.value_of(place) == values[i]);
     if (i > 0 && values[i] != values[i - 1]) CHECK(place > before);
     before = place;
   }
@@ -130,9 +128,8 @@ TEST_CASE("few uneven values are suggested as a list and come back") {
   std::vector<std::int64_t> values;
   for (int i = 0; i < 400; ++i) values.push_back(some[random.below(some.size())]);
   const codec::parallelogram::AxisPlaces places = check_suggestion(values, Kind::listed);
-  std::int64_t value = 0;
-  CHECK_FALSE(places.find_value(-1, value));
-  CHECK_FALSE(places.find_value(1000, value));
+  CHECK_FALSE(places.value_of(-1));
+  CHECK_FALSE(places.value_of(1000));
 }
 
 TEST_CASE("nothing is suggested for values all over their range") {
@@ -201,14 +198,14 @@ TEST_CASE("noise makes no endless or unsound places") {
     const auto places = read(noise, limits);
     if (!places || places->kind() == Kind::every) continue;
     ++sound;
-    std::int64_t low = 0;
-    std::int64_t high = 0;
-    if (places->find_value(0, low) && places->find_value(1, high)) CHECK(low < high);
+    const auto low = places->value_of(0);
+    const auto high = places->value_of(1);
+    if (low && high) CHECK(*low < *high);
     for (const double at : {-9e15, -3.5, 0.0, 1e9, 9e15}) {
       const double position = places->position_of(at);
       CHECK(std::abs(position) <= 1e16);
       CHECK(places->spread_of(at, 10) >= 0);
-      (void)places->find_value(static_cast<std::int64_t>(position), low);
+      (void)places->value_of(static_cast<std::int64_t>(position));
     }
   }
   CHECK(sound > 0);

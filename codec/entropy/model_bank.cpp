@@ -191,9 +191,9 @@ void ModelBank::note_changes(const Family& family, std::uint32_t selector, const
 }
 
 void ModelBank::undo(const Change& change) {
-  const std::size_t weight = change.place - counters_.size();
-  if (change.place < counters_.size()) {
-    counters_[change.place] = change.before;
+  const std::size_t weight = change.index - counters_.size();
+  if (change.index < counters_.size()) {
+    counters_[change.index] = change.before;
   } else if (weight < weights_.size()) {
     weights_[weight] = static_cast<std::int32_t>(change.before);
   } else {

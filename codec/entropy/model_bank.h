@@ -116,10 +116,11 @@ class ModelBank {
     std::array<std::int32_t, kMaxInputs + 1> input;
     std::uint32_t ones;
   };
-  /// A change during a trial.
+  /// A value that changed during a trial: its index in the sequence of all counters, then all
+  /// weights, then all elements of mixed_; and the value that it had before.
   struct Change {
-    std::uint32_t place = 0;   // among all counters, then all weights, then all of mixed_
-    std::uint32_t before = 0;  // the number that was there
+    std::uint32_t index = 0;
+    std::uint32_t before = 0;
   };
   friend class BankTrial;
   [[gnu::noinline]] void note_changes(const Family& family, std::uint32_t selector,

@@ -231,9 +231,9 @@ class SurfaceCoder {
         candidates_.end());
     const auto found = std::find_if(candidates_.begin(), candidates_.end(),
                                     [&](const auto& c) { return c.corner == truth; });
-    const auto place = static_cast<std::uint64_t>(found - candidates_.begin());
+    const auto index = static_cast<std::uint64_t>(found - candidates_.begin());
     const std::uint64_t rank = models_.code_number<kRank>(
-        stream_, {kNothingKnown}, found == candidates_.end() ? 0 : place + 1, kRankBits);
+        stream_, {kNothingKnown}, found == candidates_.end() ? 0 : index + 1, kRankBits);
     if (rank > candidates_.size() || stream_.failed()) return malformed();
     const auto other = rank > 0
                            ? candidates_[rank - 1].corner

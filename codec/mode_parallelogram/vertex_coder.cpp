@@ -29,7 +29,7 @@ constexpr int kDistanceZero = 1;
 constexpr double kDistancePart = 0.1;            // of two misses: with 1 more, the unit of distance
 constexpr Scale<4> kParts{.per_unit = 2 * 4};    // between two places: 0 to 0.5
 constexpr Scale<8> kNormals{.per_unit = 7.999};  // of a component of a unit vector
-constexpr std::uint32_t kPlacesAround = 5;       // vertices that a repeat may be of
+constexpr std::uint32_t kVerticesAround = 5;     // vertices whose coordinate a tip may repeat
 
 Error malformed() { return {ErrorCode::malformed, "a coordinate is out of range"}; }
 
@@ -260,9 +260,9 @@ std::optional<std::int64_t> VertexCoder::code_repeat(const SurfaceFront& front, 
   const std::size_t k = axis.number;
   const Index x = front[gate.next].end;
   const Index p = front[gate.previous].start;
-  const std::array<std::int64_t, kPlacesAround> around{
+  const std::array<std::int64_t, kVerticesAround> around{
       cells_[gate.start][k], cells_[gate.end][k], cells_[gate.apex][k], cells_[x][k], cells_[p][k]};
-  const auto bit = [](bool is_set, unsigned place) { return is_set ? 1U << place : 0U; };
+  const auto bit = [](bool is_set, unsigned index) { return is_set ? 1U << index : 0U; };
   const auto repeats_at = [&](Index vertex) { return ((repeats_[vertex] >> k) & 1U) != 0; };
   const Context<4> mask(bit(repeats_at(gate.start), 0) + bit(repeats_at(gate.end), 1));
   const Context<16> pattern(bit(around[0] == around[1], 0) + bit(around[1] == around[2], 1) +
@@ -282,13 +282,13 @@ std::optional<std::int64_t> VertexCoder::code_repeat(const SurfaceFront& front, 
   now_repeats_ = now_repeats_ * 2 + (repeats ? 1U : 0U);
   if (!repeats) return std::nullopt;
   std::int64_t value = 0;
-  for (std::uint32_t i = 0; i < kPlacesAround; ++i) {
+  for (std::uint32_t i = 0; i < kVerticesAround; ++i) {
     if (std::find(around.begin(), around.begin() + i, around[i]) != around.begin() + i) continue;
     value = around[i];
-    const Context<kPlacesAround> place(i);
+    const Context<kVerticesAround> index(i);
     if (models_.code<kWhich>(
-            stream_, place,
-            {combine(place, pattern), combine(place, axis.rank, history_[k].last())}, i == found)) {
+            stream_, index,
+            {combine(index, pattern), combine(index, axis.rank, history_[k].last())}, i == found)) {
       break;
     }
   }

@@ -58,7 +58,7 @@ class VertexCoder {
   using Guess = Context<kGuesses>;
   struct Axis {
     std::size_t number;
-    Context<3> rank;  // the place of the axis in the order of coding
+    Context<3> rank;  // the index of the axis in the order of coding
   };
   /// What is known about a tip before its coordinates are coded.
   struct TipContexts {

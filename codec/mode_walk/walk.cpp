@@ -46,8 +46,8 @@ Context<kLikelihoods> likelihood(std::uint32_t probability) {
   if (lesser == 0) return Context<kLikelihoods>(0U);
   const auto width = static_cast<std::uint32_t>(std::bit_width(lesser));  // 1 to 16
   const std::uint32_t half = width > 1 ? (lesser >> (width - 2)) & 1U : 0;
-  const std::uint32_t place = std::min(2 * (width - 1) + half, kLikelihoods / 2 - 1);
-  return Context<kLikelihoods>(is_high ? kLikelihoods - 1 - place : place);
+  const std::uint32_t octave_half = std::min(2 * (width - 1) + half, kLikelihoods / 2 - 1);
+  return Context<kLikelihoods>(is_high ? kLikelihoods - 1 - octave_half : octave_half);
 }
 
 /// An edge with a candidate as probable as this is not scored again when a triangle is added beside
@@ -127,7 +127,7 @@ class Walk {
   Status code_seed(Index seed);
   void list_seeds(Index seed);
   Status code_gate(Index gate);
-  bool code_candidate(std::size_t place, Index truth);
+  bool code_candidate(std::size_t index, Index truth);
   Index code_distant(Index gate, Index truth);
   void add(const Triangle& triangle, Index source);
   std::uint32_t greatest_probability() const;
@@ -370,12 +370,12 @@ Index Walk::code_distant(Index gate, Index truth) {
 
 /// Codes whether the vertex is this candidate. Family Candidate, which ranked it, learns from the
 /// answer too.
-bool Walk::code_candidate(std::size_t place, Index truth) {
-  const Candidate& c = candidates_[place];
+bool Walk::code_candidate(std::size_t index, Index truth) {
+  const Candidate& c = candidates_[index];
   const std::uint32_t next =
-      place + 1 < candidates_.size() ? candidates_[place + 1].probability : 0;
+      index + 1 < candidates_.size() ? candidates_[index + 1].probability : 0;
   const auto own = likelihood(c.probability);
-  const auto rank = capped<kRanks>(place);
+  const auto rank = capped<kRanks>(index);
   const bool is_it = models_.code<kChoice>(
       stream_, rank,
       {combine(own, rank, c.kind), combine(halved(own), halved(likelihood(next))),
@@ -451,17 +451,17 @@ void Walk::list_seeds(Index seed) {
 Status Walk::code_seed(Index seed) {
   list_seeds(seed);
   Index truth = kNone;
-  std::size_t place = seeds_.size();
+  std::size_t chosen = seeds_.size();
   if (!is_reading()) {
     for (std::size_t i = 0; i < seeds_.size() && truth == kNone; ++i) {
       truth = truth_->find_unused(seeds_[i].triangle);
-      place = i;
+      chosen = i;
     }
-    if (truth == kNone) place = seeds_.size();
+    if (truth == kNone) chosen = seeds_.size();
   }
   for (std::size_t i = 0; i < seeds_.size(); ++i) {
     const auto context = combine(seeds_[i].kind, seeds_[i].sphere);
-    if (!models_.code<kSeed>(stream_, {context}, i == place)) continue;
+    if (!models_.code<kSeed>(stream_, {context}, i == chosen)) continue;
     add(seeds_[i].triangle, truth);
     return Done{};
   }

@@ -256,15 +256,16 @@ class SurfaceCoder {
 
   /// Makes one vertex of all vertices at the same position, which cut_surface() had separated.
   Status finish(IntegerSolid& solid) const {
-    const std::vector<GridPoint>& cells = vertices_.cells();
-    std::vector<Index> order(cells.size());
+    const std::vector<GridPoint>& positions = vertices_.positions();
+    std::vector<Index> order(positions.size());
     std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return cells[a] != cells[b] ? cells[a] < cells[b] : a < b; });
-    std::vector<Index> glued(cells.size());
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
+    });
+    std::vector<Index> glued(positions.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const GridPoint& position = cells[order[i]];
-      if (i == 0 || position != cells[order[i - 1]]) {
+      const GridPoint& position = positions[order[i]];
+      if (i == 0 || position != positions[order[i - 1]]) {
         GridPoint absolute{};
         for (std::size_t k = 0; k < 3; ++k) {
           absolute[k] = position[k] + vertices_.origin()[k];

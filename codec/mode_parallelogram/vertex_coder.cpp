@@ -45,8 +45,8 @@ std::array<std::size_t, 3> axes_by_slope(const Vector& normal) {
   return axes;
 }
 
-bool is_sane(const GridPoint& cell) {
-  return std::all_of(cell.begin(), cell.end(), [](std::int64_t c) {
+bool is_sane(const GridPoint& vertex) {
+  return std::all_of(vertex.begin(), vertex.end(), [](std::int64_t c) {
     return c < (std::int64_t{1} << kMostBits) && c > -(std::int64_t{1} << kMostBits);
   });
 }
@@ -62,18 +62,19 @@ void VertexCoder::code_options(const VertexOptions& options) {
 }
 
 GridPoint VertexCoder::relative(const GridPoint* position) const {
-  GridPoint cell{};
-  for (std::size_t k = 0; k < 3 && position != nullptr; ++k) cell[k] = (*position)[k] - origin_[k];
-  return cell;
+  GridPoint vertex{};
+  for (std::size_t k = 0; k < 3 && position != nullptr; ++k)
+    vertex[k] = (*position)[k] - origin_[k];
+  return vertex;
 }
 
-Status VertexCoder::add_vertex(const GridPoint& cell, double miss) {
-  if (cells_.size() >= limits_.vertices) {
+Status VertexCoder::add_vertex(const GridPoint& vertex, double miss) {
+  if (positions_.size() >= limits_.vertices) {
     return Error{ErrorCode::limit_exceeded, "the solid has too many vertices"};
   }
-  cells_.push_back(cell);
-  centres_.push_back(
-      {static_cast<double>(cell[0]), static_cast<double>(cell[1]), static_cast<double>(cell[2])});
+  positions_.push_back(vertex);
+  centres_.push_back({static_cast<double>(vertex[0]), static_cast<double>(vertex[1]),
+                      static_cast<double>(vertex[2])});
   misses_.push_back(miss);
   repeats_.push_back(0);
   guesses_.push_back(0);
@@ -81,26 +82,26 @@ Status VertexCoder::add_vertex(const GridPoint& cell, double miss) {
 }
 
 template <Number number, std::uint32_t size>
-GridPoint VertexCoder::code_cell(const GridPoint& near, const GridPoint& truth,
-                                 Context<size> context) {
+GridPoint VertexCoder::code_vertex(const GridPoint& near, const GridPoint& truth,
+                                   Context<size> context) {
   Context<kLengths> before(0U);
-  GridPoint cell = near;
+  GridPoint vertex = near;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int64_t place = places_[k].place_of(near[k]);
     const std::int64_t offset = models_.code_signed<number>(
         stream_, {context, before}, places_[k].place_of(truth[k]) - place, kMostBits);
-    if (!places_[k].find_value(place + offset, cell[k])) stream_.fail();
+    if (!places_[k].find_value(place + offset, vertex[k])) stream_.fail();
     before = capped<kLengths>(std::bit_width(static_cast<std::uint64_t>(std::abs(offset))));
   }
-  return cell;
+  return vertex;
 }
 
 Status VertexCoder::code_seed(std::uint32_t number, const GridPoint* position) {
-  GridPoint cell{};
-  if (cells_.empty()) {
+  GridPoint vertex{};
+  if (positions_.empty()) {
     stream_.enter(StreamPart::position);
-    origin_ = code_cell<kOrigin>(memory_.last_position, position ? *position : GridPoint{},
-                                 Context<2>(!memory_.is_first()));
+    origin_ = code_vertex<kOrigin>(memory_.last_position, position ? *position : GridPoint{},
+                                   Context<2>(!memory_.is_first()));
     AxisPlaces::Kind before = AxisPlaces::Kind::every;
     for (std::size_t k = 0; k < 3; ++k) {
       Result<AxisPlaces> coded =
@@ -111,12 +112,12 @@ Status VertexCoder::code_seed(std::uint32_t number, const GridPoint* position) {
     }
   } else {
     stream_.enter(StreamPart::coordinates);
-    cell = code_cell<kSeed>(cells_.back(), relative(position), Context<3>(number));
+    vertex = code_vertex<kSeed>(positions_.back(), relative(position), Context<3>(number));
   }
-  if (!is_sane(cell) || stream_.failed()) return malformed();
-  if (Status added = add_vertex(cell, 0); !added) return added;
+  if (!is_sane(vertex) || stream_.failed()) return malformed();
+  if (Status added = add_vertex(vertex, 0); !added) return added;
   if (number < 2) return Done{};
-  const std::size_t first = cells_.size() - 3;
+  const std::size_t first = positions_.size() - 3;
   const double miss = 0.5 * length(centres_[first + 1] - centres_[first]);
   std::fill(misses_.end() - 3, misses_.end(), miss);
   return Done{};
@@ -173,7 +174,7 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
   const std::array<std::size_t, 3> axes = axes_by_slope(normal);
   TipContexts tip = contexts_of_tip(front, gate, position ? &truth : nullptr);
   const Vector& predicted = prediction_.tip().guesses[tip.guess.value];
-  GridPoint cell{};
+  GridPoint vertex{};
   Vector centre{};
   double slope = 0;
   now_repeats_ = 0;
@@ -183,8 +184,8 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
     double expectation = predicted[k];
     if (rank == 2) expectation = tamed(expectation + prediction_.shift_along(k, slope));
     const auto repeated = has_repeats_ ? code_repeat(front, gate, axis, truth[k]) : std::nullopt;
-    cell[k] = repeated ? *repeated : code_coordinate(tip, axis, expectation, truth[k]);
-    centre[k] = static_cast<double>(cell[k]);
+    vertex[k] = repeated ? *repeated : code_coordinate(tip, axis, expectation, truth[k]);
+    centre[k] = static_cast<double>(vertex[k]);
     const double miss = centre[k] - predicted[k];
     slope += normal[k] * miss;
     if (repeated) continue;
@@ -192,9 +193,9 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
     const auto missed = log_bucket<kAxisMisses>(std::abs(miss), kAxisMissZero);
     if (missed.value > tip.missed.value) tip.missed = missed;
   }
-  if (!is_sane(cell) || stream_.failed()) return malformed();
+  if (!is_sane(vertex) || stream_.failed()) return malformed();
   prediction_.learn(centre, tip.expected);
-  if (Status added = add_vertex(cell, length(centre - predicted)); !added) return added;
+  if (Status added = add_vertex(vertex, length(centre - predicted)); !added) return added;
   guesses_.back() = static_cast<std::uint8_t>(tip.guess.value);
   for (std::size_t rank = 0; has_repeats_ && rank < 3; ++rank) {
     repeats_.back() |= static_cast<std::uint8_t>(((now_repeats_ >> (2 - rank)) & 1U) << axes[rank]);
@@ -261,7 +262,8 @@ std::optional<std::int64_t> VertexCoder::code_repeat(const SurfaceFront& front, 
   const Index x = front[gate.next].end;
   const Index p = front[gate.previous].start;
   const std::array<std::int64_t, kVerticesAround> around{
-      cells_[gate.start][k], cells_[gate.end][k], cells_[gate.apex][k], cells_[x][k], cells_[p][k]};
+      positions_[gate.start][k], positions_[gate.end][k], positions_[gate.apex][k],
+      positions_[x][k], positions_[p][k]};
   const auto bit = [](bool is_set, unsigned index) { return is_set ? 1U << index : 0U; };
   const auto repeats_at = [&](Index vertex) { return ((repeats_[vertex] >> k) & 1U) != 0; };
   const Context<4> mask(bit(repeats_at(gate.start), 0) + bit(repeats_at(gate.end), 1));

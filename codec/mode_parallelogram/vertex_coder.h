@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The coordinates of the vertices of mode parallelogram, in the order in which the front meets
-// them: a prediction, and what it missed by.
+// them: each is predicted, and the difference from the prediction is coded.
 #pragma once
 
 #include <array>
@@ -42,10 +42,11 @@ class VertexCoder {
   /// The tip at the gate of the last prediction. Errors: malformed; limit_exceeded.
   Status code_tip(const SurfaceFront& front, Index corner, const GridPoint* position);
 
-  Index count() const { return static_cast<Index>(cells_.size()); }
+  Index count() const { return static_cast<Index>(positions_.size()); }
   const GridPoint& origin() const { return origin_; }
-  const std::vector<GridPoint>& cells() const { return cells_; }
-  /// The cells as doubles.
+  /// The positions of the vertices coded so far, relative to the origin.
+  const std::vector<GridPoint>& positions() const { return positions_; }
+  /// The same positions as doubles.
   const std::vector<Vector>& centres() const { return centres_; }
 
  private:
@@ -73,9 +74,9 @@ class VertexCoder {
   };
 
   GridPoint relative(const GridPoint* position) const;
-  Status add_vertex(const GridPoint& cell, double miss);
+  Status add_vertex(const GridPoint& position, double miss);
   template <Number number, std::uint32_t size>
-  GridPoint code_cell(const GridPoint& near, const GridPoint& truth, Context<size> context);
+  GridPoint code_vertex(const GridPoint& near, const GridPoint& truth, Context<size> context);
   /// Codes which of the guesses is the prediction of the tip.
   Guess code_guess(const SurfaceFront& front, const Gate& gate, const GridPoint* truth,
                    Context<kMisses> scale);
@@ -97,7 +98,7 @@ class VertexCoder {
   std::array<AxisPlaces, 3> chosen_places_{};  // writing
   std::array<AxisPlaces, 3> places_{};         // Kind::every until the origin is known
   GridPoint origin_{};
-  std::vector<GridPoint> cells_;
+  std::vector<GridPoint> positions_;
   std::vector<Vector> centres_;
   std::vector<double> misses_;         // vertex -> the distance from its prediction
   std::vector<std::uint8_t> guesses_;  // vertex -> the guess that was its prediction

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The edges of a Delaunay tetrahedralization: the faces around each, and the neighbours of each
-// vertex, as flat arrays. For the pivot walk.
+// vertex, as flat arrays. For the walk of mode walk.
 #pragma once
 
 #include <span>

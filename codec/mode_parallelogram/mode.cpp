@@ -147,10 +147,10 @@ class SurfaceCoder {
                           vertices_.predict(front_, corner),
                           vertices_.predict(front_, gate.next),
                           mean_edge_,
-                          closings_.last()};
+                          close_answers_.last()};
     const SelectorOf<kClose> selector(ends ? 2U : front_[gate.previous].is_refused ? 1U : 0U);
     const bool closes = models_.code<kClose>(stream_, selector, corner_contexts(view), truth);
-    closings_.add(closes);
+    close_answers_.add(closes);
     if (closes) {
       front_.close_corner(corner, half_edge);
       if (!ends) note_gates(1);
@@ -174,12 +174,12 @@ class SurfaceCoder {
       half_edges = {next_half_edge(beyond), previous_half_edge(beyond)};
       tip = true_vertex(half_edges[1]);
     }
-    const bool is_new =
-        models_.code<kNew>(stream_,
-                           {kRooms(gate.room), kRooms(front_[gate.previous].room), news_.last(),
-                            combine(news_.last<3>(), closings_.last<6>())},
-                           is_writing() && code_of_[tip] == kNone);
-    news_.add(is_new);
+    const bool is_new = models_.code<kNew>(
+        stream_,
+        {kRooms(gate.room), kRooms(front_[gate.previous].room), new_answers_.last(),
+         combine(new_answers_.last<3>(), close_answers_.last<6>())},
+        is_writing() && code_of_[tip] == kNone);
+    new_answers_.add(is_new);
     const Vector predicted = vertices_.predict(front_, corner);
     if (!is_new) return join(corner, half_edges, predicted);
     if (Status coded =
@@ -313,9 +313,9 @@ class SurfaceCoder {
   std::vector<Candidate> candidates_;
   std::size_t most_triangles_ = ~std::size_t{0};
   double mean_edge_ = 1;
-  Answers<8> closings_;    // of Close
-  Answers<6> news_;        // of New
-  bool is_stuck_ = false;  // writing: the surface has edges between the same two vertices
+  Answers<8> close_answers_;  // the last answers of Close
+  Answers<6> new_answers_;    // the last answers of New
+  bool is_stuck_ = false;     // writing: the surface has edges between the same two vertices
 };
 
 /// Options are measured on this many triangles of a surface.

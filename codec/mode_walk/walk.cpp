@@ -81,7 +81,7 @@ Error not_encodable(const char* reason) { return {ErrorCode::not_encodable, reas
 class Walk {
  public:
   Walk(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
-       const delaunay::CanonicalDelaunay& delaunay, WalkTruth* truth)
+       const delaunay::CanonicalDelaunay& delaunay, GivenSurface* truth)
       : stream_(stream),
         models_(models),
         points_(points),
@@ -145,13 +145,13 @@ class Walk {
   void score(std::vector<Candidate>& list) const;
 
   EntropyStream& stream_;
-  EntropyStream lessons_ =
-      EntropyStream::meter();  // for decisions that models learn from and that are not coded
+  /// Takes the decisions from which the models only learn: they do not go into the stream.
+  EntropyStream uncoded_ = EntropyStream::meter();
   ModelBank& models_;
   std::span<const Point> points_;
   const delaunay::CanonicalDelaunay& delaunay_;
   DelaunayEdges edges_;
-  WalkTruth* truth_;
+  GivenSurface* truth_;
   WalkFront front_;
   std::vector<FaceShape> face_shapes_;
   bool is_manifold_ = true;
@@ -381,7 +381,7 @@ bool Walk::code_candidate(std::size_t index, Index truth) {
       {combine(own, rank, c.kind), combine(halved(own), halved(likelihood(next))),
        combine(halved(own), c.state, rank)},
       c.vertex == truth);
-  models_.code<kCandidate>(lessons_, c.selector(), c.contexts, is_it);
+  models_.code<kCandidate>(uncoded_, c.selector(), c.contexts, is_it);
   return is_it;
 }
 
@@ -537,11 +537,11 @@ Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::span<co
   if (stream.is_reading()) {
     return Walk(stream, models, points, delaunay, nullptr).run(mesh);
   }
-  WalkTruth truth;
-  if (!truth.take(mesh, static_cast<Index>(points.size()))) {
+  GivenSurface given;
+  if (!given.take(mesh, static_cast<Index>(points.size()))) {
     return not_encodable("the triangles of the boundary do not meet in pairs");
   }
-  return Walk(stream, models, points, delaunay, &truth).run(mesh);
+  return Walk(stream, models, points, delaunay, &given).run(mesh);
 }
 
 }  // namespace watertight::codec::walk

@@ -130,9 +130,10 @@ Status for_each_address_vertex(Json& object, Visit visit) {
 void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
                      const std::function<std::uint64_t(Index)>& vertex_of);
 
-/// Appends "[first,length,first,length]".
+/// Appends "[first,length,first,length]": each pair stands for `length` indices from `first` on.
 void append_vertex_runs(std::string& out, std::span<const Index> vertices);
-/// The inverse, for a solid of `solid_vertex_count` vertices of a document of `vertex_count`.
+/// The inverse of append_vertex_runs(), for a solid that has `solid_vertex_count` vertices in a
+/// document that has `vertex_count`.
 /// Errors: malformed.
 Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex_count,
                                             std::size_t solid_vertex_count);

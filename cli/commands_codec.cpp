@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// encode, decode, info, convert: files to files.
+// The commands encode, decode, info and convert, which read files and write files.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

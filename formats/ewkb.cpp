@@ -165,7 +165,9 @@ class EwkbReader {
     if (*point_count == 1 || (*point_count > 1 && positions_.back() != positions_[first])) {
       return wrong("the ring is not closed: its last point must be its first");
     }
-    if (*point_count > 0) positions_.pop_back();  // an empty ring is a finding, not an error
+    // The last point repeats the first and is dropped. A ring without points is read: the validator
+    // reports it.
+    if (*point_count > 0) positions_.pop_back();
     for (std::size_t i = first; i < positions_.size(); ++i) {
       arrays_.ring_vertices.push_back(static_cast<Index>(i));
     }

@@ -11,7 +11,7 @@ namespace watertight::store {
 namespace {
 
 constexpr std::uint64_t kLargestPage = 10'000;
-constexpr std::int64_t kBatchBytes = 16 << 20;  // blobs and skeletons of one batch
+constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
 std::string collections_where(const char* condition) {
   return std::string(

@@ -31,7 +31,8 @@ constexpr std::uint32_t kLengths = 16;  // of such a distance, in bits
 constexpr Context<2 * kLengths> kOfStep{0U};
 constexpr Context<2 * kLengths> kOfCount{1U};
 constexpr Context<kLengths * kLengths> kNoneBefore{0U};
-/// The part of the bits between two values that a residual saves, for the writer's choice alone.
+/// The writer expects that a residual in places is shorter than one in grid steps by this share of
+/// the bits of the distance between two values. Only the choice of the kind depends on it.
 constexpr double kShare = 0.7;
 
 /// A line of equal steps: every coordinate value is floor(offset + k * step) for some integer k.

@@ -20,12 +20,12 @@ namespace {
 
 constexpr int kCandidateSteps = 256;
 constexpr int kRankBits = 32;
-constexpr Scale<32> kRooms{.per_unit = 4};  // of a corner, for New
-constexpr double kMostAveraged = 1000;      // vertices that the mean edge remembers
+constexpr Scale<32> kRooms{.per_unit = 4};  // classes of the room of a corner, for New
+constexpr double kMostAveraged = 1000;      // the number of edges that the mean edge remembers
 
 Error malformed() { return {ErrorCode::malformed, "the triangles do not form a closed surface"}; }
 
-/// The surface in the order of the stream, written or read.
+/// Codes the triangles and vertices of a solid in the order of the stream.
 class SurfaceCoder {
  public:
   SurfaceCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
@@ -321,7 +321,7 @@ class SurfaceCoder {
 /// Options are measured on this many triangles of a surface.
 constexpr std::size_t kTrialTriangles = 2500;
 
-/// Smaller ones are not worth the time of trying all.
+/// For surfaces with fewer triangles not all options are tried: they would save too little.
 constexpr std::size_t kFewTriangles = 64;
 
 /// Tries options on a part of a surface.

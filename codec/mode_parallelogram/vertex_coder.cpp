@@ -28,7 +28,7 @@ constexpr std::uint32_t kDistances = 8;  // of two guesses
 constexpr int kDistanceZero = 1;
 constexpr double kDistancePart = 0.1;            // of two misses: with 1 more, the unit of distance
 constexpr Scale<4> kParts{.per_unit = 2 * 4};    // between two places: 0 to 0.5
-constexpr Scale<8> kNormals{.per_unit = 7.999};  // of a component of a unit vector
+constexpr Scale<8> kNormals{.per_unit = 7.999};  // sizes of components of unit vectors
 constexpr std::uint32_t kVerticesAround = 5;     // vertices whose coordinate a tip may repeat
 
 Error malformed() { return {ErrorCode::malformed, "a coordinate is out of range"}; }

@@ -153,7 +153,9 @@ class PositionCoder {
   Index last_top_ = kNone;                     // the last vertex in the column of a neighbour
   std::uint32_t known_columns_ = 0;            // vertices coded by a column of the page
   std::vector<Flat> directions_;               // of long edges, each the longest of its kind
-  std::vector<std::uint8_t> turns_;   // vertex -> how its edge turned: 1 left, 2 right, 3 not
+  /// vertex -> how its offset turned (docs/format-polygon.md): 0 if none was coded, 1 if along is
+  /// not negative, 2 if along is negative, 3 if the offset is nearly all across.
+  std::vector<std::uint8_t> turns_;
   std::vector<std::int64_t> levels_;  // heights, the latest first
 
   // About the vertex that is being coded.

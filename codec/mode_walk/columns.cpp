@@ -22,12 +22,12 @@ constexpr int kCountBits = 40;     // of a number of columns or vertices
 constexpr int kRankBits = 6;       // of a rank among known places
 
 // Fixed by the format (docs/format-walk.md, "Columns").
-constexpr std::size_t kHeights = 16;        // that are remembered
-constexpr std::size_t kReach = 5;           // columns back that parallelograms are made of
-constexpr std::size_t kKnownReach = 4096;   // columns of the page among which known places are
-constexpr std::uint64_t kMostKnown = 64;    // of these, those in the box that are counted
-constexpr std::int64_t kCornerMargin = 32;  // steps around the box in which corners may lie
-constexpr std::uint64_t kMostFloors = 255;  // floors above count as this one
+constexpr std::size_t kHeights = 16;        // the most heights that are remembered
+constexpr std::size_t kReach = 5;           // the number of last columns that make parallelograms
+constexpr std::size_t kKnownReach = 4096;   // the most columns of the page that are looked at
+constexpr std::uint64_t kMostKnown = 64;    // the most known places that are listed
+constexpr std::int64_t kCornerMargin = 32;  // the most steps from the box to a corner
+constexpr std::uint64_t kMostFloors = 255;  // the index of a height counts as this at most
 
 /// The length of a number, or of the side of a box.
 using Length = Context<kMaxLength + 1>;

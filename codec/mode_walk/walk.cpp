@@ -30,7 +30,7 @@ constexpr std::uint32_t kFewCounts = 5;
 constexpr std::uint32_t kLikelihoods = 64;
 constexpr std::uint32_t kRanks = 4;
 
-// The questions asked with Rare; one of its contexts is not used.
+// The contexts of the decisions of family Rare. Context 6 is not used.
 constexpr Context<7> kIsManifold{0U};
 constexpr Context<7> kIsMore{5U};
 /// Is the vertex in the distant list? By the length of the list.

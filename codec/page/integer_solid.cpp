@@ -24,10 +24,10 @@ Wide power(int radix, std::int32_t exponent) {
   return result;
 }
 
-/// Both as multiples of the same power of the radix.
+/// The origin and the step of a lattice on one axis, as multiples of one power of the radix.
 struct Aligned {
   Wide origin = 0;
-  Wide step = 0;  // 0: they are too far apart
+  Wide step = 0;  // 0 if the exponents of the two are too far apart
   std::int32_t exponent = 0;
 };
 

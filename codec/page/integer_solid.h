@@ -17,9 +17,10 @@ namespace watertight::codec {
 /// Lattice steps from the origin of the page. Magnitudes are below 2^53.
 using GridPoint = std::array<std::int64_t, 3>;
 
-/// Shell 0 is the exterior one, the first ring of a facet its exterior one. To be coded it is in
-/// canonical form (geometry/canonical_form.h); decoded, any order of all else will do: the caller
-/// brings it into canonical form.
+/// A solid whose vertices are grid points. Shell 0 is the exterior shell, and the first ring of a
+/// facet is its exterior ring. A solid that is written is in canonical form
+/// (geometry/canonical_form.h). A mode may decode vertices, facets, interior shells and interior
+/// rings in any order: the caller brings them into canonical form.
 struct IntegerSolid {
   std::vector<GridPoint> vertices;
   std::vector<Index> ring_vertices;  // of all rings, one after the other

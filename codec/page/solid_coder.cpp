@@ -297,8 +297,8 @@ Status SolidCoder::code_plain(PageSolid& solid) {
   return Done{};
 }
 
-/// The origin of the solid's lattice: the smallest corner of the solid (0), the origin of the solid
-/// before (1), or any (2).
+/// Codes the origin of the solid's lattice: it is the smallest corner of the solid's box (case 0),
+/// the origin of the solid before (case 1), or any other grid point (case 2).
 void SolidCoder::code_origin(PageSolid& solid) {
   if (frame_.grid.kind == LatticeKind::float64) return;
   ModelBank& models = models_[ModelPart::frame];

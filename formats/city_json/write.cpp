@@ -262,7 +262,7 @@ Status shift_addresses(Json& object, std::uint64_t offset) {
   });
 }
 
-// One CityJSON of many features.
+// Merges many features into one CityJSON document.
 class Merger {
  public:
   explicit Merger(const Json& header) : header_(header) {

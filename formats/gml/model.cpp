@@ -493,8 +493,8 @@ class GmlBuilder : public XmlHandler {
     XmlPlace place;
   };
   Root root_;
-  bool is_of_ogc_ = false;     // some element that was not passed over
-  std::uint64_t skipped_ = 0;  // open elements of a part that is passed over
+  bool is_of_ogc_ = false;     // an element that was not skipped is of OGC or has a gml:id
+  std::uint64_t skipped_ = 0;  // open elements of the part that is skipped
 };
 
 }  // namespace

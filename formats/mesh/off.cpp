@@ -61,7 +61,8 @@ class OffReader : private OneShellText {
     return Done{};
   }
 
-  // The number of corners, their vertices, and perhaps a colour.
+  // Reads a facet: the number of its vertices, then their indices. A colour may follow, which is
+  // not read.
   Status facet() {
     const auto corners = unsigned_word(lines_.words()[0]);
     if (!corners || *corners > lines_.words().size() - 1) {

@@ -4,10 +4,11 @@
 // space, spellings of numbers and escapes of strings. With it the very bytes of a document come
 // back. Internal to formats/.
 //
-// Both texts have the same tokens in the same order. The text before each token is predicted from
-// that at the last such place (the tokens before and after, the depth), the spelling of a token
-// from the last one that was unlike ours; a layout holds the exceptions only. So it takes a few
-// bytes for a text in any regular style, and is still exact for a text in none.
+// Both texts have the same tokens in the same order. The white space before a token is predicted to
+// be the same as before the last token at the same depth between the same kinds of neighbours. The
+// spelling of a token is predicted from the last token that was spelled in another way than ours. A
+// layout holds only the exceptions from the predictions. So it takes a few bytes if the text has a
+// regular style, and it is exact for every text.
 #pragma once
 
 #include <cstdint>

@@ -114,7 +114,9 @@ int locate_exactly(const TrianglePoint& point, std::span<const Point> vertices,
     if (above == 0 && is_in_triangle(a, b, c, p)) return 0;
     const int side = moved_turn(a, b, p);
     if (side == 0 || moved_turn(b, c, p) != side || moved_turn(c, a, p) != side) continue;
-    // Positive heights are above a triangle that turns left in plan.
+    // The point is above a triangle that turns left in plan (side > 0) if its height is positive,
+    // and above one that turns right if its height is negative. Triangles above the point are
+    // counted.
     if (above * side < 0) is_inside = !is_inside;
   }
   return is_inside ? 1 : -1;

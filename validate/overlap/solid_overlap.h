@@ -60,8 +60,10 @@ struct OverlapExtent {
   std::optional<Point> witness;  // inside both solids, exactly
 };
 
-/// Requires boundaries of solids that overlap. The depth is the largest over the parts of the least
-/// extent along the axes and the normals of the facets that bound the part: measured in doubles.
+/// Measures, in doubles, how far two solids overlap. The depth of one part of the overlap is its
+/// least extent in a direction, among the axes and the normals of the facets that bound the part.
+/// The depth of the overlap is that of its deepest part. Requires boundaries of solids that
+/// overlap.
 OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
                               const StepMetres& step_metres);
 

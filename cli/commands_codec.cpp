@@ -222,7 +222,7 @@ Result<Json> info_of(ByteView bytes) {
 
 /// Bytes of all solids in one mode.
 struct ModeTotal {
-  std::uint64_t solids = 0;  // that the mode can hold
+  std::uint64_t solids = 0;  // the number of solids that the mode can hold
   std::uint64_t bytes = 0;
   std::map<std::string, double> parts;
 };

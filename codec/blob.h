@@ -21,7 +21,7 @@ namespace watertight::codec {
 
 inline constexpr std::uint8_t kFormatVersion = 1;
 
-/// The set of priors that encoders use unless told otherwise; 0 is the neutral one.
+/// The set of priors that encoders use if their options name no other; 0 is the neutral one.
 inline constexpr std::uint8_t kModelNumber = 1;
 
 enum class Mode : std::uint8_t {

@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 using Parser = http::request_parser<http::string_body>;
 
 constexpr std::size_t kReadBytes = 16 * 1024;
-constexpr double kLingerSeconds = 2;  // for a sender that we stopped listening to
+constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
 constexpr double kBytesPerSecond = 100e3;  // slowest reader that gets its whole answer
 

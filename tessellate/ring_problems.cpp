@@ -93,7 +93,7 @@ class RingExaminer {
   /// A ring with the vertices that split its edges.
   struct DividedRing {
     std::vector<Index> vertices;
-    std::vector<Index> position_of;  // in the ring as submitted, where the edge starts
+    std::vector<Index> position_of;  // index of the start of its edge in the submitted ring
   };
   std::vector<DividedRing> divided_;
   std::vector<Edge> edges_;

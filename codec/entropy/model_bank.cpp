@@ -12,7 +12,7 @@ namespace {
 // In the logistic domain an integer x from -2047 to 2047 stands for the probability p with
 // ln(p / (1 - p)) = x / 256.
 constexpr std::int32_t kDomain = 2047;
-constexpr std::uint32_t kLeastProbability = 32;  // of 65536, of either answer
+constexpr std::uint32_t kLeastProbability = 32;  // the least probability of an answer, of 65536
 
 /// round(65536 / (1 + exp((32 - i) / 4))) for i = 0 to 64: part of the format.
 constexpr std::array<std::int32_t, 65> kSquash{

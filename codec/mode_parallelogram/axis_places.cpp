@@ -16,7 +16,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-constexpr std::int64_t kRange = std::int64_t{1} << 54;  // of values
+constexpr std::int64_t kRange = std::int64_t{1} << 54;  // values are smaller in magnitude
 constexpr int kShiftBits = 6;
 constexpr int kMostShift = 40;
 constexpr int kStepBits = 61;

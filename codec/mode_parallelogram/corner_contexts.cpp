@@ -84,7 +84,7 @@ struct Degrees {
   Context<kDegrees> u;
   Context<kDegrees> v;
   Context<kDegrees> w;
-  Context<kDegrees> lesser;   // of those of u and w
+  Context<kDegrees> lesser;   // the lesser degree of u and w
   Context<kDegrees> greater;  // likewise
 };
 
@@ -96,12 +96,12 @@ Degrees degrees_at(const Corner& at, const SurfaceFront& front) {
 }
 
 struct Lengths {
-  double span;       // of the third edge of the closing triangle
-  double side_u;     // of the edges that it shares with known triangles
+  double span;       // the third edge of the closing triangle
+  double side_u;     // its edge u v, which a known triangle has too
   double side_w;     // likewise
-  double mean_side;  // of both
-  double mean_edge;  // of the surface
-  double near_edge;  // mean of the two known triangles
+  double mean_side;  // the mean of side_u and side_w
+  double mean_edge;  // the mean edge of the surface
+  double near_edge;  // the mean edge of the two known triangles
 };
 
 Lengths lengths_at(const Corner& at, double mean_edge) {

@@ -353,7 +353,7 @@ class OptionTrials {
 
  private:
   const CutSurface& surface_;
-  ModelBank& models_;  // as it was, after each trial
+  ModelBank& models_;  // after each trial it is as it was before
   const PageMemory& memory_;
   Limits limits_;
   VertexOptions best_;

@@ -13,21 +13,21 @@ namespace watertight::codec::parallelogram {
 
 namespace {
 
-constexpr int kMostBits = 54;  // of the difference of two coordinates
+constexpr int kMostBits = 54;  // the most bits of a difference of two coordinates
 
 // Contexts (docs/format-parallelogram.md, "The stream" and "A tip"). The classes of misses and
 // lengths are logarithmic: each constant that ends in Zero is the class of 1.
-constexpr std::uint32_t kLengths = 64;  // of a difference, in bits
+constexpr std::uint32_t kLengths = 64;  // classes of the number of bits of a difference
 constexpr int kMissZero = 4;
 constexpr int kSizeZero = 1;
 constexpr int kTwoMissesZero = 2;
 constexpr int kSpreadZero = 3;
-constexpr double kSpreadPart = 0.3;  // of the expected miss: with 1 more, the unit of spread
+constexpr double kSpreadPart = 0.3;  // the unit of spread is this part of the expected miss, plus 1
 constexpr int kAxisMissZero = 2;
-constexpr std::uint32_t kDistances = 8;  // of two guesses
+constexpr std::uint32_t kDistances = 8;  // classes of the distance of two guesses
 constexpr int kDistanceZero = 1;
-constexpr double kDistancePart = 0.1;            // of two misses: with 1 more, the unit of distance
-constexpr Scale<4> kParts{.per_unit = 2 * 4};    // between two places: 0 to 0.5
+constexpr double kDistancePart = 0.1;  // the unit of distance is this part of two misses, plus 1
+constexpr Scale<4> kParts{.per_unit = 2 * 4};    // classes of the distance to the nearest place
 constexpr Scale<8> kNormals{.per_unit = 7.999};  // sizes of components of unit vectors
 constexpr std::uint32_t kVerticesAround = 5;     // vertices whose coordinate a tip may repeat
 

@@ -53,17 +53,17 @@ class VertexCoder {
   static constexpr std::uint32_t kGuesses = TipPrediction::kGuesses;
   static constexpr std::uint32_t kSpans = TipPrediction::kSpanClasses;
   static constexpr std::uint32_t kMisses = 16;     // classes of misses and lengths
-  static constexpr std::uint32_t kAxisMisses = 6;  // of the miss on one axis
-  static constexpr std::uint32_t kSpreads = 8;     // of the distance of two guesses
+  static constexpr std::uint32_t kAxisMisses = 6;  // classes of the miss on one axis
+  static constexpr std::uint32_t kSpreads = 8;     // classes of the distance of two guesses
 
   using Guess = Context<kGuesses>;
   struct Axis {
     std::size_t number;
     Context<3> rank;  // the index of the axis in the order of coding
   };
-  /// What is known about a tip before its coordinates are coded.
+  /// The facts that are known about a tip before its coordinates are coded.
   struct TipContexts {
-    double expected;                    // miss
+    double expected;                    // the expected miss
     Guess guess;                        // the prediction
     Context<kSpans + kGuesses> source;  // the set of coefficients, or the guess if tips name one
     Context<kMisses> size;              // of the gate
@@ -104,7 +104,7 @@ class VertexCoder {
   std::vector<std::uint8_t> guesses_;  // vertex -> the guess that was its prediction
   std::vector<std::uint8_t> repeats_;  // vertex -> bit k: the coordinate on axis k was a repeat
   TipPrediction prediction_;
-  Context<kGuesses * kGuesses> last_guesses_{0U};  // of the two tips before
+  Context<kGuesses * kGuesses> last_guesses_{0U};  // the guesses of the two tips before
   std::array<Answers<3>, 3> history_;              // axis -> the last answers of Repeat
   std::uint32_t now_repeats_ = 0;                  // the answers for this tip, latest lowest
 };

@@ -16,10 +16,10 @@ using Place = std::array<std::int64_t, 2>;
 constexpr int kMaxLength = 30;  // bits of a side of the box
 constexpr std::int64_t kMaxMagnitude = std::int64_t{1} << 53;
 
-constexpr int kPositionBits = 54;  // of a coordinate of the first point
-constexpr int kLengthBits = 5;     // of a length
-constexpr int kCountBits = 40;     // of a number of columns or vertices
-constexpr int kRankBits = 6;       // of a rank among known places
+constexpr int kPositionBits = 54;  // the most bits of a coordinate of the first point
+constexpr int kLengthBits = 5;     // the most bits of a length
+constexpr int kCountBits = 40;     // the most bits of a number of columns or vertices
+constexpr int kRankBits = 6;       // the most bits of a rank among known places
 
 // Fixed by the format (docs/format-walk.md, "Columns").
 constexpr std::size_t kHeights = 16;        // the most heights that are remembered
@@ -94,10 +94,10 @@ class Columns {
   std::vector<std::size_t> first_;  // writing: place -> its first point; one more entry at the end
   std::vector<GridPoint> decoded_;
   std::size_t place_count_ = 0;
-  std::array<int, 3> length_{};        // of the sides of the box
-  std::array<std::int64_t, 3> min_{};  // of the box
+  std::array<int, 3> length_{};        // the lengths of the sides of the box
+  std::array<std::int64_t, 3> min_{};  // the smallest corner of the box
   std::array<std::int64_t, 3> start_{};
-  std::vector<Height> heights_;  // that were used, the latest first
+  std::vector<Height> heights_;  // the heights that were used, the latest first
   std::vector<std::int64_t> floors_before_;
   std::size_t known_ = 0;  // the first of memory_.columns that is greater than the last column
   bool was_known_ = false;

@@ -37,7 +37,7 @@ constexpr Context<8> kRings{1U};
 constexpr Context<8> kVertices{2U};
 using HabitContext = Context<6>;
 using Facing = Context<5>;    // up, down, upright, slanting up, slanting down
-using Relation = Context<9>;  // of a corner of a ring to the facets before
+using Relation = Context<9>;  // how a corner of a ring lies to the facets before
 
 std::vector<Index> inverse_of(const std::vector<Index>& order) {
   std::vector<Index> inverse(order.size());

@@ -148,7 +148,7 @@ class Comparison {
   const RegionQuestions& questions_;
   const CancelPoll& cancel_;
   std::vector<Point> points_;  // of the listed triangles, three each, the first solid's first
-  std::vector<Box> boxes_;     // of the second's
+  std::vector<Box> boxes_;     // the boxes of the second region's triangles
   std::uint64_t comparisons_ = 0;
   bool first_leaves_ = false;   // the first meets the complement of the second
   bool second_leaves_ = false;  // and the other way round

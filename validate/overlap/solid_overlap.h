@@ -38,7 +38,7 @@ class SolidSurface {
 struct SolidRelation {
   bool is_cancelled = false;  // nothing else is known
   bool do_overlap = false;    // the interiors have a point in common
-  bool are_equal = false;     // the same points
+  bool are_equal = false;     // both solids have the same points
   bool share_area = false;    // facets lie on each other back to back; unless do_overlap
   Index facet = kNone;        // of the first solid, that shows the overlap
   Index other_facet = kNone;  // of the second; kNone when no facet of it is concerned

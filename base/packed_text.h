@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A skeleton as a store keeps it, which its type separates from plain text: compressed, or plain in
-// databases of the first program.
+// A skeleton as a store keeps it: compressed, or as plain text in databases of the first program.
+// It has a type of its own so that it is not taken for the text itself.
 #pragma once
 
 #include "base/bytes.h"

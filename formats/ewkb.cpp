@@ -119,7 +119,7 @@ class EwkbReader {
       if (*type != kPolyhedralSurface) return wrong("a shell is not a POLYHEDRALSURFACE Z");
       if (auto status = shell(); !status) return status;
     }
-    if (*shell_count == 0) arrays_.end_shell();  // an empty exterior shell, as in every reader
+    if (*shell_count == 0) arrays_.end_shell();  // no shells are read as one empty shell
     return Done{};
   }
 

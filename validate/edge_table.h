@@ -18,10 +18,10 @@ struct EdgeUse {
   Index corner = 0;  // index in ring_vertices of the vertex where it starts
 };
 
-/// Where a corner stands.
+/// The ring of a corner and the index of the corner in it.
 struct CornerPlace {
   Index ring_in_facet = 0;
-  Index position = 0;  // in the ring
+  Index position = 0;  // index of the corner in its ring
   Index next = 0;      // the corner after it
 };
 /// Cost: logarithmic in the rings of the facet.

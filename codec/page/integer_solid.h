@@ -23,10 +23,10 @@ using GridPoint = std::array<std::int64_t, 3>;
 /// rings in any order: the caller brings them into canonical form.
 struct IntegerSolid {
   std::vector<GridPoint> vertices;
-  std::vector<Index> ring_vertices;  // of all rings, one after the other
-  std::vector<Index> ring_offsets{0};
-  std::vector<Index> facet_offsets{0};  // into the rings
-  std::vector<Index> shell_offsets{0};  // into the facets
+  std::vector<Index> ring_vertices;     // the vertices of all rings, ring by ring
+  std::vector<Index> ring_offsets{0};   // ring -> its first index in ring_vertices
+  std::vector<Index> facet_offsets{0};  // facet -> its first ring
+  std::vector<Index> shell_offsets{0};  // shell -> its first facet
 
   Index ring_count() const { return static_cast<Index>(ring_offsets.size() - 1); }
   Index facet_count() const { return static_cast<Index>(facet_offsets.size() - 1); }

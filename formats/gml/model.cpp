@@ -123,7 +123,7 @@ class GmlBuilder : public XmlHandler {
     Index node = kNone;      // geometry: itself; property, numbers, ring_point: the geometry's
     Index implicit = kNone;  // GmlModel::implicits, in an implicit geometry
     Index system = kNone;
-    Index object_frame = kNone;  // index into frames_ of the object of this element
+    Index object_frame = kNone;  // index into frames_: the object of this element
   };
 
   struct OpenObject {

@@ -40,8 +40,8 @@ struct SolidRelation {
   bool do_overlap = false;    // the interiors have a point in common
   bool are_equal = false;     // both solids have the same points
   bool share_area = false;    // facets lie on each other back to back; unless do_overlap
-  Index facet = kNone;        // of the first solid, that shows the overlap
-  Index other_facet = kNone;  // of the second; kNone when no facet of it is concerned
+  Index facet = kNone;        // a facet of the first that shows the overlap
+  Index other_facet = kNone;  // one of the second; kNone if none shows it
 };
 
 /// Deterministic. Cost: as relate_regions() for the exterior shells and, where these overlap, for

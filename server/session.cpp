@@ -336,8 +336,8 @@ awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
   co_return *std::move(made);
 }
 
-/// Sends an answer in parts: chunked, or to the end of the connection where HTTP is 1.0. Each part
-/// is made when the one before is out, so that a slow client holds one.
+/// Sends an answer in parts: in chunks, or, in HTTP 1.0, until the connection ends. Each part is
+/// made after the one before is sent, so that a slow client takes the memory of one part only.
 awaitable<Status> Session::send_parts(Response response, bool keep_alive, std::uint64_t& sent) {
   auto message = head_of<http::buffer_body>(response, keep_alive, version_);
   message.chunked(version_ > 10);

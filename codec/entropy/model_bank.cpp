@@ -82,7 +82,7 @@ constexpr std::int32_t kBiasInput = 64;
 constexpr std::int64_t kWeightLimit = 8 << 16;
 constexpr std::uint32_t kMaxMixed = 1000;
 
-/// How far the weights of a set move that has seen `mixed` decisions, in 1/4096.
+/// The learning rate, in 1/4096, of a set of weights after `mixed` decisions.
 std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
 
 // A number has three families: its length in unary, the bits after the first, the sign.

@@ -79,9 +79,9 @@ class ModelBank {
     return code_signed<number>(stream, kNothingKnown, contexts, value, max_length);
   }
 
-  /// The same by numbers that are not checked, for banks of any layout. Requires as many contexts
-  /// as the family has inputs, each below the size of its table, and a selector that the family
-  /// has.
+  /// These functions take the family by its number, whose type is not checked, for banks of any
+  /// layout. They require as many contexts as the family has inputs, each below the size of its
+  /// table, and a selector that the family has.
   bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
             std::span<const std::uint32_t> contexts, bool value);
   std::uint32_t probability(std::uint32_t family, std::uint32_t selector,

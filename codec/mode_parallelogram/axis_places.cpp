@@ -26,7 +26,7 @@ constexpr int kCountBits = 32;
 // that stands alone, or the distance of a value from the one before it in a list.
 constexpr Context<2> kAlone{0U};
 constexpr Context<2> kInList{1U};
-constexpr std::uint32_t kLengths = 16;  // of such a distance, in bits
+constexpr std::uint32_t kLengths = 16;  // classes of the number of bits of such a distance
 // Numbers that stand alone have the contexts before those of the lengths.
 constexpr Context<2 * kLengths> kOfStep{0U};
 constexpr Context<2 * kLengths> kOfCount{1U};

@@ -32,7 +32,7 @@ class TipPrediction {
     Context<kSpanClasses> spans{0U};  // how far both corners of the gate are open
   };
 
-  /// Predicts the tip beyond the gate of `corner`. `centres` are of the vertices.
+  /// Predicts the tip beyond the gate of `corner`. `centres` are the positions of the vertices.
   const Tip& predict(const SurfaceFront& front, const std::vector<Vector>& centres, Index corner);
   const Tip& tip() const { return tip_; }
 

@@ -80,8 +80,8 @@ class VertexCoder {
   /// Codes which of the guesses is the prediction of the tip.
   Guess code_guess(const SurfaceFront& front, const Gate& gate, const GridPoint* truth,
                    Context<kMisses> scale);
-  /// Codes that the coordinate is that of a vertex beside the gate, and of which one. Nothing if it
-  /// is not.
+  /// Codes whether the coordinate equals that of a vertex beside the gate, and if so, the index of
+  /// the vertex. Returns the coordinate, or nothing if it equals none.
   std::optional<std::int64_t> code_repeat(const SurfaceFront& front, const Gate& gate,
                                           const Axis& axis, std::int64_t truth);
   TipContexts contexts_of_tip(const SurfaceFront& front, const Gate& gate, const GridPoint* truth);

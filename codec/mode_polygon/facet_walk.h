@@ -17,10 +17,10 @@
 
 namespace watertight::codec::polygon {
 
-inline constexpr Index kLoopLimit = 64;    // steps along the front that a loop may have
-inline constexpr Index kGateLimit = 256;   // open half-edges among which an interior ring begins
-inline constexpr Index kGateReach = 4096;  // half-edges, open or not, among which these are
-inline constexpr Index kChainLimit = 64;   // unfinished fans of facets at one vertex
+inline constexpr Index kLoopLimit = 64;    // the most steps of a loop along the front
+inline constexpr Index kGateLimit = 256;   // the most open half-edges where an interior ring begins
+inline constexpr Index kGateReach = 4096;  // the most half-edges that are searched for these
+inline constexpr Index kChainLimit = 64;   // the most chains at one vertex
 inline constexpr Index kUnaryLimit = 24;   // sizes and degrees that are asked one by one
 inline constexpr int kCountBits = 28;      // the most bits of a ring size or degree
 inline constexpr int kGateBits = 9;        // the most bits of the number of a gate

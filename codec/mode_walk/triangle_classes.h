@@ -51,8 +51,8 @@ struct FaceShape {
   std::uint8_t ratio;    // ratio of the radii of these, in steps of sqrt(2)
   std::uint8_t gabriel;  // how many of the radii exceed 1.3 times that of the face
 };
-/// The same for a triangle that is no face. `edges`: 1 if its edge at the start of the gate is a
-/// Delaunay edge, plus 2 if that at the end is one.
+/// The shape of a triangle that is no face, which has classes of its own. `edges`: 1 if its edge at
+/// the start of the gate is a Delaunay edge, plus 2 if that at the end is one.
 constexpr FaceShape no_face(std::uint32_t edges) {
   return {static_cast<std::uint8_t>(kSphereClasses - 4 + edges), kRatioClasses - 1,
           kGabrielClasses - 1};

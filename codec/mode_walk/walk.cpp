@@ -421,7 +421,8 @@ void Walk::list_seeds(Index seed) {
     const Triangle& t = delaunay_.faces[face];
     const auto& apexes = delaunay_.apexes[face];
     const Context<kSphereClasses> sphere(shape_of(face).sphere);
-    // The first apex sees the triangle turn clockwise from outside: it lies inside beside it.
+    // A face of the hull has one apex, which is inside. If it is the first apex, the face turns
+    // clockwise seen from outside.
     const Triangle reverse{t[0], t[2], t[1]};
     const bool hull = apexes[0] == kNone || apexes[1] == kNone;
     const bool first_inside = apexes[1] == kNone;

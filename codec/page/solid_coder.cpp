@@ -208,7 +208,8 @@ bool is_all_triangles(const IntegerSolid& solid) {
          solid.ring_count() == solid.facet_count();
 }
 
-/// A coordinate leaves 53 bits if hostile deltas add up.
+/// True if all coordinates are below 2^53 in magnitude. The sum of hostile differences may be
+/// larger.
 bool are_in_range(const IntegerSolid& solid) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 53;
   return std::all_of(solid.vertices.begin(), solid.vertices.end(), [](const GridPoint& vertex) {

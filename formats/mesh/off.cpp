@@ -44,7 +44,7 @@ class OffReader : private OneShellText {
   }
 
   Status counts() {
-    std::size_t first = 1;  // word of the line
+    std::size_t first = 1;  // index of the first count among the words of the line
     if (first < lines_.words().size() && lines_.words()[first] == "BINARY") {
       return Error{ErrorCode::unsupported, "binary OFF is not read", lines_.line().offset, {}};
     }

@@ -79,7 +79,7 @@ std::uint64_t triangle_points(int exponent) {
 
 TrianglePoint triangle_point(const std::array<Point, 3>& corners, int exponent,
                              std::uint64_t number) {
-  // number + number^2 <= 2^exponent - 2^(exponent / 2): the third weight is positive.
+  // The third weight is positive, because number + number^2 <= 2^exponent - 2^(exponent / 2).
   const std::uint64_t whole = std::uint64_t{1} << static_cast<unsigned>(exponent);
   const std::uint64_t square = number * number;
   return {corners, {number, square, whole - number - square}, exponent};

@@ -63,8 +63,9 @@ void VertexCoder::code_options(const VertexOptions& options) {
 
 GridPoint VertexCoder::relative(const GridPoint* position) const {
   GridPoint vertex{};
-  for (std::size_t k = 0; k < 3 && position != nullptr; ++k)
+  for (std::size_t k = 0; k < 3 && position != nullptr; ++k) {
     vertex[k] = (*position)[k] - origin_[k];
+  }
   return vertex;
 }
 

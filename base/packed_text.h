@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A skeleton as a store keeps it: compressed, which its type separates from plain text.
+// A skeleton as a store keeps it: compressed. It has a type of its own so that it is not taken for
+// the text itself.
 #pragma once
 
 #include "base/bytes.h"

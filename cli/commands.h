@@ -21,7 +21,7 @@ struct ValidateCommand {
   double planarity_metres = 0.01;
   double planarity_degrees = 20;
   double overlap_metres = 0;
-  double seconds_per_solid = 0;  // of engines, 0: by size
+  double seconds_per_solid = 0;  // the time that engines may take; 0: by the size of the solid
   std::string proof = "tetrahedralization";
   std::string engine = "auto";  // "auto", "cgal" or "tetgen"
   bool is_strict = false;

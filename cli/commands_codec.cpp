@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// encode, decode, info, convert: files to files.
+// The commands encode, decode, info and convert, which read files and write files.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -222,7 +222,7 @@ Result<Json> info_of(ByteView bytes) {
 
 /// Bytes of all solids in one mode.
 struct ModeTotal {
-  std::uint64_t solids = 0;  // that the mode can hold
+  std::uint64_t solids = 0;  // the number of solids that the mode can hold
   std::uint64_t bytes = 0;
   std::map<std::string, double> parts;
 };

@@ -138,7 +138,7 @@ class Validation {
   const ValidateCommand& command_;
   pipeline::StreamOptions options_;
   delaunay::EngineWorkers workers_;
-  bool is_output_taken_ = false;  // by a report
+  bool is_output_taken_ = false;  // a report goes to the standard output
   bool is_quiet_ = false;
   std::vector<OpenReport> reports_;
   Summary summary_;

@@ -37,17 +37,17 @@ class Summary {
   void add(const std::vector<pipeline::InspectedGroup>& groups);
 
   std::uint64_t valid_ = 0;
-  std::uint64_t with_warnings_ = 0;  // of the valid ones
+  std::uint64_t with_warnings_ = 0;  // valid solids that have warnings
   std::uint64_t invalid_ = 0;
   std::uint64_t undecided_ = 0;
   std::uint64_t features_ = 0;
   std::uint64_t unreadable_ = 0;  // features, or rests of documents
   std::uint64_t stored_ = 0;
   std::uint64_t file_bytes_ = 0;
-  std::uint64_t plain_bytes_ = 0;  // of the encoded solids
+  std::uint64_t plain_bytes_ = 0;  // the size of the encoded solids as plain arrays
   std::uint64_t blob_bytes_ = 0;
   std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; one solid, several codes
-  std::map<int, std::uint64_t> groups_by_code_;  // the same of composite solids and buildings
+  std::map<int, std::uint64_t> groups_by_code_;  // invalid composite solids and buildings
   std::map<delaunay::Rung, std::uint64_t> by_rung_;
 };
 

@@ -21,7 +21,7 @@ namespace watertight::codec {
 
 inline constexpr std::uint8_t kFormatVersion = 1;
 
-/// The set of priors that encoders use unless told otherwise; 0 is the neutral one.
+/// The set of priors that encoders use if their options name no other; 0 is the neutral one.
 inline constexpr std::uint8_t kModelNumber = 1;
 
 enum class Mode : std::uint8_t {
@@ -65,7 +65,8 @@ struct BlobInfo {
   bool has_order = false;
   struct Part {
     std::string name;
-    double bytes = 0;  // what its decisions take, to 0.01; fractions where they share bytes
+    /// The cost of the decisions of this part, to 0.01 byte: parts may share a byte.
+    double bytes = 0;
   };
   std::vector<Part> parts;
   std::uint32_t checksum = 0;  // over what the blob says; of a page, over all its solids

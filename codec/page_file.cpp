@@ -145,7 +145,7 @@ Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits)
   if (reader.failed() || count > index.size() || pages > index.size()) {
     return malformed("has an index that counts more pages or solids than it can hold");
   }
-  result.place_.assign(count, Place{pages, 0});
+  result.slot_of_.assign(count, PageSlot{pages, 0});
   ByteReader page_bytes(body.first(body.size() - size));
   for (std::uint64_t page = 0; page < pages; ++page) {
     const std::uint64_t size_of_page = reader.varint();
@@ -159,18 +159,18 @@ Result<PageFileReader> PageFileReader::open(ByteView file, const Limits& limits)
     std::uint64_t next = 0;
     for (std::uint64_t slot = 0; slot < solids; ++slot) {
       const std::uint64_t gap = reader.varint();
-      if (gap >= count || next + gap >= count || result.place_[next + gap].page != pages) {
+      if (gap >= count || next + gap >= count || result.slot_of_[next + gap].page != pages) {
         return malformed(
             "has an index with a number of a solid that is out of range or that is there twice");
       }
       next += gap;
-      result.place_[next] = {page, slot};
+      result.slot_of_[next] = {page, slot};
       numbers.push_back(next++);
     }
   }
-  const bool all_placed = std::all_of(result.place_.begin(), result.place_.end(),
-                                      [&](const Place& place) { return place.page != pages; });
-  if (reader.failed() || reader.remaining() != 0 || page_bytes.remaining() != 0 || !all_placed) {
+  const bool all_listed = std::all_of(result.slot_of_.begin(), result.slot_of_.end(),
+                                      [&](const PageSlot& found) { return found.page != pages; });
+  if (reader.failed() || reader.remaining() != 0 || page_bytes.remaining() != 0 || !all_listed) {
     return malformed("has an index that does not fit its pages");
   }
   return result;
@@ -194,10 +194,10 @@ Result<Decoded> PageFileReader::solid(std::uint64_t number) const {
     return Error{ErrorCode::invalid_argument,
                  "solid " + std::to_string(number) + " of " + std::to_string(size())};
   }
-  const Place& place = place_[number];
-  auto solids = page(place.page);
+  const PageSlot& found = slot_of_[number];
+  auto solids = page(found.page);
   if (!solids) return solids.error();
-  return std::move((*solids)[place.slot].decoded);
+  return std::move((*solids)[found.slot].decoded);
 }
 
 }  // namespace watertight::codec

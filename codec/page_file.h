@@ -57,7 +57,7 @@ class PageFileReader {
   /// Reads the index. `file` must outlive the reader. Errors: malformed; unsupported.
   static Result<PageFileReader> open(ByteView file, const Limits& limits = {});
 
-  std::uint64_t size() const { return place_.size(); }
+  std::uint64_t size() const { return slot_of_.size(); }
   std::size_t page_count() const { return pages_.size(); }
   /// The solid of this number, which is below size(). Decodes its page. Errors: invalid_argument;
   /// those of decode_page().
@@ -70,16 +70,16 @@ class PageFileReader {
   Result<std::vector<NumberedSolid>> page(std::size_t page) const;
 
  private:
-  struct Place {
+  struct PageSlot {
     std::size_t page = 0;
-    std::size_t slot = 0;
+    std::size_t slot = 0;  // index of the solid in its page
   };
   PageFileReader() = default;
 
   Limits limits_;
   std::vector<ByteView> pages_;
   std::vector<std::vector<std::uint64_t>> numbers_;  // page -> the numbers of its solids
-  std::vector<Place> place_;                         // solid -> its page and slot
+  std::vector<PageSlot> slot_of_;                    // number of a solid -> its page and slot
 };
 
 /// True if the bytes begin as those of a page file.

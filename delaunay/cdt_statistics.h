@@ -15,14 +15,14 @@ namespace watertight::delaunay {
 inline constexpr std::size_t kRungs = 5;  // Rung::delaunay to Rung::tetgen
 
 struct CdtStatistics {
-  std::uint64_t solids = 0;    // that climbed the ladder
+  std::uint64_t solids = 0;    // the number of solids that climbed the ladder
   std::uint64_t accepted = 0;  // certified
   std::uint64_t refuted = 0;   // the certificate shows that the solid is invalid
   std::uint64_t undecided = 0;
   /// attempts[rung][RungOutcome]; a solid can have several attempts.
   std::array<std::array<std::uint64_t, kRungOutcomes>, kRungs> attempts{};
   double seconds = 0;         // wall, of all attempts
-  double cpu_seconds = 0;     // of the callers' threads
+  double cpu_seconds = 0;     // CPU time of the threads of the callers
   double worker_seconds = 0;  // CPU time of the worker processes
   double engine_seconds = 0;  // CPU time of the engines' own calls
 

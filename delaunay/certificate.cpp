@@ -37,7 +37,7 @@ using Checked = std::optional<Refusal>;
 
 /// A face of the complex that belongs to a facet, turned as the facet declares it.
 struct OrientedFace {
-  Index face = kNone;  // in Complex::faces
+  Index face = kNone;  // index into Complex::faces
   Index facet = kNone;
   Index outer = kNone;  // the tetrahedron to which the declared normal points; kNone: the outside
   Index inner = kNone;
@@ -211,7 +211,7 @@ class Examination {
     std::vector<FaceEdge> edges;
     edges.reserve(3 * oriented_.size());
     std::vector<Index> seen_in(data_.points.size(), kNone);  // vertex -> last shell that has it
-    std::size_t vertices = 0;                                // of the shells, summed
+    std::size_t vertices = 0;  // the sum of the numbers of vertices of the shells
     Index shell = 0;
     for (Index f = 0; f < oriented_.size(); ++f) {
       while (oriented_[f].facet >= solid_.facets_of(shell).end) ++shell;

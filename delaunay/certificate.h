@@ -32,8 +32,9 @@ struct CertificateResult {
   CertificateRefusal refusal = CertificateRefusal::none;
   std::string detail;
   Index facet = kNone;
-  /// The same facets, also after a refusal that comes once the facets were examined: the refusal
-  /// then concerns another surface than the canonical one, and is not a property of the solid.
+  /// As Certificate::refilled_facets. If this is not empty after a refusal, the refusal concerns
+  /// another surface than the canonical one, so it says nothing about the solid. (A refusal before
+  /// the facets are examined leaves the list empty.)
   std::vector<Index> refilled_facets;
   Certificate certificate;  // when refusal is none
 };

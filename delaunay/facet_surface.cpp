@@ -42,13 +42,13 @@ std::array<double, 3> steiner_rounding(std::span<const Point> vertices) {
 }
 
 /// Normal and centre in coordinates divided by the unit; `half_width` is the largest
-/// |normal . (ring vertex - centre)|.
+/// |normal . (ring vertex - centre)|. The *height* of a point p is normal . (p - centre).
 struct FacetSurfaces::Plane {
   std::array<double, 3> normal{};
   std::array<double, 3> centre{};
   double half_width = 0;
-  double slack = 0;         // rounding of the height of a Steiner point, at most
-  double world_length = 0;  // of the normal that measures in world units
+  double slack = 0;         // the largest rounding error of the height of a Steiner point
+  double world_length = 0;  // a height divided by this is a distance in world units
 };
 
 /// The faces of a facet with their edges.
@@ -166,8 +166,8 @@ class FacetSurfaces::Mesh {
     return static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
   }
 
-  /// How many closed walks the boundary makes if it goes on, at each vertex, where the fan of faces
-  /// beside it ends.
+  /// The number of closed walks along the boundary. At the end of a boundary edge a walk turns
+  /// through the fan of faces beside it, and goes on with the boundary edge at the end of the fan.
   std::size_t boundary_walks() const {
     const auto place = [&](Index from, Index to) {
       return static_cast<std::size_t>(

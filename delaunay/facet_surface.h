@@ -33,7 +33,7 @@ struct FacetSurface {
   std::vector<Triangle> faces;
   /// Every diagonal of the canonical triangulation is a chain of edges: the same surface.
   bool follows_canonical = true;
-  double largest_deviation = 0;  // of a Steiner point from the facet's plane, world units
+  double largest_deviation = 0;  // of Steiner points from the plane, in world units
   double volume_slack = 0;       // six times the volume between this surface and the canonical
                                  // triangles, at most; coordinates divided by `unit`
 };

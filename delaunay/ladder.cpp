@@ -435,7 +435,7 @@ class Climb {
   EngineWorkers* workers_;
   const LadderOptions& options_;
   ContactTriangles contacts_;
-  std::vector<bool> is_kept_;  // facet -> follows its canonical triangles; empty: none must
+  std::vector<bool> is_kept_;  // facet -> its canonical triangles must be kept; empty if none
   std::ptrdiff_t first_of_constraints_ = 0;  // the first attempt with the present constraints
   EngineInput input_;
   RungAttempt attempt_;

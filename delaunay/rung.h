@@ -16,7 +16,7 @@ enum class Rung : std::uint8_t {
   none = 255,
   delaunay = 0,      // the canonical DT itself
   patch = 1,         // CGAL, facets as patches
-  patch_scaled = 2,  // the same after power-of-two scaling per axis
+  patch_scaled = 2,  // as patch, after scaling by a power of two on each axis
   triangles_scaled = 3,
   tetgen = 4
 };
@@ -42,7 +42,7 @@ std::string_view to_string(CertificateRefusal refusal);
 
 /// The outcome of one rung's attempt: the classes that statistics count.
 enum class RungOutcome : std::uint8_t {
-  accepted,                // by the certificate: the solid is decided
+  accepted,                // the certificate accepts the result: the solid is decided
   refused_by_certificate,  // RungAttempt::refusal names the reason
   not_delaunay,            // rung 0: facets are not unions of Delaunay faces
   engine_error,            // the engine said that it has no answer

@@ -302,7 +302,8 @@ class ContactDivision {
     result_.obstacle += " two edges (or folds) cross in a point that is not a vertex";
   }
 
-  /// A diagonal of one facet that is an edge of another shell is no intersection of triangles.
+  /// Notes the facets that have a diagonal of their triangulation in common with a ring edge of
+  /// another facet. The search for triangles that intersect does not find these contacts.
   void note_common_diagonals() {
     for (Index t = 0; t < canonical_.triangles.size(); ++t) {
       const Index facet = canonical_.facet_of[t];

@@ -48,7 +48,7 @@ std::size_t string_end(std::string_view text, std::size_t at) {
 std::string_view json_type(std::string_view text) {
   std::size_t depth = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {
-    if (text[at] != '"' && text[at] < '[') continue;  // numbers and what stands between values
+    if (text[at] != '"' && text[at] < '[') continue;  // skips numbers and all between values
     if (text[at] == '{' || text[at] == '[') ++depth;
     if ((text[at] == '}' || text[at] == ']') && depth > 0) --depth;
     if (text[at] != '"') continue;

@@ -119,7 +119,7 @@ class EwkbReader {
       if (*type != kPolyhedralSurface) return wrong("a shell is not a POLYHEDRALSURFACE Z");
       if (auto status = shell(); !status) return status;
     }
-    if (*shell_count == 0) arrays_.end_shell();  // an empty exterior shell, as in every reader
+    if (*shell_count == 0) arrays_.end_shell();  // no shells are read as one empty shell
     return Done{};
   }
 
@@ -165,7 +165,9 @@ class EwkbReader {
     if (*point_count == 1 || (*point_count > 1 && positions_.back() != positions_[first])) {
       return wrong("the ring is not closed: its last point must be its first");
     }
-    if (*point_count > 0) positions_.pop_back();  // an empty ring is a finding, not an error
+    // The last point repeats the first and is dropped. A ring without points is read: the validator
+    // reports it.
+    if (*point_count > 0) positions_.pop_back();
     for (std::size_t i = first; i < positions_.size(); ++i) {
       arrays_.ring_vertices.push_back(static_cast<Index>(i));
     }

@@ -82,7 +82,7 @@ class FeatureReader {
   std::uint64_t bytes_read_ = 0;
   std::size_t given_ = 0;  // features of a document that was read whole
   bool is_sequence_ = false;
-  bool is_at_end_ = false;  // of the source
+  bool is_at_end_ = false;  // the source has ended
 };
 
 }  // namespace watertight::formats

@@ -14,12 +14,12 @@ namespace watertight::geometry {
 
 /// Where each vertex, shell, facet and ring of the canonical solid stood. All are permutations.
 struct SourceOrder {
-  std::vector<Index> vertex;      // canonical vertex -> source vertex
-  std::vector<Index> shell;       // canonical shell -> source shell
-  std::vector<Index> facet;       // canonical facet -> source facet
-  std::vector<Index> ring;        // canonical ring -> source ring
-  std::vector<Index> ring_start;  // per canonical ring: position in the canonical ring at which
-                                  // the source ring starts
+  std::vector<Index> vertex;  // canonical vertex -> source vertex
+  std::vector<Index> shell;   // canonical shell -> source shell
+  std::vector<Index> facet;   // canonical facet -> source facet
+  std::vector<Index> ring;    // canonical ring -> source ring
+  /// canonical ring -> the index in it of the vertex at which the source ring starts.
+  std::vector<Index> ring_start;
   bool is_identity() const;
   friend bool operator==(const SourceOrder&, const SourceOrder&) = default;
 };

@@ -182,8 +182,8 @@ double world_area(const Solid& solid, std::span<const Triangle> triangles) {
   return area.value();
 }
 
-/// V - E + F of a shell. Each interior ring subtracts one, because a cut to the exterior ring would
-/// add an edge.
+/// V - E + F of a shell, the number of vertices less that of edges plus that of facets. Each
+/// interior ring subtracts one more: a cut that joins it to the exterior ring would add an edge.
 std::int64_t euler_characteristic(const Solid& solid, Index shell) {
   std::vector<Index> vertices;
   std::vector<std::pair<Index, Index>> edges;

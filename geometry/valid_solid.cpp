@@ -13,10 +13,10 @@ namespace {
 
 Error not_encodable(std::string message) { return {ErrorCode::not_encodable, std::move(message)}; }
 
-/// A directed ring edge, filed under its undirected name.
+/// A directed edge of a ring. Its name is the same in both directions.
 struct DirectedEdge {
   std::uint64_t name;  // smaller vertex in the high half
-  Index position;      // order of appearance
+  Index position;      // index of the edge among all edges of the rings
   bool is_forward;     // from the smaller to the larger vertex
 };
 

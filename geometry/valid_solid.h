@@ -66,7 +66,7 @@ class ValidSolid {
   const Acceptance& acceptance() const { return acceptance_; }
 
  private:
-  friend class validate::Certifier;  // the one maker
+  friend class validate::Certifier;  // the only class that makes a ValidSolid
   ValidSolid(OrientedBoundary boundary, Acceptance acceptance)
       : boundary_(std::move(boundary)), acceptance_(acceptance) {}
   OrientedBoundary boundary_;

@@ -19,7 +19,7 @@ namespace watertight::pipeline {
 namespace {
 
 constexpr std::size_t kPartFeatures = 4096;
-constexpr std::size_t kPartBytes = 16U << 20U;  // of skeletons and blobs
+constexpr std::size_t kPartBytes = 16U << 20U;  // the most bytes of skeletons and blobs in a part
 
 void write_text(ByteWriter& writer, ByteView text) {
   writer.varint(text.size());
@@ -32,8 +32,8 @@ void write_text(ByteWriter& writer, std::string_view text) { write_text(writer, 
 /// Steiner vertices, which pages do not keep.
 struct Paged {
   Bytes file;
-  std::size_t blob_bytes = 0;    // of the blobs that it stands for
-  std::vector<bool> is_in_file;  // of each solid
+  std::size_t blob_bytes = 0;    // the bytes of the blobs that it replaces
+  std::vector<bool> is_in_file;  // solid -> whether it is in the file
 };
 
 Result<Paged> make_pages(const std::vector<const Bytes*>& blobs, const EncodeOptions& options) {

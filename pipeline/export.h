@@ -28,7 +28,7 @@ struct Exported {
   std::uint64_t solids = 0;
 };
 
-/// An export on its way. The store must outlive it. One thread at a time.
+/// An export that is under way. The store must outlive it. Not thread-safe.
 class CollectionExport {
  public:
   /// Errors: those of the store; not_found (no collection, no features); unsupported when the

@@ -127,8 +127,9 @@ InstanceSolid TemplateInspector::inspect_solid(std::size_t solid,
   return result;
 }
 
-/// Compares the solids from `first` on, those of one instance of a composite solid. An affine map
-/// with an inverse changes nothing but the depth of overlaps.
+/// Compares with each other the solids from `first` on, which are those of one instance of a
+/// composite solid. The placement is an affine map with an inverse, so only the depth of overlaps
+/// depends on it.
 void TemplateInspector::compare_members(std::size_t first, InspectedInstances& instances) {
   const std::span<const InstanceSolid> solids = std::span(instances.solids).subspan(first);
   const geometry::Placement& placement = solids.front().instance->placement;

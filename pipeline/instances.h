@@ -66,13 +66,13 @@ class TemplateInspector {
   struct Uses {
     bool has_instances = false;
     bool has_congruent = false;                // a valid one without effect
-    std::optional<geometry::Placement> least;  // of the other valid ones
-    std::string least_name;                    // of that instance
-    bool is_proven = false;                    // by an instance that is not mirrored
+    std::optional<geometry::Placement> least;  // the least placement of the other valid ones
+    std::string least_name;                    // the name of the instance at `least`
+    bool is_proven = false;                    // an instance that is not mirrored has a proof
     bool is_unproven = false;                  // no engine found a proof: none is asked again
     std::set<Effect> valid;                    // some of the effects of valid instances
-    std::set<Effect> fitting;         // likewise, where the members of a composite solid fit
-    std::optional<ValidSolid> solid;  // as valid instances have it; all have the same
+    std::set<Effect> fitting;  // some effects with which the members of a composite solid fit
+    std::optional<ValidSolid> solid;  // the solid that all valid instances have
   };
 
   static Effect effect_of(const geometry::Placement& placement);

@@ -70,7 +70,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
 struct SolidOutcome {
   SolidSource source;
   Report report;
-  std::string report_json;       // of the report, without times
+  std::string report_json;       // the JSON of the report, without times
   std::size_t blob_bytes = 0;    // when encoded
   std::size_t source_bytes = 0;  // as plain arrays: 24 a vertex, 4 a ring vertex
 };

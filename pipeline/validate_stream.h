@@ -27,7 +27,7 @@ using ErrorSink = std::function<Status(const Error&)>;
 struct StreamOptions {
   CertifyOptions certify;
   validate::GroupOptions groups;
-  std::size_t threads = 1;  // features at once; a document of one feature has them for itself
+  std::size_t threads = 1;  // threads for the features; a document of one feature has them all
   CancelPoll is_cancelled = {};
   /// Called with features done and bytes read; from one thread at a time.
   std::function<void(std::uint64_t, std::uint64_t)> progress = {};

@@ -26,7 +26,7 @@ struct Scene {
   std::vector<SceneFacet> facets;
   std::vector<std::vector<Triple>> lines;  // open edges, rings concerned
   std::optional<Triple> witness;
-  std::size_t hidden_facets = 0;  // of the solids, farther away
+  std::size_t hidden_facets = 0;  // the number of facets that are too far away to be shown
 };
 
 /// Nothing when there is no facet to show.

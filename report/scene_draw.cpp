@@ -192,7 +192,8 @@ std::string svg_of(const Scene& scene, const View& view) {
     depth /= static_cast<double>(facet.rings.front().size());
     drawn.push_back({&facet, depth, style_of(facet, normal_of(facet.rings.front()), axes)});
   }
-  // Backs first: what faces away is behind what faces the viewer on any closed surface.
+  // The facets that face away from the viewer are drawn first: on a closed surface they lie behind
+  // those that face the viewer.
   std::stable_sort(drawn.begin(), drawn.end(), [](const Drawn& a, const Drawn& b) {
     return std::pair(a.style != "k", a.depth) < std::pair(b.style != "k", b.depth);
   });

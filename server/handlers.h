@@ -60,7 +60,7 @@ Response refuse(unsigned status, std::string kind, std::string detail);
 /// CRS URI of an EPSG code; the OGC's "unknown" for 0.
 std::string crs_uri(std::uint32_t srid);
 
-/// The same as the value of a Content-Crs field.
+/// crs_uri() in the form of the value of a Content-Crs field.
 std::string crs_header(std::uint32_t srid);
 
 /// "/collections/<id>/items/<item>", percent-encoded.

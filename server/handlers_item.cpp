@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Handlers of one stored feature: fetched in the format that the client wants, deleted.
+// Handlers of one stored feature: they return it in the format that the client wants, or delete it.
 #include <array>
 #include <charconv>
 #include <optional>

@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 using Parser = http::request_parser<http::string_body>;
 
 constexpr std::size_t kReadBytes = 16 * 1024;
-constexpr double kLingerSeconds = 2;  // for a sender that we stopped listening to
+constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
 constexpr double kBytesPerSecond = 100e3;  // slowest reader that gets its whole answer
 
@@ -336,8 +336,8 @@ awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
   co_return *std::move(made);
 }
 
-/// Sends an answer in parts: chunked, or to the end of the connection where HTTP is 1.0. Each part
-/// is made when the one before is out, so that a slow client holds one.
+/// Sends an answer in parts: in chunks, or, in HTTP 1.0, until the connection ends. Each part is
+/// made after the one before is sent, so that a slow client takes the memory of one part only.
 awaitable<Status> Session::send_parts(Response response, bool keep_alive, std::uint64_t& sent) {
   auto message = head_of<http::buffer_body>(response, keep_alive, version_);
   message.chunked(version_ > 10);

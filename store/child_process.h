@@ -18,7 +18,7 @@ namespace watertight::store {
 struct SpawnOptions {
   std::string folder;        // working directory of the child
   std::string log;           // file that stdout and stderr are appended to
-  bool own_session = false;  // survives signals to our terminal's process group
+  bool own_session = false;  // signals to our terminal's process group do not reach the child
 };
 
 /// Starts `arguments[0]` (a path) with an environment free of PG*, LC_* and LANG* variables, no

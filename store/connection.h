@@ -116,7 +116,8 @@ class ConnectionPool {
   ConnectionPool(std::string connection, std::size_t size)
       : connection_(std::move(connection)), free_slots_(size == 0 ? 1 : size) {}
 
-  /// The right to use one session until destruction. `session` may be empty: open() it.
+  /// The right to use one session, until the lease is destroyed. If `session` is empty, the holder
+  /// must open() one.
   class Lease {
    public:
     Lease(ConnectionPool* pool, std::unique_ptr<DatabaseSession> first)

@@ -11,7 +11,7 @@ namespace watertight::store {
 namespace {
 
 constexpr std::uint64_t kLargestPage = 10'000;
-constexpr std::int64_t kBatchBytes = 16 << 20;  // blobs and skeletons of one batch
+constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
 std::string collections_where(const char* condition) {
   return std::string(
@@ -86,7 +86,10 @@ std::vector<StoredFeature> features_of(const Rows& rows, const std::string& coll
   return features;
 }
 
-/// Replaces digests by headers: each distinct one travels once.
+/// Replaces the digest in the header of each feature by the text of the header. The query asks for
+/// each digest once, and the features with equal headers share one copy of the text. No header is
+/// missing: all queries of a read see one state of the database, in which features refer to headers
+/// that exist.
 Status fill_headers(DatabaseSession& connection, std::vector<StoredFeature>& features) {
   std::map<std::string, SharedText> contents;
   for (const StoredFeature& feature : features) contents.try_emplace(feature.header);

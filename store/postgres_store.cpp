@@ -77,7 +77,7 @@ class PostgresStore final : public SolidStore {
   Status ping() override {
     Result<ConnectionPool::Lease> lease = pool_.lease(kPingLeaseSeconds);
     if (!lease) return lease.error();
-    // A pooled session can be stale after a restart: one fresh attempt, and no waiting.
+    // A session of the pool is lost if the server restarted. Then one new session is tried at once.
     for (int attempt = 0; attempt < 2; ++attempt) {
       if (!lease->session) {
         auto opened = DatabaseSession::open(pool_.connection());

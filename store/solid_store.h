@@ -65,13 +65,14 @@ struct StoredFeature : FeatureRecord {
 struct FeatureQuery {
   std::string collection;
   std::uint64_t limit = 10;
-  std::string after;             // id after which the page starts; "" = from the start
-  std::optional<StoredBox> box;  // closed boxes that share a point
+  std::string after;  // id after which the page starts; "" = from the start
+  /// Asks for the features whose closed boxes have a point in common with this one.
+  std::optional<StoredBox> box;
 };
 
 struct FeaturePage {
   std::vector<StoredFeature> features;  // ordered by id, bytewise
-  std::uint64_t matched = 0;            // of the whole query
+  std::uint64_t matched = 0;            // the number of features that match, on all pages
   std::string next;                     // `after` of the next page; "" = this is the last
 };
 

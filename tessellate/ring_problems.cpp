@@ -69,7 +69,7 @@ class RingExaminer {
   double u(Index vertex) const { return vertices_[vertex][(axis_ + 1) % 3]; }
   double v(Index vertex) const { return vertices_[vertex][(axis_ + 2) % 3]; }
   bool is_same_in_plane(Index a, Index b) const { return u(a) == u(b) && v(a) == v(b); }
-  /// Never asks the predicate about a repeated point.
+  /// The turn from ab to bc in the projection: 0 if two of the points are the same there.
   int turn(Index a, Index b, Index c) const {
     if (is_same_in_plane(a, b) || is_same_in_plane(b, c) || is_same_in_plane(a, c)) return 0;
     return geometry::orient2d(vertices_[a], vertices_[b], vertices_[c], axis_);
@@ -93,7 +93,7 @@ class RingExaminer {
   /// A ring with the vertices that split its edges.
   struct DividedRing {
     std::vector<Index> vertices;
-    std::vector<Index> position_of;  // in the ring as submitted, where the edge starts
+    std::vector<Index> position_of;  // index of the start of its edge in the submitted ring
   };
   std::vector<DividedRing> divided_;
   std::vector<Edge> edges_;

@@ -25,7 +25,7 @@ enum class RingProblemKind : std::uint8_t {
 struct RingProblem {
   RingProblemKind kind = RingProblemKind::collapsed;
   Index ring = 0;            // within the facet
-  Index edge = kNone;        // from this position of the ring to the next
+  Index edge = kNone;        // index in the ring of the vertex where the edge starts
   Index other_ring = kNone;  // the other ring, or the same one
   Index other_edge = kNone;
   Point witness;  // lattice coordinates, each the nearest double to the exact point

@@ -71,7 +71,7 @@ class Certifier {
   std::string incomplete_;  // why the exact tests did not finish
   std::optional<delaunay::ContactTriangles>
       divided_;                     // the triangles where shells touch, for several shells
-  bool is_interior_known_ = false;  // the exact tests show whether it is connected
+  bool is_interior_known_ = false;  // the exact tests show whether the interior is connected
   TolerantVerdict exact_;
   Verdict verdict_ = Verdict::undecided;
   Inspection inspection_;

@@ -19,10 +19,10 @@ struct EdgeUse {
   bool has_edge_of(const EdgeUse& other) const { return low == other.low && high == other.high; }
 };
 
-/// Where a corner stands.
+/// The ring of a corner and the index of the corner in it.
 struct CornerPlace {
   Index ring_in_facet = 0;
-  Index position = 0;  // in the ring
+  Index position = 0;  // index of the corner in its ring
   Index next = 0;      // the corner after it
 };
 /// Cost: logarithmic in the rings of the facet.

@@ -106,8 +106,8 @@ class GroupExaminer {
   const GroupOptions& options_;
   std::vector<Index> present_;     // members that are valid, ascending
   std::vector<Index> number_;      // member -> its number among those, kNone for the others
-  std::optional<GroupGrid> grid_;  // of all, if they share a placement; else by pair
-  std::vector<Box> boxes_;         // of all members, not too small
+  std::optional<GroupGrid> grid_;  // the grid of all members; none if their placements differ
+  std::vector<Box> boxes_;         // boxes that contain the members
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
   geometry::DisjointSets connected_;
   std::vector<Finding> duplicates_;

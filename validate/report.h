@@ -52,7 +52,7 @@ struct SkippedRule {
 /// The verdict under val3dity's default tolerances (snap 1 mm, planarity 1 cm and 20 degrees).
 struct TolerantVerdict {
   Verdict verdict = Verdict::undecided;  // by the exact tests of the snapped solid
-  std::vector<int> first_level;          // codes, sorted
+  std::vector<int> first_level;          // the codes of the first level that fails, sorted
 };
 
 struct Report {

@@ -98,8 +98,8 @@ Result<SnappedSolid> snap_vertices(const Solid& solid, double metres, const Canc
     return Error{ErrorCode::limit_exceeded,
                  "the snap tolerance is too small for the size of the solid"};
   }
-  // All other points neither move nor attract one. The search reaches a little too far; is_near()
-  // decides.
+  // Only points that are near another one move or attract one. The search reaches a little farther
+  // than the tolerance, and is_near() decides.
   constexpr double kSlack = 1e-9;
   const NearPoints near = near_points(snapper.places(), metres * (1 + kSlack), cancel);
   if (cancel && cancel()) return Error{ErrorCode::cancelled, "the snapping was cancelled"};

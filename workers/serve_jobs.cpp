@@ -52,7 +52,8 @@ bool transmit_reply(ReplyStatus status, ByteView payload) {
   return transmit(header.bytes()) && transmit(payload);
 }
 
-/// A job can run for long after the host is gone; the closed socket says so at once.
+/// A job can run for long after the parent process has ended. The socket, which then closes, shows
+/// this at once.
 void end_with_parent() {
   pollfd watched{kWorkerSocket, POLLRDHUP, 0};
   while (true) {

@@ -143,8 +143,8 @@ class Conversation {
       if (errno == EINTR) continue;
       if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
       if (has_ended) return false;
-      // A child of the process may hold the socket open after the process itself has ended. What
-      // it wrote before that is still to be read.
+      // A child of the process may hold the socket open after the process itself has ended. The
+      // bytes that the process wrote before that are still to be read.
       has_ended = process_.has_ended();
       if (!has_ended) return true;
     }

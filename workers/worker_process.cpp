@@ -88,7 +88,7 @@ int prepare_attributes(posix_spawnattr_t* attributes) {
   return failed;
 }
 
-/// A short environment of our own: nothing of the host's leaks but where libraries are, and what
+/// A short environment of our own: nothing of the parent's leaks but where libraries are, and what
 /// sanitizers and the loader need.
 std::vector<std::string> environment_of_worker(double idle_seconds) {
   const double milliseconds = std::min(std::max(idle_seconds, 0.0) * 1000.0, 2e9);
@@ -205,7 +205,7 @@ Status WorkerProcess::limit(double cpu_seconds, std::uint64_t memory_bytes) {
   if (prlimit(process_, RLIMIT_CPU, nullptr, &current) != 0) {
     return system_error("cannot read a helper's limits", errno);
   }
-  // The pool reads the clock and is exact; this ends the process if the host cannot.
+  // The pool reads the clock and is exact; this ends the process if the parent cannot.
   const double seconds =
       std::ceil(this->cpu_seconds().value_or(0) + std::max(cpu_seconds, 0.0)) + 1;
   current.rlim_cur = std::min(static_cast<rlim_t>(std::min(seconds, 1e9)), current.rlim_max);
@@ -222,7 +222,7 @@ Status WorkerProcess::limit(double cpu_seconds, std::uint64_t memory_bytes) {
 bool WorkerProcess::has_ended() const {
   siginfo_t info{};
   const int found = waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT);
-  // No such child: the host ignores SIGCHLD or reaped it, so it has ended.
+  // No such child: the parent ignores SIGCHLD or reaped it, so it has ended.
   return found != 0 ? errno == ECHILD : info.si_pid == process_;
 }
 

@@ -56,8 +56,9 @@ constexpr Context<(size + 1) / 2> halved(Context<size> context) {
   return Context<(size + 1) / 2>(context.value / 2);
 }
 
-/// Two kinds of contexts in one table: those of the first kind, then `others` more; and those of
-/// the second kind, after the `others` of the first.
+/// One input may have two kinds of contexts. A context of the first kind is leading() in its table,
+/// in which `others` of the second kind follow. One of the second kind is trailing(): it comes
+/// after the `others` of the first kind.
 template <std::uint32_t others, std::uint32_t size>
 constexpr Context<size + others> leading(Context<size> context) {
   return Context<size + others>(context.value);

@@ -49,7 +49,7 @@ constexpr std::uint32_t cost_of(std::uint32_t ones) {
     mantissa <<= 1;
     ++whole;
   }
-  std::uint32_t fraction = 0;  // of log2(mantissa / 2^31)
+  std::uint32_t fraction = 0;  // the fraction of log2(mantissa / 2^31)
   for (int i = 0; i < kCostBits; ++i) {
     mantissa = (mantissa * mantissa) >> 31;
     fraction <<= 1;

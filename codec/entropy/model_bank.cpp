@@ -12,7 +12,7 @@ namespace {
 // In the logistic domain an integer x from -2047 to 2047 stands for the probability p with
 // ln(p / (1 - p)) = x / 256.
 constexpr std::int32_t kDomain = 2047;
-constexpr std::uint32_t kLeastProbability = 32;  // of 65536, of either answer
+constexpr std::uint32_t kLeastProbability = 32;  // the least probability of an answer, of 65536
 
 /// round(65536 / (1 + exp((32 - i) / 4))) for i = 0 to 64: part of the format.
 constexpr std::array<std::int32_t, 65> kSquash{
@@ -82,7 +82,7 @@ constexpr std::int32_t kBiasInput = 64;
 constexpr std::int64_t kWeightLimit = 8 << 16;
 constexpr std::uint32_t kMaxMixed = 1000;
 
-/// How far the weights of a set move that has seen `mixed` decisions, in 1/4096.
+/// The learning rate, in 1/4096, of a set of weights after `mixed` decisions.
 std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
 
 // A number has three families: its length in unary, the bits after the first, the sign.
@@ -191,9 +191,9 @@ void ModelBank::note_changes(const Family& family, std::uint32_t selector, const
 }
 
 void ModelBank::undo(const Change& change) {
-  const std::size_t weight = change.place - counters_.size();
-  if (change.place < counters_.size()) {
-    counters_[change.place] = change.before;
+  const std::size_t weight = change.index - counters_.size();
+  if (change.index < counters_.size()) {
+    counters_[change.index] = change.before;
   } else if (weight < weights_.size()) {
     weights_[weight] = static_cast<std::int32_t>(change.before);
   } else {

@@ -79,9 +79,9 @@ class ModelBank {
     return code_signed<number>(stream, kNothingKnown, contexts, value, max_length);
   }
 
-  /// The same by numbers that are not checked, for banks of any layout. Requires as many contexts
-  /// as the family has inputs, each below the size of its table, and a selector that the family
-  /// has.
+  /// These functions take the family by its number, whose type is not checked, for banks of any
+  /// layout. They require as many contexts as the family has inputs, each below the size of its
+  /// table, and a selector that the family has.
   bool code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,
             std::span<const std::uint32_t> contexts, bool value);
   std::uint32_t probability(std::uint32_t family, std::uint32_t selector,
@@ -116,10 +116,11 @@ class ModelBank {
     std::array<std::int32_t, kMaxInputs + 1> input;
     std::uint32_t ones;
   };
-  /// A change during a trial.
+  /// A value that changed during a trial: its index in the sequence of all counters, then all
+  /// weights, then all elements of mixed_; and the value that it had before.
   struct Change {
-    std::uint32_t place = 0;   // among all counters, then all weights, then all of mixed_
-    std::uint32_t before = 0;  // the number that was there
+    std::uint32_t index = 0;
+    std::uint32_t before = 0;
   };
   friend class BankTrial;
   [[gnu::noinline]] void note_changes(const Family& family, std::uint32_t selector,

@@ -101,7 +101,7 @@ Status BoundarySurface::orient(const std::vector<bool>& is_flipped) {
 Index BoundarySurface::half_edge_of(Index triangle, Index corner_vertex) const {
   const Triangle& t = turned_[triangle];
   const Index corner = t[0] == corner_vertex ? 0 : t[1] == corner_vertex ? 1 : 2;
-  return geometry::next_half_edge(triangle * 3 + corner);  // opposite the corner
+  return geometry::next_half_edge(triangle * 3 + corner);  // the half-edge opposite to the corner
 }
 
 std::vector<Index> BoundarySurface::interior_twins() const {

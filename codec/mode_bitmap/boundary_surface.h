@@ -68,9 +68,9 @@ class BoundarySurface {
   Index vertex_count_;
   std::vector<Joint> joints_;
   std::vector<std::vector<Index>> joints_of_;  // triangle -> at most three joints
-  geometry::NumberedSets components_;          // of triangles
+  geometry::NumberedSets components_;          // sets of triangles
   std::vector<bool> is_interior_;              // per joint
-  geometry::NumberedSets facets_;              // of triangles
+  geometry::NumberedSets facets_;              // sets of triangles
   std::vector<Triangle> turned_;
 };
 

@@ -28,10 +28,10 @@ struct BitmapSections {
   ByteView facets;
 };
 
-/// Vertices, then Steiner vertices.
+/// The vertices of the solid, then the Steiner points.
 struct Nodes {
   std::vector<Point> points;
-  Index vertex_count = 0;
+  Index vertex_count = 0;  // the number of those that are no Steiner points
 };
 
 struct Composition {

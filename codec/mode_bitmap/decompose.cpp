@@ -112,9 +112,9 @@ Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
   if (mesh.input_count != solid.vertex_count() || mesh.points.size() < mesh.input_count) {
     return foreign;
   }
-  std::vector<Index> place = inverse_of(canonical.order.vertex);  // source vertex -> canonical
+  std::vector<Index> canonical_vertex = inverse_of(canonical.order.vertex);  // by source vertex
   for (Index i = 0; i < mesh.input_count; ++i) {
-    if (mesh.points[i] != solid.vertices()[place[i]]) return foreign;
+    if (mesh.points[i] != solid.vertices()[canonical_vertex[i]]) return foreign;
   }
   std::vector<Index> steiner(mesh.points.size() - mesh.input_count);
   std::iota(steiner.begin(), steiner.end(), mesh.input_count);
@@ -124,9 +124,9 @@ Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
   BoundaryComplex complex;
   complex.points.assign(solid.vertices().begin(), solid.vertices().end());
   complex.vertex_count = solid.vertex_count();
-  place.resize(mesh.points.size());
+  canonical_vertex.resize(mesh.points.size());
   for (const Index vertex : steiner) {
-    place[vertex] = static_cast<Index>(complex.points.size());
+    canonical_vertex[vertex] = static_cast<Index>(complex.points.size());
     Point p = mesh.points[vertex];
     for (int axis = 0; axis < 3; ++axis) p[axis] += 0.0;  // -0 becomes +0
     complex.points.push_back(p);
@@ -135,16 +135,16 @@ Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
     return not_encodable(
         "mode bitmap codes only coordinates that are 0 or of magnitude 2^-100 to 2^100");
   }
-  const std::vector<Index> facet_place = inverse_of(canonical.order.facet);
+  const std::vector<Index> canonical_facet = inverse_of(canonical.order.facet);
   for (const delaunay::ConstrainedFace& face : mesh.constrained) {
-    if (face.facet >= facet_place.size()) return foreign;
+    if (face.facet >= canonical_facet.size()) return foreign;
     Triangle triangle{};
     for (std::size_t i = 0; i < 3; ++i) {
-      if (face.vertices[i] >= place.size()) return foreign;
-      triangle[i] = place[face.vertices[i]];
+      if (face.vertices[i] >= canonical_vertex.size()) return foreign;
+      triangle[i] = canonical_vertex[face.vertices[i]];
     }
     complex.triangles.push_back(sorted(triangle));
-    complex.facet_of.push_back(facet_place[face.facet]);
+    complex.facet_of.push_back(canonical_facet[face.facet]);
   }
   return complex;
 }

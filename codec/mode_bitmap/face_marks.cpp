@@ -45,7 +45,7 @@ FaceEdges number_edges(std::span<const Triangle> faces) {
     Index from;
     Index to;
     Index face;
-    Index place;
+    Index edge;  // of the face: 0 to 2
   };
   std::vector<Use> uses;
   uses.reserve(faces.size() * 3);
@@ -62,7 +62,7 @@ FaceEdges number_edges(std::span<const Triangle> faces) {
   for (std::size_t i = 0; i < uses.size(); ++i) {
     const bool is_new = i == 0 || uses[i].from != uses[i - 1].from || uses[i].to != uses[i - 1].to;
     if (is_new) ++result.edge_count;
-    result.edges_of[uses[i].face][uses[i].place] = result.edge_count - 1;
+    result.edges_of[uses[i].face][uses[i].edge] = result.edge_count - 1;
   }
   return result;
 }

@@ -40,7 +40,7 @@ int bend_class(std::span<const Point> points, const Joint& joint) {
   return 4;
 }
 
-/// The contents of the section.
+/// The contents of the section of facets.
 struct Structure {
   std::vector<bool> is_interior;  // joint -> it lies inside a facet
   std::vector<bool> is_flipped;   // component -> its smallest triangle turns the other way

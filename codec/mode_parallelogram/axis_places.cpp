@@ -16,7 +16,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-constexpr std::int64_t kRange = std::int64_t{1} << 54;  // of values
+constexpr std::int64_t kRange = std::int64_t{1} << 54;  // values are smaller in magnitude
 constexpr int kShiftBits = 6;
 constexpr int kMostShift = 40;
 constexpr int kStepBits = 61;
@@ -26,12 +26,13 @@ constexpr int kCountBits = 32;
 // that stands alone, or the distance of a value from the one before it in a list.
 constexpr Context<2> kAlone{0U};
 constexpr Context<2> kInList{1U};
-constexpr std::uint32_t kLengths = 16;  // of such a distance, in bits
+constexpr std::uint32_t kLengths = 16;  // classes of the number of bits of such a distance
 // Numbers that stand alone have the contexts before those of the lengths.
 constexpr Context<2 * kLengths> kOfStep{0U};
 constexpr Context<2 * kLengths> kOfCount{1U};
 constexpr Context<kLengths * kLengths> kNoneBefore{0U};
-/// The part of the bits between two values that a residual saves, for the writer's choice alone.
+/// The writer expects that a residual in places is shorter than one in grid steps by this share of
+/// the bits of the distance between two values. Only the choice of the kind depends on it.
 constexpr double kShare = 0.7;
 
 /// A line of equal steps: every coordinate value is floor(offset + k * step) for some integer k.

@@ -51,7 +51,7 @@ class AxisPlaces {
   static AxisPlaces stepped(const std::vector<std::int64_t>& values);
 
   Kind kind_ = Kind::every;
-  std::int64_t step_ = 0;  // of 2^shift_
+  std::int64_t step_ = 0;  // the distance of two values, in units of 2^-shift_
   std::int64_t offset_ = 0;
   int shift_ = 0;
   std::vector<std::int64_t> list_;

@@ -10,30 +10,32 @@ namespace {
 // The classes were fitted on meshes and are fixed by the format. bench/dead-ends.md lists contexts
 // that were tried beside these.
 constexpr std::uint32_t kDegrees = 10;
-// Angles, in classes for each radian.
+// Angles. `per_unit` is the number of classes for each radian.
 constexpr Scale<32> kRooms{.per_unit = 8};
 constexpr Scale<16> kAngles{.per_unit = 5};
 constexpr Scale<16> kCoarseOpposites{.per_unit = 5, .from = 1.2};
 constexpr Scale<12> kFewOpposites{.per_unit = 5, .from = 2};
 constexpr Scale<20> kGreaterOpposites{.per_unit = 10, .from = 2.2};
 constexpr Scale<20> kLesserOpposites{.per_unit = 10, .from = 1.2};
-constexpr std::uint32_t kRests = 14;  // of the room that is left beside a closing triangle
+// Classes of the room that the closing triangle leaves at its end u or w.
+constexpr std::uint32_t kRests = 14;
 constexpr double kRestsPerRadian = 4;
-constexpr double kRestZero = 2;  // class of no room
+constexpr double kRestZero = 2;  // the class of no room
 // Classes of how many triangles fit into the room of a corner.
 constexpr Scale<16> kMissing{.per_unit = 4};
 constexpr Scale<12> kFewMissing{.per_unit = 4};
-// Lengths by another length, and parts of the room of a corner.
+// Ratios of two lengths (spans, sides, misses), and ratios of an angle to the room of a corner
+// (turns).
 constexpr Scale<32> kSpans{.per_unit = 12};
 constexpr Scale<24> kSides{.per_unit = 8};
 constexpr Scale<16> kTurns{.per_unit = 12};
 constexpr Scale<12> kMisses{.per_unit = 8};
-// The same, logarithmically: how many classes there are, and the class of equality.
+// Logarithms of ratios of two lengths: the number of classes, and the class of the ratio 1.
 constexpr std::uint32_t kRatios = 12;
 constexpr int kRatioZero = 6;
 constexpr std::uint32_t kMissRatios = 14;
 constexpr int kMissZero = 8;
-// Areas by another area, logarithmically.
+// Logarithms of ratios of two areas, likewise.
 constexpr std::uint32_t kNearAreas = 16;
 constexpr int kNearAreaZero = 8;
 constexpr std::uint32_t kMeanAreas = 20;
@@ -81,7 +83,7 @@ struct Degrees {
   Context<kDegrees> u;
   Context<kDegrees> v;
   Context<kDegrees> w;
-  Context<kDegrees> lesser;   // of those of u and w
+  Context<kDegrees> lesser;   // the lesser degree of u and w
   Context<kDegrees> greater;  // likewise
 };
 
@@ -93,12 +95,12 @@ Degrees degrees_at(const Corner& at, const SurfaceFront& front) {
 }
 
 struct Lengths {
-  double span;       // of the third edge of the closing triangle
-  double side_u;     // of the edges that it shares with known triangles
+  double span;       // the third edge of the closing triangle
+  double side_u;     // its edge u v, which a known triangle has too
   double side_w;     // likewise
-  double mean_side;  // of both
-  double mean_edge;  // of the surface
-  double near_edge;  // mean of the two known triangles
+  double mean_side;  // the mean of side_u and side_w
+  double mean_edge;  // the mean edge of the surface
+  double near_edge;  // the mean edge of the two known triangles
 };
 
 Lengths lengths_at(const Corner& at, double mean_edge) {

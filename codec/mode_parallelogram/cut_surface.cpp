@@ -19,20 +19,20 @@ std::vector<geometry::EdgeSide> sides_of_shell(std::span<const Triangle> triangl
                                                Index last) {
   std::vector<geometry::EdgeSide> sides = geometry::sides_of_triangles(triangles, first, last);
   const std::span<geometry::EdgeSide> all(sides);
-  const auto place_of = [first](const geometry::EdgeSide& side) {
+  const auto triangle_of = [first](const geometry::EdgeSide& side) {
     return side.half_edge / 3 - first;
   };
   geometry::DisjointSets parts(last - first);
   geometry::for_each_edge(all, [&](std::span<geometry::EdgeSide> edge) {
-    if (edge.size() == 2) parts.join(place_of(edge[0]), place_of(edge[1]));
+    if (edge.size() == 2) parts.join(triangle_of(edge[0]), triangle_of(edge[1]));
   });
   geometry::for_each_edge(all, [&](std::span<geometry::EdgeSide> edge) {
     if (edge.size() == 2) return;
     std::sort(edge.begin(), edge.end(),
               [&](const geometry::EdgeSide& a, const geometry::EdgeSide& b) {
                 if (a.is_downward != b.is_downward) return b.is_downward;
-                const Index part_of_a = parts.root(place_of(a));
-                const Index part_of_b = parts.root(place_of(b));
+                const Index part_of_a = parts.root(triangle_of(a));
+                const Index part_of_b = parts.root(triangle_of(b));
                 return part_of_a != part_of_b ? part_of_a < part_of_b : a.half_edge < b.half_edge;
               });
   });

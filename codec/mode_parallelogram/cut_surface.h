@@ -14,9 +14,9 @@ namespace watertight::codec::parallelogram {
 
 /// Half-edge 3 t + k runs from corner k of triangle t to the next corner.
 struct CutSurface {
-  std::vector<Triangle> triangles;     // in the order of the solid's facets; corners are fans
+  std::vector<Triangle> triangles;     // in the order of the facets; the corners are fans
   std::vector<Index> twin;             // half-edge -> the opposite one
-  std::vector<GridPoint> positions;    // of each fan of triangles around a vertex
+  std::vector<GridPoint> positions;    // fan of triangles around a vertex -> its position
   std::vector<Index> component_first;  // component -> one of its triangles, by shells
   std::vector<bool> is_new_shell;      // per component
 };

@@ -92,7 +92,7 @@ class SurfaceFront {
   NewGates replace_gate(Index gate, Index tip, const std::array<Index, 2>& half_edges);
 
   const std::vector<Vector>& centres_;
-  std::deque<Gate> gates_;  // of any number: never copied
+  std::deque<Gate> gates_;  // there may be many, and a deque never copies them
   std::vector<Triangle> triangles_;
   std::vector<Index> twin_;
   std::vector<std::uint32_t> degrees_;

@@ -19,12 +19,12 @@ namespace {
 
 constexpr int kCandidateSteps = 256;
 constexpr int kRankBits = 32;
-constexpr Scale<32> kRooms{.per_unit = 4};  // of a corner, for New
-constexpr double kMostAveraged = 1000;      // vertices that the mean edge remembers
+constexpr Scale<32> kRooms{.per_unit = 4};  // classes of the room of a corner, for New
+constexpr double kMostAveraged = 1000;      // the number of edges that the mean edge remembers
 
 Error malformed() { return {ErrorCode::malformed, "the triangles do not form a closed surface"}; }
 
-/// The surface in the order of the stream, written or read.
+/// Codes the triangles and vertices of a solid in the order of the stream.
 class SurfaceCoder {
  public:
   SurfaceCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
@@ -148,10 +148,10 @@ class SurfaceCoder {
                           vertices_.predict(front_, corner),
                           vertices_.predict(front_, gate.next),
                           mean_edge_,
-                          closings_.last()};
+                          close_answers_.last()};
     const SelectorOf<kClose> selector(ends ? 2U : front_[gate.previous].is_refused ? 1U : 0U);
     const bool closes = models_.code<kClose>(stream_, selector, corner_contexts(view), truth);
-    closings_.add(closes);
+    close_answers_.add(closes);
     if (closes) {
       front_.close_corner(corner, half_edge);
       if (!ends) note_gates(1);
@@ -175,12 +175,12 @@ class SurfaceCoder {
       half_edges = {geometry::next_half_edge(beyond), geometry::previous_half_edge(beyond)};
       tip = true_vertex(half_edges[1]);
     }
-    const bool is_new =
-        models_.code<kNew>(stream_,
-                           {kRooms(gate.room), kRooms(front_[gate.previous].room), news_.last(),
-                            combine(news_.last<3>(), closings_.last<6>())},
-                           is_writing() && code_of_[tip] == kNone);
-    news_.add(is_new);
+    const bool is_new = models_.code<kNew>(
+        stream_,
+        {kRooms(gate.room), kRooms(front_[gate.previous].room), new_answers_.last(),
+         combine(new_answers_.last<3>(), close_answers_.last<6>())},
+        is_writing() && code_of_[tip] == kNone);
+    new_answers_.add(is_new);
     const Vector predicted = vertices_.predict(front_, corner);
     if (!is_new) return join(corner, half_edges, predicted);
     if (Status coded =
@@ -232,9 +232,9 @@ class SurfaceCoder {
         candidates_.end());
     const auto found = std::find_if(candidates_.begin(), candidates_.end(),
                                     [&](const auto& c) { return c.corner == truth; });
-    const auto place = static_cast<std::uint64_t>(found - candidates_.begin());
+    const auto index = static_cast<std::uint64_t>(found - candidates_.begin());
     const std::uint64_t rank = models_.code_number<kRank>(
-        stream_, {kNothingKnown}, found == candidates_.end() ? 0 : place + 1, kRankBits);
+        stream_, {kNothingKnown}, found == candidates_.end() ? 0 : index + 1, kRankBits);
     if (rank > candidates_.size() || stream_.failed()) return malformed();
     const auto other = rank > 0
                            ? candidates_[rank - 1].corner
@@ -257,15 +257,16 @@ class SurfaceCoder {
 
   /// Makes one vertex of all vertices at the same position, which cut_surface() had separated.
   Status finish(IntegerSolid& solid) const {
-    const std::vector<GridPoint>& cells = vertices_.cells();
-    std::vector<Index> order(cells.size());
+    const std::vector<GridPoint>& positions = vertices_.positions();
+    std::vector<Index> order(positions.size());
     std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return cells[a] != cells[b] ? cells[a] < cells[b] : a < b; });
-    std::vector<Index> glued(cells.size());
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
+    });
+    std::vector<Index> glued(positions.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const GridPoint& position = cells[order[i]];
-      if (i == 0 || position != cells[order[i - 1]]) {
+      const GridPoint& position = positions[order[i]];
+      if (i == 0 || position != positions[order[i - 1]]) {
         GridPoint absolute{};
         for (std::size_t k = 0; k < 3; ++k) {
           absolute[k] = position[k] + vertices_.origin()[k];
@@ -313,15 +314,15 @@ class SurfaceCoder {
   std::vector<Candidate> candidates_;
   std::size_t most_triangles_ = ~std::size_t{0};
   double mean_edge_ = 1;
-  Answers<8> closings_;    // of Close
-  Answers<6> news_;        // of New
-  bool is_stuck_ = false;  // writing: the surface has edges between the same two vertices
+  Answers<8> close_answers_;  // the last answers of Close
+  Answers<6> new_answers_;    // the last answers of New
+  bool is_stuck_ = false;     // writing: the surface has edges between the same two vertices
 };
 
 /// Options are measured on this many triangles of a surface.
 constexpr std::size_t kTrialTriangles = 2500;
 
-/// Smaller ones are not worth the time of trying all.
+/// For surfaces with fewer triangles not all options are tried: they would save too little.
 constexpr std::size_t kFewTriangles = 64;
 
 /// Tries options on a part of a surface.
@@ -353,7 +354,7 @@ class OptionTrials {
 
  private:
   const CutSurface& surface_;
-  ModelBank& models_;  // as it was, after each trial
+  ModelBank& models_;  // after each trial it is as it was before
   const PageMemory& memory_;
   Limits limits_;
   VertexOptions best_;

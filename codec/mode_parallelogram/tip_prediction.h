@@ -26,13 +26,13 @@ class TipPrediction {
     /// the gate, the one beyond the next gate, the apex mirrored in the gate, the parallelogram of
     /// the triangle of the next gate, and the previous gate prolonged.
     std::array<Vector, kGuesses> guesses{};
-    Vector normal{};                  // of the known triangle
+    Vector normal{};                  // the normal of the known triangle
     double size = 0;                  // of the gate
     Context<kBendClasses> bends{0U};  // how flat the surface is at both sides
     Context<kSpanClasses> spans{0U};  // how far both corners of the gate are open
   };
 
-  /// Predicts the tip beyond the gate of `corner`. `centres` are of the vertices.
+  /// Predicts the tip beyond the gate of `corner`. `centres` are the positions of the vertices.
   const Tip& predict(const SurfaceFront& front, const std::vector<Vector>& centres, Index corner);
   const Tip& tip() const { return tip_; }
 
@@ -46,13 +46,14 @@ class TipPrediction {
 
  private:
   static constexpr std::size_t kOffsets = 9;
-  static constexpr double kMemory = 0.995;  // of the coefficients, by vertex
+  static constexpr double kMemory =
+      0.995;  // the weight that earlier vertices keep after each vertex
   using Predictor = LeastSquares<kOffsets>;
 
   Tip tip_;
   std::array<Predictor::Features, 3> features_{};  // by axis
   Vector middle_{};                                // of the gate
-  double shift_ = 0;                               // to the plane of the known triangle
+  double shift_ = 0;                               // the shift to the plane of the known triangle
   double predicted_shift_ = 0;
   std::vector<Predictor> predictors_{kSpanClasses, Predictor{{1, 0, 0, 0, 0, 0, 0, 0, 0}, 3}};
   std::vector<LeastSquares<1>> shift_predictors_{kBendClasses, LeastSquares<1>{{0.5}, 4}};

@@ -13,23 +13,23 @@ namespace watertight::codec::parallelogram {
 
 namespace {
 
-constexpr int kMostBits = 54;  // of the difference of two coordinates
+constexpr int kMostBits = 54;  // the most bits of a difference of two coordinates
 
 // Contexts (docs/format-parallelogram.md, "The stream" and "A tip"). The classes of misses and
 // lengths are logarithmic: each constant that ends in Zero is the class of 1.
-constexpr std::uint32_t kLengths = 64;  // of a difference, in bits
+constexpr std::uint32_t kLengths = 64;  // classes of the number of bits of a difference
 constexpr int kMissZero = 4;
 constexpr int kSizeZero = 1;
 constexpr int kTwoMissesZero = 2;
 constexpr int kSpreadZero = 3;
-constexpr double kSpreadPart = 0.3;  // of the expected miss: with 1 more, the unit of spread
+constexpr double kSpreadPart = 0.3;  // the unit of spread is this part of the expected miss, plus 1
 constexpr int kAxisMissZero = 2;
-constexpr std::uint32_t kDistances = 8;  // of two guesses
+constexpr std::uint32_t kDistances = 8;  // classes of the distance of two guesses
 constexpr int kDistanceZero = 1;
-constexpr double kDistancePart = 0.1;            // of two misses: with 1 more, the unit of distance
-constexpr Scale<4> kParts{.per_unit = 2 * 4};    // between two places: 0 to 0.5
-constexpr Scale<8> kNormals{.per_unit = 7.999};  // of a component of a unit vector
-constexpr std::uint32_t kPlacesAround = 5;       // vertices that a repeat may be of
+constexpr double kDistancePart = 0.1;  // the unit of distance is this part of two misses, plus 1
+constexpr Scale<4> kParts{.per_unit = 2 * 4};    // classes of the distance to the nearest place
+constexpr Scale<8> kNormals{.per_unit = 7.999};  // sizes of components of unit vectors
+constexpr std::uint32_t kVerticesAround = 5;     // vertices whose coordinate a tip may repeat
 
 Error malformed() { return {ErrorCode::malformed, "a coordinate is out of range"}; }
 
@@ -45,8 +45,8 @@ std::array<std::size_t, 3> axes_by_slope(const Vector& normal) {
   return axes;
 }
 
-bool is_sane(const GridPoint& cell) {
-  return std::all_of(cell.begin(), cell.end(), [](std::int64_t c) {
+bool is_sane(const GridPoint& vertex) {
+  return std::all_of(vertex.begin(), vertex.end(), [](std::int64_t c) {
     return c < (std::int64_t{1} << kMostBits) && c > -(std::int64_t{1} << kMostBits);
   });
 }
@@ -62,18 +62,20 @@ void VertexCoder::code_options(const VertexOptions& options) {
 }
 
 GridPoint VertexCoder::relative(const GridPoint* position) const {
-  GridPoint cell{};
-  for (std::size_t k = 0; k < 3 && position != nullptr; ++k) cell[k] = (*position)[k] - origin_[k];
-  return cell;
+  GridPoint vertex{};
+  for (std::size_t k = 0; k < 3 && position != nullptr; ++k) {
+    vertex[k] = (*position)[k] - origin_[k];
+  }
+  return vertex;
 }
 
-Status VertexCoder::add_vertex(const GridPoint& cell, double miss) {
-  if (cells_.size() >= limits_.vertices) {
+Status VertexCoder::add_vertex(const GridPoint& vertex, double miss) {
+  if (positions_.size() >= limits_.vertices) {
     return Error{ErrorCode::limit_exceeded, "the solid has too many vertices"};
   }
-  cells_.push_back(cell);
-  centres_.push_back(
-      {static_cast<double>(cell[0]), static_cast<double>(cell[1]), static_cast<double>(cell[2])});
+  positions_.push_back(vertex);
+  centres_.push_back({static_cast<double>(vertex[0]), static_cast<double>(vertex[1]),
+                      static_cast<double>(vertex[2])});
   misses_.push_back(miss);
   repeats_.push_back(0);
   guesses_.push_back(0);
@@ -81,28 +83,28 @@ Status VertexCoder::add_vertex(const GridPoint& cell, double miss) {
 }
 
 template <Number number, std::uint32_t size>
-GridPoint VertexCoder::code_cell(const GridPoint& near, const GridPoint& truth,
-                                 Context<size> context) {
+GridPoint VertexCoder::code_vertex(const GridPoint& near, const GridPoint& truth,
+                                   Context<size> context) {
   Context<kLengths> before(0U);
-  GridPoint cell = near;
+  GridPoint vertex = near;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int64_t place = places_[k].place_of(near[k]);
     const std::int64_t offset = models_.code_signed<number>(
         stream_, {context, before}, places_[k].place_of(truth[k]) - place, kMostBits);
     const auto value = places_[k].value_of(place + offset);
     if (!value) stream_.fail();
-    cell[k] = value.value_or(near[k]);
+    vertex[k] = value.value_or(near[k]);
     before = capped<kLengths>(std::bit_width(static_cast<std::uint64_t>(std::abs(offset))));
   }
-  return cell;
+  return vertex;
 }
 
 Status VertexCoder::code_seed(std::uint32_t number, const GridPoint* position) {
-  GridPoint cell{};
-  if (cells_.empty()) {
+  GridPoint vertex{};
+  if (positions_.empty()) {
     stream_.enter(StreamPart::position);
-    origin_ = code_cell<kOrigin>(memory_.last_position, position ? *position : GridPoint{},
-                                 Context<2>(!memory_.is_first()));
+    origin_ = code_vertex<kOrigin>(memory_.last_position, position ? *position : GridPoint{},
+                                   Context<2>(!memory_.is_first()));
     AxisPlaces::Kind before = AxisPlaces::Kind::every;
     for (std::size_t k = 0; k < 3; ++k) {
       Result<AxisPlaces> coded =
@@ -113,12 +115,12 @@ Status VertexCoder::code_seed(std::uint32_t number, const GridPoint* position) {
     }
   } else {
     stream_.enter(StreamPart::coordinates);
-    cell = code_cell<kSeed>(cells_.back(), relative(position), Context<3>(number));
+    vertex = code_vertex<kSeed>(positions_.back(), relative(position), Context<3>(number));
   }
-  if (!is_sane(cell) || stream_.failed()) return malformed();
-  if (Status added = add_vertex(cell, 0); !added) return added;
+  if (!is_sane(vertex) || stream_.failed()) return malformed();
+  if (Status added = add_vertex(vertex, 0); !added) return added;
   if (number < 2) return Done{};
-  const std::size_t first = cells_.size() - 3;
+  const std::size_t first = positions_.size() - 3;
   const double miss = 0.5 * length(centres_[first + 1] - centres_[first]);
   std::fill(misses_.end() - 3, misses_.end(), miss);
   return Done{};
@@ -175,7 +177,7 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
   const std::array<std::size_t, 3> axes = axes_by_slope(normal);
   TipContexts tip = contexts_of_tip(front, gate, position ? &truth : nullptr);
   const Vector& predicted = prediction_.tip().guesses[tip.guess.value];
-  GridPoint cell{};
+  GridPoint vertex{};
   Vector centre{};
   double slope = 0;
   now_repeats_ = 0;
@@ -185,8 +187,8 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
     double expectation = predicted[k];
     if (rank == 2) expectation = tamed(expectation + prediction_.shift_along(k, slope));
     const auto repeated = has_repeats_ ? code_repeat(front, gate, axis, truth[k]) : std::nullopt;
-    cell[k] = repeated ? *repeated : code_coordinate(tip, axis, expectation, truth[k]);
-    centre[k] = static_cast<double>(cell[k]);
+    vertex[k] = repeated ? *repeated : code_coordinate(tip, axis, expectation, truth[k]);
+    centre[k] = static_cast<double>(vertex[k]);
     const double miss = centre[k] - predicted[k];
     slope += normal[k] * miss;
     if (repeated) continue;
@@ -194,9 +196,9 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
     const auto missed = log_bucket<kAxisMisses>(std::abs(miss), kAxisMissZero);
     if (missed.value > tip.missed.value) tip.missed = missed;
   }
-  if (!is_sane(cell) || stream_.failed()) return malformed();
+  if (!is_sane(vertex) || stream_.failed()) return malformed();
   prediction_.learn(centre, tip.expected);
-  if (Status added = add_vertex(cell, length(centre - predicted)); !added) return added;
+  if (Status added = add_vertex(vertex, length(centre - predicted)); !added) return added;
   guesses_.back() = static_cast<std::uint8_t>(tip.guess.value);
   for (std::size_t rank = 0; has_repeats_ && rank < 3; ++rank) {
     repeats_.back() |= static_cast<std::uint8_t>(((now_repeats_ >> (2 - rank)) & 1U) << axes[rank]);
@@ -262,9 +264,10 @@ std::optional<std::int64_t> VertexCoder::code_repeat(const SurfaceFront& front, 
   const std::size_t k = axis.number;
   const Index x = front[gate.next].end;
   const Index p = front[gate.previous].start;
-  const std::array<std::int64_t, kPlacesAround> around{
-      cells_[gate.start][k], cells_[gate.end][k], cells_[gate.apex][k], cells_[x][k], cells_[p][k]};
-  const auto bit = [](bool is_set, unsigned place) { return is_set ? 1U << place : 0U; };
+  const std::array<std::int64_t, kVerticesAround> around{
+      positions_[gate.start][k], positions_[gate.end][k], positions_[gate.apex][k],
+      positions_[x][k], positions_[p][k]};
+  const auto bit = [](bool is_set, unsigned index) { return is_set ? 1U << index : 0U; };
   const auto repeats_at = [&](Index vertex) { return ((repeats_[vertex] >> k) & 1U) != 0; };
   const Context<4> mask(bit(repeats_at(gate.start), 0) + bit(repeats_at(gate.end), 1));
   const Context<16> pattern(bit(around[0] == around[1], 0) + bit(around[1] == around[2], 1) +
@@ -284,13 +287,13 @@ std::optional<std::int64_t> VertexCoder::code_repeat(const SurfaceFront& front, 
   now_repeats_ = now_repeats_ * 2 + (repeats ? 1U : 0U);
   if (!repeats) return std::nullopt;
   std::int64_t value = 0;
-  for (std::uint32_t i = 0; i < kPlacesAround; ++i) {
+  for (std::uint32_t i = 0; i < kVerticesAround; ++i) {
     if (std::find(around.begin(), around.begin() + i, around[i]) != around.begin() + i) continue;
     value = around[i];
-    const Context<kPlacesAround> place(i);
+    const Context<kVerticesAround> index(i);
     if (models_.code<kWhich>(
-            stream_, place,
-            {combine(place, pattern), combine(place, axis.rank, history_[k].last())}, i == found)) {
+            stream_, index,
+            {combine(index, pattern), combine(index, axis.rank, history_[k].last())}, i == found)) {
       break;
     }
   }

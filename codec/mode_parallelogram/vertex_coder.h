@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The coordinates of the vertices of mode parallelogram, in the order in which the front meets
-// them: a prediction, and what it missed by.
+// them: each is predicted, and the difference from the prediction is coded.
 #pragma once
 
 #include <array>
@@ -42,27 +42,28 @@ class VertexCoder {
   /// The tip at the gate of the last prediction. Errors: malformed; limit_exceeded.
   Status code_tip(const SurfaceFront& front, Index corner, const GridPoint* position);
 
-  Index count() const { return static_cast<Index>(cells_.size()); }
+  Index count() const { return static_cast<Index>(positions_.size()); }
   const GridPoint& origin() const { return origin_; }
-  const std::vector<GridPoint>& cells() const { return cells_; }
-  /// The cells as doubles.
+  /// The positions of the vertices coded so far, relative to the origin.
+  const std::vector<GridPoint>& positions() const { return positions_; }
+  /// The same positions as doubles.
   const std::vector<Vector>& centres() const { return centres_; }
 
  private:
   static constexpr std::uint32_t kGuesses = TipPrediction::kGuesses;
   static constexpr std::uint32_t kSpans = TipPrediction::kSpanClasses;
   static constexpr std::uint32_t kMisses = 16;     // classes of misses and lengths
-  static constexpr std::uint32_t kAxisMisses = 6;  // of the miss on one axis
-  static constexpr std::uint32_t kSpreads = 8;     // of the distance of two guesses
+  static constexpr std::uint32_t kAxisMisses = 6;  // classes of the miss on one axis
+  static constexpr std::uint32_t kSpreads = 8;     // classes of the distance of two guesses
 
   using Guess = Context<kGuesses>;
   struct Axis {
     std::size_t number;
-    Context<3> rank;  // the place of the axis in the order of coding
+    Context<3> rank;  // the index of the axis in the order of coding
   };
-  /// What is known about a tip before its coordinates are coded.
+  /// The facts that are known about a tip before its coordinates are coded.
   struct TipContexts {
-    double expected;                    // miss
+    double expected;                    // the expected miss
     Guess guess;                        // the prediction
     Context<kSpans + kGuesses> source;  // the set of coefficients, or the guess if tips name one
     Context<kMisses> size;              // of the gate
@@ -73,14 +74,14 @@ class VertexCoder {
   };
 
   GridPoint relative(const GridPoint* position) const;
-  Status add_vertex(const GridPoint& cell, double miss);
+  Status add_vertex(const GridPoint& position, double miss);
   template <Number number, std::uint32_t size>
-  GridPoint code_cell(const GridPoint& near, const GridPoint& truth, Context<size> context);
+  GridPoint code_vertex(const GridPoint& near, const GridPoint& truth, Context<size> context);
   /// Codes which of the guesses is the prediction of the tip.
   Guess code_guess(const SurfaceFront& front, const Gate& gate, const GridPoint* truth,
                    Context<kMisses> scale);
-  /// Codes that the coordinate is that of a vertex beside the gate, and of which one. Nothing if it
-  /// is not.
+  /// Codes whether the coordinate equals that of a vertex beside the gate, and if so, the index of
+  /// the vertex. Returns the coordinate, or nothing if it equals none.
   std::optional<std::int64_t> code_repeat(const SurfaceFront& front, const Gate& gate,
                                           const Axis& axis, std::int64_t truth);
   TipContexts contexts_of_tip(const SurfaceFront& front, const Gate& gate, const GridPoint* truth);
@@ -97,13 +98,13 @@ class VertexCoder {
   std::array<AxisPlaces, 3> chosen_places_{};  // writing
   std::array<AxisPlaces, 3> places_{};         // Kind::every until the origin is known
   GridPoint origin_{};
-  std::vector<GridPoint> cells_;
+  std::vector<GridPoint> positions_;
   std::vector<Vector> centres_;
   std::vector<double> misses_;         // vertex -> the distance from its prediction
   std::vector<std::uint8_t> guesses_;  // vertex -> the guess that was its prediction
   std::vector<std::uint8_t> repeats_;  // vertex -> bit k: the coordinate on axis k was a repeat
   TipPrediction prediction_;
-  Context<kGuesses * kGuesses> last_guesses_{0U};  // of the two tips before
+  Context<kGuesses * kGuesses> last_guesses_{0U};  // the guesses of the two tips before
   std::array<Answers<3>, 3> history_;              // axis -> the last answers of Repeat
   std::uint32_t now_repeats_ = 0;                  // the answers for this tip, latest lowest
 };

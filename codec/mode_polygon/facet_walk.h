@@ -17,22 +17,22 @@
 
 namespace watertight::codec::polygon {
 
-inline constexpr Index kLoopLimit = 64;    // steps along the front that a loop may have
-inline constexpr Index kGateLimit = 256;   // open half-edges among which an interior ring begins
-inline constexpr Index kGateReach = 4096;  // half-edges, open or not, among which these are
-inline constexpr Index kChainLimit = 64;   // unfinished fans of facets at one vertex
+inline constexpr Index kLoopLimit = 64;    // the most steps of a loop along the front
+inline constexpr Index kGateLimit = 256;   // the most open half-edges where an interior ring begins
+inline constexpr Index kGateReach = 4096;  // the most half-edges that are searched for these
+inline constexpr Index kChainLimit = 64;   // the most chains at one vertex
 inline constexpr Index kUnaryLimit = 24;   // sizes and degrees that are asked one by one
-inline constexpr int kCountBits = 28;      // of ring sizes and degrees
-inline constexpr int kGateBits = 9;        // of the number of a gate
-inline constexpr int kLoopBits = 6;        // of the number of a step
+inline constexpr int kCountBits = 28;      // the most bits of a ring size or degree
+inline constexpr int kGateBits = 9;        // the most bits of the number of a gate
+inline constexpr int kLoopBits = 6;        // the most bits of the number of a step
 
 // Contexts (docs/format-polygon.md, "The surface").
-inline constexpr std::uint32_t kLevels = 3;      // of rings
-inline constexpr Context<2> kNextShell{0U};      // of MoreShells: one more shell?
-inline constexpr Context<2> kNextComponent{1U};  // one more component?
-inline constexpr Context<2> kAtNewVertex{0U};    // of RingStart
+inline constexpr std::uint32_t kLevels = 3;      // the number of ring levels
+inline constexpr Context<2> kNextShell{0U};      // decision MoreShells: one more shell?
+inline constexpr Context<2> kNextComponent{1U};  // decision MoreShells: one more component?
+inline constexpr Context<2> kAtNewVertex{0U};    // contexts of RingStart
 inline constexpr Context<2> kAtGate{1U};
-inline constexpr Context<2> kLongSize{0U};  // of Long
+inline constexpr Context<2> kLongSize{0U};  // contexts of Long
 inline constexpr Context<2> kLongDegree{1U};
 
 /// Known facets around a vertex, each beside the next. The half-edge `in` comes to the vertex,
@@ -47,7 +47,7 @@ struct Chain {
 struct Step {
   Index vertex = kNone;
   Index twin = kNone;   // the known half-edge that it pairs with
-  Index truth = kNone;  // the same half-edge in the truth
+  Index truth = kNone;  // the half-edge of the given surface
 };
 
 enum class Start : std::uint8_t { fresh, gate, known };

@@ -84,7 +84,7 @@ Index SurfaceWalk::chosen_chain(Index vertex, Index own) {
   return options[count == 1 ? 0 : stream_.code_uniform(chosen, count)];
 }
 
-/// The vertex at the other end of a new edge from the end of the ring.
+/// Codes the next vertex of the ring: the one at the end of a new edge.
 Index SurfaceWalk::coded_target(Index slots) {
   PolygonSurface& surface = result_.surface;
   Index truth_target = kNone;

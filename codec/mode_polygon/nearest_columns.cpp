@@ -21,10 +21,10 @@ std::uint64_t ColumnScore::operator()(const GridColumn& column) const {
 std::vector<GridColumn> nearest_columns(std::span<const GridColumn> columns,
                                         const ColumnScore& score, std::size_t window,
                                         std::size_t keep) {
-  const auto place = static_cast<std::size_t>(
+  const auto middle = static_cast<std::size_t>(
       std::lower_bound(columns.begin(), columns.end(), score.base) - columns.begin());
-  const std::size_t first = place > window ? place - window : 0;
-  const std::size_t last = std::min(columns.size(), place + window);
+  const std::size_t first = middle > window ? middle - window : 0;
+  const std::size_t last = std::min(columns.size(), middle + window);
   std::vector<std::pair<std::uint64_t, GridColumn>> scored;
   scored.reserve(last - first);
   for (std::size_t i = first; i < last; ++i) scored.emplace_back(score(columns[i]), columns[i]);

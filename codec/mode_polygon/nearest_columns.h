@@ -20,8 +20,9 @@ struct ColumnScore {
   std::uint64_t operator()(const GridColumn& column) const;
 };
 
-/// The `keep` columns of the least score, ties by the column, among the `window` columns before and
-/// after the place in sorted order. `columns` are sorted. Cost: O(window log keep).
+/// The `keep` columns of the least score, ties by the column, among the last `window` columns less
+/// than the base of the score and the first `window` others. Requires sorted `columns`.
+/// Cost: O(window log keep).
 std::vector<GridColumn> nearest_columns(std::span<const GridColumn> columns,
                                         const ColumnScore& score, std::size_t window,
                                         std::size_t keep);

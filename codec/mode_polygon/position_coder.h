@@ -22,18 +22,18 @@ inline constexpr int kCoordinateBits = 55;
 inline constexpr std::size_t kFanLimit = 12;      // corners of a vertex that predictions use
 inline constexpr std::size_t kLevelLimit = 12;    // heights that are remembered
 inline constexpr std::uint32_t kHeightLimit = 6;  // heights that are offered
-inline constexpr int kRankBits = 12;              // of the rank of a known column
+inline constexpr int kRankBits = 12;              // the most bits of the rank of a known column
 
 // Fixed by the format (docs/format-polygon.md, "Positions").
 inline constexpr double kCrossing = 0.03;       // least squared sine between two walls that cross
-inline constexpr double kPerpendicular = 0.25;  // the same between two edges
+inline constexpr double kPerpendicular = 0.25;  // least squared sine between two edges that cross
 // How many columns of the page are compared before and after the prediction, and how many of these
 // are offered: for the first vertex of a solid, then for all others.
 inline constexpr std::size_t kFirstWindow = 2048;
 inline constexpr std::size_t kFirstOffered = 2048;
 inline constexpr std::size_t kWindow = 64;
 inline constexpr std::size_t kOffered = 16;
-inline constexpr std::uint64_t kAcrossWeight = 4;  // of an offset across a corner's direction
+inline constexpr std::uint64_t kAcrossWeight = 4;  // the weight of an offset across the direction
 
 using Kind = FacetPlane::Kind;
 inline constexpr std::uint32_t kPlaneKinds = 4;
@@ -152,9 +152,11 @@ class PositionCoder {
   std::vector<std::uint8_t> in_known_column_;  // vertex -> 1 if coded by a column of the page
   Index last_top_ = kNone;                     // the last vertex in the column of a neighbour
   std::uint32_t known_columns_ = 0;            // vertices coded by a column of the page
-  std::vector<Flat> directions_;               // of long edges, each the longest of its kind
-  std::vector<std::uint8_t> turns_;   // vertex -> how its edge turned: 1 left, 2 right, 3 not
-  std::vector<std::int64_t> levels_;  // heights, the latest first
+  std::vector<Flat> directions_;               // the long edges, one for each direction
+  /// vertex -> how its offset turned (docs/format-polygon.md): 0 if none was coded, 1 if along is
+  /// not negative, 2 if along is negative, 3 if the offset is nearly all across.
+  std::vector<std::uint8_t> turns_;
+  std::vector<std::int64_t> levels_;  // the last heights, the latest first
 
   // About the vertex that is being coded.
   Index current_ = 0;

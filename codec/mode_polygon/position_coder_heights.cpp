@@ -11,12 +11,18 @@ namespace watertight::codec::polygon {
 
 namespace {
 
-constexpr std::uint32_t kSources = 4;  // of an offered height
-constexpr int kLineLimit = 8;          // vertices before that may lie on one line with an edge
+/// An offered height is that of the vertex before in the ring, of the vertex after, of another
+/// neighbour, or one of the heights coded last.
+constexpr std::uint32_t kSources = 4;
+/// An edge is made longer by the vertices before it in the ring that lie on one line with it: by
+/// this many at most.
+constexpr int kLineLimit = 8;
 
 }  // namespace
 
-/// The longest edge of the solid that is parallel or perpendicular to `direction`, turned to it.
+/// Replaces `direction` by the longest of the remembered edges that are parallel or perpendicular
+/// to it, turned by quarters of a full turn where needed. False if no such edge is longer than
+/// `direction`.
 bool PositionCoder::follow_direction(Flat& direction) const {
   double longest = dot(direction, direction);
   if (longest == 0) {

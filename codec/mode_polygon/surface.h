@@ -18,15 +18,15 @@ namespace watertight::codec::polygon {
 
 /// The half-edges of a ring are consecutive and in order. `vertex` of a half-edge is its origin.
 struct PolygonSurface {
-  std::vector<Index> vertex;           // half-edge -> vertex (one per fan)
-  std::vector<Index> twin;             // half-edge -> half-edge
-  std::vector<Index> ring_of;          // half-edge -> ring
-  std::vector<Index> facet_of;         // ring -> facet
-  std::vector<Index> ring_offsets{0};  // into the half-edges
-  std::vector<Index> facet_offsets{0};
-  std::vector<Index> shell_offsets{0};
-  std::vector<Index> degree;    // vertex -> number of its half-edges
-  std::vector<Index> out_half;  // vertex -> the first of its half-edges in the walk
+  std::vector<Index> vertex;            // half-edge -> vertex (one per fan)
+  std::vector<Index> twin;              // half-edge -> half-edge
+  std::vector<Index> ring_of;           // half-edge -> ring
+  std::vector<Index> facet_of;          // ring -> facet
+  std::vector<Index> ring_offsets{0};   // ring -> its first half-edge; one more entry at the end
+  std::vector<Index> facet_offsets{0};  // facet -> its first ring, likewise
+  std::vector<Index> shell_offsets{0};  // shell -> its first facet, likewise
+  std::vector<Index> degree;            // vertex -> number of its half-edges
+  std::vector<Index> out_half;          // vertex -> the first of its half-edges in the walk
 
   Index vertex_count() const { return static_cast<Index>(degree.size()); }
   Index facet_count() const { return static_cast<Index>(facet_offsets.size() - 1); }

@@ -16,18 +16,18 @@ using Place = std::array<std::int64_t, 2>;
 constexpr int kMaxLength = 30;  // bits of a side of the box
 constexpr std::int64_t kMaxMagnitude = std::int64_t{1} << 53;
 
-constexpr int kPositionBits = 54;  // of a coordinate of the first point
-constexpr int kLengthBits = 5;     // of a length
-constexpr int kCountBits = 40;     // of a number of columns or vertices
-constexpr int kRankBits = 6;       // of a rank among known places
+constexpr int kPositionBits = 54;  // the most bits of a coordinate of the first point
+constexpr int kLengthBits = 5;     // the most bits of a length
+constexpr int kCountBits = 40;     // the most bits of a number of columns or vertices
+constexpr int kRankBits = 6;       // the most bits of a rank among known places
 
 // Fixed by the format (docs/format-walk.md, "Columns").
-constexpr std::size_t kHeights = 16;        // that are remembered
-constexpr std::size_t kReach = 5;           // columns back that parallelograms are made of
-constexpr std::size_t kKnownReach = 4096;   // columns of the page among which known places are
-constexpr std::uint64_t kMostKnown = 64;    // of these, those in the box that are counted
-constexpr std::int64_t kCornerMargin = 32;  // steps around the box in which corners may lie
-constexpr std::uint64_t kMostFloors = 255;  // floors above count as this one
+constexpr std::size_t kHeights = 16;        // the most heights that are remembered
+constexpr std::size_t kReach = 5;           // the number of last columns that make parallelograms
+constexpr std::size_t kKnownReach = 4096;   // the most columns of the page that are looked at
+constexpr std::uint64_t kMostKnown = 64;    // the most known places that are listed
+constexpr std::int64_t kCornerMargin = 32;  // the most steps from the box to a corner
+constexpr std::uint64_t kMostFloors = 255;  // the index of a height counts as this at most
 
 /// The length of a number, or of the side of a box.
 using Length = Context<kMaxLength + 1>;
@@ -94,10 +94,10 @@ class Columns {
   std::vector<std::size_t> first_;  // writing: place -> its first point; one more entry at the end
   std::vector<GridPoint> decoded_;
   std::size_t place_count_ = 0;
-  std::array<int, 3> length_{};        // of the sides of the box
-  std::array<std::int64_t, 3> min_{};  // of the box
+  std::array<int, 3> length_{};        // the lengths of the sides of the box
+  std::array<std::int64_t, 3> min_{};  // the smallest corner of the box
   std::array<std::int64_t, 3> start_{};
-  std::vector<Height> heights_;  // that were used, the latest first
+  std::vector<Height> heights_;  // the heights that were used, the latest first
   std::vector<std::int64_t> floors_before_;
   std::size_t known_ = 0;  // the first of memory_.columns that is greater than the last column
   bool was_known_ = false;

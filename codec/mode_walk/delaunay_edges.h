@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The edges of a Delaunay tetrahedralization: the faces around each, and the neighbours of each
-// vertex, as flat arrays. For the pivot walk.
+// vertex, as flat arrays. For the walk of mode walk.
 #pragma once
 
 #include <span>
@@ -17,8 +17,9 @@ class DelaunayEdges {
   /// Cost: O(n log n); about 300 bytes per vertex.
   DelaunayEdges(const delaunay::CanonicalDelaunay& delaunay, Index vertex_count);
 
-  /// The faces at the edge between two different vertices, as places in CanonicalDelaunay::faces,
-  /// ascending; none if there is no such edge. Cost: logarithmic in the degree of a vertex.
+  /// The faces at the edge between two different vertices, as indices into
+  /// CanonicalDelaunay::faces, ascending; none if there is no such edge. Cost: logarithmic in the
+  /// degree of a vertex.
   std::span<const Index> faces_at(Index a, Index b) const;
   /// The neighbours of `v` that are greater, ascending.
   std::span<const Index> greater_neighbours(Index v) const {

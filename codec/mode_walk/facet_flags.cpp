@@ -31,7 +31,7 @@ constexpr std::array<double, 7> kDistances2{0.36, 1.44, 6.25, 25, 100, 900, 1000
 constexpr std::array<double, 6> kCosines{0.9999999, 0.99999, 0.999, 0.99, 0.9, 0.0};
 constexpr std::uint32_t kOffsets = kDistances2.size() + 2;
 constexpr std::uint32_t kAngles = kCosines.size() + 1;
-constexpr std::uint32_t kDirections = 3;  // of a normal or an edge
+constexpr std::uint32_t kDirections = 3;  // classes of the direction of a normal or an edge
 constexpr std::uint32_t kLengths = 16;
 constexpr std::uint32_t kKnown = 16;
 constexpr std::uint32_t kHistory = 4;           // flags that are remembered
@@ -59,9 +59,9 @@ struct Meeting {
   /// Distance of a triangle's corner from the plane of the other, in grid steps; 0: in the plane.
   Context<kOffsets> offset;
   Context<kAngles> angle;       // between the normals
-  Context<kDirections> slope;   // of the first triangle: horizontal, vertical, other
-  Context<kDirections> course;  // of the edge: vertical, horizontal, other
-  Context<kLengths> length;     // of the edge, octaves
+  Context<kDirections> slope;   // the first triangle is horizontal, vertical, other
+  Context<kDirections> course;  // the edge is vertical, horizontal, other
+  Context<kLengths> length;     // the octave of the length of the edge
 };
 
 /// Along the z axis, in the xy plane, or neither.
@@ -148,7 +148,7 @@ class Facets {
   const BoundaryMesh& mesh_;
   std::span<const Index> facet_of_;
   IntegerSolid& solid_;
-  geometry::DisjointSets facets_;      // of triangles
+  geometry::DisjointSets facets_;      // sets of triangles
   std::vector<Index> inner_twin_;      // half-edge -> its twin if inside a facet, else kNone
   std::vector<std::uint8_t> known_;    // triangle -> sum over the flags of its edges so far
   Answers<kHistory> history_;          // flags of flat edges

@@ -26,7 +26,7 @@ enum Family : std::uint32_t {
   kTopBits,
 };
 
-/// All of them are of columns.
+/// The numbers of mode walk. Only the columns have numbers.
 enum Number : std::uint32_t { kPosition, kSize, kGap, kResidual, kRank, kFloors };
 
 inline constexpr FamilyShape kFamilies[] = {

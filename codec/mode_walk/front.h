@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The surface that the pivot walk has made so far: triangles as half-edges, open where there is no
-// triangle beyond yet. Private to the walk.
+// The surface that the walk of mode walk knows so far: its triangles as half-edges, which are open
+// where no triangle beyond them is known yet. Private to the walk.
 #pragma once
 
 #include <array>

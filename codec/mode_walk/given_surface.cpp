@@ -11,7 +11,7 @@
 
 namespace watertight::codec::walk {
 
-bool WalkTruth::take(BoundaryMesh& mesh, Index vertex_count) {
+bool GivenSurface::take(BoundaryMesh& mesh, Index vertex_count) {
   triangles_ = std::move(mesh.triangles);
   twin_.clear();
   const auto half_edge_count = static_cast<Index>(3 * triangles_.size());
@@ -51,12 +51,12 @@ bool WalkTruth::take(BoundaryMesh& mesh, Index vertex_count) {
   return true;
 }
 
-bool WalkTruth::is_manifold() const {
+bool GivenSurface::is_manifold() const {
   return geometry::number_fans(twin_, geometry::previous_half_edge).first.size() + 1 ==
          first_.size();
 }
 
-Index WalkTruth::find_unused(const Triangle& triangle) const {
+Index GivenSurface::find_unused(const Triangle& triangle) const {
   const Index v = triangle[0];
   for (Index i = first_[v]; i < first_[v + 1]; ++i) {
     const Index h = half_edges_[i];
@@ -65,14 +65,14 @@ Index WalkTruth::find_unused(const Triangle& triangle) const {
   return kNone;
 }
 
-Index WalkTruth::any_unused_at(Index vertex) const {
+Index GivenSurface::any_unused_at(Index vertex) const {
   for (Index i = first_[vertex]; i < first_[vertex + 1]; ++i) {
     if (!is_used_[half_edges_[i] / 3]) return half_edges_[i];
   }
   return kNone;
 }
 
-Index WalkTruth::unused_vertex() const {
+Index GivenSurface::unused_vertex() const {
   Index least = kNone;
   for (Index t = 0; t < triangles_.size(); ++t) {
     if (is_used_[t]) continue;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The surface that a writer of the pivot walk asks for the truth: the triangles given, as
-// half-edges, and which of them the walk has used. Private to the walk.
+// The surface that a writer gives to the walk of mode walk: its triangles as half-edges, and for
+// each triangle whether the walk has reached it. The walk looks up in it what is true, for instance
+// which triangle is beyond a gate. A reader has no such surface. Private to the walk.
 #pragma once
 
 #include <vector>
@@ -13,10 +14,11 @@ namespace watertight::codec::walk {
 
 struct BoundaryMesh;
 
-class WalkTruth {
+/// The triangles that are to be coded. A triangle is unused until the walk reaches it.
+class GivenSurface {
  public:
-  /// Takes the triangles of `mesh`. False unless within each component given each half-edge comes
-  /// once and has its opposite, and each vertex below `vertex_count`, and no other, is used.
+  /// Takes the triangles of `mesh`. True if each half-edge comes once and has a twin in its
+  /// component, and the triangles use each vertex below `vertex_count` and no other vertex.
   /// Cost: O(n log n).
   bool take(BoundaryMesh& mesh, Index vertex_count);
 
@@ -28,6 +30,7 @@ class WalkTruth {
   Index corner(Index half_edge) const { return geometry::corner_of(triangles_, half_edge); }
   Index twin_of(Index half_edge) const { return twin_[half_edge]; }
 
+  /// Notes that the walk has reached the triangle of this half-edge.
   void use(Index half_edge) { is_used_[half_edge / 3] = true; }
   /// The first half-edge of an unused triangle with these corners in this order, or kNone.
   Index find_unused(const Triangle& triangle) const;
@@ -39,9 +42,9 @@ class WalkTruth {
  private:
   std::vector<Triangle> triangles_;
   std::vector<Index> twin_;
-  std::vector<Index> first_;       // vertex -> into half_edges_
-  std::vector<Index> half_edges_;  // by vertex left, then vertex reached
-  std::vector<bool> is_used_;
+  std::vector<Index> first_;       // vertex -> index of its first element in half_edges_
+  std::vector<Index> half_edges_;  // sorted by start, then by end
+  std::vector<bool> is_used_;      // triangle -> whether the walk has reached it
 };
 
 }  // namespace watertight::codec::walk

@@ -27,8 +27,8 @@ constexpr auto& kAngles = kBends;
 // Fixed by the format (docs/format-walk.md, "Contexts of Candidate and Distant").
 constexpr double kFlat = 1e-18;  // squared distance in grid steps that counts as in the plane
 constexpr std::array<double, 4> kDistances2{1, 9, 100, 2500};  // squared, in grid steps
-constexpr int kLeastRadius = -2;         // log2 of the squares at which the first class ends
-constexpr int kLeastParallelogram = -6;  // likewise
+constexpr int kLeastRadius = -2;         // log2 of the square at which the first class ends
+constexpr int kLeastParallelogram = -6;  // log2 of the square at which the first class ends
 constexpr double kGabriel2 = 1.69;       // square of the ratio of radii from which a side counts
 constexpr std::array<double, 4> kShares2{0.64, 0.36, 0.16, 0.04};  // squares of ratios of radii
 

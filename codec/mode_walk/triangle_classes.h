@@ -29,15 +29,15 @@ struct Gate {
   Point a, b, o;
   geometry::Vector3 along{};   // b - a
   geometry::Vector3 normal{};  // along x (o - a)
-  double length2 = 0;          // of along, squared
-  double normal2 = 0;          // of normal, squared
+  double length2 = 0;          // the squared length of `along`
+  double normal2 = 0;          // the squared length of `normal`
   Gate(const Point& from, const Point& to, const Point& corner);
 };
 
 /// How the triangle (b, a, w) continues a gate.
 struct Continuation {
   Context<kBendClasses> bend;            // angle between the normals, in twelfths of a half turn
-  Context<kSideClasses> side;            // of w: below the gate's plane, in it, above it
+  Context<kSideClasses> side;            // w is below the gate's plane, in it, above it
   Context<kDeviationClasses> deviation;  // distance of w from that plane in grid steps
   Context<kRadiusClasses> radius;        // circumradius by the gate's length, steps of sqrt(2)
   /// Class of |w - (a + b - o)| / |gate|, in octaves.
@@ -48,11 +48,11 @@ Continuation continuation(const Gate& gate, const Point& w);
 /// How a face lies between the tetrahedra on its two sides.
 struct FaceShape {
   std::uint8_t sphere;   // angle between the circumspheres of its two tetrahedra
-  std::uint8_t ratio;    // of their radii, steps of sqrt(2)
+  std::uint8_t ratio;    // ratio of the radii of these, in steps of sqrt(2)
   std::uint8_t gabriel;  // how many of the radii exceed 1.3 times that of the face
 };
-/// The same for a triangle that is no face. `edges`: 1 if its edge at the start of the gate is a
-/// Delaunay edge, plus 2 if that at the end is one.
+/// The shape of a triangle that is no face, which has classes of its own. `edges`: 1 if its edge at
+/// the start of the gate is a Delaunay edge, plus 2 if that at the end is one.
 constexpr FaceShape no_face(std::uint32_t edges) {
   return {static_cast<std::uint8_t>(kSphereClasses - 4 + edges), kRatioClasses - 1,
           kGabrielClasses - 1};

@@ -30,7 +30,7 @@ constexpr std::uint32_t kFewCounts = 5;
 constexpr std::uint32_t kLikelihoods = 64;
 constexpr std::uint32_t kRanks = 4;
 
-// The questions asked with Rare; one of its contexts is not used.
+// The contexts of the decisions of family Rare. Context 6 is not used.
 constexpr Context<7> kIsManifold{0U};
 constexpr Context<7> kIsMore{5U};
 /// Is the vertex in the distant list? By the length of the list.
@@ -46,8 +46,8 @@ Context<kLikelihoods> likelihood(std::uint32_t probability) {
   if (lesser == 0) return Context<kLikelihoods>(0U);
   const auto width = static_cast<std::uint32_t>(std::bit_width(lesser));  // 1 to 16
   const std::uint32_t half = width > 1 ? (lesser >> (width - 2)) & 1U : 0;
-  const std::uint32_t place = std::min(2 * (width - 1) + half, kLikelihoods / 2 - 1);
-  return Context<kLikelihoods>(is_high ? kLikelihoods - 1 - place : place);
+  const std::uint32_t octave_half = std::min(2 * (width - 1) + half, kLikelihoods / 2 - 1);
+  return Context<kLikelihoods>(is_high ? kLikelihoods - 1 - octave_half : octave_half);
 }
 
 /// An edge with a candidate as probable as this is not scored again when a triangle is added beside
@@ -81,7 +81,7 @@ Error not_encodable(const char* reason) { return {ErrorCode::not_encodable, reas
 class Walk {
  public:
   Walk(EntropyStream& stream, ModelBank& models, std::span<const Point> points,
-       const delaunay::CanonicalDelaunay& delaunay, WalkTruth* truth)
+       const delaunay::CanonicalDelaunay& delaunay, GivenSurface* truth)
       : stream_(stream),
         models_(models),
         points_(points),
@@ -127,7 +127,7 @@ class Walk {
   Status code_seed(Index seed);
   void list_seeds(Index seed);
   Status code_gate(Index gate);
-  bool code_candidate(std::size_t place, Index truth);
+  bool code_candidate(std::size_t index, Index truth);
   Index code_distant(Index gate, Index truth);
   void add(const Triangle& triangle, Index source);
   std::uint32_t greatest_probability() const;
@@ -145,13 +145,13 @@ class Walk {
   void score(std::vector<Candidate>& list) const;
 
   EntropyStream& stream_;
-  EntropyStream lessons_ =
-      EntropyStream::meter();  // for decisions that models learn from and that are not coded
+  /// Takes the decisions from which the models only learn: they do not go into the stream.
+  EntropyStream uncoded_ = EntropyStream::meter();
   ModelBank& models_;
   std::span<const Point> points_;
   const delaunay::CanonicalDelaunay& delaunay_;
   DelaunayEdges edges_;
-  WalkTruth* truth_;
+  GivenSurface* truth_;
   WalkFront front_;
   std::vector<FaceShape> face_shapes_;
   bool is_manifold_ = true;
@@ -370,18 +370,18 @@ Index Walk::code_distant(Index gate, Index truth) {
 
 /// Codes whether the vertex is this candidate. Family Candidate, which ranked it, learns from the
 /// answer too.
-bool Walk::code_candidate(std::size_t place, Index truth) {
-  const Candidate& c = candidates_[place];
+bool Walk::code_candidate(std::size_t index, Index truth) {
+  const Candidate& c = candidates_[index];
   const std::uint32_t next =
-      place + 1 < candidates_.size() ? candidates_[place + 1].probability : 0;
+      index + 1 < candidates_.size() ? candidates_[index + 1].probability : 0;
   const auto own = likelihood(c.probability);
-  const auto rank = capped<kRanks>(place);
+  const auto rank = capped<kRanks>(index);
   const bool is_it = models_.code<kChoice>(
       stream_, rank,
       {combine(own, rank, c.kind), combine(halved(own), halved(likelihood(next))),
        combine(halved(own), c.state, rank)},
       c.vertex == truth);
-  models_.code<kCandidate>(lessons_, c.selector(), c.contexts, is_it);
+  models_.code<kCandidate>(uncoded_, c.selector(), c.contexts, is_it);
   return is_it;
 }
 
@@ -421,7 +421,8 @@ void Walk::list_seeds(Index seed) {
     const Triangle& t = delaunay_.faces[face];
     const auto& apexes = delaunay_.apexes[face];
     const Context<kSphereClasses> sphere(shape_of(face).sphere);
-    // The first apex sees the triangle turn clockwise from outside: it lies inside beside it.
+    // A face of the hull has one apex, which is inside. If it is the first apex, the face turns
+    // clockwise seen from outside.
     const Triangle reverse{t[0], t[2], t[1]};
     const bool hull = apexes[0] == kNone || apexes[1] == kNone;
     const bool first_inside = apexes[1] == kNone;
@@ -451,17 +452,17 @@ void Walk::list_seeds(Index seed) {
 Status Walk::code_seed(Index seed) {
   list_seeds(seed);
   Index truth = kNone;
-  std::size_t place = seeds_.size();
+  std::size_t chosen = seeds_.size();
   if (!is_reading()) {
     for (std::size_t i = 0; i < seeds_.size() && truth == kNone; ++i) {
       truth = truth_->find_unused(seeds_[i].triangle);
-      place = i;
+      chosen = i;
     }
-    if (truth == kNone) place = seeds_.size();
+    if (truth == kNone) chosen = seeds_.size();
   }
   for (std::size_t i = 0; i < seeds_.size(); ++i) {
     const auto context = combine(seeds_[i].kind, seeds_[i].sphere);
-    if (!models_.code<kSeed>(stream_, {context}, i == place)) continue;
+    if (!models_.code<kSeed>(stream_, {context}, i == chosen)) continue;
     add(seeds_[i].triangle, truth);
     return Done{};
   }
@@ -537,11 +538,11 @@ Status code_boundary_walk(EntropyStream& stream, ModelBank& models, std::span<co
   if (stream.is_reading()) {
     return Walk(stream, models, points, delaunay, nullptr).run(mesh);
   }
-  WalkTruth truth;
-  if (!truth.take(mesh, static_cast<Index>(points.size()))) {
+  GivenSurface given;
+  if (!given.take(mesh, static_cast<Index>(points.size()))) {
     return not_encodable("the triangles of the boundary do not meet in pairs");
   }
-  return Walk(stream, models, points, delaunay, &truth).run(mesh);
+  return Walk(stream, models, points, delaunay, &given).run(mesh);
 }
 
 }  // namespace watertight::codec::walk

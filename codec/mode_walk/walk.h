@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The pivot walk: the connectivity of a triangulated boundary, given its vertices and their
+// The walk of mode walk: the connectivity of a triangulated boundary, given its vertices and their
 // canonical Delaunay tetrahedralization. From a first triangle on, each step names the triangle
 // beyond the open edge that is most certain, among the Delaunay faces around that edge before all
 // others. For mode walk (docs/format-walk.md, "The walk").

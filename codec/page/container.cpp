@@ -18,7 +18,7 @@ namespace watertight::codec {
 namespace {
 
 constexpr std::uint8_t kMagic[2] = {'W', 'T'};
-constexpr std::uint8_t kPageFlag = 0x80;  // of the version byte
+constexpr std::uint8_t kPageFlag = 0x80;  // this bit of the version byte marks a page
 constexpr std::size_t kHeaderBytes = 4;
 
 // The most that a stream of so many bytes may decode to: docs/format.md, "Limits".

@@ -28,7 +28,7 @@ struct StoredPage {
   PageContents contents;
   std::uint32_t checksum = 0;
   std::uint64_t frame_cost = 0;    // in 1/65536 bit
-  std::vector<StreamCosts> costs;  // of each solid, likewise
+  std::vector<StreamCosts> costs;  // the costs of each solid, in 1/65536 bit
 };
 
 /// Writes the solids as planned, one plan for each; `certificate` may be null. Afterwards the plans

@@ -24,10 +24,10 @@ Wide power(int radix, std::int32_t exponent) {
   return result;
 }
 
-/// Both as multiples of the same power of the radix.
+/// The origin and the step of a lattice on one axis, as multiples of one power of the radix.
 struct Aligned {
   Wide origin = 0;
-  Wide step = 0;  // 0: they are too far apart
+  Wide step = 0;  // 0 if the exponents of the two are too far apart
   std::int32_t exponent = 0;
 };
 
@@ -57,7 +57,8 @@ std::optional<GridNumber> normalized(Wide mantissa, std::int32_t exponent, int r
 
 int radix_of(LatticeKind kind) { return kind == LatticeKind::decimal ? 10 : 2; }
 
-/// Splits a lattice's origin into whole steps and the rest. False if that cannot be done.
+/// Divides a lattice's origin by its step into whole steps (the origin of `result`) and a rest (its
+/// phase). False if the grid cannot hold them.
 bool split_origin(const Lattice& lattice, std::size_t axis, GriddedSolid& result) {
   const int radix = radix_of(lattice.kind);
   const Aligned aligned = align(lattice.origin[axis], lattice.step[axis], radix);
@@ -75,7 +76,9 @@ bool split_origin(const Lattice& lattice, std::size_t axis, GriddedSolid& result
   return true;
 }
 
-/// Coordinates from `origin` on. False if one is no integer of a magnitude below 2^53.
+/// Makes grid points of the points of a lattice: adds the origin of `result`, which is the grid
+/// point of the point (0, 0, 0). False if a coordinate is not a whole number, or is 2^53 or more in
+/// magnitude.
 bool place_vertices(std::span<const Point> points, GriddedSolid& result) {
   result.solid.vertices.clear();
   result.solid.vertices.reserve(points.size());
@@ -110,7 +113,9 @@ std::optional<GriddedSolid> grid_solid(const Solid& canonical) {
     is_split = is_split && split_origin(lattice, axis, result);
   }
   if (!is_split || !place_vertices(arrays.vertices, result)) {
-    result.grid.phase = lattice.origin;  // too fine a grid: count from the solid's own origin
+    // The grid is too fine to count steps from its point near 0: they are counted from the origin
+    // of the solid's lattice.
+    result.grid.phase = lattice.origin;
     result.origin = {};
     if (!place_vertices(arrays.vertices, result)) return std::nullopt;
   }

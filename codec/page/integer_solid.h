@@ -17,15 +17,16 @@ namespace watertight::codec {
 /// Lattice steps from the origin of the page. Magnitudes are below 2^53.
 using GridPoint = std::array<std::int64_t, 3>;
 
-/// Shell 0 is the exterior one, the first ring of a facet its exterior one. To be coded it is in
-/// canonical form (geometry/canonical_form.h); decoded, any order of all else will do: the caller
-/// brings it into canonical form.
+/// A solid whose vertices are grid points. Shell 0 is the exterior shell, and the first ring of a
+/// facet is its exterior ring. A solid that is written is in canonical form
+/// (geometry/canonical_form.h). A mode may decode vertices, facets, interior shells and interior
+/// rings in any order: the caller brings them into canonical form.
 struct IntegerSolid {
   std::vector<GridPoint> vertices;
-  std::vector<Index> ring_vertices;  // of all rings, one after the other
-  std::vector<Index> ring_offsets{0};
-  std::vector<Index> facet_offsets{0};  // into the rings
-  std::vector<Index> shell_offsets{0};  // into the facets
+  std::vector<Index> ring_vertices;     // the vertices of all rings, ring by ring
+  std::vector<Index> ring_offsets{0};   // ring -> its first index in ring_vertices
+  std::vector<Index> facet_offsets{0};  // facet -> its first ring
+  std::vector<Index> shell_offsets{0};  // shell -> its first facet
 
   Index ring_count() const { return static_cast<Index>(ring_offsets.size() - 1); }
   Index facet_count() const { return static_cast<Index>(facet_offsets.size() - 1); }

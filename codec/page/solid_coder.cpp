@@ -208,7 +208,8 @@ bool is_all_triangles(const IntegerSolid& solid) {
          solid.ring_count() == solid.facet_count();
 }
 
-/// A coordinate leaves 53 bits if hostile deltas add up.
+/// True if all coordinates are below 2^53 in magnitude. The sum of hostile differences may be
+/// larger.
 bool are_in_range(const IntegerSolid& solid) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 53;
   return std::all_of(solid.vertices.begin(), solid.vertices.end(), [](const GridPoint& vertex) {
@@ -297,8 +298,8 @@ Status SolidCoder::code_plain(PageSolid& solid) {
   return Done{};
 }
 
-/// The origin of the solid's lattice: the smallest corner of the solid (0), the origin of the solid
-/// before (1), or any (2).
+/// Codes the origin of the solid's lattice: it is the smallest corner of the solid's box (case 0),
+/// the origin of the solid before (case 1), or any other grid point (case 2).
 void SolidCoder::code_origin(PageSolid& solid) {
   if (frame_.grid.kind == LatticeKind::float64) return;
   ModelBank& models = models_[ModelPart::frame];

@@ -23,7 +23,7 @@ namespace watertight::codec {
 struct Frame {
   Acceptance acceptance;
   std::uint32_t srid = 0;
-  PageGrid grid;  // of a float64 lattice only the kind counts
+  PageGrid grid;  // for a float64 lattice only the kind is used
   friend bool operator==(const Frame&, const Frame&) = default;
 };
 
@@ -37,7 +37,7 @@ enum BitmapFlag : std::uint8_t {
   kHasSteiner = 4,      // there is a section of Steiner vertices
   kHasUnrecovered = 8,  // there is a section of unrecovered faces
   kCodedBitmap = 16,    // the marks are arithmetic coded, not plain bits
-  kCodedFacets = 32,    // likewise the facet section
+  kCodedFacets = 32,    // the facet section is arithmetic coded
   kExplicitFacets = 64  // the facet section lists rings as mode raw does
 };
 
@@ -45,7 +45,7 @@ enum BitmapFlag : std::uint8_t {
 struct PlainSections {
   std::uint8_t flags = 0;  // BitmapFlag; 0 in mode raw
   std::vector<Bytes> sections;
-  bitmap::FaceCounts counts;  // of mode bitmap
+  bitmap::FaceCounts counts;  // the counts of mode bitmap
 };
 
 /// A solid as it stands in a page.
@@ -55,8 +55,8 @@ struct PageSolid {
   bool keeps_order = false;  // the page has the source order; when read, another is the identity
   /// Nothing where the coordinates are on no grid; when read, of modes for integers only.
   std::optional<IntegerSolid> integers;
-  GridPoint origin{};   // of its lattice, on the grid of the page
-  PlainSections plain;  // of modes raw and bitmap only
+  GridPoint origin{};   // the grid point where its lattice begins
+  PlainSections plain;  // empty but in modes raw and bitmap
 };
 
 /// How a solid is to be written.
@@ -79,8 +79,8 @@ class SolidCoder {
 
   /// The cost of a solid in a mode for integers.
   struct Measure {
-    std::uint64_t cost = 0;  // of the solid's own part of the stream, in 1/65536 bit
-    WriterChoice choice;     // with which it costs that
+    std::uint64_t cost = 0;  // the solid's own part of the stream, in 1/65536 bit
+    WriterChoice choice;     // the choice that has this cost
   };
   /// With `choice`, where it is made already. Nothing if the mode cannot hold the solid or is not
   /// for integers.

@@ -37,7 +37,7 @@ constexpr Context<8> kRings{1U};
 constexpr Context<8> kVertices{2U};
 using HabitContext = Context<6>;
 using Facing = Context<5>;    // up, down, upright, slanting up, slanting down
-using Relation = Context<9>;  // of a place in a ring to the facets before
+using Relation = Context<9>;  // how a corner of a ring lies to the facets before
 
 std::vector<Index> inverse_of(const std::vector<Index>& order) {
   std::vector<Index> inverse(order.size());
@@ -194,18 +194,18 @@ class OrderCoder {
       std::iota(sequence.begin(), sequence.end(), Index{0});
       return;
     }
-    // The permutation is coded as the exchanges that make it: for each place, the present place of
+    // The permutation is coded as the exchanges that make it: for each index, the present index of
     // the element that belongs there.
     std::vector<Index> rest(sequence.size());
     std::iota(rest.begin(), rest.end(), Index{0});
-    std::vector<Index> place = rest;  // of each element in `rest`
+    std::vector<Index> index_of = rest;  // element -> its index in `rest`
     for (std::size_t i = fixed; i + 1 < sequence.size(); ++i) {
-      const std::size_t wanted = stream_.is_reading() ? i : place[sequence[i]];
+      const std::size_t wanted = stream_.is_reading() ? i : index_of[sequence[i]];
       const auto chosen =
           i + static_cast<std::size_t>(stream_.code_uniform(wanted - i, sequence.size() - i));
       std::swap(rest[i], rest[chosen]);
-      place[rest[i]] = static_cast<Index>(i);
-      place[rest[chosen]] = static_cast<Index>(chosen);
+      index_of[rest[i]] = static_cast<Index>(i);
+      index_of[rest[chosen]] = static_cast<Index>(chosen);
     }
     sequence = rest;
   }
@@ -228,7 +228,7 @@ class OrderCoder {
   }
 
   struct Candidate {
-    Index facet, reference, place;
+    Index facet, reference, edge;
     Habit habit;
   };
 
@@ -236,31 +236,31 @@ class OrderCoder {
   void collect_candidates(Left& left, IndexRange facets) {
     candidates_.clear();
     if (last_ == kNone) return;
-    const auto add = [&](Index facet, Index reference, Index place, Habit habit) {
+    const auto add = [&](Index facet, Index reference, Index edge, Habit habit) {
       if (facet == kNone || !left.has(facet)) return;
       for (const Candidate& known : candidates_) {
         if (known.facet == facet) return;
       }
-      candidates_.push_back({facet, reference, place, habit});
+      candidates_.push_back({facet, reference, edge, habit});
     };
-    const auto across = [&](Index reference, Index place) {
+    const auto across = [&](Index reference, Index edge) {
       const Index ring = solid_.rings_of(reference).begin;
       const auto size = static_cast<Index>(solid_.ring(ring).size());
-      return across_[solid_.arrays().ring_offsets[ring] + (order_.ring_start[ring] + place) % size];
+      return across_[solid_.arrays().ring_offsets[ring] + (order_.ring_start[ring] + edge) % size];
     };
     const auto ring_size = [&](Index facet) {
       return static_cast<Index>(solid_.ring(solid_.rings_of(facet).begin).size());
     };
     if (reference_ != kNone) {
       const Index size = ring_size(reference_);
-      const Index next = (place_ + 1) % size;
-      const Index previous = (place_ + size - 1) % size;
+      const Index next = (reference_edge_ + 1) % size;
+      const Index previous = (reference_edge_ + size - 1) % size;
       add(across(reference_, next), reference_, next, kNextEdge);
       add(across(reference_, previous), reference_, previous, kLastEdge);
     }
     const Index most = std::min(ring_size(last_), kMostNeighbours);
-    for (Index place = 0; place < most; ++place) {
-      add(across(last_, place), last_, place, kNeighbour);
+    for (Index edge = 0; edge < most; ++edge) {
+      add(across(last_, edge), last_, edge, kNeighbour);
     }
     const Index successor = left.from(last_);
     if (successor < facets.end) add(successor, kNone, 0, kSuccessor);
@@ -287,7 +287,7 @@ class OrderCoder {
       // The neighbours of the old reference were asked about first: the reference changes only if
       // none of them is next.
       reference_ = candidate.reference;
-      place_ = candidate.place;
+      reference_edge_ = candidate.edge;
       return candidate.facet;
     }
     habits_ = {HabitContext(kNoHabit), habits_[0]};
@@ -334,9 +334,9 @@ class OrderCoder {
   }
 
   Index any_facet(Left& left, IndexRange facets, Index wanted) {
-    const std::uint64_t place = stream_.code_uniform(wanted - facets.begin, facets.size());
+    const std::uint64_t index = stream_.code_uniform(wanted - facets.begin, facets.size());
     const Index facet =
-        facets.begin + static_cast<Index>(std::min<std::uint64_t>(place, facets.size() - 1));
+        facets.begin + static_cast<Index>(std::min<std::uint64_t>(index, facets.size() - 1));
     if (left.has(facet)) return facet;
     stream_.fail();
     return left.from(facets.begin);
@@ -359,8 +359,8 @@ class OrderCoder {
   }
 
   /// A class of the facets across the edges after and before a corner. Each counts 1 if it is the
-  /// facet of the ring that was placed last, 2 if another placed one, else 0 (so do none and the
-  /// facet at hand).
+  /// facet of the ring that was coded last, else 2 if a ring of it was coded, else 0. It also
+  /// counts 0 if there is no such facet, or if it is the facet whose ring is being coded.
   Relation relation(Index across_this, Index across_last) const {
     const auto of = [this](Index facet) {
       if (facet == kNone || facet == last_) return Context<3>(0U);
@@ -382,11 +382,11 @@ class OrderCoder {
       low = std::min(low, solid_.vertices()[vertex].z);
     }
     const Facing facing(facing_[facet]);
-    Index place = 0;
-    for (; place + 1 < size; ++place) {
-      const Index before = vertices[(place + size - 1) % size];
-      const Index here = vertices[place];
-      const Index after = vertices[(place + 1) % size];
+    Index corner = 0;
+    for (; corner + 1 < size; ++corner) {
+      const Index before = vertices[(corner + size - 1) % size];
+      const Index here = vertices[corner];
+      const Index after = vertices[(corner + 1) % size];
       const Point& p = solid_.vertices()[here];
       const Point& q = solid_.vertices()[after];
       const auto seen =
@@ -396,9 +396,9 @@ class OrderCoder {
           combine(Context<2>(bool{is_seen_[here]}), Context<2>(bool{is_seen_[after]}));
       const Context<2> is_oldest(oldest != kNone && number_[here] == oldest);
       const Relation related =
-          relation(across_[solid_.arrays().ring_offsets[ring] + place],
-                   across_[solid_.arrays().ring_offsets[ring] + (place + size - 1) % size]);
-      const Context<2> first(place == 0);
+          relation(across_[solid_.arrays().ring_offsets[ring] + corner],
+                   across_[solid_.arrays().ring_offsets[ring] + (corner + size - 1) % size]);
+      const Context<2> first(corner == 0);
       const Context<2> is_low(p.z <= low);
       const auto rise = sign_of(p.z, q.z);
       const auto fall = sign_of(solid_.vertices()[before].z, p.z);
@@ -407,11 +407,11 @@ class OrderCoder {
           stream_, facing,
           {combine(seen, is_oldest, facing, related),
            combine(first, is_low, rise, facing, is_oldest), combine(turn, facing),
-           combine(last_relation_, related, seen), combine(capped<16>(place), capped<16>(size)),
+           combine(last_relation_, related, seen), combine(capped<16>(corner), capped<16>(size)),
            combine(first, is_low, rise, fall, seen_from_here)},
-          place == start);
+          corner == start);
       if (stream_.failed()) {
-        place = 0;
+        corner = 0;
         break;
       }
       if (is_it) {
@@ -419,7 +419,7 @@ class OrderCoder {
         break;
       }
     }
-    start = place;
+    start = corner;
   }
 
   void see(Index ring) {
@@ -444,7 +444,7 @@ class OrderCoder {
         first_use_.push_back(vertex);
       }
     }
-    std::vector<Index> sequence(solid_.vertex_count());  // source vertex -> place in first_use_
+    std::vector<Index> sequence(solid_.vertex_count());  // source vertex -> index in first_use_
     for (Index vertex = 0; vertex < solid_.vertex_count(); ++vertex) {
       if (!stream_.is_reading()) sequence[order_.vertex[vertex]] = number_[vertex];
     }
@@ -466,14 +466,14 @@ class OrderCoder {
   std::vector<double> size_;
   std::vector<bool> is_seen_;  // vertices of rings so far
   std::vector<bool> is_placed_ = std::vector<bool>(solid_.facet_count(), false);
-  std::vector<Index> number_;  // vertex -> place in first_use_
+  std::vector<Index> number_;  // vertex -> index in first_use_
   std::vector<Index> first_use_;
   std::vector<Candidate> candidates_;
   std::vector<Index> scanned_;
   Index last_ = kNone;
   Index before_last_ = kNone;
   Index reference_ = kNone;
-  Index place_ = 0;  // of the reference's edge, from its ring start
+  Index reference_edge_ = 0;  // counted from the ring start of the reference
   std::array<HabitContext, 2> habits_{HabitContext(kNoHabit), HabitContext(kNoHabit)};
   Relation last_relation_{0U};
 };

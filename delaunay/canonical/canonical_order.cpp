@@ -26,7 +26,8 @@ geometry::Tetrahedron canonical_tetrahedron(geometry::Tetrahedron t) {
 
 ListedFace face_opposite(const geometry::Tetrahedron& tetrahedron, std::size_t corner,
                          Index beyond) {
-  // A cycle of four is an odd permutation: the apex is on the positive side for odd corners.
+  // A cyclic permutation of four corners is odd. So the corner opposite to the face (a, b, c) is on
+  // the positive side of the face if `corner` is odd, and on the negative side if it is even.
   Index a = tetrahedron[(corner + 1) % 4];
   Index b = tetrahedron[(corner + 2) % 4];
   Index c = tetrahedron[(corner + 3) % 4];

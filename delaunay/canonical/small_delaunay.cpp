@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A tetrahedralization of the sphere: beside the tetrahedra it has a cell per face of the hull,
-// whose last vertex is the infinite one. Cells are oriented: a finite cell positively, an infinite
-// one such that a point beyond its face would take the infinite vertex's place positively.
+// A tetrahedralization of the sphere: beside the tetrahedra it has an infinite cell for each face
+// of the hull, whose last vertex is the infinite one. A finite cell is positively oriented. An
+// infinite cell would be so if a point beyond its face replaced the infinite vertex.
 //
 // Coplanar points need no rule of their own. A point in the plane of a hull face is in conflict
 // with the infinite cell there exactly if it is with the finite cell behind the face: both depend
@@ -108,7 +108,8 @@ class SmallDelaunay {
   std::vector<Index> cavity_;
   /// Sides of the cavity's cells towards cells outside it; then of the new cells.
   std::vector<Side> rim_;
-  std::vector<Index> labels_;  // of vertices, while a rim is linked; else kNone
+  /// vertex -> its row in the table of link_small_rim(); kNone outside that function.
+  std::vector<Index> labels_;
 };
 
 void SmallDelaunay::start(const geometry::Tetrahedron& corners) {

@@ -22,7 +22,7 @@ class DistinctValues {
 
  private:
   Json::array_t values_;
-  std::unordered_map<std::string, std::size_t> position_;  // by text
+  std::unordered_map<std::string, std::size_t> position_;  // text -> index in values_
 };
 
 /// Collects what geometries refer to and renumbers the references.

@@ -140,7 +140,8 @@ class Canonicalizer {
     return Error{ErrorCode::malformed, "skeleton and solids do not fit: " + std::move(message)};
   }
 
-  /// Canonical vertices of the solids in the order of the solids, each once; then the others.
+  /// Numbers the vertices of the document: first the vertices of the solids, solid by solid and
+  /// each solid in its canonical order, each vertex once; then all others.
   Status number_vertices() {
     const Json* vertices = find_member(model_.root, "vertices");
     const Json* count = vertices == nullptr ? nullptr : find_member(*vertices, "count");

@@ -29,7 +29,7 @@ namespace watertight::formats {
 struct GeometryRef {
   std::uint32_t object = 0;    // position of the city object in the document
   std::uint32_t geometry = 0;  // position in the object's geometry array
-  std::size_t boundary = 0;    // into CityModel
+  std::size_t boundary = 0;    // index into CityModel::boundary_begin
   std::string type;
   std::string lod;
 
@@ -43,19 +43,19 @@ struct GeometryRef {
 struct InstanceRef {
   std::uint32_t object = 0;    // position of the city object in the document
   std::uint32_t geometry = 0;  // position in the object's geometry array
-  std::size_t boundary = 0;    // into CityModel: the vertex it stands on
+  std::size_t boundary = 0;    // index into CityModel::boundary_begin: its vertex
   std::uint64_t template_number = 0;
   std::array<GridNumber, 16> matrix{};  // row by row
 };
 
 /// The references within a city model.
 struct ModelIndex {
-  std::vector<std::string> ids;        // of the city objects, in document order
+  std::vector<std::string> ids;        // the ids of the city objects, in document order
   std::vector<std::uint32_t> root_of;  // object -> its top-level object
   /// Object -> the Building that it is or is a part of, by number; kNone for others and templates.
   std::vector<std::uint32_t> building_of;
-  std::vector<GeometryRef> geometries;  // by object, then geometry
-  std::vector<InstanceRef> instances;   // likewise; they are among the geometries too
+  std::vector<GeometryRef> geometries;  // sorted by object, then by geometry
+  std::vector<InstanceRef> instances;   // sorted likewise; they are in `geometries` too
   std::vector<std::string> notes;
   bool are_templates = false;  // the "objects" are geometry templates without ids, one each
 };
@@ -130,9 +130,10 @@ Status for_each_address_vertex(Json& object, Visit visit) {
 void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
                      const std::function<std::uint64_t(Index)>& vertex_of);
 
-/// Appends "[first,length,first,length]".
+/// Appends "[first,length,first,length]": each pair stands for `length` indices from `first` on.
 void append_vertex_runs(std::string& out, std::span<const Index> vertices);
-/// The inverse, for a solid of `solid_vertex_count` vertices of a document of `vertex_count`.
+/// The inverse of append_vertex_runs(), for a solid that has `solid_vertex_count` vertices in a
+/// document that has `vertex_count`.
 /// Errors: malformed.
 Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex_count,
                                             std::size_t solid_vertex_count);

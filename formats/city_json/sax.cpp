@@ -27,9 +27,9 @@ enum class Capture : std::uint8_t { none, vertices, boundaries };
 struct Frame {
   bool is_array = false;
   Role role = Role::other;
-  std::vector<std::string> keys;  // of complete members; empty for arrays
+  std::vector<std::string> keys;  // the keys of the members that are complete; empty for arrays
   std::vector<Json> values;
-  std::string key;  // of the member that comes next
+  std::string key;  // the key of the member that comes next
 };
 
 // The parser's messages quote the input: keep them short and printable.

@@ -262,7 +262,7 @@ Status shift_addresses(Json& object, std::uint64_t offset) {
   });
 }
 
-// One CityJSON of many features.
+// Merges many features into one CityJSON document.
 class Merger {
  public:
   explicit Merger(const Json& header) : header_(header) {
@@ -343,6 +343,8 @@ Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex
   for (std::size_t i = 0; i < runs.size(); i += 2) {
     const auto first = unsigned_of(&runs[i]);
     const auto length = unsigned_of(&runs[i + 1]);
+    // A run must end within the document's vertices, and all runs together must not have more
+    // vertices than the solid: hostile runs cannot make the list long. No sum can overflow here.
     if (!first || !length || *first > vertex_count || *length > vertex_count - *first ||
         *length > solid_vertex_count - vertices.size()) {
       return unfit("vertex runs");
@@ -360,6 +362,7 @@ Result<std::string> write_city_json_feature(const CityHeader& header, const Feat
     return print_whole(*open);
   };
   if (feature.layout.empty()) return plain();
+  // The text of a document that was read is at most as long as the readers' limit.
   if (holds_whole_text(feature.layout)) return apply_layout({}, feature.layout, Limits{}.bytes);
   const auto text = plain();
   if (!text) return text;

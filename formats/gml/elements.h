@@ -12,7 +12,7 @@ namespace watertight::formats {
 
 inline constexpr std::string_view kXlinkSpace = "http://www.w3.org/1999/xlink";
 
-/// GML 3.1.1 (also GML 2) and GML 3.2.
+/// True for the XML namespace of GML 3.1.1, which GML 2 has too, and for that of GML 3.2.
 bool is_gml_space(std::string_view space);
 
 /// The kind of a geometry element of GML; nothing for an element that is no geometry.
@@ -21,16 +21,16 @@ std::optional<GmlKind> geometry_kind(std::string_view name);
 /// The role of a property of a geometry of `kind`; nothing when it has no such property.
 std::optional<GmlRole> role_of(GmlKind kind, std::string_view property);
 
-/// Properties of a geometry that say nothing about its shape as a solid's boundary.
+/// True for the properties of a geometry that say nothing about its shape as a solid's boundary.
 bool is_remark(std::string_view property);
 
-/// Objects that only hold top-level objects: CityModel, FeatureCollection, ...
+/// True for the objects that only hold top-level objects: CityModel, FeatureCollection, ...
 bool is_container(std::string_view name);
 
-/// A property of an object whose reference is a geometry of that object.
+/// True for the properties of an object that may refer to a geometry of that object.
 bool is_geometry_property(std::string_view name);
 
-/// 'n' of a property named "lodn...", '\0' without.
+/// Returns the character n of a property that is named "lodn...", and '\0' for other properties.
 char lod_of(std::string_view property);
 
 }  // namespace watertight::formats

@@ -123,7 +123,7 @@ class GmlBuilder : public XmlHandler {
     Index node = kNone;      // geometry: itself; property, numbers, ring_point: the geometry's
     Index implicit = kNone;  // GmlModel::implicits, in an implicit geometry
     Index system = kNone;
-    Index object_frame = kNone;  // in frames_, of the object that this belongs to
+    Index object_frame = kNone;  // index into frames_: the object of this element
   };
 
   struct OpenObject {
@@ -457,7 +457,7 @@ class GmlBuilder : public XmlHandler {
   // "1,5;2,5;3 4;5;6" with decimal "," and cs ";" becomes "1.5 2.5 3 4 5 6".
   void end_coordinates(Index node) {
     std::size_t count = 0;       // numbers of this position
-    std::size_t separators = 0;  // of this position
+    std::size_t separators = 0;  // separators of this position
     bool is_in_number = false;
     const auto end_position = [&] {
       if (count + separators > 0 && (count != 3 || separators != 2)) {
@@ -493,8 +493,8 @@ class GmlBuilder : public XmlHandler {
     XmlPlace place;
   };
   Root root_;
-  bool is_of_ogc_ = false;     // some element that was not passed over
-  std::uint64_t skipped_ = 0;  // open elements of a part that is passed over
+  bool is_of_ogc_ = false;     // an element that was not skipped is of OGC or has a gml:id
+  std::uint64_t skipped_ = 0;  // open elements of the part that is skipped
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ struct GmlLink {
   GmlRole role = GmlRole::member;
   Index node = kNone;  // kNone: `reference` holds the href, or the property is empty
   TextSpan reference;
-  Index next = kNone;  // of the same element
+  Index next = kNone;  // the next property of the same element
   XmlPlace place;
 };
 

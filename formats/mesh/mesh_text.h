@@ -23,7 +23,7 @@ Result<Document> read_stl(ByteView bytes, const Limits& limits);
 bool is_binary_stl(ByteView bytes);
 Result<Document> read_ply(ByteView bytes, const Limits& limits);
 Result<Document> read_poly(std::string_view text, const Limits& limits);
-/// One geometry after the other; each is a feature.
+/// Reads a text of geometries, one after the other. Each geometry becomes a feature.
 Result<Document> read_wkt_document(std::string_view text, const Limits& limits);
 Result<Document> read_ewkb_document(ByteView bytes, const Limits& limits);
 

@@ -44,7 +44,7 @@ class OffReader : private OneShellText {
   }
 
   Status counts() {
-    std::size_t first = 1;  // word of the line
+    std::size_t first = 1;  // index of the first count among the words of the line
     if (first < lines_.words().size() && lines_.words()[first] == "BINARY") {
       return Error{ErrorCode::unsupported, "binary OFF is not read", lines_.line().offset, {}};
     }
@@ -61,7 +61,8 @@ class OffReader : private OneShellText {
     return Done{};
   }
 
-  // The number of corners, their vertices, and perhaps a colour.
+  // Reads a facet: the number of its vertices, then their indices. A colour may follow, which is
+  // not read.
   Status facet() {
     const auto corners = unsigned_word(lines_.words()[0]);
     if (!corners || *corners > lines_.words().size() - 1) {

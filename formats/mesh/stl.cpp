@@ -126,6 +126,7 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
+// Reads the text form of STL:
 // solid NAME { facet normal X Y Z outer loop { vertex X Y Z } endloop endfacet } endsolid NAME
 class TextStlReader {
  public:
@@ -141,7 +142,7 @@ class TextStlReader {
       if (auto status = solid(); !status) return status.error();
     }
     if (document_.features.empty()) {
-      // One empty solid, so that there is something to report about.
+      // The document gets one empty solid, so that there is a feature to report about.
       document_.notes.push_back("the file has no triangles");
       if (auto status = add_feature({}); !status) return status.error();
     } else if (left_out_ > 0) {

@@ -4,10 +4,11 @@
 // space, spellings of numbers and escapes of strings. With it the very bytes of a document come
 // back. Internal to formats/.
 //
-// Both texts have the same tokens in the same order. The text before each token is predicted from
-// that at the last such place (the tokens before and after, the depth), the spelling of a token
-// from the last one that was unlike ours; a layout holds the exceptions only. So it takes a few
-// bytes for a text in any regular style, and is still exact for a text in none.
+// Both texts have the same tokens in the same order. The white space before a token is predicted to
+// be the same as before the last token at the same depth between the same kinds of neighbours. The
+// spelling of a token is predicted from the last token that was spelled in another way than ours. A
+// layout holds only the exceptions from the predictions. So it takes a few bytes if the text has a
+// regular style, and it is exact for every text.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +24,16 @@ namespace watertight::formats {
 /// the same tokens it holds all of `text`. Cost: linear.
 Bytes describe_layout(std::string_view plain, std::string_view text);
 
-/// The text that describe_layout(plain, text) was made of. Errors: malformed when the result is
-/// another text, limit_exceeded beyond `most_bytes`.
+/// The text that was given to describe_layout(plain, text), if `layout` is what that returned.
+/// Errors: malformed if the layout does not fit `plain`, or if the result does not have the size
+/// and hash of that text; limit_exceeded if it is longer than `most_bytes`.
 Result<std::string> apply_layout(std::string_view plain, ByteView layout, std::uint64_t most_bytes);
 
-/// True if the layout needs no plain text.
+/// True if the layout holds the whole text, so that apply_layout() does not read `plain`.
 bool holds_whole_text(ByteView layout);
 
-/// A sequence of texts most of which are as expected: pairs of the number of expected ones and one
-/// that is not.
+/// Writes a sequence of texts, most of which the reader expects. The bytes hold pairs: the number
+/// of expected texts, then the one text after them that is not expected.
 class ExceptionWriter {
  public:
   void expected() { ++run_; }
@@ -43,12 +45,13 @@ class ExceptionWriter {
   std::uint64_t run_ = 0;
 };
 
+/// Reads what ExceptionWriter wrote.
 class ExceptionReader {
  public:
   explicit ExceptionReader(ByteView bytes) : reader_(bytes) { start_run(); }
   /// False when the next text is as expected; else `text`, which views the bytes, becomes it.
   bool next(std::string_view& text);
-  /// All was read, and rightly.
+  /// True if all bytes were read and none was malformed.
   bool is_finished() const { return is_last_run_ && !reader_.failed(); }
 
  private:
@@ -58,10 +61,11 @@ class ExceptionReader {
   bool is_last_run_ = false;
 };
 
-/// The bytes before, between and after the lines of a sequence; expected: a line feed after each.
+/// Writes the bytes before, between and after the lines of a text. The reader expects one line feed
+/// after each line.
 class FramingWriter {
  public:
-  /// The gap before the next line, or after the last when `is_last`.
+  /// Writes the gap before the next line, or the gap after the last line if `is_last`.
   void gap(std::string_view text, bool is_last);
   Bytes finish() && { return std::move(gaps_).finish(); }
 

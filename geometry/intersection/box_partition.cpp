@@ -111,7 +111,7 @@ void Search::measure_boxes() {
       member.triangle = static_cast<Index>(i);
       for (int axis = 0; axis < 3; ++axis) {
         const auto at = static_cast<std::size_t>(axis);
-        // Monotone, so boxes that overlap still do.
+        // This is monotone in the coordinate, so boxes that overlap before overlap afterwards.
         member.low[at] = rounded_down((0.5 * box.min[axis] - 0.5 * all.min[axis]) * scale);
         member.high[at] = rounded_up((0.5 * box.max[axis] - 0.5 * all.min[axis]) * scale);
       }

@@ -73,7 +73,9 @@ struct DirectionBounds {
   Vector3 low{1, 1, 1};
   Vector3 high{-1, -1, -1};
 
-  /// False if the directions can be any.
+  /// Extends the bounds to all directions between the unit vectors `corners`. False if the
+  /// directions may be any: if there are fewer than two corners, or if three corners may surround
+  /// the apex.
   bool include(std::span<const Vector3> corners);
 
  private:
@@ -87,8 +89,9 @@ double squared_distance(const Vector3& a, const Vector3& b) {
 }
 
 bool DirectionBounds::include(std::span<const Vector3> corners) {
-  // Three directions whose triangle is close to the apex have two that are 120 degrees apart: with
-  // q = sum of l_i v_i, |q|^2 = 1 - sum over i < j of l_i l_j |v_i - v_j|^2 >= 1 - largest / 3.
+  // If the triangle of three directions is close to the apex, the angle between two of them is
+  // about 120 degrees or more: for a point q = sum of l_i v_i of the triangle, where the l_i add up
+  // to 1, |q|^2 = 1 - sum over i < j of l_i l_j |v_i - v_j|^2 >= 1 - largest / 3.
   constexpr double kAround = 2.999;
   for (std::size_t i = 1; i < corners.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

@@ -121,8 +121,9 @@ void PairSearch::resolve_along_axes(const Stalled& stalled) {
   divide_directions(boxes(stalled.first), boxes(stalled.second), stalled);
 }
 
-/// Compares the pairs of the members. Parts that remain large, but not as large as the whole, are
-/// compared again along axes of their own.
+/// Divides the members by direction and compares the pairs of each part. A part that still has many
+/// pairs, but at most half of those of the whole, is put off: it is divided later along axes of its
+/// own.
 void PairSearch::divide_directions(const std::vector<BoxMember<6>>& first,
                                    const std::vector<BoxMember<6>>& second,
                                    const Stalled& stalled) {

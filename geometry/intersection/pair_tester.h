@@ -64,7 +64,9 @@ class PairTester {
   /// The contact of a and b; one class that is no intersection stands for all that are none.
   ContactClass contact(const PlaneTriangle& a, const PlaneTriangle& b) const {
     std::size_t common = 0;
-    std::size_t in_a = 0;  // a common vertex; with three of them, the sums do not matter
+    // The sums of the indices of the common vertices in a and in b. Not used if all three are
+    // common.
+    std::size_t in_a = 0;
     std::size_t in_b = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) {
@@ -80,7 +82,8 @@ class PairTester {
       case 1:
         return with_common_vertex(a, in_a, b, in_b);
       case 2:
-        // The numbers of the corners sum to 3.
+        // The three indices of the corners of a triangle add up to 3: the third corner has the
+        // rest.
         return with_common_edge(a, 3 - in_a, b, 3 - in_b);
       default:
         return ContactClass::duplicate;

@@ -97,7 +97,8 @@ class SlabDivider {
                      : counts_.first[slab] == 0 || counts_.second[slab] == 0;
   }
 
-  /// Writes each member into every slab it reaches: `place(slab)` is where the next one goes.
+  /// Writes each member into every slab that it reaches. `place(slab)` returns a pointer to which
+  /// the next member of the slab is written.
   template <class Place>
   void distribute(std::span<const BoxMember<D>> members, Place place) const {
     for (const BoxMember<D>& member : members) {
@@ -140,7 +141,8 @@ class SlabDivider {
     for (float& extent : extent_) extent /= count;
   }
 
-  /// Slabs of one thickness, some boxes thick.
+  /// Places planes at equal distances, so that each slab is a few mean box lengths thick. False if
+  /// such slabs divide nothing.
   bool place_even_planes(std::size_t axis, const PartBounds<D>& bounds,
                          const PartMembers<D>& members) {
     constexpr float kExtentsPerSlab = 4;
@@ -158,8 +160,8 @@ class SlabDivider {
     return are_inside(bounds);
   }
 
-  /// Slabs between which the ends of boxes are evenly distributed: for boxes of very different
-  /// lengths or distances.
+  /// Places planes so that each slab has about the same number of ends of boxes: for boxes of very
+  /// different lengths or distances. False if such slabs divide nothing.
   bool place_planes_at_ends(std::size_t axis, const PartBounds<D>& bounds,
                             const PartMembers<D>& members) {
     constexpr std::size_t kSamples = 256;
@@ -184,7 +186,8 @@ class SlabDivider {
     return are_inside(bounds);
   }
 
-  /// Slabs whose planes lie on the part's own border divide nothing.
+  /// True if the first and the last plane between slabs lie inside the part. A plane on the border
+  /// of the part divides nothing.
   bool are_inside(const PartBounds<D>& bounds) const {
     return slabs_.planes[1] > bounds.low[slabs_.axis] &&
            slabs_.planes[slabs_.count - 1] < bounds.high[slabs_.axis];
@@ -220,9 +223,9 @@ class SlabDivider {
     tally(members.second, counts_.second);
   }
 
-  std::array<float, D> first_{};  // least and largest middle of a box
-  std::array<float, D> last_{};
-  std::array<float, D> extent_{};  // mean length of a box
+  std::array<float, D> first_{};   // the least middle of a box on each axis
+  std::array<float, D> last_{};    // the largest middle of a box on each axis
+  std::array<float, D> extent_{};  // the mean length of the boxes on each axis
   std::vector<float> ends_;
   Slabs slabs_;
   SlabCounts counts_;
@@ -257,8 +260,9 @@ class SlabPartition {
  private:
   struct Part {
     PartBounds<D> bounds;
-    std::size_t begin = 0;   // of its first members, which end at `middle`
-    std::size_t middle = 0;  // of its second members
+    /// The first members have the indices from `begin` to `middle`, the second those up to `end`.
+    std::size_t begin = 0;
+    std::size_t middle = 0;
     std::size_t end = 0;
   };
 
@@ -303,9 +307,10 @@ class SlabPartition {
   Visit visit_;
   bool is_within_ = true;
   SlabDivider<D> divider_;
-  std::vector<BoxMember<D>> members_;  // of all parts on the stack, each after those below it
-  std::vector<BoxMember<D>> divided_;
-  std::vector<Part> parts_;
+  /// The members of all parts in `parts_`, part by part, from the bottom of the stack to the top.
+  std::vector<BoxMember<D>> members_;
+  std::vector<BoxMember<D>> divided_;  // the members of the part that is being divided
+  std::vector<Part> parts_;            // a stack of the parts that are still to be compared
 };
 
 }  // namespace watertight::geometry

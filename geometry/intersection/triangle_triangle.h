@@ -27,7 +27,7 @@ enum class ContactClass : std::uint8_t {
   edge_face,         // touching: an edge, or a part, lies inside the other triangle
   crossing,          // the insides cross along a segment
   coplanar_overlap,  // the insides share an area
-  duplicate          // the same three points
+  duplicate          // both triangles have the same three points
 };
 
 /// The class as lower-case words, e.g. "vertex-edge".

@@ -40,7 +40,7 @@ std::optional<GridNumber> normalized(WideNumber number, std::int32_t radix);
 /// Where a grid starts in the world.
 struct GridOrigin {
   GridNumber number;
-  bool is_rounded = false;  // to 18 digits, because the exact number has more
+  bool is_rounded = false;  // rounded to 18 digits: the exact number has more
 };
 
 /// scale * integer + translate, of decimals; with more digits than a grid number has, the nearest

@@ -114,7 +114,8 @@ struct WorldGrid {
   std::int64_t exponent = 0;
   BigInteger origin;  // times 10^exponent
 
-  /// value * 10^from on the grid, rounded to the nearest; only for values finer than the grid.
+  /// The coordinate on the grid of value * 10^from. It is rounded to the nearest if the value is
+  /// finer than the grid.
   double coordinate(const BigInteger& value, std::int64_t from) const {
     if (from >= exponent) {
       return BigInteger(big_mantissa_at({value, from}, exponent) - origin).get_d();

@@ -38,7 +38,7 @@ class SharedGrid {
   const Lattice& lattice() const { return lattice_; }
   /// From a template's coordinates to the world; null if the grid is in the world.
   const Placement* placement() const { return placement_; }
-  /// A point of the grid in the world, rounded.
+  /// The world coordinates of a point of the grid, rounded to doubles.
   std::array<double, 3> world(const Point& p) const;
 
   std::size_t size() const { return solids_.size(); }

@@ -48,22 +48,22 @@ class RingWalk {
     }
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     std::vector<bool> is_on_stack(sorted.size(), false);
-    const auto place_of = [&](Index vertex) {
+    const auto index_of = [&](Index vertex) {
       return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), vertex) -
                                       sorted.begin());
     };
     std::vector<Index> stack;
     for (const Index vertex : boundary) {
-      if (is_on_stack[place_of(vertex)]) {
+      if (is_on_stack[index_of(vertex)]) {
         auto begin = stack.end() - 1;
         while (*begin != vertex) --begin;
         for (auto above = begin; above != stack.end(); ++above) {
-          is_on_stack[place_of(*above)] = false;
+          is_on_stack[index_of(*above)] = false;
         }
         add(triangle, {begin, stack.end()});
         stack.erase(begin, stack.end());
       }
-      is_on_stack[place_of(vertex)] = true;
+      is_on_stack[index_of(vertex)] = true;
       stack.push_back(vertex);
     }
     add(triangle, std::move(stack));

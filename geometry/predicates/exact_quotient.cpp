@@ -10,7 +10,8 @@ double nearest_quotient(mpz_class numerator, const mpz_class& denominator, std::
   if (numerator == 0) return 0.0;
   const bool is_negative = numerator < 0;
   if (is_negative) numerator = -numerator;
-  // Shift so that the quotient has 65 bits or 66, then keep what a double takes and a sticky bit.
+  // The numerator or the divisor is shifted so that the quotient has 65 or 66 bits. A
+  // double takes the first of these; one more bit says whether anything but zeros follows.
   const auto bits = [](const mpz_class& n) {
     return static_cast<std::int64_t>(mpz_sizeinbase(n.get_mpz_t(), 2));
   };

@@ -79,7 +79,7 @@ std::uint64_t triangle_points(int exponent) {
 
 TrianglePoint triangle_point(const std::array<Point, 3>& corners, int exponent,
                              std::uint64_t number) {
-  // number + number^2 <= 2^exponent - 2^(exponent / 2): the third weight is positive.
+  // The third weight is positive, because number + number^2 <= 2^exponent - 2^(exponent / 2).
   const std::uint64_t whole = std::uint64_t{1} << static_cast<unsigned>(exponent);
   const std::uint64_t square = number * number;
   return {corners, {number, square, whole - number - square}, exponent};
@@ -114,7 +114,9 @@ int locate_exactly(const TrianglePoint& point, std::span<const Point> vertices,
     if (above == 0 && is_in_triangle(a, b, c, p)) return 0;
     const int side = moved_turn(a, b, p);
     if (side == 0 || moved_turn(b, c, p) != side || moved_turn(c, a, p) != side) continue;
-    // Positive heights are above a triangle that turns left in plan.
+    // The point is above a triangle that turns left in plan (side > 0) if its height is positive,
+    // and above one that turns right if its height is negative. Triangles above the point are
+    // counted.
     if (above * side < 0) is_inside = !is_inside;
   }
   return is_inside ? 1 : -1;

@@ -12,8 +12,9 @@ namespace watertight::validate {
 
 enum class Location : signed char { outside = -1, boundary = 0, inside = 1 };
 
-/// Parity of the surface above the point: a ray along +z, moved by a symbolic step along x and a
-/// smaller one along y, so that it meets no edge. Requires every edge of the surface to be met an
+/// Locates a point by the parity of the number of triangles that a ray from it meets. The ray runs
+/// along +z and is moved by a symbolic step along x and a smaller one along y, so that it meets no
+/// edge. Requires every edge of the surface to be met an
 /// even number of times. Source: simulation of simplicity, Edelsbrunner & Muecke 1990, with the
 /// point alone perturbed.
 class PointLocator {

@@ -148,7 +148,7 @@ class Comparison {
   const RegionQuestions& questions_;
   const CancelPoll& cancel_;
   std::vector<Point> points_;  // of the listed triangles, three each, the first solid's first
-  std::vector<Box> boxes_;     // of the second's
+  std::vector<Box> boxes_;     // the boxes of the second region's triangles
   std::uint64_t comparisons_ = 0;
   bool first_leaves_ = false;   // the first meets the complement of the second
   bool second_leaves_ = false;  // and the other way round
@@ -240,8 +240,8 @@ void Comparison::find_contacts() {
   }
 }
 
-/// Where the listed triangles of a side lie to the other surface, (4). Those that share an area
-/// with it are not asked for.
+/// Finds by (4) whether a triangle of a side lies inside or outside of the other region. Requires
+/// that the triangle shares no area with the surface of that region.
 class TriangleSides {
  public:
   TriangleSides(const Side& side, const RegionSurface& other) : side_(side), other_(other) {
@@ -264,7 +264,7 @@ class TriangleSides {
     }
   }
 
-  /// Inside or outside.
+  /// Returns `inside` or `outside` for triangle i of the side.
   Location operator()(std::size_t i) {
     const Index triangle = side_.triangles[i];
     for (const Index vertex : side_.surface->triangles()[triangle]) {
@@ -276,7 +276,8 @@ class TriangleSides {
       }
       return location;
     }
-    // Every point off the other boundary decides; corners are cheaper than points inside.
+    // Each point of the triangle that is not on the other boundary decides. A corner is located at
+    // less cost than a point inside the triangle.
     for (const Index vertex : side_.surface->triangles()[triangle]) {
       const auto [place, is_new] = touched_.try_emplace(vertex, Location::boundary);
       if (is_new) place->second = other_.locate(side_.surface->vertices()[vertex]);
@@ -286,7 +287,7 @@ class TriangleSides {
   }
 
  private:
-  /// The number of a corner of a triangle that does not meet the other surface, else kNone.
+  /// The index of a vertex in free_, or kNone if all triangles at it meet the other surface.
   Index number_of(Index vertex) const {
     const auto at = std::lower_bound(free_.begin(), free_.end(), vertex);
     return at == free_.end() || *at != vertex ? kNone : static_cast<Index>(at - free_.begin());
@@ -294,7 +295,8 @@ class TriangleSides {
 
   const Side& side_;
   const RegionSurface& other_;
-  std::vector<Index> free_;  // vertices, ascending
+  /// The corners of the triangles that do not meet the other surface, ascending.
+  std::vector<Index> free_;
   geometry::DisjointSets parts_{0};
   std::vector<Location> known_;
   std::map<Index, Location> touched_;  // corners of triangles that meet the other surface

@@ -73,8 +73,8 @@ struct RegionRelation {
   bool touch_back_to_back = false;  // triangles share an area, turned against each other
   bool touch_side_by_side = false;  // triangles share an area, turned alike
   std::uint64_t looks = 0;          // triangles in the common box and comparisons: the work done
-  Index facet = kNone;              // of the first, that shows the overlap
-  Index other_facet = kNone;        // of the second; kNone when no facet of it is concerned
+  Index facet = kNone;              // a facet of the first that shows the overlap
+  Index other_facet = kNone;        // one of the second; kNone if none shows it
 };
 
 /// Requires that each surface is one closed 2-manifold that does not meet itself, turned outward.

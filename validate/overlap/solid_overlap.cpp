@@ -75,7 +75,8 @@ class SolidComparison {
     return result_.is_cancelled;
   }
 
-  /// Where one exterior shell is inside the other, walls of cavities may show the overlap better.
+  /// If one exterior shell is inside the other, no two facets of these shells show the overlap.
+  /// Then a facet of a cavity and one of the exterior shell of the other solid may show it.
   void name_crossing_facets() {
     for (const RegionSurface& cavity : first_.cavities()) {
       const RegionRelation relation = ask(cavity, second_.exterior(), {});

@@ -38,10 +38,10 @@ class SolidSurface {
 struct SolidRelation {
   bool is_cancelled = false;  // nothing else is known
   bool do_overlap = false;    // the interiors have a point in common
-  bool are_equal = false;     // the same points
+  bool are_equal = false;     // both solids have the same points
   bool share_area = false;    // facets lie on each other back to back; unless do_overlap
-  Index facet = kNone;        // of the first solid, that shows the overlap
-  Index other_facet = kNone;  // of the second; kNone when no facet of it is concerned
+  Index facet = kNone;        // a facet of the first that shows the overlap
+  Index other_facet = kNone;  // one of the second; kNone if none shows it
 };
 
 /// Deterministic. Cost: as relate_regions() for the exterior shells and, where these overlap, for
@@ -60,8 +60,10 @@ struct OverlapExtent {
   std::optional<Point> witness;  // inside both solids, exactly
 };
 
-/// Requires boundaries of solids that overlap. The depth is the largest over the parts of the least
-/// extent along the axes and the normals of the facets that bound the part: measured in doubles.
+/// Measures, in doubles, how far two solids overlap. The depth of one part of the overlap is its
+/// least extent in a direction, among the axes and the normals of the facets that bound the part.
+/// The depth of the overlap is that of its deepest part. Requires boundaries of solids that
+/// overlap.
 OverlapExtent measure_overlap(const RegionSurface& first, const RegionSurface& second,
                               const StepMetres& step_metres);
 

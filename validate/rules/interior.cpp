@@ -48,7 +48,7 @@ struct Sheet {
 /// The parts that a boundary cuts the interior into.
 struct InteriorParts {
   std::size_t count = 0;
-  Index facet = kNone;  // the first around the smallest part
+  Index facet = kNone;  // the first facet of the boundary of the smallest part
 };
 
 class PartCounter {
@@ -98,7 +98,8 @@ class PartCounter {
     return true;
   }
 
-  /// Counter-clockwise, seen against the direction of the edge, from the first sheet on.
+  /// Sorts the triangles at one edge by their angle around it: the first one stays, and the others
+  /// follow counter-clockwise, seen against the direction of the edge.
   void sort_by_angle(std::span<Sheet> sheets) const {
     const Point& low = points_[sheets[0].key[0]];
     const Point& high = points_[sheets[0].key[1]];
@@ -106,7 +107,8 @@ class PartCounter {
     const auto turn = [&](Index a, Index b) {
       return a == b ? 0 : geometry::orient3d(low, high, points_[a], points_[b]);
     };
-    // 0 the first, 1 less than half a turn from it, 2 half a turn, 3 more.
+    // A class of the angle from the first triangle: 0 for none, 1 for less than half a turn, 2 for
+    // half a turn, 3 for more.
     const auto sector = [&](const Sheet& sheet) {
       if (sheet.apex == first) return 0;
       const int side = turn(first, sheet.apex);

@@ -27,7 +27,7 @@ std::string check_facets(ExaminedSolid& examined);
 /// The facts about a shell's topology that check_shells establishes.
 struct ShellTopology {
   bool is_closed = false;    // every edge is met exactly twice
-  bool is_manifold = false;  // edges and vertices
+  bool is_manifold = false;  // every edge and every vertex is as in a 2-manifold
   bool is_oriented = false;  // neighbouring facets turn the same way
   bool is_connected = false;
   bool is_sound() const { return is_closed && is_manifold && is_oriented && is_connected; }
@@ -50,10 +50,10 @@ struct TrianglePair {
 };
 
 struct ShellContacts {
-  std::vector<ShellPair> intersecting;  // facets cross or overlap; sorted
-  std::vector<bool> is_touching;        // per shell: has a point in common with another
+  std::vector<ShellPair> intersecting;  // shells whose facets cross or overlap; sorted
+  std::vector<bool> is_touching;        // shell -> whether it has a point in common with another
   std::string incomplete;               // why the search did not finish; "" when it did
-  std::vector<TrianglePair> found;      // all of each pair of facets with a finding; sorted
+  std::vector<TrianglePair> found;  // all pairs of triangles of the facets with a finding; sorted
 };
 
 /// 306 and 401: facets that intersect. Facets of different shells may touch in points and edges;
@@ -64,7 +64,8 @@ ShellContacts check_intersections(ExaminedSolid& examined, const std::vector<Ind
 /// finding 306 or 401.
 void check_diagonals(ExaminedSolid& examined, const ShellContacts& contacts);
 /// 401 (shells that cross in vertices and edges, nested cavities), 403, 405; warning 806. Returns
-/// why not all shells could be located, "" if they were.
+/// "" if it is known of each shell where it lies to the others, else the reason why it is not
+/// known.
 std::string check_solid(ExaminedSolid& examined, const std::vector<ShellTopology>& shells,
                         const std::vector<Index>& duplicate_of, const ShellContacts& contacts);
 /// 404, and warning 804 where another diagonal makes or undoes it. Requires sound shells that

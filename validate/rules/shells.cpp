@@ -319,7 +319,7 @@ void ShellExaminer::check_components() {
 }
 
 void ShellExaminer::check_orientation() {
-  // Neighbours over each facet, in edge order.
+  // Two facets that are neighbours at an edge. The links are in the order of edges.
   struct Link {
     Index from, to;
     bool is_conflict;

@@ -103,8 +103,8 @@ void SolidExaminer::skip(std::vector<int> codes, const std::string& reason) {
   examined_.findings.skip(std::move(codes), reason);
 }
 
-/// A shell without volume has another finding, always: a closed 2-manifold that does not meet
-/// itself encloses some.
+/// A closed 2-manifold that does not meet itself encloses a volume. So a shell without volume
+/// always has another finding too.
 void SolidExaminer::report_no_volume(Index shell) {
   examined_.findings.add({.code = kZeroVolume,
                           .place = examined_.at_shell(shell),

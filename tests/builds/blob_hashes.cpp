@@ -4,14 +4,13 @@
 // alone and in pages, and what the golden files decode to and encode to again.
 #include <cinttypes>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "geometry/canonical_form.h"
 #include "tests/builds/fingerprint.h"
 #include "tests/generated/generated_solids.h"
+#include "tests/files.h"
 #include "tests/generated/golden_blobs.h"
 
 namespace watertight::builds {
@@ -65,18 +64,9 @@ void print_pages(const std::string& name, const std::vector<generated::NamedBoun
   }
 }
 
-Bytes file_of(const std::string& name) {
-  std::ifstream file(std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + name, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// False if the file is missing.
-bool print_golden(const std::string& version, const std::string& name) {
-  const Bytes bytes = file_of(version + "/" + name + ".blob");
-  if (bytes.empty()) {
-    std::fprintf(stderr, "there is no golden %s/%s\n", version.c_str(), name.c_str());
-    return false;
-  }
+void print_golden(const std::string& version, const std::string& name) {
+  const Bytes bytes =
+      test::read_bytes(std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + version + "/" + name + ".blob");
   print(version + " file " + name, bytes);
   const auto decoded = decode(bytes);
   auto boundary =
@@ -84,12 +74,11 @@ bool print_golden(const std::string& version, const std::string& name) {
   const std::string what = boundary ? std::string() : to_string(boundary.error());
   std::printf("%s decoded %s %016" PRIx64 " %s\n", version.c_str(), name.c_str(),
               boundary ? geometry::solid_hash(*boundary) : 0, what.c_str());
-  return true;
 }
 
 }  // namespace
 
-bool print_blob_hashes() {
+void print_blob_hashes() {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const auto solids = generated::all(seed);
     for (const auto& [name, boundary] : solids) {
@@ -101,12 +90,10 @@ bool print_blob_hashes() {
   print("schoenhardt with Steiner vertex",
         codec::encode_boundary(generated::schoenhardt(), {},
                                {.mode = Mode::bitmap, .certificate = &certificate}));
-  bool has_all = true;
   for (const auto& golden : generated::goldens()) {
-    has_all = print_golden("version-1", golden.name) && has_all;
+    print_golden("version-1", golden.name);
     print("version-1 encoded " + golden.name, generated::encode_golden(golden));
   }
-  return has_all;
 }
 
 }  // namespace watertight::builds

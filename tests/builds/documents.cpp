@@ -4,14 +4,13 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "base/checksum.h"
 #include "delaunay/ladder.h"
 #include "formats/document.h"
 #include "pipeline/pipeline.h"
 #include "tests/builds/fingerprint.h"
+#include "tests/files.h"
 #include "validate/report_json.h"
 
 namespace watertight::builds {
@@ -34,13 +33,8 @@ void print_solid(const std::string& name, const Inspection& inspection, const So
   std::printf("\n");
 }
 
-Bytes bytes_of(const char* file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 Result<Document> read(const char* file) {
-  const Bytes bytes = bytes_of(file);
+  const Bytes bytes = test::read_bytes(file);
   const auto format = formats::detect_format(file, bytes);
   return format ? read_document(bytes, *format) : format.error();
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Main function of a fuzzing harness in builds without libFuzzer: runs it once on each named file
-// and on each file below a named folder. A broken promise aborts; no input at all is a failure too.
+// and on each file below a named folder. A broken promise aborts, and so does a file that cannot be
+// read; no input at all is a failure.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
+
+#include "tests/files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
@@ -28,14 +29,11 @@ std::vector<fs::path> files_of(const fs::path& path) {
   return files;
 }
 
-bool replay(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return false;
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+void replay(const fs::path& path) {
+  const watertight::Bytes bytes = watertight::test::read_bytes(path);
   std::printf("%s: %zu bytes\n", path.c_str(), bytes.size());
   std::fflush(stdout);  // the last line names the input that aborted
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  return true;
+  LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
 }
 
 }  // namespace
@@ -44,10 +42,7 @@ int main(int argument_count, char** arguments) {
   std::size_t count = 0;
   for (int i = 1; i < argument_count; ++i) {
     for (const fs::path& path : files_of(arguments[i])) {
-      if (!replay(path)) {
-        std::fprintf(stderr, "cannot read %s\n", path.c_str());
-        return 2;
-      }
+      replay(path);
       ++count;
     }
   }

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "geometry/canonical_form.h"
+
 namespace watertight::generated {
 namespace {
 
@@ -347,6 +349,26 @@ OrientedBoundary random_doubles(Random& random, Index size) {
   Lattice lattice;
   lattice.kind = LatticeKind::float64;
   return boundary_of(terrain(random, size, 0.1), lattice, 4326);
+}
+
+OrientedBoundary saw(Index teeth, Back back) {
+  const bool is_left = back == Back::left;
+  SolidArrays arrays;
+  std::vector<Index> base;
+  double z = 0;
+  for (Index k = 0; k <= 2 * teeth; ++k) {
+    z += 20 + k * k % 7;
+    if (!is_left && (k == 0 || k == 2 * teeth)) continue;
+    base.push_back(add_vertex(arrays, k % 2 == 0 ? 0 : 400, 0, z));
+  }
+  base.push_back(add_vertex(arrays, is_left ? -300 : 700, 0, 0));
+  const Index apex = is_left ? add_vertex(arrays, -500, 300, 0) : add_vertex(arrays, 200, -90, 50);
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    add_facet(arrays, {{base[(i + 1) % base.size()], base[i], apex}});
+  }
+  add_facet(arrays, {base});
+  arrays.end_shell();
+  return geometry::canonical_form(boundary_of(std::move(arrays))).boundary;
 }
 
 OrientedBoundary shuffled(const OrientedBoundary& boundary, Random& random) {

@@ -58,6 +58,14 @@ OrientedBoundary random_terrain(Random& random, Index size);
 /// The same terrain with coordinates that are no integers, on a float64 lattice.
 OrientedBoundary random_doubles(Random& random, Index size);
 
+/// A pyramid on its side, in canonical form. Its base, in the plane y = 0, is a saw: a zigzag
+/// between the columns (0, 0) and (400, 0), closed by one vertex at the back. The columns have
+/// `teeth` + 1 and `teeth` vertices with the back at the left. With the back at the right the first
+/// has two less, the rest is the same: the two solids touch along the zigzag. Requires teeth > 1.
+enum class Back : std::uint8_t { left, right };
+OrientedBoundary saw(Index teeth, Back back);
+constexpr Index kSawTeeth = 258;  // more than 256 vertices in each of the two columns
+
 /// The same solid with vertices, shells, facets and rings shuffled and rings rotated.
 OrientedBoundary shuffled(const OrientedBoundary& boundary, Random& random);
 

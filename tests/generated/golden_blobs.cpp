@@ -151,6 +151,7 @@ std::vector<Golden> goldens() {
   for (const std::uint64_t seed : {17U, 585U}) {
     add_one("varied-" + std::to_string(seed), varied(seed), Mode::walk);
   }
+  add_one("saw", saw(kSawTeeth, Back::left), Mode::polygon);
   // Traced in docs/format.md: with the neutral set of priors they never change.
   const auto add_neutral = [&](const char* name, const OrientedBoundary& boundary, Mode mode) {
     all.push_back({name, boundary, {}, mode});

@@ -307,12 +307,14 @@ std::vector<GoldenPage> golden_pages() {
   const auto any = Mode::automatic;
   std::vector<OrientedBoundary> two{house(0, 5400, 8100), house(6000, 5400, 8100)};
   std::vector<OrientedBoundary> tori{torus(8, 4), torus(5, 3), torus(6, 4)};
+  std::vector<OrientedBoundary> saws{saw(2, Back::right), saw(kSawTeeth, Back::left)};
   return {{"houses-neutral.page", two, {any}, 0},
           {"row.page", row(), {any}},
           {"row-polygon.page", row(), {Mode::polygon}},
           {"row-walk.page", row(), {Mode::walk}},
           {"row-mixed.page", row(), {Mode::polygon, Mode::raw, Mode::walk, Mode::bitmap}},
           {"tori-parallelogram.page", tori, {Mode::parallelogram}},
+          {"saws-walk.page", saws, {Mode::walk}},
           {"grids.wtpf", interleaved(), {any}}};
 }
 

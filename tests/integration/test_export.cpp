@@ -4,8 +4,6 @@
 // solids.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "codec/page_file.h"
@@ -13,20 +11,16 @@
 #include "formats/ewkb.h"
 #include "pipeline/export.h"
 #include "server/routes.h"
+#include "tests/files.h"
 
 namespace watertight {
 namespace {
 
 using test::Database;
 
-Bytes file_bytes(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 /// The sample tile in a collection; solids that need an engine are left out. Returns its text.
 std::string ingest_tile(SolidStore& store) {
-  const Bytes bytes = file_bytes(WATERTIGHT_EXAMPLES "/delft.city.jsonl");
+  const Bytes bytes = test::read_bytes(WATERTIGHT_EXAMPLES "/delft.city.jsonl");
   formats::ReadOptions read;
   read.keep_text = true;
   auto document = formats::read_document(bytes, Format::city_json_seq, read);

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "formats/document.h"
+#include "tests/files.h"
 #include "tests/solids/builders.h"
 #include "tests/solids/defects.h"
 #include "tests/solids/suite.h"
@@ -32,11 +32,6 @@ Report report_of(const Solid& solid, Ask ask) {
   CertifyOptions options;
   if (ask == Ask::boundary) options.proof = Proof::boundary;
   return certify(solid, ask == Ask::engines ? &engines() : nullptr, options).report;
-}
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 std::string text_of(const std::set<int>& codes) {
@@ -75,7 +70,7 @@ void compare_golden(const std::filesystem::path& path, const std::string& text) 
   if (std::getenv("WATERTIGHT_UPDATE_GOLDEN") != nullptr) {
     std::ofstream(path, std::ios::binary) << text;
   }
-  CHECK(text_of(path) == text);
+  CHECK(test::read_text(path) == text);
 }
 
 }  // namespace

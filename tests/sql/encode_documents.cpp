@@ -2,15 +2,14 @@
 //
 // The library's results for the solids of files, as rows for COPY: name, EWKB, blob (\N when the
 // solid is not valid). For a blob (a golden), the solid that it decodes to. run_regress.sh compares
-// them with what the extension makes of the same EWKB. Undecided solids and files that cannot be
-// read are left out.
+// them with what the extension makes of the same EWKB. Undecided solids and files that hold no
+// document are left out.
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "codec/blob.h"
 #include "formats/document.h"
 #include "formats/ewkb.h"
+#include "tests/files.h"
 #include "validate/certify.h"
 
 using namespace watertight;
@@ -63,8 +62,7 @@ int main(int argc, char** argv) {
   delaunay::EngineWorkers workers;
   for (int i = 1; i < argc; ++i) {
     const std::string file = argv[i];
-    std::ifstream stream(file, std::ios::binary);
-    const Bytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    const Bytes bytes = test::read_bytes(file);
     if (const auto decoded = decode(bytes)) {
       print_row(file, decoded->solid, workers);
     } else {

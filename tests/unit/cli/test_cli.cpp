@@ -17,6 +17,7 @@
 
 #include "cli/progress.h"
 #include "pipeline/container.h"
+#include "tests/files.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {
@@ -62,11 +63,7 @@ class Fixture {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder / name, std::ios::binary) << text;
   }
-  std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder / name, std::ios::binary).rdbuf();
-    return text.str();
-  }
+  std::string read(const std::string& name) const { return test::read_text(folder / name); }
   fs::path folder;
 };
 

@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "cli/printable.h"
+#include "tests/files.h"
 
 namespace watertight {
 namespace {
@@ -41,11 +41,7 @@ class Folder {
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(path_ / name, std::ios::binary).rdbuf();
-    return text.str();
-  }
+  std::string read(const std::string& name) const { return test::read_text(path_ / name); }
   bool has(const std::string& name) const { return fs::exists(path_ / name); }
 
  private:

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 
 #include "codec/page_file.h"
 #include "geometry/canonical_form.h"
+#include "tests/files.h"
 #include "tests/generated/golden_blobs.h"
 #include "tests/generated/golden_pages.h"
 
@@ -20,11 +20,6 @@ namespace {
 std::string folder_of_goldens() { return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/version-1/"; }
 
 std::string path_of(const std::string& name) { return folder_of_goldens() + name + ".blob"; }
-
-Bytes file_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 void check_decoded(const generated::Golden& golden, const Bytes& bytes) {
   const auto decoded = decode(bytes);
@@ -63,8 +58,7 @@ void write_file(const std::string& path, ByteView bytes) {
 
 /// The bytes of the worked example: in its fenced lines, the pairs of hex digits before two spaces.
 Bytes example_of(const std::string& document) {
-  std::ifstream file(std::string(WATERTIGHT_TEST_DATA "/../../docs/") + document);
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string text = test::read_text(WATERTIGHT_TEST_DATA "/../../docs/" + document);
   const std::size_t example = text.find("\n## Example");
   if (example == std::string::npos) return {};
   std::istringstream lines(text.substr(std::min(text.find("```\n", example), text.size())));
@@ -84,13 +78,13 @@ Bytes example_of(const std::string& document) {
 }  // namespace
 
 TEST_CASE("the worked example of docs/format.md is a golden box") {
-  CHECK(example_of("format.md") == file_of(path_of("box-neutral")));
+  CHECK(example_of("format.md") == test::read_bytes(path_of("box-neutral")));
 }
 
 TEST_CASE("golden blobs decode to their solids") {
   for (const auto& golden : generated::goldens()) {
     INFO(golden.name);
-    check_decoded(golden, file_of(path_of(golden.name)));
+    check_decoded(golden, test::read_bytes(path_of(golden.name)));
   }
 }
 
@@ -99,7 +93,7 @@ TEST_CASE("encoding a golden solid again gives the golden bytes") {
     INFO(golden.name);
     const auto blob = generated::encode_golden(golden);
     REQUIRE(blob);
-    CHECK(*blob == file_of(path_of(golden.name)));
+    CHECK(*blob == test::read_bytes(path_of(golden.name)));
   }
 }
 
@@ -107,7 +101,7 @@ TEST_CASE("golden pages and page files decode to their solids") {
   for (const auto& golden : generated::golden_pages()) {
     INFO(golden.file);
     const bool is_file = golden.file.ends_with(".wtpf");
-    const auto solids = solids_of(file_of(folder_of_goldens() + golden.file), is_file);
+    const auto solids = solids_of(test::read_bytes(folder_of_goldens() + golden.file), is_file);
     REQUIRE(solids);
     REQUIRE(solids->size() == golden.solids.size());
     for (std::size_t i = 0; i < solids->size(); ++i) {
@@ -121,7 +115,7 @@ TEST_CASE("encoding golden pages again gives the golden bytes") {
     INFO(golden.file);
     const auto page = generated::encode_golden_page(golden);
     REQUIRE(page);
-    CHECK(*page == file_of(folder_of_goldens() + golden.file));
+    CHECK(*page == test::read_bytes(folder_of_goldens() + golden.file));
   }
 }
 
@@ -141,7 +135,7 @@ TEST_CASE("bytes that no encoder writes are refused with the error that the spec
 }
 
 TEST_CASE("the golden table of refused bytes is the one that is tested") {
-  const Bytes table = file_of(folder_of_goldens() + "refused.csv");
+  const Bytes table = test::read_bytes(folder_of_goldens() + "refused.csv");
   CHECK(as_text(table) == generated::refused_csv());
 }
 

@@ -4,8 +4,6 @@
 // boundary that encodes again.
 #include <catch2/catch_test_macros.hpp>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "codec/blob.h"
@@ -15,6 +13,7 @@
 #include "codec/page/modes.h"
 #include "codec/page_file.h"
 #include "geometry/canonical_form.h"
+#include "tests/files.h"
 #include "tests/generated/mutated_blobs.h"
 
 using namespace watertight;
@@ -168,11 +167,10 @@ TEST_CASE("every prefix of every golden blob, page and page file is refused") {
     const std::string kind = entry.path().extension();
     if (kind != ".blob" && kind != ".page" && kind != ".wtpf") continue;
     ++files;
-    std::ifstream stream(entry.path(), std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    REQUIRE(read_any(as_bytes(text), kind));
-    for (std::size_t size = 0; size < text.size(); ++size) {
-      const ByteView prefix = as_bytes(text).first(size);
+    const Bytes bytes = test::read_bytes(entry.path());
+    REQUIRE(read_any(bytes, kind));
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      const ByteView prefix = ByteView(bytes).first(size);
       if (read_any(prefix, kind)) FAIL(entry.path() << " cut off after " << size);
       if (kind != ".wtpf") (void)generated::decode_unchecked(prefix);
     }

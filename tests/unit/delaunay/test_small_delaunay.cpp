@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -15,6 +14,7 @@
 #include "delaunay/canonical/cgal_delaunay.h"
 #include "delaunay/canonical/small_delaunay.h"
 #include "point_sets.h"
+#include "tests/files.h"
 
 namespace watertight {
 namespace {
@@ -28,7 +28,7 @@ struct Golden {
 };
 
 std::vector<Golden> read_goldens() {
-  std::ifstream file(WATERTIGHT_GOLDEN_DELAUNAY "/digests.csv");
+  std::istringstream file(test::read_text(WATERTIGHT_GOLDEN_DELAUNAY "/digests.csv"));
   std::vector<Golden> goldens;
   std::string line;
   std::getline(file, line);

@@ -3,19 +3,17 @@
 // Small city models that the tests of formats/ share.
 #pragma once
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 
 #include "base/bytes.h"
 #include "formats/document.h"
+#include "tests/files.h"
 
 namespace watertight::test {
 
 inline std::string file_text(const std::string& name) {
-  std::ifstream file(std::string(WATERTIGHT_TEST_DATA) + "/" + name, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  return read_text(WATERTIGHT_TEST_DATA "/" + name);
 }
 
 inline Result<Document> read(std::string_view text, Format format, bool is_split = true) {

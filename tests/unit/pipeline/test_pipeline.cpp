@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "codec/encode_boundary.h"
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
+#include "tests/files.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {
@@ -171,9 +170,9 @@ TEST_CASE("JSON strings are escaped and always UTF-8") {
 // Two facets of this solid are not planar and share three vertices; both could follow one Delaunay
 // face, and the bitmap would have lost one of them.
 TEST_CASE("facets that could follow the same Delaunay face keep apart in mode bitmap") {
-  std::ifstream stream(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto document = formats::read_document(as_bytes(text), Format::city_json);
+  const Bytes bytes =
+      test::read_bytes(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json");
+  const auto document = formats::read_document(bytes, Format::city_json);
   REQUIRE(document);
   REQUIRE(document->features.at(0).solids.size() == 1);
   const Solid solid = geometry::merge_equal_vertices(document->features[0].solids[0].solid).solid;

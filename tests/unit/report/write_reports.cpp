@@ -3,24 +3,22 @@
 // write_reports json|geojson|html FILE...: the report of some documents on standard output, without
 // engines and times. For tests of the report's form.
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "report/feature_report.h"
+#include "tests/files.h"
 
 using namespace watertight;
 
 namespace {
 
 Status add_document(report::FeatureReport& report, const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const Bytes bytes = test::read_bytes(path);
   const std::string name = path.substr(path.rfind('/') + 1);
-  const auto format = formats::detect_format(name, as_bytes(text));
+  const auto format = formats::detect_format(name, bytes);
   Status status = report.begin_document(
       {name, format ? std::optional<Format>(*format) : std::optional<Format>()});
   auto document =
-      format ? formats::read_document(as_bytes(text), *format) : Result<Document>(format.error());
+      format ? formats::read_document(bytes, *format) : Result<Document>(format.error());
   report::DocumentEnd end;
   if (!document) {
     if (status) status = report.add_error(document.error());

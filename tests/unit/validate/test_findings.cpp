@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "formats/document.h"
+#include "tests/files.h"
 #include "tests/unit/validate/solids.h"
 #include "validate/finding_kinds.h"
 #include "validate/groups.h"
@@ -23,12 +23,6 @@ namespace {
 
 const std::filesystem::path kRoot = std::filesystem::path(WATERTIGHT_TEST_DATA) / ".." / "..";
 const std::filesystem::path kSamples = kRoot / "tests" / "golden" / "findings";
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  REQUIRE(file);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 struct Sample {
   Solid solid;
@@ -49,7 +43,7 @@ bool is_about_groups(int code) {
 
 /// Reads as the program does: the solids of the one feature.
 std::vector<SubmittedSolid> read_solids(const std::filesystem::path& path) {
-  const std::string text = text_of(path);
+  const std::string text = read_text(path);
   const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
   REQUIRE(format);
   auto document = formats::read_document(as_bytes(text), *format);
@@ -72,7 +66,7 @@ void check_expected(int code, const char* suffix, const std::string& text) {
   if (std::getenv("WATERTIGHT_UPDATE_GOLDEN") != nullptr) {
     std::ofstream(expected, std::ios::binary) << text;
   }
-  CHECK(text == text_of(expected));
+  CHECK(text == read_text(expected));
 }
 
 std::filesystem::path sample_path(int code) {
@@ -144,7 +138,7 @@ TEST_CASE("the samples of findings about the input are refused") {
     INFO("finding " << code);
     const std::filesystem::path path = sample_path(code);
     REQUIRE_FALSE(path.empty());
-    const std::string text = text_of(path);
+    const std::string text = read_text(path);
     const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
     CHECK(format.has_value() == (code == validate::kInvalidInputFile));
     if (!format) continue;
@@ -172,7 +166,7 @@ TEST_CASE("every sample belongs to a finding") {
 }
 
 TEST_CASE("docs/findings.md describes every finding and no other") {
-  const std::string text = text_of(kRoot / "docs" / "findings.md");
+  const std::string text = read_text(kRoot / "docs" / "findings.md");
   std::istringstream lines(text);
   std::string line;
   std::vector<std::string> sections;

@@ -27,7 +27,6 @@ constexpr std::size_t kReach = 5;           // the number of last columns that m
 constexpr std::size_t kKnownReach = 4096;   // the most columns of the page that are looked at
 constexpr std::uint64_t kMostKnown = 64;    // the most known places that are listed
 constexpr std::int64_t kCornerMargin = 32;  // the most steps from the box to a corner
-constexpr std::uint64_t kMostFloors = 255;  // the index of a height counts as this at most
 
 /// The length of a number, or of the side of a box.
 using Length = Context<kMaxLength + 1>;
@@ -356,8 +355,7 @@ bool Columns::code_floors(std::size_t number, std::span<const GridPoint> truth) 
     const std::int64_t below = has_below ? floors.back() : 0;
     std::int64_t z = start_[2];
     if (number > 0 || i > 0) {
-      z = code_height(is_reading() ? 0 : truth[i][2], has_below, below,
-                      std::min<std::uint64_t>(i, kMostFloors), count);
+      z = code_height(is_reading() ? 0 : truth[i][2], has_below, below, i, count);
     } else {
       heights_.push_back({z, 1});
     }

@@ -125,7 +125,6 @@ class Columns:
     def read_height(self, below, i, count):
         """A height that was used before, or a new one."""
         r, f, g = 0, min(i, 2), min(count, 4) - 1
-        i = min(i, 255)
         for place, (z, uses) in enumerate(self.heights):
             if below is not None and z <= below:
                 continue

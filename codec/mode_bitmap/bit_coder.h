@@ -37,7 +37,7 @@ class BitEncoder {
   explicit BitEncoder(BitCoding coding) : coding_(coding) {}
   /// Writes one bit under a model. A plain encoder ignores the model.
   void bit(bool value, AdaptiveBit& model);
-  /// Writes a number in unary: that many ones, then a zero, each under `model`.
+  /// Writes a number in unary: one 1 for each unit, then a 0, each under `model`.
   void unary(std::uint64_t value, AdaptiveBit& model);
   /// Ends the stream.
   Bytes finish() &&;
@@ -54,8 +54,9 @@ class BitEncoder {
   int pending_count_ = 0;
 };
 
-/// Reads what a BitEncoder wrote. Past the end it yields zeros, and failed() becomes true. Callers
-/// bound their loops themselves, and ask failed() at the end and in every loop that could be long.
+/// Reads the bits that a BitEncoder wrote. Past the end it returns zeros, and failed() becomes
+/// true. Callers bound their loops themselves, and ask failed() at the end and in every loop that
+/// could be long.
 class BitDecoder {
  public:
   BitDecoder(ByteView bytes, BitCoding coding);
@@ -77,7 +78,7 @@ class BitDecoder {
   std::uint32_t low_ = 0;
   std::uint32_t high_ = 0xFFFFFFFFU;
   std::uint32_t code_ = 0;
-  int bit_position_ = 0;  // plain: next bit of bytes_[position_]
+  int bit_position_ = 0;  // plain: the index of the next bit of bytes_[position_]
   bool failed_ = false;
 };
 

@@ -69,7 +69,7 @@ struct BlobInfo {
     double bytes = 0;
   };
   std::vector<Part> parts;
-  std::uint32_t checksum = 0;  // of the blob; for a solid of a page, of the page
+  std::uint32_t checksum = 0;  // the checksum of the blob, or of the whole page
 };
 
 struct Decoded {

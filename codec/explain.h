@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How many bytes a solid takes in each mode, and for which parts: for `encode --explain`.
+// The number of bytes that a solid takes in each mode, by parts: for `encode --explain`.
 #pragma once
 
 #include <vector>

@@ -13,7 +13,7 @@ namespace watertight::codec {
 namespace {
 
 constexpr std::uint32_t kHalf = 32768;
-constexpr std::size_t kWindow = 4;  // bytes
+constexpr std::size_t kWindow = 4;  // the number of bytes that a reader keeps ahead
 
 constexpr std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones) {
   return low + static_cast<std::uint32_t>((static_cast<std::uint64_t>(high - low) * ones) >> 16);

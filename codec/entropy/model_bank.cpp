@@ -89,7 +89,7 @@ std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed);
 // A number has three families: its length in unary, the bits after the first, the sign.
 constexpr std::uint32_t kLengths = 48;  // greater lengths share the last context
 constexpr std::uint32_t kMantissaStates =
-    7;  // what is known of the bits after the first: none, one, two
+    7;  // the modelled bits so far: none (1 state), one (2) or two (4)
 constexpr std::uint32_t kMantissaLengths = 16;
 constexpr int kModelledBits = 3;
 

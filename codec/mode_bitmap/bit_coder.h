@@ -18,8 +18,8 @@ enum class BitCoding : std::uint8_t { plain = 0, arithmetic = 1 };
 /// moving average later.
 class AdaptiveBit {
  public:
-  /// `ones_of_65536` is the first estimate, 32 to 65504; `confidence` counts the observations it is
-  /// worth (0 to 30).
+  /// `ones_of_65536` is the first estimate, 32 to 65504; `confidence` is the number of observations
+  /// that the estimate is worth (0 to 30).
   constexpr AdaptiveBit() : AdaptiveBit(32768, 0) {}
   constexpr AdaptiveBit(std::uint32_t ones_of_65536, std::uint32_t confidence)
       : ones_(ones_of_65536), count_(confidence) {}
@@ -54,9 +54,9 @@ class BitEncoder {
   int pending_count_ = 0;
 };
 
-/// Reads the bits that a BitEncoder wrote. Past the end it returns zeros, and failed() becomes
-/// true. Callers bound their loops themselves, and ask failed() at the end and in every loop that
-/// could be long.
+/// Reads the bits that a BitEncoder wrote. Past the end the decoder returns zeros, and failed()
+/// becomes true. Callers bound their loops themselves, and ask failed() at the end and in every
+/// loop that could be long.
 class BitDecoder {
  public:
   BitDecoder(ByteView bytes, BitCoding coding);

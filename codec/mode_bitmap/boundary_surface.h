@@ -19,7 +19,7 @@ namespace watertight::codec::bitmap {
 struct Joint {
   Index from = 0;  // the smaller vertex of the edge
   Index to = 0;
-  Index triangles[2] = {0, 0};  // smaller triangle first
+  Index triangles[2] = {0, 0};  // the two triangles, the smaller first
   Index corners[2] = {0, 0};    // the vertex of each triangle that is not on the edge
 };
 

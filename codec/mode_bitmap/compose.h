@@ -51,8 +51,9 @@ Result<std::vector<bool>> read_bitmap(const BitmapSections& sections,
                                       const delaunay::CanonicalDelaunay& delaunay);
 
 /// 4. Order the Delaunay faces (canonical_delaunay() returns them in order) and mark each as the
-/// bitmap says. 5. Create the polygonal surface out of the marked Delaunay faces. Returns the
-/// marked faces, sorted.
+/// bitmap says.
+/// 5. Create the polygonal surface out of the marked Delaunay faces. Returns the marked faces,
+/// sorted.
 std::vector<Triangle> create_surface(const delaunay::CanonicalDelaunay& delaunay,
                                      const std::vector<bool>& marks);
 

@@ -95,12 +95,12 @@ Degrees degrees_at(const Corner& at, const SurfaceFront& front) {
 }
 
 struct Lengths {
-  double span;       // the third edge u w of the closing triangle
-  double side_u;     // the edge u v, which a known triangle has too
-  double side_w;     // the edge v w, which a known triangle has too
+  double span;       // the length of the third edge u w of the closing triangle
+  double side_u;     // the length of u v, which is an edge of a known triangle too
+  double side_w;     // the length of v w, which is an edge of a known triangle too
   double mean_side;  // the mean of side_u and side_w
-  double mean_edge;  // the mean edge of the surface
-  double near_edge;  // the mean edge of the two known triangles
+  double mean_edge;  // the mean length of the edges of the surface
+  double near_edge;  // the mean length of the edges of the two known triangles
 };
 
 Lengths lengths_at(const Corner& at, double mean_edge) {
@@ -136,8 +136,8 @@ Areas areas_at(const Corner& at) {
 }
 
 /// The sum of the two angles opposite an edge: for the two edges that the closing triangle shares
-/// with known ones, and for its third edge, as if the triangle beyond that ended at the next vertex
-/// of the front. In a Delaunay triangulation of a plane no such sum exceeds a half turn.
+/// with known ones, and for its third edge, as if the triangle beyond this edge ended at the next
+/// vertex of the front. In a Delaunay triangulation of a plane no such sum exceeds a half turn.
 struct Opposites {
   double greater;
   double lesser;

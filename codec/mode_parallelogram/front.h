@@ -26,7 +26,7 @@ struct Gate {
   Index side = 0;             // the half-edge of the known triangle
   Index half_edge = kNone;    // this half-edge in the surface that is written; kNone when reading
   double room = 0;            // angle left for missing triangles at the corner
-  std::uint32_t version = 0;  // counts changes of the corner
+  std::uint32_t version = 0;  // the number of changes of the corner
   bool is_open = true;
   bool is_refused = false;  // true: no triangle closes the corner
 };
@@ -69,7 +69,7 @@ class SurfaceFront {
  private:
   struct Waiting {
     double room = 0;
-    std::uint32_t turn = 0;  // order of arrival
+    std::uint32_t turn = 0;  // the order of arrival in the queue
     Index gate = 0;
     std::uint32_t version = 0;
   };

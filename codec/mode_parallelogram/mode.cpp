@@ -196,7 +196,7 @@ class SurfaceCoder {
   }
 
   /// Codes the corner of the front at which the triangle ends: its rank by distance from the
-  /// prediction among the corners near the gate on its loop, or else its number.
+  /// prediction among the corners near the gate on its loop, or else the number of its gate.
   Status join(Index corner, const std::array<Index, 2>& half_edges, const Vector& predicted) {
     const Gate& gate = front_[corner];
     Index truth = kNone;

@@ -28,7 +28,7 @@ constexpr std::uint32_t kDistances = 8;  // classes of the distance of two guess
 constexpr int kDistanceZero = 1;
 constexpr double kDistancePart = 0.1;  // the unit of distance is this part of two misses, plus 1
 constexpr Scale<4> kParts{.per_unit = 2 * 4};    // classes of the distance to the nearest place
-constexpr Scale<8> kNormals{.per_unit = 7.999};  // sizes of components of unit vectors
+constexpr Scale<8> kNormals{.per_unit = 7.999};  // classes of the size of a unit vector's component
 constexpr std::uint32_t kVerticesAround = 5;     // vertices whose coordinate a tip may repeat
 
 Error malformed() { return {ErrorCode::malformed, "a coordinate is out of range"}; }

@@ -18,10 +18,10 @@
 namespace watertight::codec::polygon {
 
 inline constexpr Index kLoopLimit = 64;    // the most steps of a loop along the front
-inline constexpr Index kGateLimit = 256;   // the most open half-edges where an interior ring begins
-inline constexpr Index kGateReach = 4096;  // the most open half-edges at which an interior ring may
+inline constexpr Index kGateLimit = 256;   // the most open half-edges at which an interior ring may
                                            // begin
-inline constexpr Index kChainLimit = 64;   // the most half-edges that are searched for open ones
+inline constexpr Index kGateReach = 4096;  // the most half-edges that are searched for open ones
+inline constexpr Index kChainLimit = 64;   // the most chains at one vertex
 inline constexpr Index kUnaryLimit = 24;   // greater sizes and degrees are coded as a number
 inline constexpr int kCountBits = 28;      // the most bits of a ring size or degree
 inline constexpr int kGateBits = 9;        // the most bits of the number of a gate
@@ -127,7 +127,7 @@ class SurfaceWalk {
   std::vector<bool> facet_done_;     // facet of the truth -> whether it is coded
   Index unvisited_ = 0;              // all facets of the truth before this one are coded
 
-  // The ring in the making: the steps backward from the gate, then those forward.
+  // The ring in the making: the steps backward from the gate, then the steps forward.
   std::vector<Step> backward_;
   std::vector<Step> forward_;
   Index end_ = kNone;        // the vertex reached last

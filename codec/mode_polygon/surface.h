@@ -19,7 +19,7 @@ namespace watertight::codec::polygon {
 /// The half-edges of a ring are consecutive and in order. `vertex` of a half-edge is its origin.
 struct PolygonSurface {
   std::vector<Index> vertex;            // half-edge -> vertex (one per fan)
-  std::vector<Index> twin;              // half-edge -> half-edge
+  std::vector<Index> twin;              // half-edge -> its twin
   std::vector<Index> ring_of;           // half-edge -> ring
   std::vector<Index> facet_of;          // ring -> facet
   std::vector<Index> ring_offsets{0};   // ring -> its first half-edge; one more entry at the end

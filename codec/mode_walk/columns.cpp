@@ -96,7 +96,7 @@ class Columns {
                                     // entry at the end
   std::vector<GridPoint> decoded_;
   std::size_t place_count_ = 0;
-  std::array<int, 3> length_{};        // the lengths of the sides of the box
+  std::array<int, 3> length_{};        // the lengths of the sides of the box, in bits
   std::array<std::int64_t, 3> min_{};  // the smallest corner of the box
   std::array<std::int64_t, 3> start_{};
   std::vector<Height> heights_;  // the heights that were used, the latest first
@@ -187,7 +187,7 @@ Status Columns::code_box() {
 }
 
 /// Codes whether the place is a column of the page that lies in the box after the last column, and
-/// if so its rank among those. Returns false if it is not.
+/// if so its rank among these columns. Returns false if it is not.
 bool Columns::code_known_place(Place truth, Place& place) {
   const auto& known = memory_.columns;
   const std::int64_t end_x = min_[0] + (std::int64_t{1} << length_[0]);
@@ -314,7 +314,7 @@ bool Columns::code_place(std::size_t number, Place truth) {
   return true;
 }
 
-/// Codes a height: one of those remembered, or a new one.
+/// Codes a height: one of the remembered heights, or a new one.
 std::int64_t Columns::code_height(std::int64_t truth, bool has_below, std::int64_t below,
                                   std::uint64_t floor, std::uint64_t floors) {
   auto rank = capped<8>(0);

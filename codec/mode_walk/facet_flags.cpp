@@ -152,7 +152,7 @@ class Facets {
   IntegerSolid& solid_;
   geometry::DisjointSets facets_;      // sets of triangles
   std::vector<Index> inner_twin_;      // half-edge -> its twin if inside a facet, else kNone
-  std::vector<std::uint8_t> known_;    // triangle -> sum over the flags of its edges so far
+  std::vector<std::uint8_t> known_;    // triangle -> the sum over the coded flags of its edges
   Answers<kHistory> history_;          // the last flags of edges whose offset class is below
                                        // kRememberedOffset
   std::vector<Index> facet_;           // triangle -> facet

@@ -44,7 +44,7 @@ class WalkFront {
     while (h != kNone && to(h) != b) h = next_[h];
     return h;
   }
-  /// is_used(): a triangle of the present component uses `v`; is_known(): a triangle of any does.
+  /// is_used(): the present component has a triangle at `v`; is_known(): any component has one.
   bool is_used(Index v) const { return component_of_[v] == component_; }
   bool is_known(Index v) const { return component_of_[v] != kNone; }
   /// True if `v` is used and all half-edges of the present component at `v` have twins.

@@ -49,8 +49,7 @@ Continuation continuation(const Gate& gate, const Point& w);
 struct FaceShape {
   std::uint8_t sphere;   // angle between the circumspheres of its two tetrahedra
   std::uint8_t ratio;    // ratio of the radii of these circumspheres, in steps of sqrt(2)
-  std::uint8_t gabriel;  // number of sides where that radius exceeds 1.3 times the face's, or is
-                         // none
+  std::uint8_t gabriel;  // number of these radii above 1.3 times the face's, or infinite
 };
 /// The shape of a triangle that is no Delaunay face: classes that no face has. `edges`: 1 if the
 /// triangle's edge at the start of the gate is a Delaunay edge, plus 2 if its edge at the end is

@@ -24,9 +24,9 @@ const ModelLayout& layout_of(ModelPart part);
 /// One bank for each part, copied from its prior when it is first asked for.
 class ModelSet {
  public:
-  /// Errors: unsupported if no set has this number.
+  /// Makes the set with this number. Errors: unsupported if there is none.
   static Result<ModelSet> make(std::uint8_t number);
-  /// A set of one's own, for training; `priors` must outlive it.
+  /// Makes a set of other priors, for training; `priors` must outlive it.
   explicit ModelSet(const std::array<ModelBank, kModelParts>& priors) : priors_(&priors) {}
   explicit ModelSet(std::array<ModelBank, kModelParts>&& priors) = delete;
 

@@ -60,7 +60,7 @@ struct PageSolid {
   PlainSections plain;  // empty but in modes raw and bitmap
 };
 
-/// How a solid is to be written.
+/// The mode and the choices with which a solid is to be written.
 struct Plan {
   Mode mode = Mode::automatic;
   std::uint32_t declined = 0;  // bit m is set if automatic mode must not take mode m

@@ -46,8 +46,8 @@ struct OrientedFace {
 
 /// An edge of a face. The corners of face f are numbered 3 f, 3 f + 1, 3 f + 2.
 struct FaceEdge {
-  Triangle key{};     // the smaller vertex, the larger, the corner at the smaller
-  Index at_high = 0;  // the corner at the larger
+  Triangle key{};     // the smaller vertex, the larger vertex, the corner at the smaller one
+  Index at_high = 0;  // the corner at the larger vertex
   Index shell = 0;
   bool is_same_edge(const FaceEdge& other) const {
     return key[0] == other.key[0] && key[1] == other.key[1] && shell == other.shell;

@@ -41,9 +41,9 @@ struct CertificateResult {
   Certificate certificate;  // set if `refusal` is none
 };
 
-/// Requires merged vertices, rings that are divided as the triangles are (divided_solid), `facets`
-/// = triangulate_facets(solid), and a solid that passed the exact tests. `is_cancelled` is asked
-/// every few thousand steps. Cost: O(n log n) in tetrahedra.
+/// Checks a tetrahedralization of a solid. Requires merged vertices, rings that are divided as the
+/// triangles are (divided_solid), `facets` = triangulate_facets(solid), and a solid that passed the
+/// exact tests. `is_cancelled` is asked every few thousand steps. Cost: O(n log n) in tetrahedra.
 CertificateResult check_certificate(const Solid& solid, const tessellate::FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,
                                     const CancelPoll& is_cancelled = {});

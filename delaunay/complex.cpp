@@ -26,7 +26,7 @@ struct Side {
   bool is_above = false;
 };
 
-/// True if sorting takes an even number of exchanges.
+/// Sorts the triangle. Returns true if that takes an even number of exchanges.
 bool sort_counting(Triangle& t) {
   bool is_even = true;
   const auto exchange = [&](std::size_t i, std::size_t j) {

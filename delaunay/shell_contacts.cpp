@@ -4,7 +4,8 @@
 // facet at the vertices of other shells that lie on them; make the edges of other shells that lie
 // on a facet edges of its triangles, by flips (after S. W. Sloan, "A fast algorithm for generating
 // constrained Delaunay triangulations", 1993). A straight edge that runs over two triangles lies in
-// both planes, so what is flipped is coplanar even where the facet as a whole is not.
+// both planes, so that the two triangles of a flip are coplanar even where the facet as a whole is
+// not.
 #include "delaunay/shell_contacts.h"
 
 #include <algorithm>

@@ -14,7 +14,7 @@ namespace {
 /// axes and of a round fit into the upper half of a key.
 constexpr unsigned kMostBits = 9;
 constexpr unsigned kRoundBits = 5;
-/// The most points that are inserted in one round.
+/// Point sets up to this size are inserted in one round.
 constexpr std::size_t kOneRound = 64;
 
 /// The number of a cell along a Hilbert curve through a grid of 2^bits cells per axis. Source:

@@ -309,7 +309,8 @@ CanonicalDelaunay SmallDelaunay::list() {
       }
     }
   }
-  std::vector<Cell>().swap(cells_);  // before the sorting, which takes as much memory again
+  std::vector<Cell>().swap(cells_);  // frees the cells before the sorting, which takes as much
+                                     // memory
   return list_canonically(std::move(tetrahedra), std::move(faces), infinite_);
 }
 

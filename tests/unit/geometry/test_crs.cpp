@@ -28,14 +28,15 @@ TEST_CASE("unstated and unknown systems count as metres with a note") {
 }
 
 TEST_CASE("systems in feet have feet") {
-  // New York Long Island (US survey feet), Arizona (international feet), NYC with heights in feet.
+  // New York Long Island (US survey feet), Arizona (international feet), New York with heights in
+  // feet.
   CHECK(geometry::axis_units(2263, {}).metres_per_unit[0] == 1200.0 / 3937.0);
   CHECK(geometry::axis_units(2223, {}).metres_per_unit == Units{0.3048, 0.3048, 0.3048});
   CHECK(!geometry::axis_units(2263, {}).note.empty());
 }
 
 TEST_CASE("geographic systems have metres per degree at the centre") {
-  // Lengths of a degree at 52 degrees, from the WGS 84 ellipsoid: 68.678 km and 111.268 km.
+  // The lengths of a degree at latitude 52, on the WGS 84 ellipsoid, are 68.678 km and 111.268 km.
   for (const std::uint32_t code : {4326U, 4979U, 4258U, 4937U, 6668U}) {
     const geometry::AxisUnits units = geometry::axis_units(code, {4.36, 52.0, 10.0});
     INFO(code);
@@ -71,7 +72,7 @@ TEST_CASE("geographic systems have angles up to a full turn, others none") {
   }
 }
 
-TEST_CASE("geographic systems put latitude first, but for those named after the other order") {
+TEST_CASE("geographic systems put latitude first, except those named after the other order") {
   for (const std::uint32_t code : {4326U, 4979U, 4258U, 6668U, 6697U, 4937U}) {
     INFO(code);
     CHECK(geometry::pole_of_first_axis(code) == 90);

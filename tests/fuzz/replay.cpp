@@ -32,7 +32,7 @@ std::vector<fs::path> files_of(const fs::path& path) {
 void replay(const fs::path& path) {
   const watertight::Bytes bytes = watertight::test::read_bytes(path);
   std::printf("%s: %zu bytes\n", path.c_str(), bytes.size());
-  // so that the last printed line names the input at which the program aborted
+  // So that the last printed line names the input at which the program aborted.
   std::fflush(stdout);
   LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
 }

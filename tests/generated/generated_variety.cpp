@@ -124,7 +124,7 @@ Shape voxels(Random& random, Index size) {
     return found->second;
   };
   const auto has = [&](std::array<Index, 3> c) {
-    // an Index below 0 wraps around to a large one
+    // An Index below 0 wraps around to a large one.
     if (c[0] >= nx || c[1] >= ny || c[2] >= nz) return false;
     return bool{is_full[(std::size_t{c[0]} * ny + c[1]) * nz + c[2]]};
   };

@@ -16,7 +16,7 @@ namespace {
 Report report_of(const Solid& solid) {
   CertifyOptions options;
   options.proof = Proof::boundary;
-  // no metric rule applies: the solids are exactly planar
+  // No metric rule applies: the solids are exactly planar.
   options.tolerances.planarity_metres = 1e30;
   options.tolerances.planarity_degrees = 360;
   return certify(solid, nullptr, options).report;

@@ -137,7 +137,7 @@ Shell terrain(Random& random, std::size_t size, double step) {
 
 Shell voxels(const std::vector<bool>& is_filled, std::size_t n, double size) {
   const auto filled = [&](std::size_t x, std::size_t y, std::size_t z) {
-    // a number below 0 wraps around to a large one
+    // A number below 0 wraps around to a large one.
     return x < n && y < n && z < n && is_filled[(x * n + y) * n + z];
   };
   Shell shell;

@@ -15,7 +15,7 @@ struct Defect {
   std::string_view name;
   Shape shape;
   std::set<int> codes;  // the codes of all errors
-  // the only code that val3dity reports: it stops at the first level with errors
+  // The only code that val3dity reports: it stops at the first level with errors.
   int first_level = 0;
   /// True if the code depends on lengths: affine maps change it, and it is found only with the
   /// metric rules on. The lattice is then millimetres().

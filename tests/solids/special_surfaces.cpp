@@ -32,7 +32,7 @@ Shell chazelle(int notches) {
   const auto ridge = [&](double x, double y, double offset) { return Point{x, y, x * y + offset}; };
   Shell shell;
   const auto add = [&](const Ring& ring) { shell.push_back({ring}); };
-  // the outlines of the roof and the floor along the sides, for the walls
+  // The outlines of the roof and the floor along the sides, for the walls.
   Ring front, back, left, right;
   // The roof: between two ridges that run along y, the surface rises to `height` and falls again.
   for (int i = 0; i < n; ++i) {

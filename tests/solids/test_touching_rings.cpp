@@ -179,7 +179,7 @@ TEST_CASE("modes give back rings that touch inside edges as submitted, or declin
   }
   CHECK(held[Mode::automatic] == held[Mode::raw]);
   CHECK(held[Mode::walk] == 0);
-  // solids in which both facets of an edge have the vertex of the touch
+  // Solids in which both facets of an edge have the vertex of the touch.
   CHECK(held[Mode::polygon] > 0);
 }
 

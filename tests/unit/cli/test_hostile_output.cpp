@@ -54,7 +54,7 @@ TEST_CASE("bytes that a terminal would obey are replaced, the others stay") {
   CHECK(cli::printable("a\x1b[31mb\x07") == "a" + mark + "[31mb" + mark);
   CHECK(cli::printable("a\r\nb\tc\x7f") == "a" + mark + mark + "b" + mark + "c" + mark);
   CHECK(cli::printable("a\xC2\x9B"
-                       // the control sequence introducer of the C1 set
+                       // The control sequence introducer of the C1 set.
                        "31mb") == "a" + mark + "31mb");
   CHECK(cli::printable("a\x9B"
                        "31mb\xFF") == "a" + mark + "31mb" + mark);  // not UTF-8

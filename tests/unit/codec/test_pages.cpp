@@ -194,7 +194,7 @@ TEST_CASE("an error in a page names the solid and the byte") {
   const OrientedBoundary box = generated::box();
   auto page = codec::encode_boundaries(Boundaries{&box, &box, &box}, {});
   REQUIRE(page);
-  // removes bytes of the stream; the checksum stays
+  // Removes bytes of the stream; the checksum stays.
   page->erase(page->end() - 12, page->end() - 4);
   const auto refused = codec::decode_page(*page);
   REQUIRE_FALSE(refused);

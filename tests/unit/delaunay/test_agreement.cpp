@@ -177,8 +177,8 @@ CertifyOptions exact_options(Proof proof) {
 struct Counts {
   int sound = 0;
   int meeting = 0;  // the number of solids that meet themselves
-  // the number of solids with findings that the certificate does not judge (pinches, several
-  // components)
+  // The number of solids with findings that the certificate does not judge (pinches, several
+  // components).
   int other = 0;
 };
 

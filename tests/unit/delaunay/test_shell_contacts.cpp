@@ -184,7 +184,7 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
     std::vector<Point> apexes;
     for (const Triangle& t : roof) {
       const Point tip =
-          // exact, because the weights are quarters
+          // Exact, because the weights are quarters.
           mean({points[t[0]], points[t[0]], points[t[1]], points[t[2]]});
       Shape touched = warped;
       add_tetrahedron(touched, {{100, 50, 90}, {150, 100, 80}, {50, 150, 90}, tip});
@@ -200,7 +200,7 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
       }
     }
     const Point middle = mean(fold);
-    // the fold is a ridge: an edge across it would leave the block
+    // The fold is a ridge: an edge across it would leave the block.
     if (middle.z > mean(apexes).z) continue;
     ++valleys;
     const double dx = apexes[0].x > apexes[1].x ? 20 : -20;

@@ -153,7 +153,7 @@ TEST_CASE("a city model put together from its features is equivalent") {
     if (kBroken.contains(name) || !name.ends_with(".json")) continue;
     INFO(name);
     const std::string text = test::file_text("cityjson/" + name);
-    // the test's own parser takes no byte order mark
+    // The test's own parser takes no byte order mark.
     if (text.starts_with("\xEF\xBB\xBF")) continue;
     const auto document = test::read(text, Format::city_json);
     REQUIRE(document);

@@ -28,7 +28,7 @@ TEST_CASE("touches are given by corner and along the edge, for either direction"
 TEST_CASE("vertices of the same ring, shared vertices and vertices beside an edge touch nothing") {
   const std::vector<Point> vertices{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0},
                                     {4, 0, 0}, {5, 2, 0}, {3, 2, 0}, {4, 0, 1}};
-  // the vertex is in the same ring
+  // The vertex is in the same ring.
   CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}})).empty());
   CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}, {4, 6, 5}}))
             .empty());  // the exterior ring has the vertex too

@@ -304,7 +304,7 @@ TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
       file_of(texts_of_one(0, blob.size() - 1), {}, blob),  // a cut blob
       file_of(texts_of_one(0, ~std::uint64_t{0}), {}, blob),
       file_of(texts_of_one(0, 0), {}, {}),  // a solid in a page that is not there
-      // a solid of the page file in no feature
+      // A solid of the page file in no feature.
       file_of(texts_of_one(0, blob.size()), *pages, blob),
       file_of(texts_of_one(0, 0), blob, {}),  // a blob in the place of the page file
   };

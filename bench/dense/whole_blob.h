@@ -17,7 +17,7 @@ struct WholeBlob {
   Mode mode = Mode::automatic;
   double connectivity_bytes = 0;  // the parts `connectivity` and `facets`
   double encode_seconds =
-      0;  // of the processor; every mode tried, the chosen one written and read back
+      0;  // CPU time of trying every mode, and of writing and reading the chosen one
   double decode_seconds = 0;
   double peak_bytes = 0;  // the growth of the resident set at its peak; 0 if unknown
 };

@@ -149,7 +149,7 @@ bool compare(const std::string& file, int repeat) {
   const bool does_all = mesh.triangles.size() <= kAllPairs;
   const bool equals_all = !does_all || by_all_pairs(mesh) == names(pairs);
   const bool equals_boxes = from_boxes == names(pairs);
-  // Without equal triangles, which PMP does not report.
+  // PMP does not report pairs of equal triangles.
   std::vector<geometry::IntersectingPair> for_pmp;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(for_pmp),
                [](const auto& pair) { return pair.contact != geometry::ContactClass::duplicate; });

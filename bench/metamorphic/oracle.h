@@ -20,7 +20,8 @@ struct ShellFacts {
   bool is_mesh = false;  // 2-manifold and oriented, which the facts below require
   bool is_closed = false;
   std::size_t components = 0;
-  bool meets_itself = false;   // other than in shared vertices and edges; known for any triangles
+  // The shell meets itself other than in shared vertices and edges; known for any triangles.
+  bool meets_itself = false;
   bool bounds_volume = false;  // known if the shell is closed and does not meet itself
   bool is_outward = false;     // known if the shell is closed and does not meet itself
 };

@@ -393,7 +393,7 @@ void SeedExaminer::check_solid(const std::vector<ShellTriangles>& shells,
 }
 
 void SeedExaminer::check_oracles() {
-  // Without equal vertices, which solid_of() and merge_equal_vertices() ensure.
+  // The solid has no equal vertices: solid_of() and merge_equal_vertices() merge them.
   const Solid& solid = subject_.solid;
   const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   for (const tessellate::FacetState state : facets.state) {

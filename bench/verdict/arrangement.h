@@ -20,7 +20,7 @@ struct Piece {
 /// An open, connected part of a plane that no polygon crosses; all of it belongs to the same
 /// facets.
 struct Region {
-  std::vector<std::size_t> facets;  // sorted
+  std::vector<std::size_t> facets;  // the facets that contain the region, sorted
   // The edges of the boundary; twice if the region is on both sides.
   std::vector<std::size_t> edges;
   Vector sample;  // a point of the region
@@ -39,7 +39,8 @@ struct LonePoint {
 /// The cells of the union of all pieces.
 struct Complex {
   std::vector<Vector> points;
-  std::vector<std::array<std::size_t, 2>> edges;  // the smaller point index first
+  // For each edge, its points, the smaller index first.
+  std::vector<std::array<std::size_t, 2>> edges;
   std::vector<Region> regions;
   std::vector<Corner> corners;
   std::vector<LonePoint> lone_points;

@@ -9,7 +9,7 @@ namespace {
 
 /// A matrix of integers times a power of ten.
 struct DecimalMatrix {
-  AffineMap map;  // the shift is not used
+  AffineMap map;  // the shift of the map is not used
   int exponent = 0;
 };
 

@@ -4,7 +4,7 @@
 // database.
 #include <cstdio>
 #include <string>
-#include <utility>  // used by Asio, which does not include it
+#include <utility>  // Asio uses this header without including it
 
 #include <boost/asio.hpp>
 

@@ -98,7 +98,7 @@ STRETCH = stretch_table()
 
 
 def clamp(value, low, high):
-    """The value, moved into low..high."""
+    """The value, limited to low..high."""
     return max(low, min(high, value))
 
 
@@ -174,7 +174,7 @@ class Stream:
 
 
 class Family:
-    """Decisions that share tables of counters and sets of weights."""
+    """A family: decisions that share tables of counters and sets of weights."""
 
     def __init__(self, inputs, selectors=1, agile=False):
         self.agile = agile

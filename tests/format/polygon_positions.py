@@ -10,12 +10,12 @@ LEVEL, STEEP, STANDING = 1, 2, 3
 
 
 def rounded(value):
-    """The nearest whole number, halves up."""
+    """The nearest whole number; halves are rounded up."""
     return math.floor(value + 0.5) if abs(value) < 2.0**62 else 0
 
 
 def length(value):
-    """The bit length of the magnitude."""
+    """The bit length of the magnitude of a number."""
     return abs(value).bit_length()
 
 
@@ -31,7 +31,7 @@ def cross(a, b):
 
 
 def square(v):
-    """The squared length, in doubles."""
+    """The squared length of a vector, in doubles."""
     total = float(v[0]) * v[0]
     for x in v[1:]:
         total = total + float(x) * x

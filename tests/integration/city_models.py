@@ -101,7 +101,7 @@ def canonical(facets):
 
 
 def read_ewkb(data):
-    """(facets, srid) of a POLYHEDRALSURFACE Z in (E)WKB."""
+    """Returns (facets, srid) of a POLYHEDRALSURFACE Z in (E)WKB."""
     position = 0
 
     def take(form):

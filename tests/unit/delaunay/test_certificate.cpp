@@ -380,7 +380,7 @@ TEST_CASE("certificate finds shells that are declared wrongly") {
   std::swap(swapped.shells[0], swapped.shells[1]);
   CHECK(delaunay_case(swapped).judge() == delaunay::CertificateRefusal::cavity_mismatch);
 
-  Shape joined = box_with_cavity();  // the cavity's facets in the exterior shell
+  Shape joined = box_with_cavity();  // the exterior shell gets the facets of the cavity
   joined.shells[0].insert(joined.shells[0].end(), joined.shells[1].begin(), joined.shells[1].end());
   joined.shells.pop_back();
   CHECK(delaunay_case(joined).judge() == delaunay::CertificateRefusal::cavity_mismatch);

@@ -65,7 +65,7 @@ TEST_CASE("geographic systems have angles up to a full turn, others none") {
     INFO(code);
     CHECK(geometry::largest_angle(code) == 360);
   }
-  CHECK(geometry::largest_angle(4807) == 400);  // NTF (Paris), in grads
+  CHECK(geometry::largest_angle(4807) == 400);  // NTF (Paris), whose angles are in grads
   for (const std::uint32_t code : {0U, 1U, 4978U, 7415U, 25832U, 2263U, 4'294'967'295U}) {
     INFO(code);
     CHECK(geometry::largest_angle(code) == 0);
@@ -77,7 +77,7 @@ TEST_CASE("geographic systems put latitude first, except those named after the o
     INFO(code);
     CHECK(geometry::pole_of_first_axis(code) == 90);
   }
-  CHECK(geometry::pole_of_first_axis(4807) == 100);  // NTF (Paris), in grads
+  CHECK(geometry::pole_of_first_axis(4807) == 100);  // NTF (Paris), whose angles are in grads
   for (const std::uint32_t code : {0U, 1U, 4978U, 7415U, 25832U, 31467U, 7034U, 7042U, 7084U}) {
     INFO(code);
     CHECK(geometry::pole_of_first_axis(code) == 0);

@@ -342,7 +342,7 @@ TEST_CASE("an index serves the box filter") {
 
 TEST_CASE("concurrent writers of the same features neither fail nor mix") {
   const Database database;
-  const auto store = database.store(3);  // fewer sessions than threads
+  const auto store = database.store(3);  // the store has fewer sessions than the test has threads
   constexpr int kThreads = 6;
   constexpr int kRounds = 15;
   std::atomic<int> failures{0};

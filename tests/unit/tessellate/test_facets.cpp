@@ -403,7 +403,7 @@ TEST_CASE("triangles are grouped by facet and facets without triangles are kept"
     arrays.end_ring();
     arrays.end_facet();
   }
-  arrays.end_facet();  // a facet without rings
+  arrays.end_facet();  // adds a facet without rings
   arrays.end_shell();
   auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
   REQUIRE(solid);

@@ -38,9 +38,10 @@ FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", 
            "formats", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
-MAX_SOURCES_OF_CODEC = 16  # of each of its subfolders
+MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
 
-# header pattern -> (what it is, path patterns it may be included from). First match decides.
+# For each pattern of an include: the library it stands for, and patterns of the paths that may
+# include it. The first match decides.
 HOMES = [
     (r"boost/(?!multiprecision)", "Boost", [r"server/", r"tests/builds/"]),
     (r"spdlog/", "spdlog", [r"server/"]),
@@ -64,7 +65,7 @@ LICENSED = re.compile(r"(\.(h|cpp|c|css|js|cmake|sh|py|sql\.in|toml|ya?ml)|CMake
                       r"^scripts/[a-z-]+|^\.ci/run)$")
 TEXT = re.compile(r"(\.(h|cpp|c|css|js|cmake|sh|py|sql|in|toml|ya?ml|md|json|txt)|Dockerfile|^scripts/[a-z-]+|"
                   r"^\.ci/run)$")
-# Written apart so that this file does not find itself.
+# The patterns are written in pieces, so that this file does not match them itself.
 MACHINE = re.compile(r"(?<![\w.])/" + r"(work/(main|shared)|root/|home/[a-z]+/|tmp/build-)"
                      r"|https?://" + r"(deb|registry|snapshot|ftp)\.")
 UNFINISHED = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X|HA" + r"CK)\b")
@@ -72,7 +73,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.M)
 
 
 def repository_files(root):
-    """Paths relative to root: what git tracks or would track; without git, every file but builds."""
+    """Paths relative to root: files that git tracks or would track; without git, every file outside
+    of builds."""
     try:
         out = subprocess.run(
             ["git", "-c", f"safe.directory={root}", "-C", str(root), "ls-files", "-z", "--cached",
@@ -90,7 +92,8 @@ def repository_files(root):
 
 
 def declared_depends(root):
-    """folder -> the set of folders it may include, from watertight_folder(... DEPENDS ...)."""
+    """For each folder, the set of folders it may include, from watertight_folder(... DEPENDS
+    ...)."""
     depends = {}
     for folder in FOLDERS:
         path = root / folder / "CMakeLists.txt"
@@ -138,7 +141,8 @@ def check_layers(tree):
         allowed = tree.depends[folder] | {folder, "base"}
         for _, path in includes:
             target = folder_of(path) if "/" in path else None
-            # A third-party header may live under a like-named folder (e.g. <server/...>): ours exist.
+            # A third-party header may be in a folder of the same name (e.g. <server/...>): only
+            # files of this repository count.
             if target and path in tree.text and target not in allowed:
                 yield f"{name}: layers: includes \"{path}\", but {folder} does not declare {target}"
 
@@ -248,7 +252,9 @@ def check_rooms(tree):
 
 
 PAIRED = re.compile(r"(codec/\w+)/(\w+)\.cpp$")
-OF_MODES_H = {"mode"}  # codec/page/modes.h declares what each mode.cpp defines
+# the sources whose functions are declared elsewhere: codec/page/modes.h declares those of each
+# mode.cpp
+OF_MODES_H = {"mode"}
 
 
 def check_pairs(tree):
@@ -273,7 +279,7 @@ LAYERED = re.compile(r"\.(h|cpp)$")
 
 
 def namespace_of(name):
-    """The namespace that a file's names belong to."""
+    """The namespace to which the names of a file belong."""
     parts = name.split("/")
     if parts[0] == "base":
         return "watertight"
@@ -282,7 +288,8 @@ def namespace_of(name):
 
 
 def namespace_blocks(text):
-    """(namespace, its lines at the left margin with their numbers) for each block; nested ones apart."""
+    """For each namespace block, its name and the lines at the left margin with their numbers;
+    nested blocks are listed on their own."""
     stack, blocks = [], []
     for number, line in enumerate(text.split("\n"), 1):
         opened = NAMESPACE.match(line)
@@ -316,7 +323,7 @@ def check_namespaces(tree):
                         yield (f"{name}: namespaces: exports {export.group(2)}, which the vocabulary of "
                                "docs/architecture.md does not list")
             elif name == "codec/page/modes.h" and path.startswith("watertight::codec::"):
-                continue  # what every mode must define
+                continue  # the functions that every mode must define
             elif not all(FORWARD.match(line) for _, line in code):
                 yield f"{name}:{lines[0][0]}: namespaces: {path}, but its names belong to {expected}"
 
@@ -401,7 +408,7 @@ GOOD_TREE = {
         "}  // namespace watertight::codec::polygon\n",
     "scripts/test": "#!/bin/sh\n# SPDX-License-Identifier: X\n",
 }
-# (file, its text, the rule that must speak, words that must be in the line)
+# For each break: a file, its text, the rule that must report it, words that must be in the line.
 GOOD_TREE.update({f"tests/unit/base/a{i}.cpp": SPDX for i in range(MAX_SOURCES)})
 GOOD_TREE.update({f"codec/page/a{i}.h": SPDX for i in range(MAX_SOURCES_OF_CODEC)})
 BREAKS = [

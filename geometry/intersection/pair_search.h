@@ -23,7 +23,7 @@ struct SearchContext {
   std::span<const Triangle> triangles;
   std::span<const BoxMember<3>> boxes;  // the box of each triangle
   PairTester tester;
-  std::span<const Index> group_of;  // IntersectionOptions::group_of
+  std::span<const Index> group_of;  // a copy of IntersectionOptions::group_of
   std::uint64_t limit = 0;
   CancelPoll cancel;  // called by the caller's thread only
   std::atomic<bool> is_ended = false;

@@ -63,7 +63,7 @@ bool is_in_triangle(const Vector& a, const Vector& b, const Vector& c, const Vec
   return false;
 }
 
-/// True if the boxes alone show that the ray from p upward misses the triangle abc.
+/// True if the box of the triangle abc alone shows that the ray from p upward misses it.
 bool is_missed(const Point& a, const Point& b, const Point& c, const Vector& p) {
   for (const int axis : {0, 1}) {
     const Rational& at = p[static_cast<std::size_t>(axis)];

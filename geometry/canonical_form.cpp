@@ -192,7 +192,7 @@ CanonicalSolid Arranger::arrange() const {
     }
     arrays.end_shell();
   }
-  // A solid or an oriented boundary stays one when it is rearranged: both make() calls succeed.
+  // A rearranged solid or oriented boundary is still one, so the two make() calls succeed.
   auto solid = Solid::make(std::move(arrays), solid_.lattice(), solid_.srid(), kNoLimits);
   WATERTIGHT_ASSERT(solid.has_value());
   auto boundary = OrientedBoundary::make(std::move(solid).value());

@@ -81,12 +81,12 @@ void rotate(MatrixOf<Real>& m, MatrixOf<Real>& vectors, std::size_t p, std::size
   for (std::size_t k = 0; k < 3; ++k) turn(vectors[k][p], vectors[k][q]);
 }
 
-/// The plane fitted to points, with the eigenvalues of their covariance.
+/// The plane fitted to points.
 template <class Real>
 struct FittedPlane {
   VectorOf<Real> mean;
   VectorOf<Real> normal;
-  VectorOf<Real> eigenvalues;  // ascending
+  VectorOf<Real> eigenvalues;  // the eigenvalues of the covariance, ascending
 };
 
 template <class Real>

@@ -28,7 +28,7 @@ struct IndexRange {
 struct SolidArrays {
   std::vector<Point> vertices;
   std::vector<Index> ring_vertices;
-  std::vector<Index> ring_offsets{0};   // ring -> ring_vertices
+  std::vector<Index> ring_offsets{0};   // ring -> index of its first vertex in ring_vertices
   std::vector<Index> facet_offsets{0};  // facet -> rings; the first ring of a facet is exterior
   std::vector<Index> shell_offsets{0};  // shell -> facets; shell 0 is exterior
 

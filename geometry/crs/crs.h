@@ -15,7 +15,7 @@ namespace watertight::geometry {
 
 struct AxisUnits {
   std::array<double, 3> metres_per_unit{1, 1, 1};
-  std::string note;  // non-empty when something was assumed, e.g. "no CRS stated: metres assumed"
+  std::string note;  // the assumptions, e.g. "no CRS stated: metres assumed"; "" if there are none
 };
 
 /// Units of the axes of EPSG code `srid` at the centre of a box (world coordinates), from a table

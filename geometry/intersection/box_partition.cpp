@@ -66,7 +66,7 @@ class Search {
   std::vector<std::vector<IntersectingPair>> found_;  // the pairs of each piece
   std::mutex mutex_;
   // mutex_ guards is_finished_, finished_ and found_in_finished_.
-  std::vector<bool> is_finished_;  // whether each piece is finished
+  std::vector<bool> is_finished_;  // piece -> whether the search of it is finished
   std::size_t finished_ = 0;       // the number of finished pieces before the first unfinished one
   std::uint64_t found_in_finished_ = 0;  // the number of pairs found in the first finished_ pieces
 };

@@ -139,8 +139,8 @@ class ContactClassifier {
     std::array<std::array<int, 2>, 2> order{};
     bool has_positive = false;
     bool has_negative = false;
-    std::size_t meeting_a = 0;  // j of a pair with p_j == q_l, or 0
-    std::size_t meeting_b = 0;  // l of that pair
+    std::size_t meeting_a = 0;  // the index j of a pair with p_j == q_l, or 0
+    std::size_t meeting_b = 0;  // the index l of that pair, or 0
     for (std::size_t j = 0; j < 2; ++j) {
       for (std::size_t l = 0; l < 2; ++l) {
         order[j][l] = orient3d(a[0], a[j + 1], b[0], b[l + 1]);

@@ -107,7 +107,7 @@ bool DirectionBounds::include(std::span<const Vector3> corners) {
 /// Extends the bounds to the arc between two unit vectors. A component is largest at an end of the
 /// arc unless it grows from both ends inward.
 void DirectionBounds::include_arc(const Vector3& a, const Vector3& b) {
-  constexpr double kLevel = 1e-13;  // more than the rounding errors
+  constexpr double kLevel = 1e-13;  // a bound of the rounding errors
   const double cosine = dot(a, b);
   // The arc is at most 1 - sqrt(1 - c^2 / 4) away from its chord, of length c.
   const double lost = std::min(1.0, squared_distance(a, b) / 4);

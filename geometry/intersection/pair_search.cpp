@@ -123,7 +123,7 @@ void PairSearch::resolve_along_axes(const Stalled& stalled) {
 }
 
 /// Divides the members along all six directions of their boxes and compares the pairs of each part.
-/// A part that still has many pairs, but at most half of those of the whole, is put off: it is
+/// A part that still has many pairs, but at most half of the pairs of the whole, is put off: it is
 /// divided later along axes of its own.
 void PairSearch::divide_directions(const std::vector<BoxMember<6>>& first,
                                    const std::vector<BoxMember<6>>& second,

@@ -25,7 +25,7 @@ struct SearchContext {
   PairTester tester;
   std::span<const Index> group_of;  // a copy of IntersectionOptions::group_of
   std::uint64_t limit = 0;
-  CancelPoll cancel;  // called by the caller's thread only
+  CancelPoll cancel;  // a function that only the caller's thread calls
   std::atomic<bool> is_ended = false;
   std::atomic<bool> is_cancelled = false;
 

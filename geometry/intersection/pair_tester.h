@@ -99,7 +99,7 @@ class PairTester {
   static constexpr std::array<std::size_t, 3> kNext{1, 2, 0};
 
   static bool is_near(const Point& x, const Point& origin) {
-    constexpr double kNear = 524288.0;  // 2^19: differences are below 2^20
+    constexpr double kNear = 524288.0;  // 2^19, so that differences of two corners are below 2^20
     for (int axis = 0; axis < 3; ++axis) {
       if (!InlinePredicates::has_short_difference(x[axis], origin[axis], kNear)) return false;
     }
@@ -108,7 +108,7 @@ class PairTester {
 
   /// The sign of orient3d of the corners of a and one corner of b, or kUnknown.
   static int side(const PlaneTriangle& a, const PlaneTriangle& b, std::size_t corner) {
-    constexpr double kLargest = 1e300;  // below this value nothing has overflowed
+    constexpr double kLargest = 1e300;  // a bound of numbers that have not overflowed
     const Point d = InlinePredicates::difference(b.corner[corner], a.corner[0]);
     const double value = a.normal.x * d.x + a.normal.y * d.y + a.normal.z * d.z;
     const double largest = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));

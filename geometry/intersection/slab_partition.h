@@ -262,7 +262,8 @@ class SlabPartition {
  private:
   struct Part {
     PartBounds<D> bounds;
-    /// The first members have the indices from `begin` to `middle`, the second those up to `end`.
+    /// PartMembers::first has the indices from `begin` to `middle`, PartMembers::second the indices
+    /// from `middle` to `end`.
     std::size_t begin = 0;
     std::size_t middle = 0;
     std::size_t end = 0;

@@ -17,12 +17,12 @@ namespace watertight::geometry {
 /// 3.2: the common part is not a vertex or an edge of both. The values are ordered by severity.
 enum class ContactClass : std::uint8_t {
   disjoint = 0,
-  shared_vertex,     // exactly one vertex of both (one index)
-  shared_edge,       // exactly one edge of both (two indices)
+  shared_vertex,     // the common part is one vertex of both triangles (one index)
+  shared_edge,       // the common part is one edge of both triangles (two indices)
   vertex_vertex,     // touching: two vertices of different index have equal coordinates
   vertex_edge,       // touching: a vertex inside an edge
   vertex_face,       // touching: a vertex inside the other triangle
-  edge_edge,         // touching: two edges cross at one point inside both
+  edge_edge,         // touching: two edges cross at one point inside both edges
   edge_overlap,      // touching: edges overlap along a segment
   edge_face,         // touching: an edge, or a part of it, lies inside the other triangle
   crossing,          // the insides cross along a segment

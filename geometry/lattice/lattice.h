@@ -53,7 +53,7 @@ GridNumber shortest_decimal(float value);
 
 enum class LatticeKind : std::uint8_t {
   decimal = 0,  // steps and origin are decimals; coordinates are integers in [0, 2^53)
-  binary = 1,   // one power of two is the step of all axes; coordinates are integers in [0, 2^53)
+  binary = 1,   // the step of all axes is a power of two; coordinates are integers in [0, 2^53)
   float64 = 2   // no common grid: coordinates are the source's doubles, origin 0, step 1
 };
 

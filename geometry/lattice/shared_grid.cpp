@@ -115,7 +115,7 @@ BigInteger floor_quotient(const BigInteger& a, const BigInteger& b) {
 /// One axis of the grid: coordinates are multiples of 10^exponent from the origin.
 struct WorldGrid {
   std::int64_t exponent = 0;
-  BigInteger origin;  // in units of 10^exponent
+  BigInteger origin;  // the origin in units of 10^exponent
 
   /// The coordinate on the grid of the number value * 10^from, rounded to the nearest if 10^from is
   /// finer than the grid.

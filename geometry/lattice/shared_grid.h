@@ -62,8 +62,8 @@ class SharedGrid {
 
   std::vector<StandingSolid> solids_;
   Lattice lattice_;
-  std::optional<CommonLattice> common_;  // set by of_one_placement()
-  std::shared_ptr<const World> world_;   // the maps from each solid to the grid; set by in_world()
+  std::optional<CommonLattice> common_;  // the lattice that of_one_placement() sets
+  std::shared_ptr<const World> world_;   // the maps from solids to the grid that in_world() sets
   const Placement* placement_ = nullptr;
   std::vector<Box> boxes_;
   std::vector<std::array<bool, 3>> rounded_axes_;

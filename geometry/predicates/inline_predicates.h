@@ -84,7 +84,7 @@ struct InlinePredicates {
   /// The sign of `value` if rounding cannot have changed it, else 0. `factor` is the size of the
   /// numbers by which products of differences are multiplied.
   static int certain_sign(double value, double size, double factor) {
-    constexpr double kLargest = 1e300;  // below this value nothing has overflowed
+    constexpr double kLargest = 1e300;  // a bound of numbers that have not overflowed
     const double error = kRelativeError * size + kUnderflow * factor + kUnderflow;
     if (!(size < kLargest)) return 0;
     return value > error ? 1 : value < -error ? -1 : 0;

@@ -89,7 +89,7 @@ class FacetTriangulator {
   std::span<const Point> vertices_;
   Projection projection_;
   std::vector<Index> used_;            // the facet's vertices, ascending, once each
-  std::vector<VertexHandle> handles_;  // parallel to used_
+  std::vector<VertexHandle> handles_;  // the handles of the vertices in used_
   std::vector<Index> scratch_;
 };
 

@@ -29,7 +29,7 @@ Projection facet_projection(const Solid& solid, Index facet);
 
 enum class FacetState : std::uint8_t {
   triangulated,
-  degenerate,  // no area: nothing to triangulate
+  degenerate,  // the facet has no area
   not_simple,  // rings cross, touch or nest wrongly in the projection: no triangulation
 };
 

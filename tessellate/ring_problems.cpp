@@ -98,7 +98,7 @@ class RingExaminer {
   std::vector<DividedRing> divided_;
   std::vector<Edge> edges_;
   std::vector<Box> boxes_;         // the box of each ring in the plane of projection
-  std::vector<bool> is_left_out_;  // rings that are short, collapsed or a duplicate
+  std::vector<bool> is_left_out_;  // ring -> whether it is short, collapsed or a duplicate
   RingProblems result_;
 };
 

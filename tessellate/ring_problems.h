@@ -32,7 +32,7 @@ struct RingProblem {
 };
 
 struct RingProblems {
-  std::vector<RingProblem> problems;  // ordered by ring, edge, other ring, other edge
+  std::vector<RingProblem> problems;  // ordered by ring, kind, edge, other ring, other edge
   bool is_complete = true;  // false: more than `most` problems, too many pairs, or cancelled
 };
 

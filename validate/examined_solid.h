@@ -131,7 +131,8 @@ class ExaminedSolid {
   std::vector<bool> is_faulty_;
   std::vector<bool> is_not_planar_;
   std::vector<std::pair<Index, Index>> junctions_;  // a facet and a vertex that it lacks
-  std::vector<std::pair<Index, Index>> owners_;     // such a vertex and a facet that has it
+  std::vector<std::pair<Index, Index>>
+      owners_;  // a vertex of junctions_ and a facet that has this vertex
 };
 
 }  // namespace watertight::validate

@@ -56,7 +56,7 @@ struct FindingKind {
   int code = 0;
   std::string_view name;
   Severity severity = Severity::error;
-  std::string_view summary;    // one clause, lower case
+  std::string_view summary;    // the meaning of the code, one clause in lower case
   std::string_view hint = {};  // a way to repair the defect, one sentence
   bool is_repairable = false;  // true if a program can repair it without guessing what was meant
 };

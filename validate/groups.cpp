@@ -107,7 +107,7 @@ class GroupExaminer {
   std::vector<Index> present_;     // the valid members, ascending
   std::vector<Index> number_;      // member -> its index in present_, or kNone
   std::optional<GroupGrid> grid_;  // the grid of all members; none if their placements differ
-  std::vector<Box> boxes_;         // boxes that contain the members
+  std::vector<Box> boxes_;         // member -> a box that contains it
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
   geometry::DisjointSets connected_;
   std::vector<Finding> duplicates_;

@@ -39,7 +39,7 @@ struct GroupReport {
   /// `undecided` if the comparison was cancelled or not possible, as when the members' coordinates
   /// have no exact common grid; not_run has the reason.
   Verdict verdict = Verdict::valid;
-  std::vector<Finding> findings;       // ordered by code, then by pair
+  std::vector<Finding> findings;       // the findings, ordered by code, then by pair
   std::uint64_t findings_omitted = 0;  // the number of findings beyond Limits::findings
   std::vector<SkippedRule> not_run;
 };

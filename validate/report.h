@@ -34,8 +34,9 @@ struct Finding {
   int code = 0;  // the number of the finding in docs/findings.md
   Severity severity = Severity::error;
   Place place = {};
-  std::optional<Place> other = {};                    // the place of the other element of a pair
-  std::optional<std::array<double, 3>> witness = {};  // world coordinates, correctly rounded
+  std::optional<Place> other = {};  // the place of the other element of a pair
+  std::optional<std::array<double, 3>> witness =
+      {};  // the world coordinates of the witness, correctly rounded
   std::optional<double> measured = {};
   std::optional<double> limit = {};
   std::string unit = {};    // the unit of measured and limit: "m", "degree", "facets", ...
@@ -58,13 +59,13 @@ struct TolerantVerdict {
 struct Report {
   Verdict verdict = Verdict::undecided;
   std::string undecided_reason;        // "" unless the verdict is undecided
-  std::vector<Finding> findings;       // ordered by level, then place
+  std::vector<Finding> findings;       // the findings, ordered by level, then place
   std::uint64_t findings_omitted = 0;  // the number of findings that are not in `findings`
   std::vector<SkippedRule> not_run;
   std::vector<int> first_level;             // the codes that val3dity would report, sorted
-  std::optional<TolerantVerdict> tolerant;  // present if asked for; decides nothing
+  std::optional<TolerantVerdict> tolerant;  // present if asked for; no decision depends on it
   Acceptance acceptance;
-  std::vector<std::string> notes;               // e.g. unit assumptions
+  std::vector<std::string> notes;               // remarks, e.g. on assumed units
   std::vector<delaunay::RungAttempt> attempts;  // the attempts on the ladder
   delaunay::Rung rung = delaunay::Rung::none;
   /// The refilled facets of the accepted tetrahedralization; the exact tests judged the canonical

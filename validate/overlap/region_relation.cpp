@@ -111,8 +111,9 @@ Location locate_triangle(const std::array<Point, 3>& corners, const RegionSurfac
 struct Side {
   const RegionSurface* surface = nullptr;
   std::vector<Index> triangles;
-  std::vector<char> is_touched = {};   // 1 if the triangle meets the other boundary
-  std::vector<char> shares_area = {};  // 1 if it shares an area with a triangle of the other side
+  std::vector<char> is_touched = {};  // 1 if the triangle meets the other boundary
+  std::vector<char> shares_area =
+      {};  // 1 if the triangle shares an area with one of the other side
 };
 
 class Comparison {
@@ -300,7 +301,8 @@ class TriangleSides {
   std::vector<Index> free_;
   geometry::DisjointSets parts_{0};
   std::vector<Location> known_;
-  std::map<Index, Location> touched_;  // corners of triangles that meet the other surface
+  std::map<Index, Location>
+      touched_;  // corner of a triangle that meets the other surface -> location
 };
 
 /// True if the insides of two regions meet, by (3); requires that (1) has not shown it. With

@@ -59,7 +59,7 @@ struct OverlapExtent {
   /// Metres. Each connected part of the overlap lies between two parallel planes at most this far
   /// apart.
   double depth = 0;
-  std::optional<Point> witness;  // inside both solids, exactly
+  std::optional<Point> witness;  // a point that is exactly inside both solids
 };
 
 /// Measures, in doubles, how far two solids overlap. The depth of a part of the overlap is its

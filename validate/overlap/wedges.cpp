@@ -60,7 +60,8 @@ std::vector<Wedge> shared_wedges(const Solid& solid, const tessellate::FacetTria
     }
   }
   std::sort(sectors.begin(), sectors.end());
-  std::vector<std::tuple<Index, Index, Index>> arrivals;  // vertex, vertex before it, corner
+  std::vector<std::tuple<Index, Index, Index>>
+      arrivals;  // vertex, the vertex before it in its ring, corner
   for (const Passage& passage : passages) {
     arrivals.emplace_back(passage.vertex, passage.before, passage.corner);
   }

@@ -125,7 +125,7 @@ class PartCounter {
   }
 
   std::optional<InteriorParts> count() {
-    std::map<Index, std::vector<Index>> classes;  // root -> triangles
+    std::map<Index, std::vector<Index>> classes;  // root of a class -> triangles
     for (Index t = 0; t < facets_.triangles.size(); ++t) classes[sides_.root(t)].push_back(t);
     InteriorParts parts;
     double least = 0;

@@ -15,7 +15,7 @@ namespace {
 /// The number of pairs at which the first search stops: enough for any report. If all these pairs
 /// are allowed contacts of shells, the search is repeated with a higher limit, up to kLastLimit.
 constexpr std::uint64_t kFirstLimit = 20'000;
-constexpr std::uint64_t kLastLimit = 10'000'000;  // some 550 MB
+constexpr std::uint64_t kLastLimit = 10'000'000;  // the pairs then take some 550 MB
 
 struct FacetPair {
   Index first = 0;

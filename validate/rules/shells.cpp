@@ -299,7 +299,7 @@ void ShellExaminer::check_components() {
   };
   topology_.is_connected = std::none_of(anchor.begin(), anchor.end(), is_apart);
   if (topology_.is_connected) return;
-  std::map<Index, std::vector<Index>> components;  // root vertex -> facets
+  std::map<Index, std::vector<Index>> components;  // root of a set of vertices -> facets
   for (Index i = 0; i < anchor.size(); ++i) {
     if (anchor[i] != kNone) components[vertices.root(anchor[i])].push_back(facets_.begin + i);
   }
@@ -334,7 +334,8 @@ void ShellExaminer::check_orientation() {
   if (topology_.is_oriented) return;
   std::vector<Link> links;
   for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
-    if (!bounds_region(a.facet) || !bounds_region(b.facet)) return;  // its facet has no side
+    if (!bounds_region(a.facet) || !bounds_region(b.facet))
+      return;  // a facet without a region has no side
     const bool is_conflict = edges_.is_forward(a) == edges_.is_forward(b);
     links.push_back({local(a.facet), local(b.facet), is_conflict});
     links.push_back({local(b.facet), local(a.facet), is_conflict});

@@ -346,7 +346,7 @@ std::vector<Index> check_duplicate_shells(ExaminedSolid& examined) {
     if (!triangles.empty()) shells.emplace_back(std::move(triangles), shell);
   }
   std::sort(shells.begin(), shells.end());
-  std::vector<ShellPair> pairs;  // duplicate, original
+  std::vector<ShellPair> pairs;  // pairs of a duplicate and its original
   for (std::size_t i = 1; i < shells.size(); ++i) {
     if (shells[i].first != shells[i - 1].first) continue;
     const Index before = shells[i - 1].second;

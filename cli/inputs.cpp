@@ -34,6 +34,7 @@ Result<Input> input_of_blob(const std::string& path, ByteView bytes, const Limit
   feature.srid = decoded->info.srid;
   feature.solids.push_back(SubmittedSolid{std::move(decoded->solid), {}, {}});
   Input input{InputKind::blob, {}};
+  // Like EWKB, a blob is one solid without a document around it.
   input.document.format = Format::ewkb;
   input.document.features.push_back(std::move(feature));
   return input;

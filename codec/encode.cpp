@@ -91,8 +91,8 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
 
 /// Automatic mode chooses for one solid at a time, but models learn from the solids before. A small
 /// page can therefore be smaller in one mode for all its solids: pages up to this size are tried in
-/// each mode too. Larger pages would win next to nothing (The Hague: 2 bytes of 20,717) for a third
-/// of the time.
+/// each mode too. On larger pages the trials would take a third of the encoder's time and win
+/// next to nothing (The Hague: 2 bytes of 20,717).
 constexpr std::size_t kFewBytes = 2048;
 
 Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,

@@ -175,9 +175,8 @@ double world_area(const Solid& solid, std::span<const Triangle> triangles) {
       u[at] = (solid.vertices()[b][axis] - origin) * scale[at];
       v[at] = (solid.vertices()[c][axis] - origin) * scale[at];
     }
-    area.add(std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                        u[0] * v[1] - u[1] * v[0]) /
-             2);
+    const Vector3 normal = cross(u, v);
+    area.add(std::hypot(normal[0], normal[1], normal[2]) / 2);
   }
   return area.value();
 }

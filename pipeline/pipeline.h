@@ -114,6 +114,8 @@ struct IngestOptions : FeatureEncoding {
 
 /// A feature with its solids encoded.
 struct EncodedFeature : store::FeatureRecord {
+  /// Feature::skeleton; before it, a line for each solid whose equal vertices were merged; after
+  /// it, a line feed and Feature::layout if the feature has one (pipeline/stored_feature.cpp).
   std::string skeleton;
 };
 

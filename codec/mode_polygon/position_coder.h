@@ -121,7 +121,7 @@ class PositionCoder {
   bool predict_on_walls(Prediction& prediction) const;
   void code_height(Index vertex);
   bool code_height_on_planes(Index vertex);
-  void code_other_height(Index vertex);
+  void code_other_height();
   void remember_direction(Index vertex);
   bool follow_direction(Flat& direction) const;
   void remember_height(std::int64_t height);

@@ -74,7 +74,7 @@ void PositionCoder::code_height(Index vertex) {
   if (vertex == 0) {
     code_first(2);
   } else if (!code_height_on_planes(vertex)) {
-    code_other_height(vertex);
+    code_other_height();
   }
 }
 
@@ -110,7 +110,7 @@ bool PositionCoder::code_height_on_planes(Index /*vertex*/) {
   return true;
 }
 
-void PositionCoder::code_other_height(Index /*vertex*/) {
+void PositionCoder::code_other_height() {
   // The heights of the neighbours are offered first, then the heights that were coded last.
   std::array<std::int64_t, kHeightLimit> offered{};
   std::array<std::uint32_t, kHeightLimit> source{};

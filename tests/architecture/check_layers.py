@@ -239,7 +239,7 @@ def check_unfinished(tree):
 def check_length(tree):
     for name in tree.includes:
         lines = tree.text[name].count("\n")
-        if folder_of(name) and lines > MAX_LINES:
+        if lines > MAX_LINES:
             yield f"{name}: length: {lines} lines, at most {MAX_LINES}"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Delaunay tetrahedralization with the rule for ties of docs/format.md, found face by face."""
+"""The Delaunay tetrahedralization with the rule for ties of docs/format-delaunay.md, found face by face."""
 import itertools
 from fractions import Fraction
 

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <map>
 
+
+#include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
@@ -236,9 +238,9 @@ Exit run(const ExportCommand& command) {
   }
   const Status status = writer->commit();
   if (!status) return fail(output, status.error());
-  std::fprintf(stderr, "watertight: %llu features with %llu solids written\n",
-               static_cast<unsigned long long>(exporting->exported().features),
-               static_cast<unsigned long long>(exporting->exported().solids));
+  std::fprintf(stderr, "watertight: %s with %s written\n",
+               quantity(exporting->exported().features, "feature").c_str(),
+               quantity(exporting->exported().solids, "solid").c_str());
   return Exit::valid;
 }
 

@@ -74,6 +74,9 @@ bool is_listed(std::string_view list, std::string_view etag) {
 Result<Bytes> blob_of(const StoredFeature& feature, const Target& target) {
   const std::string* text = target.parameter("solid");
   const std::string count = std::to_string(feature.solids.size());
+  if (feature.solids.empty()) {
+    return Error{ErrorCode::not_encodable, "this feature has no solids, so there is no blob of it"};
+  }
   std::size_t solid = 0;
   if (text != nullptr) {
     const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), solid);

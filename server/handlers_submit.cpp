@@ -59,8 +59,8 @@ Status read_tolerance(const Target& target, std::string_view name, double limit,
   const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
   if (error != std::errc{} || end != text->data() + text->size() || !(number > 0) ||
       number > limit) {
-    return Error{ErrorCode::invalid_argument,
-                 std::string(name) + " is a number above 0, at most " + std::to_string(limit)};
+    return Error{ErrorCode::invalid_argument, std::string(name) + " is a number above 0, at most " +
+                                                  std::to_string(static_cast<int>(limit))};
   }
   value = number;
   return Done{};

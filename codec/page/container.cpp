@@ -140,7 +140,6 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
   const std::uint8_t first = reader.u8();
   const std::uint8_t second = reader.u8();
   const std::uint8_t version = reader.u8();
-  const std::uint8_t models = reader.u8();
   if (reader.failed()) return reader.error("header");
   if (first != kMagic[0] || second != kMagic[1]) {
     return Error{ErrorCode::malformed, "this is not a blob: it does not start with WT", 0};
@@ -155,6 +154,8 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
     return Error{ErrorCode::malformed,
                  kind == PageKind::page ? "a blob, not a page" : "a page, not a blob", 2};
   }
+  const std::uint8_t models = reader.u8();
+  if (reader.failed()) return reader.error("header");
   return models;
 }
 

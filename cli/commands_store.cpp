@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <map>
 
-
 #include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/files.h"

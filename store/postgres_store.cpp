@@ -30,6 +30,8 @@ constexpr double kLeaseSeconds = 30;
 constexpr double kPingLeaseSeconds = 2;
 // Receipts are swept at the start and after this many writes.
 constexpr std::uint64_t kWritesPerSweep = 1000;
+// The changes of collections' counts are summed up at the start and after this many writes.
+constexpr std::uint64_t kWritesPerFold = 100;
 
 /// Waits longer each time, until the patience is used up.
 class Backoff {
@@ -102,6 +104,12 @@ class PostgresStore final : public SolidStore {
     if (!check_collection_id(id)) return no_such_collection();
     return read<StoredCollection>(
         [&](DatabaseSession& session) { return read_collection(session, id); });
+  }
+
+  Result<StoredCollection> recount(const std::string& id) override {
+    if (!check_collection_id(id)) return no_such_collection();
+    return write<StoredCollection>(
+        [&](DatabaseSession& session) { return recount_collection(session, id); });
   }
 
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
@@ -238,8 +246,22 @@ class PostgresStore final : public SolidStore {
           "the database went away while it committed; whether this was stored is not known (" +
               result.error().message + ")"};
     }
-    if (result && ++writes_ % kWritesPerSweep == 1) sweep();
+    if (!result) return result;
+    const std::uint64_t writes = ++writes_;
+    if (writes % kWritesPerFold == 1) fold();
+    if (writes % kWritesPerSweep == 1) sweep();
     return result;
+  }
+
+  /// Keeps the changes few that a reader of a collection's counts sums up.
+  void fold() {
+    const Result<Done> folded = with_session<Done>([](DatabaseSession& session) -> Status {
+      if (const Result<Rows> begun = session.run("BEGIN"); !begun) return begun.error();
+      if (Status done = fold_changes(session); !done) return done;
+      if (const Result<Rows> ended = session.run("COMMIT"); !ended) return ended.error();
+      return Done{};
+    });
+    static_cast<void>(folded);  // the next one takes what this one left
   }
 
   /// Removes old receipts, and headers that no feature uses any more.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Letters of ASCII, whatever the locale.
+// Lower case of ASCII letters, whatever the locale.
 #pragma once
 
 #include <algorithm>

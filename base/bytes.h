@@ -30,9 +30,9 @@ class ByteWriter {
   void u32(std::uint32_t value);
   void u64(std::uint64_t value);
   void f64(double value);
-  /// LEB128: seven bits a byte, low bits first, 1 to 10 bytes.
+  /// Writes LEB128: seven bits a byte, low bits first, 1 to 10 bytes.
   void varint(std::uint64_t value);
-  /// Zigzag (0, -1, 1, -2, ...), then LEB128.
+  /// Writes zigzag (0, -1, 1, -2, ...) as LEB128.
   void zigzag(std::int64_t value);
   void append(ByteView bytes);
 
@@ -55,7 +55,8 @@ class ByteReader {
   std::uint32_t u32();
   std::uint64_t u64();
   double f64();
-  /// Fails on more than 10 bytes, on overflow and on a non-minimal form (one value, one encoding).
+  /// Reads LEB128. Fails on more than 10 bytes, on overflow and on a non-minimal form (one value,
+  /// one encoding).
   std::uint64_t varint();
   std::int64_t zigzag();
   ByteView take(std::size_t count);
@@ -63,7 +64,7 @@ class ByteReader {
   bool failed() const { return failed_; }
   std::size_t position() const { return position_; }
   std::size_t remaining() const { return bytes_.size() - position_; }
-  /// "truncated or malformed <what>" at the position of the first failed read.
+  /// The error "truncated or malformed <what>" at the position of the first failed read.
   Error error(std::string_view what) const;
 
  private:

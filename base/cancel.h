@@ -7,8 +7,8 @@
 
 namespace watertight {
 
-/// Long work calls it now and then. It returns true when nobody wants the result any more (time is
-/// up, the client has left, the service stops). Empty: the work is never ended.
+/// A function that long work calls now and then. It returns true when nobody wants the result any
+/// more (time is up, the client has left, the service stops). Empty: the work is never ended.
 using CancelPoll = std::function<bool()>;
 
 }  // namespace watertight

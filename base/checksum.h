@@ -10,8 +10,8 @@
 
 namespace watertight {
 
-/// CRC-32C (Castagnoli, polynomial 0x1EDC6F41, reflected, as in RFC 3720). crc32c("123456789")
-/// is 0xE3069283. Cost: linear.
+/// CRC-32C (Castagnoli, polynomial 0x1EDC6F41, reflected, as in RFC 3720). `previous` is the result
+/// for the bytes before. crc32c("123456789") is 0xE3069283. Cost: linear.
 std::uint32_t crc32c(ByteView bytes, std::uint32_t previous = 0);
 
 /// FNV-1a, 64 bits. Cost: linear.

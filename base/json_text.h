@@ -28,7 +28,7 @@ class JsonText {
   JsonText& value(std::string_view string);
   JsonText& value(const char* string) { return value(std::string_view(string)); }
   JsonText& value(bool truth);
-  JsonText& value(double number);  // the shortest that reads back; null when not finite
+  JsonText& value(double number);  // the shortest text that reads back; null when not finite
   JsonText& value(std::int64_t number);
   JsonText& value(std::uint64_t number);
   JsonText& value(std::uint32_t number);

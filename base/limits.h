@@ -9,13 +9,13 @@
 namespace watertight {
 
 struct Limits {
-  std::uint64_t bytes = 1ULL << 30;     // of one document or blob
-  std::uint64_t vertices = 10'000'000;  // of one solid (and of one feature)
-  std::uint64_t facets = 10'000'000;    // of one solid
-  std::uint64_t rings = 10'000'000;     // of one solid
-  std::uint64_t shells = 1'000'000;     // of one solid
-  std::uint32_t nesting = 64;           // depth of nested arrays and objects in a document
-  std::uint64_t findings = 10'000;      // kept per report; more are counted only
+  std::uint64_t bytes = 1ULL << 30;     // the most bytes of a document or blob
+  std::uint64_t vertices = 10'000'000;  // the most vertices of a solid (and of a feature)
+  std::uint64_t facets = 10'000'000;    // the most facets of a solid
+  std::uint64_t rings = 10'000'000;     // the most rings of a solid
+  std::uint64_t shells = 1'000'000;     // the most shells of a solid
+  std::uint32_t nesting = 64;           // the deepest nesting of arrays and objects in a document
+  std::uint64_t findings = 10'000;      // the most findings kept in a report; more are only counted
 };
 
 }  // namespace watertight

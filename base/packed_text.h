@@ -8,7 +8,8 @@
 
 namespace watertight {
 
-/// formats/text/packed_text.h makes and opens it; others only pass it on.
+/// A compressed text, which formats/text/packed_text.h makes and opens; other files only pass it
+/// on.
 struct PackedText {
   Bytes bytes;
   friend bool operator==(const PackedText&, const PackedText&) = default;

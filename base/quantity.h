@@ -9,7 +9,8 @@
 
 namespace watertight {
 
-/// "1 facet", "2 facets". `plural` is for nouns whose plural does not end in s alone.
+/// A count with its noun: "1 facet", "2 facets". `plural` is for nouns whose plural does not end in
+/// s alone.
 inline std::string quantity(std::uint64_t count, std::string_view noun,
                             std::string_view plural = {}) {
   std::string text = std::to_string(count);

@@ -31,11 +31,11 @@ enum class ErrorCode : std::uint8_t {
 /// The code as the lower-case word used in every report, e.g. "limit-exceeded".
 std::string_view to_string(ErrorCode code);
 
-/// Why something could not be done, and where.
+/// The reason why something could not be done, and the place.
 struct Error {
   ErrorCode code = ErrorCode::malformed;
   std::string message;                            // one sentence for the person who sent the input
-  std::optional<std::uint64_t> byte_offset = {};  // into the bytes that were read
+  std::optional<std::uint64_t> byte_offset = {};  // offset into the bytes that were read
   std::string pointer = {};                       // JSON Pointer (RFC 6901) into the document
 };
 

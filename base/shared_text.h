@@ -12,7 +12,7 @@
 
 namespace watertight {
 
-/// Immutable; copies share the bytes. Copies of one another compare in constant time.
+/// An immutable text. Copies share the bytes, and copies of one text compare in constant time.
 class SharedText {
  public:
   SharedText() = default;

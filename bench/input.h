@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Files as the programs of bench/ take them.
+// Reads files for the programs of bench/.
 #pragma once
 
 #include <filesystem>

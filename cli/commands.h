@@ -14,10 +14,10 @@ namespace watertight::cli {
 
 struct ValidateCommand {
   std::vector<std::string> files;
-  std::string report;                        // files to write the reports to, "" for none: JSON,
-  std::string geojson;                       // a layer of the findings,
-  std::string html;                          // a page
-  std::vector<std::string> interior_shells;  // files with cavities of the one solid of the one file
+  std::string report;                        // file for the JSON report, "" for none
+  std::string geojson;                       // file for a layer of the findings, "" for none
+  std::string html;                          // file for an HTML page, "" for none
+  std::vector<std::string> interior_shells;  // files with cavities of the document's only solid
   double planarity_metres = 0.01;
   double planarity_degrees = 20;
   double overlap_metres = 0;
@@ -63,7 +63,7 @@ struct ConvertCommand {
 };
 Exit run(const ConvertCommand& command);
 
-/// Where the solids are kept.
+/// The choice of the store for the solids.
 struct StoreChoice {
   std::string data_directory;
   std::string database_url;
@@ -99,7 +99,7 @@ void complain(const std::string& file, const Error& error);
 
 /// The findings of a feature's solids and groups, as lines on standard output.
 void print_findings(const std::string& file, const pipeline::InspectedFeature& feature);
-/// The same for all features of a document.
+/// The findings of all features of a document, as lines on `out`.
 void print_findings(const std::string& file, const pipeline::IngestOutcome& outcome,
                     std::FILE* out = stdout);
 

@@ -42,7 +42,8 @@ Exit refuse_to_replace(const std::string& input, const std::string& output) {
               {ErrorCode::invalid_argument, "the output '" + output + "' would replace the input"});
 }
 
-/// Rounding changes even a valid solid, so that it must not pass in silence.
+/// Warns of rounded coordinates: rounding changes even a valid solid, so it must not pass in
+/// silence.
 void tell_rounded(const std::string& file, const pipeline::IngestOutcome& outcome) {
   for (const pipeline::FeatureOutcome& feature : outcome.features) {
     for (const pipeline::SolidOutcome& solid : feature.solids) {
@@ -93,7 +94,7 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::EncodedDocument
       "--bare needs a document with exactly one solid; this one has " + std::to_string(solids)};
 }
 
-/// The documents of a Watertight file, or that of a blob.
+/// The documents of a Watertight file, or the one document of a blob.
 Result<std::vector<Document>> load_encoded(const std::string& path) {
   const auto bytes = read_file(path, {});
   if (!bytes) return bytes.error();
@@ -108,7 +109,7 @@ Result<std::vector<Document>> load_encoded(const std::string& path) {
   return documents;
 }
 
-/// "town.city.jsonl", "town-2.city.jsonl", ...: where document `number` goes.
+/// The file for document `number`: "town.city.jsonl", "town-2.city.jsonl", ...
 std::string numbered(const std::string& output, std::size_t number) {
   if (number == 0) return output;
   const std::size_t name = output.rfind('/') + 1;  // 0 without a folder
@@ -120,9 +121,9 @@ std::string numbered(const std::string& output, std::size_t number) {
   return result + output.substr(ending);
 }
 
-/// Writes each document to a file of its own; none if one cannot be converted or written (a rename
-/// that fails in the end leaves those before it). They were read from `input`, which the message
-/// about a failed conversion names.
+/// Writes each document to a file of its own; writes none if one cannot be converted or written (if
+/// a rename fails in the end, the files before it stay). The documents were read from `input`,
+/// which the message about a failed conversion names.
 Exit save(std::span<const Document> documents, const std::string& input,
           const std::string& output) {
   std::vector<std::string> names;
@@ -183,7 +184,7 @@ void print_info(const Json& json, const std::string& indent) {
   }
 }
 
-/// Each once, in their order.
+/// The name of each format once, in the order of `formats`.
 std::string names_of(std::span<const Format> formats) {
   std::set<Format> named;
   std::string names;
@@ -206,7 +207,7 @@ Result<Json> info_of_container(ByteView bytes) {
   json["pages"] = info->pages;
   json["solidBytes"] = info->solid_bytes;
   json["documentBytes"] = bytes.size() - info->solid_bytes;
-  // A sum of hundredths in binary is not a whole number of hundredths.
+  // Sums of hundredths are rounded again, because binary numbers do not hold hundredths exactly.
   for (const auto& [name, size] : info->parts) json["parts"][name] = std::round(size * 100) / 100;
   return json;
 }
@@ -220,7 +221,7 @@ Result<Json> info_of(ByteView bytes) {
   return json_of(*info);
 }
 
-/// Bytes of all solids in one mode.
+/// The bytes of all solids in one mode.
 struct ModeTotal {
   std::uint64_t solids = 0;  // the number of solids that the mode can hold
   std::uint64_t bytes = 0;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// serve, ingest and export: the commands with a store.
+// The commands serve, ingest and export, which use a store.
 #include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 
+#include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
@@ -45,7 +46,7 @@ Result<OpenedStore> open_store(const StoreChoice& choice) {
   return opened;
 }
 
-/// "127.0.0.1:8080", "[::1]:8080" or ":8080".
+/// Reads "127.0.0.1:8080", "[::1]:8080" or ":8080".
 Status read_listen(const std::string& text, server::ServerOptions& options) {
   const Error wrong{ErrorCode::invalid_argument,
                     "'" + text + "' is not ADDRESS:PORT (example: 127.0.0.1:8080)"};
@@ -61,11 +62,11 @@ Status read_listen(const std::string& text, server::ServerOptions& options) {
   return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
 }
 
-/// Id -> file, for the features of this run.
+/// The file of each feature that this run has stored, by the feature's id.
 using FilesOfFeatures = std::map<std::string, std::string>;
 
-/// Features of formats without ids are named after their file: house, house-2, ... Errors: conflict
-/// where a file of this run has given that name already, as such features would replace each other.
+/// Names features without ids after their file: house, house-2, ... Errors: conflict if another
+/// file of this run has given that name already, as such features would replace each other.
 Status name_features(Document& document, const std::string& file, const FilesOfFeatures& files) {
   const std::string stem = std::filesystem::path(file).stem().string();
   std::size_t unnamed = 0;
@@ -80,8 +81,8 @@ Status name_features(Document& document, const std::string& file, const FilesOfF
   return Done{};
 }
 
-/// Remembers which features this file stored, and prints which earlier ones of the run they
-/// replaced.
+/// Remembers which features this file stored, and prints which features of earlier files of the run
+/// they replaced.
 void tell_replaced(const pipeline::IngestOutcome& outcome, const std::string& file,
                    FilesOfFeatures& files) {
   for (const pipeline::FeatureOutcome& feature : outcome.features) {
@@ -162,7 +163,8 @@ Exit run(const IngestCommand& command) {
     return Exit::error;
   }
   const pipeline::IngestOptions options = ingest_options(command, *contract);
-  // Before the store: as root, opening that gives up the right to open other users' files.
+  // The files are opened before the store: as root, opening the store gives up the right to open
+  // other users' files.
   auto opened_files = open_files(command.files);
   auto opened = open_store(command.store);
   auto store = opened ? store::open_postgres_store(opened->connection)
@@ -235,9 +237,9 @@ Exit run(const ExportCommand& command) {
   }
   const Status status = writer->commit();
   if (!status) return fail(output, status.error());
-  std::fprintf(stderr, "watertight: %llu features with %llu solids written\n",
-               static_cast<unsigned long long>(exporting->exported().features),
-               static_cast<unsigned long long>(exporting->exported().solids));
+  std::fprintf(stderr, "watertight: %s with %s written\n",
+               quantity(exporting->exported().features, "feature").c_str(),
+               quantity(exporting->exported().solids, "solid").c_str());
   return Exit::valid;
 }
 

@@ -75,7 +75,7 @@ void print_solid(const std::string& file, const SolidSource& source, const Repor
     print("  " + printable(line) + "\n", out);
 }
 
-/// `source_of(i)` is where the feature's solid i stands.
+/// Prints the findings of groups. `source_of(i)` is the source of the feature's solid i.
 template <class SourceOf>
 void print_groups(const std::string& file, const std::vector<pipeline::InspectedGroup>& groups,
                   const SourceOf& source_of, std::FILE* out) {
@@ -95,7 +95,7 @@ void print_groups(const std::string& file, const std::vector<pipeline::Inspected
 
 std::string output_name(const std::string& path) { return path == "-" ? "standard output" : path; }
 
-/// One of the files that a run writes beside its output.
+/// One of the reports that a run writes to files.
 struct OpenReport {
   std::unique_ptr<FileWriter> file;
   std::unique_ptr<report::FeatureReport> report;
@@ -145,7 +145,7 @@ class Validation {
   Exit exit_ = Exit::valid;
 };
 
-/// By an input, or by a report that is open already.
+/// Whether a path is that of an input, or of a report that is open already.
 bool Validation::is_in_use(const std::string& path) const {
   const auto is_it = [&](const std::string& other) { return is_same_file(path, other); };
   const auto is_report = [&](const OpenReport& open) { return is_it(open.path); };
@@ -181,7 +181,7 @@ bool Validation::open_reports() {
   return true;
 }
 
-/// Errors: the first report's, naming its file.
+/// Passes a call to all reports. Errors: the first report's error, naming its file.
 template <class Call>
 Status Validation::tell_reports(const Call& call) {
   for (OpenReport& open : reports_) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kChunk = 1 << 16;
 
-/// Callers name the file.
+/// The error of a system call. Callers add the name of the file.
 Error file_error(int error) { return Error{ErrorCode::unavailable, std::strerror(error)}; }
 
 /// A descriptor that closes itself.
@@ -41,7 +41,7 @@ class Descriptor {
   int number_;
 };
 
-/// 0 or the error number.
+/// Writes all bytes. Returns 0 or the error number.
 int write_all(int descriptor, ByteView bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
@@ -52,7 +52,7 @@ int write_all(int descriptor, ByteView bytes) {
   return 0;
 }
 
-/// Permissions of the file that is replaced, else those that the umask gives.
+/// The permissions of the file that is replaced, else those that the umask gives.
 mode_t permissions_for(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) return status.st_mode & 0777U;
@@ -71,7 +71,7 @@ int open_to_read(const std::string& path) {
   return path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
 }
 
-/// Bytes read, or the error number.
+/// Reads at most as many bytes as `bytes` holds; returns their number.
 Result<std::size_t> read_some(int descriptor, std::span<std::uint8_t> bytes) {
   for (;;) {
     const ssize_t count = ::read(descriptor, bytes.data(), bytes.size());
@@ -80,7 +80,7 @@ Result<std::size_t> read_some(int descriptor, std::span<std::uint8_t> bytes) {
   }
 }
 
-/// The file that a link leads to, be it there or not: like `cp`, writing keeps the link.
+/// The file that a link leads to, whether it exists or not: like `cp`, writing keeps the link.
 Result<std::string> behind_links(const std::string& path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
@@ -94,13 +94,14 @@ Result<std::string> behind_links(const std::string& path) {
   return place.string();
 }
 
-/// A file that may not be written is not replaced, although its folder would allow that.
+/// Whether a file may not be written. Such a file is not replaced, although its folder would allow
+/// that.
 bool is_read_only(const std::string& path) {
   return ::access(path.c_str(), F_OK) == 0 && ::access(path.c_str(), W_OK) != 0;
 }
 
-/// A new file in the folder of `path`: without a name where the system can do that, so that
-/// nothing is left of a program that is killed; else `name` becomes its name.
+/// Opens a new file in the folder of `path`: without a name where the system can do that, so that a
+/// program that is killed leaves nothing behind; else `name` becomes its name.
 int open_beside(const std::string& path, std::string& name) {
   const std::size_t slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
@@ -112,7 +113,7 @@ int open_beside(const std::string& path, std::string& name) {
   return ::mkstemp(name.data());
 }
 
-/// Gives a file without a name one beside `path`. Returns 0 or the error number.
+/// Gives a file without a name a name beside `path`. Returns 0 or the error number.
 int name_beside(const std::string& path, int descriptor, std::string& name) {
   const std::string file = "/proc/self/fd/" + std::to_string(descriptor);
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -143,10 +144,10 @@ Result<OpenedFile> open_file(const std::string& path) {
 
 std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths) {
   rlimit most{};
-  constexpr std::size_t kOthers = 256;  // the store's, the workers'
+  constexpr std::size_t kOthers = 256;  // descriptors of the store and the workers
   if (::getrlimit(RLIMIT_NOFILE, &most) == 0 && most.rlim_cur < paths.size() + kOthers) {
     most.rlim_cur = std::min<rlim_t>(most.rlim_max, paths.size() + kOthers);
-    ::setrlimit(RLIMIT_NOFILE, &most);  // else opening the files beyond reports it
+    ::setrlimit(RLIMIT_NOFILE, &most);  // after a failure, opening a file beyond the limit fails
   }
   std::vector<Result<OpenedFile>> files;
   for (const std::string& path : paths) files.push_back(open_file(path));
@@ -177,7 +178,7 @@ Result<Bytes> read_file(const std::string& path, const Limits& limits) {
 
 struct FileWriter::State {
   std::string path;
-  std::string temporary;   // its name while it has one and is not the target
+  std::string temporary;   // name of the new file while it has one; "" after commit()
   bool is_direct = false;  // the target itself is written: standard output, a device, a pipe
   Descriptor file;
   std::string buffer;

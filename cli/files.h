@@ -22,36 +22,37 @@ namespace watertight::cli {
 /// A file or standard input, read piece by piece.
 struct OpenedFile {
   formats::ByteSource source;
-  std::optional<std::uint64_t> bytes;  // when it has a size
+  std::optional<std::uint64_t> bytes;  // the size of the file, if it has one
 };
 
-/// Errors: unavailable with the system's reason.
+/// Opens a file for reading. Errors: unavailable with the system's reason.
 Result<OpenedFile> open_file(const std::string& path);
 
-/// All at once, be they more than a process usually may have open.
+/// Opens all files at once, also more than a process usually may have open.
 std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths);
 
-/// Errors: those of the source; limit_exceeded.
+/// Reads a source to its end. Errors: those of the source; limit_exceeded.
 Result<Bytes> read_all(const formats::ByteSource& source, const Limits& limits);
 
-/// Errors: those of open_file() and read_all().
+/// Reads a whole file. Errors: those of open_file() and read_all().
 Result<Bytes> read_file(const std::string& path, const Limits& limits);
 
-/// Writes beside the target and renames, so that nobody sees half a file and a failure leaves the
-/// old one. Errors: unavailable with the reason.
+/// Writes a new file beside the target and renames it, so that nobody sees half a file and a
+/// failure leaves the old file. Errors: unavailable with the reason.
 Status write_file(const std::string& path, ByteView bytes);
 
 /// A file that is written piece by piece, with the promises of write_file().
 class FileWriter {
  public:
-  /// Errors: unavailable with the reason.
+  /// Starts to write a file. Errors: unavailable with the reason.
   static Result<FileWriter> open(const std::string& target);
   FileWriter(FileWriter&&) noexcept;
   FileWriter& operator=(FileWriter&&) = delete;
-  ~FileWriter();  // without commit(), leaves what was there before
+  ~FileWriter();  // without commit(), the old file stays
 
   Status write(std::string_view text);
-  /// Errors: unavailable; then the old file is still there.
+  /// Puts the new file in the place of the old one. Errors: unavailable; then the old file is still
+  /// there.
   Status commit();
 
  private:
@@ -60,7 +61,7 @@ class FileWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Whether writing the one would destroy the other. Devices and pipes can be written many times.
+/// Whether writing one file would destroy the other. Devices and pipes can be written many times.
 bool is_same_file(const std::string& a, const std::string& b);
 
 }  // namespace watertight::cli

@@ -12,7 +12,7 @@
 namespace watertight::cli {
 namespace {
 
-/// Enough bytes to detect the kind.
+/// The number of bytes that are enough to detect the kind.
 constexpr std::size_t kFirstBytes = 8;
 
 Result<Input> input_of_container(ByteView bytes, const Limits& limits) {
@@ -34,12 +34,13 @@ Result<Input> input_of_blob(const std::string& path, ByteView bytes, const Limit
   feature.srid = decoded->info.srid;
   feature.solids.push_back(SubmittedSolid{std::move(decoded->solid), {}, {}});
   Input input{InputKind::blob, {}};
+  // Like EWKB, a blob is one solid without a document around it.
   input.document.format = Format::ewkb;
   input.document.features.push_back(std::move(feature));
   return input;
 }
 
-/// The bytes of `first`, then those of `rest`.
+/// A source of the bytes of `first`, then of those of `rest`.
 formats::ByteSource source_of(Bytes first, formats::ByteSource rest) {
   return [first = std::move(first), rest = std::move(rest),
           given = std::size_t{0}](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
@@ -51,7 +52,7 @@ formats::ByteSource source_of(Bytes first, formats::ByteSource rest) {
   };
 }
 
-/// Fewer than kFirstBytes only where the source ends.
+/// The first bytes of a source: kFirstBytes, or fewer where the source ends.
 Result<Bytes> first_bytes(const formats::ByteSource& source) {
   Bytes first(kFirstBytes);
   std::size_t count = 0;
@@ -71,7 +72,7 @@ InputKind kind_of_input(ByteView bytes) {
   constexpr std::uint8_t kLeastText = 9;  // a tabulator
   if (pipeline::is_container(bytes)) return InputKind::container;
   if (codec::is_page_file(bytes)) return InputKind::page_file;
-  // Magic and a version byte, which no text has.
+  // A blob begins with its magic and a version byte that no text has.
   const bool is_blob =
       bytes.size() > 2 && bytes[0] == 'W' && bytes[1] == 'T' && (bytes[2] & 0x7FU) < kLeastText;
   return is_blob ? InputKind::blob : InputKind::document;

@@ -16,11 +16,11 @@ namespace watertight::cli {
 enum class InputKind : std::uint8_t {
   document,
   container,  // a Watertight file
-  blob,       // or a page, which no command reads by itself
+  blob,       // a blob, or a page, which no command reads by itself
   page_file   // a part of a Watertight file; no command reads one by itself
 };
 
-/// By the first 8 bytes, whatever the name and however damaged the rest is.
+/// The kind by the first 8 bytes, whatever the name and however damaged the rest is.
 InputKind kind_of_input(ByteView bytes);
 
 struct Input {
@@ -28,7 +28,7 @@ struct Input {
   Document document;
 };
 
-/// Errors: those of the readers; unsupported for page files.
+/// Reads an input. Errors: those of the readers; unsupported for page files.
 Result<Input> load_input(const std::string& path, ByteView bytes,
                          const formats::ReadOptions& options);
 
@@ -38,10 +38,10 @@ Error page_file_error();
 /// A document that is read feature by feature; Watertight files and blobs are read whole.
 struct OpenedInput {
   formats::FeatureReader reader;
-  std::optional<std::uint64_t> bytes;  // of the file, when it has a size
+  std::optional<std::uint64_t> bytes;  // the size of the file, if it has one
 };
 
-/// Errors: unavailable with the reason; those of the readers.
+/// Opens an input. Errors: unavailable with the reason; those of the readers.
 Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptions& options);
 
 /// The format that an output file's name asks for. Errors: unsupported naming the known endings.

@@ -49,7 +49,7 @@ void add_store(CLI::App& app, StoreChoice& store) {
   data->excludes(url);
 }
 
-/// Not by CLI11's require_option: a URL may come from the environment.
+/// Requires a store. CLI11's require_option does not do, as a URL may come from the environment.
 void require_store(const StoreChoice& store) {
   if (!store.data_directory.empty() || !store.database_url.empty()) return;
   throw CLI::ValidationError("--data-dir DIR or --database-url URL is required");

@@ -6,7 +6,8 @@
 namespace watertight::cli {
 namespace {
 
-/// Bytes of what is replaced at the front of UTF-8 text, 0 if the terminal may have it.
+/// The number of bytes to replace at the front of UTF-8 text; 0 if the terminal may have the first
+/// character.
 std::size_t length_of_control(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;

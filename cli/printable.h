@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Text of documents on a terminal.
+// Makes text of documents fit for a terminal.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A progress bar with rate and time left on standard error; silent when that is no terminal.
+// A progress bar with rate and time left on standard error, if standard error is a terminal.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// `share` of the whole that is done, 0 to 1, when that is known. Draws at most ten times a
-  /// second. Not for several threads at once.
+  /// Shows the number of features and, if known, the `share` of the whole that is done, 0 to 1.
+  /// Draws at most ten times a second. Not for several threads at once.
   void show(std::uint64_t features, std::optional<double> share);
 
  private:

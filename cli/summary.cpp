@@ -11,7 +11,7 @@ namespace watertight::cli {
 namespace {
 
 std::string row(const std::string& name, const std::string& value) {
-  constexpr std::size_t kNameWidth = 46;  // holds the longest finding name
+  constexpr std::size_t kNameWidth = 46;  // enough for the longest name of a finding
   constexpr std::size_t kValueWidth = 10;
   const std::size_t padding = name.size() < kNameWidth ? kNameWidth - name.size() : 1;
   const std::size_t blanks = value.size() < kValueWidth ? kValueWidth - value.size() : 1;

@@ -28,7 +28,7 @@ class Summary {
 
   /// The table as text.
   std::string table(double seconds) const;
-  /// The same figures as a JSON object.
+  /// The figures of the table as a JSON object.
   std::string json(double seconds) const;
   std::uint64_t solids() const { return valid_ + invalid_ + undecided_; }
 
@@ -41,12 +41,12 @@ class Summary {
   std::uint64_t invalid_ = 0;
   std::uint64_t undecided_ = 0;
   std::uint64_t features_ = 0;
-  std::uint64_t unreadable_ = 0;  // features, or rests of documents
+  std::uint64_t unreadable_ = 0;  // features and rests of documents that could not be read
   std::uint64_t stored_ = 0;
   std::uint64_t file_bytes_ = 0;
   std::uint64_t plain_bytes_ = 0;  // the size of the encoded solids as plain arrays
   std::uint64_t blob_bytes_ = 0;
-  std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; one solid, several codes
+  std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; a solid may have several
   std::map<int, std::uint64_t> groups_by_code_;  // invalid composite solids and buildings
   std::map<delaunay::Rung, std::uint64_t> by_rung_;
 };

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One folder = one target = one responsibility.
+# Each folder is one target with one responsibility.
 
 find_program(WATERTIGHT_CCACHE ccache)
 if(WATERTIGHT_CCACHE)
@@ -7,8 +7,8 @@ if(WATERTIGHT_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${WATERTIGHT_CCACHE}")
 endif()
 
-# The options with which every target of ours is compiled. Contraction is off so that each machine and
-# compiler computes the same doubles.
+# The options with which every target of the project is compiled. Contraction is off so that each
+# machine and compiler computes the same doubles.
 add_library(watertight_options INTERFACE)
 target_include_directories(watertight_options INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_options(watertight_options INTERFACE
@@ -26,7 +26,8 @@ if(WATERTIGHT_FUZZ)
   target_compile_options(watertight_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# CGAL as a system, header-only dependency: no warnings from it, EPICK's rounding mode respected.
+# CGAL as a header-only system dependency, whose headers give no warnings. CGAL::CGAL brings the
+# compiler option for the rounding mode that EPICK sets.
 add_library(watertight_cgal INTERFACE)
 target_link_libraries(watertight_cgal INTERFACE CGAL::CGAL)
 target_compile_definitions(watertight_cgal INTERFACE CGAL_NDEBUG=1)

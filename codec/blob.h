@@ -26,30 +26,30 @@ inline constexpr std::uint8_t kModelNumber = 1;
 
 enum class Mode : std::uint8_t {
   raw = 0,            // vertices and rings listed
-  bitmap = 1,         // the paper's: a bit for each face of the Delaunay tetrahedralization
+  bitmap = 1,         // the paper's mode: a bit for each face of the Delaunay tetrahedralization
   walk = 2,           // columns, then a walk over Delaunay faces
-  polygon = 3,        // a walk over the polygons, then coordinates by planes and right angles
-  parallelogram = 5,  // a front over triangles, each vertex from those around it; 4 is unused
-  automatic = 255     // the smallest of those that can hold the solid
+  polygon = 3,        // a walk over the facets, then coordinates by planes and right angles
+  parallelogram = 5,  // triangles along a front, each vertex predicted from those around it
+  automatic = 255     // the mode with the fewest bytes among those that can hold the solid
 };
 std::string_view to_string(Mode mode);
 
 struct EncodeOptions {
   Mode mode = Mode::automatic;
-  bool keep_order = true;              // decode returns the source order
+  bool keep_order = true;              // true: decode() returns the solid in its source order
   std::uint8_t models = kModelNumber;  // the set of priors (codec/page/model_sets.h)
-  /// With a certificate and mode bitmap: store its Steiner vertices (the paper's setting).
+  /// A certificate whose Steiner vertices mode bitmap stores (the paper's setting), or null.
   const delaunay::Certificate* certificate = nullptr;
 };
 
-/// Encodes, decodes, compares, and only then returns (verify-after-write).
+/// Encodes a solid, decodes the bytes, compares, and only then returns them (verify-after-write).
 /// Errors: not_encodable if the mode cannot hold the solid (automatic always can).
 Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options = {});
 
-/// The parts of a blob, for `info` and `bench/ratio`.
+/// The header and the counts of a blob and the sizes of its parts, for `info` and `bench/ratio`.
 struct BlobInfo {
   std::uint8_t version = 0;
-  std::uint8_t models = 0;  // number of the set of priors; 0: neutral
+  std::uint8_t models = 0;  // the number of the set of priors; 0: neutral
   Mode mode = Mode::raw;
   Acceptance acceptance;
   std::uint32_t srid = 0;
@@ -59,30 +59,31 @@ struct BlobInfo {
   Index facets = 0;
   Index rings = 0;
   Index shells = 0;
-  Index delaunay_faces = 0;  // bits of the bitmap
+  Index delaunay_faces = 0;  // the number of bits of the bitmap (mode bitmap)
   Index marked_faces = 0;
   Index unrecovered_faces = 0;
   bool has_order = false;
   struct Part {
     std::string name;
-    /// The cost of the decisions of this part, to 0.01 byte: parts may share a byte.
+    /// The size of this part in bytes, rounded to 0.01: parts may share a byte.
     double bytes = 0;
   };
   std::vector<Part> parts;
-  std::uint32_t checksum = 0;  // over what the blob says; of a page, over all its solids
+  std::uint32_t checksum = 0;  // the checksum of the blob, or of the whole page
 };
 
 struct Decoded {
-  Solid solid;  // in source order if the blob holds that, else canonical
+  Solid solid;  // in source order if the blob holds that, else in canonical form
   BlobInfo info;
 };
 
-/// Trusts nothing: caps before allocation, bounded loops, structural checks, checksum. A blob that
-/// decodes is a well-formed oriented boundary, not proven valid: validate when the source is not
-/// trusted. Errors: malformed (with byte offset), unsupported (version, mode), limit_exceeded.
+/// Decodes a blob. Trusts nothing: checks limits before it allocates, bounds every loop, checks the
+/// structure and the checksum. A blob that decodes is a well-formed oriented boundary, not proven
+/// valid: validate when the source is not trusted. Errors: malformed (with byte offset),
+/// unsupported (version, mode), limit_exceeded.
 Result<Decoded> decode(ByteView blob, const Limits& limits = {});
 
-/// Header and part sizes. Same errors.
+/// Decodes a blob and returns its description only. Errors: those of decode().
 Result<BlobInfo> describe(ByteView blob, const Limits& limits = {});
 
 }  // namespace watertight::codec

@@ -10,7 +10,7 @@
 namespace watertight::codec {
 namespace {
 
-/// A boundary to be encoded, and what it was accepted under.
+/// A boundary to be encoded, and its acceptance.
 struct Source {
   const OrientedBoundary* boundary;
   Acceptance acceptance;
@@ -24,7 +24,8 @@ constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
                            .rings = kNone,
                            .shells = kNone};
 
-/// The number of the first solid that does not come back, or the number of solids if all do.
+/// Decodes `bytes`. Returns the index of the first solid that does not equal its source, or the
+/// number of solids if all do.
 Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
                                      const std::vector<Source>& sources,
                                      const std::vector<PageSolid>& stored,
@@ -49,10 +50,10 @@ void decline_mode(Plan& plan) {
   plan.mode = Mode::automatic;
 }
 
-/// In automatic mode each solid takes the mode that codes it in the fewest bytes, after the solids
-/// before it. A solid that does not decode to itself is stored raw. If the bytes are so few that
-/// decoders refuse them as a decompression bomb (docs/format.md, "Limits"), all solids take their
-/// next best mode.
+/// Encodes solids in the mode of the options. In automatic mode each solid takes the mode that
+/// codes it in the fewest bytes after the solids before it. A solid that does not decode to itself
+/// is stored raw. If the bytes are so few that decoders refuse them as a decompression bomb
+/// (docs/format.md, "Limits"), all solids take their next best mode.
 Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
                            const EncodeOptions& options) {
   PageContents page;
@@ -90,8 +91,8 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
 
 /// Automatic mode chooses for one solid at a time, but models learn from the solids before. A small
 /// page can therefore be smaller in one mode for all its solids: pages up to this size are tried in
-/// each mode too. Larger pages would win next to nothing (The Hague: 2 bytes of 20,717) for a third
-/// of the time.
+/// each mode too. On larger pages the trials would take a third of the encoder's time and win
+/// next to nothing (The Hague: 2 bytes of 20,717).
 constexpr std::size_t kFewBytes = 2048;
 
 Result<Bytes> encode_contents(const std::vector<Source>& sources, PageKind kind,

@@ -11,13 +11,14 @@
 
 namespace watertight::codec {
 
-/// Encodes, decodes, compares, and only then returns. The blob holds the source order if the
-/// options have `keep_order`, else the canonical form. Errors: not_encodable.
+/// Encodes a boundary, decodes the bytes, compares, and only then returns them. The blob holds the
+/// source order if the options have `keep_order`, else the canonical form. Errors: not_encodable.
 Result<Bytes> encode_boundary(const OrientedBoundary& boundary, const Acceptance& acceptance,
                               const EncodeOptions& options = {});
 
-/// Does the same for a page (codec/page.h) of 1 to kMaxPageSolids boundaries on one grid, in one
-/// reference system. Errors: not_encodable; invalid_argument.
+/// Encodes 1 to kMaxPageSolids boundaries on one grid and in one reference system as a page
+/// (codec/page.h), with the same check as encode_boundary(). Errors: not_encodable;
+/// invalid_argument.
 Result<Bytes> encode_boundaries(std::span<const OrientedBoundary* const> boundaries,
                                 const Acceptance& acceptance, const EncodeOptions& options = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How many bytes a solid takes in each mode, and for which parts: for `encode --explain`.
+// The number of bytes that a solid takes in each mode, by parts: for `encode --explain`.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace watertight::codec {
 struct ModeSize {
   Mode mode = Mode::raw;
   std::size_t bytes = 0;              // size of the blob; 0 if the mode cannot hold the solid
-  std::vector<BlobInfo::Part> parts;  // the parts of these bytes
+  std::vector<BlobInfo::Part> parts;  // the sizes of the parts of that blob
 };
 
 /// Encodes the solid of `blob` anew in every mode. Errors: those of decode(). Cost: encoding in all

@@ -13,8 +13,8 @@ namespace watertight::codec {
 
 inline constexpr std::size_t kMaxPageSolids = 256;
 
-/// Does what decode() does for each solid of the page, in the order in which they were written.
-/// `limits` hold for all solids together. Errors: malformed; unsupported; limit_exceeded.
+/// Decodes each solid of a page as decode() does a blob, in the order in which the solids were
+/// written. `limits` hold for all solids together. Errors: malformed; unsupported; limit_exceeded.
 Result<std::vector<Decoded>> decode_page(ByteView page, const Limits& limits = {});
 
 }  // namespace watertight::codec

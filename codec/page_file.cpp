@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Layout: magic and version (5 bytes), the pages, the index, its CRC-32C (4), its length (4), the
-// magic again (4).
+// Layout: the magic and the version (5 bytes), the pages, the index, the CRC-32C of the index (4
+// bytes), the length of the index (4 bytes), the magic again (4 bytes).
 #include "codec/page_file.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint8_t kMagic[4] = {'W', 'T', 'P', 'F'};
 constexpr std::size_t kHeadBytes = 5;
 constexpr std::size_t kTailBytes = 12;
-// The most pages, one for each frame, that wait for more solids at a time.
+// The largest number of pages that wait for more solids at a time, one for each frame.
 constexpr std::size_t kMaxOpenPages = 16;
 
 bool has_magic(ByteView bytes) {

@@ -23,7 +23,7 @@ class PageFileWriter {
   PageFileWriter(PageFileWriter&&) noexcept;
   PageFileWriter& operator=(PageFileWriter&&) noexcept;
 
-  /// Errors: not_encodable.
+  /// Adds a solid. Errors: not_encodable.
   Status add(const ValidSolid& solid);
   /// Adds the solid of a blob, with the acceptance that the blob states and without its Steiner
   /// vertices. For stores, which keep blobs of valid solids only. Errors: not_encodable; those of
@@ -59,14 +59,15 @@ class PageFileReader {
 
   std::uint64_t size() const { return slot_of_.size(); }
   std::size_t page_count() const { return pages_.size(); }
-  /// The solid of this number, which is below size(). Decodes its page. Errors: invalid_argument;
-  /// those of decode_page().
+  /// Returns the solid of this number. Decodes its page. Errors: invalid_argument if `number` is
+  /// not below size(); those of decode_page().
   Result<Decoded> solid(std::uint64_t number) const;
   struct NumberedSolid {
     std::uint64_t number = 0;
     Decoded decoded;
   };
-  /// All solids of one page and their numbers. Errors: those of decode_page().
+  /// Returns all solids of one page with their numbers. Requires page < page_count(). Errors: those
+  /// of decode_page().
   Result<std::vector<NumberedSolid>> page(std::size_t page) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Asking the caller now and then, within long loops, whether to go on. Private to delaunay/.
+// Asks the caller now and then, within long loops, whether to go on. Private to delaunay/.
 #pragma once
 
 #include "base/cancel.h"
@@ -9,12 +9,12 @@
 
 namespace watertight::delaunay {
 
-/// Keeps a reference to `is_cancelled`, which may be empty. One per loop; not thread-safe.
+/// Keeps a reference to `is_cancelled`, which may be empty. Each loop has its own; not thread-safe.
 class Cancellation {
  public:
   explicit Cancellation(const CancelPoll& is_cancelled) : is_cancelled_(is_cancelled) {}
 
-  /// Counts `steps`; asks the caller once in about 4096 of them.
+  /// Counts `steps`; asks the caller once in about 4096 steps. Returns true if the caller cancels.
   bool is_due_and_wanted(std::size_t steps = 1) {
     steps_ += steps;
     if (steps_ < kStepsPerQuestion) return false;

@@ -25,8 +25,9 @@ struct CanonicalDelaunay {
   std::vector<geometry::Tetrahedron> tetrahedra;
   /// All faces as sorted vertex triples, in lexicographic order: the order of the bitmap.
   std::vector<Triangle> faces;
-  /// Per face, the fourth vertices of its tetrahedra: first on its positive side (orient3d(face,
-  /// apex) > 0), then on the negative one; kNone where the face is on the hull.
+  /// For each face, the fourth vertices of its tetrahedra: first the one on its positive side
+  /// (orient3d(face, apex) > 0), then the one on its negative side; kNone where there is no
+  /// tetrahedron.
   std::vector<std::array<Index, 2>> apexes;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
+// The layout of the messages:
 //   job:     u8 Constraints | u32 vertices, then 3 f64 each | u32 triangles, then 4 u32 each (three
 //            vertices, facet)
 //   answer:  u8 1 | f64 CPU seconds | u32 Steiner points, then 3 f64 each | u32 tetrahedra, then 4
@@ -13,7 +14,7 @@
 namespace watertight::delaunay {
 namespace {
 
-/// Seconds; an engine that claims more is lying.
+/// The longest CPU time of an engine that is believed, in seconds.
 constexpr double kLongestEngineTime = 1e9;
 
 void write_points(ByteWriter& writer, const Point* begin, const Point* end) {

@@ -37,7 +37,7 @@ Bytes write_job(const CdtJob& job);
 /// Errors: malformed (counts, indices and coordinates are checked; facet numbers are dense).
 Result<CdtJob> read_job(ByteView bytes);
 
-/// The input's points are not sent back: only Steiner points are.
+/// Writes no points of the input, only Steiner points.
 Bytes write_answer(const CdtAnswer& answer);
 /// `vertices` are the input's points, which become the first points of the result.
 /// Errors: malformed (counts, indices, facet numbers and coordinates are checked).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Counts of what became of solids on the CDT ladder: by rung and by class of outcome. A plain value
+// Counts the outcomes of solids on the CDT ladder by rung and by class of outcome. A plain value
 // that callers fill solid by solid and add up over threads; for summaries of CLI, jobs and benches.
 #pragma once
 
@@ -16,17 +16,17 @@ inline constexpr std::size_t kRungs = 5;  // Rung::delaunay to Rung::tetgen
 
 struct CdtStatistics {
   std::uint64_t solids = 0;    // the number of solids that climbed the ladder
-  std::uint64_t accepted = 0;  // certified
-  std::uint64_t refuted = 0;   // the certificate shows that the solid is invalid
+  std::uint64_t accepted = 0;  // solids with an accepted certificate
+  std::uint64_t refuted = 0;   // solids that the certificate shows to be invalid
   std::uint64_t undecided = 0;
   /// attempts[rung][RungOutcome]; a solid can have several attempts.
   std::array<std::array<std::uint64_t, kRungOutcomes>, kRungs> attempts{};
-  double seconds = 0;         // wall, of all attempts
+  double seconds = 0;         // wall-clock time of all attempts
   double cpu_seconds = 0;     // CPU time of the threads of the callers
   double worker_seconds = 0;  // CPU time of the worker processes
   double engine_seconds = 0;  // CPU time of the engines' own calls
 
-  /// Counts one solid. No attempts (an invalid solid, another proof) = not counted.
+  /// Counts one solid. Does not count a solid without attempts (an invalid solid, another proof).
   void add(std::span<const RungAttempt> attempts_of_solid);
   CdtStatistics& operator+=(const CdtStatistics& other);
   std::uint64_t count(Rung rung, RungOutcome outcome) const;

@@ -5,7 +5,8 @@
 // Departures: nothing an engine says is believed. The complex is proved to be embedded and convex,
 // facets are proved to be unions of faces, and only then regions are flooded.
 //
-// Order matters: what a wrong engine can cause is checked before what only a wrong solid can.
+// The order of the checks matters: faults that a wrong engine can cause are looked for before
+// faults that only a wrong solid can cause.
 #include "delaunay/certificate.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@
 namespace watertight::delaunay {
 namespace {
 
-/// Relative rounding of one term of the sums of volumes: at most 32 operations.
+/// The relative rounding error of one term of the sums of volumes: at most 32 operations.
 constexpr double kArithmetic = 32 * 0x1p-53;
 
 struct Refusal {
@@ -45,8 +46,8 @@ struct OrientedFace {
 
 /// An edge of a face. The corners of face f are numbered 3 f, 3 f + 1, 3 f + 2.
 struct FaceEdge {
-  Triangle key{};     // the smaller vertex, the larger, the corner at the smaller
-  Index at_high = 0;  // the corner at the larger
+  Triangle key{};     // the smaller vertex, the larger vertex, the corner at the smaller one
+  Index at_high = 0;  // the corner at the larger vertex
   Index shell = 0;
   bool is_same_edge(const FaceEdge& other) const {
     return key[0] == other.key[0] && key[1] == other.key[1] && shell == other.shell;
@@ -119,7 +120,7 @@ class Examination {
                   fault->detail);
   }
 
-  /// Every input vertex unmoved, every point used, no point twice.
+  /// Checks that no input vertex was moved, every point is used, and no two points are equal.
   Checked check_points() {
     for (Index v = 0; v < data_.input_count; ++v) {
       if (data_.points[v] != solid_.vertices()[v]) {
@@ -145,7 +146,7 @@ class Examination {
     return std::nullopt;
   }
 
-  /// Each facet is a union of faces, and no face belongs to two facets or to none.
+  /// Checks that each facet is a union of faces, and no face belongs to two facets or to none.
   Checked check_facets() {
     std::vector<ConstrainedFace> faces = data_.constrained;
     std::sort(faces.begin(), faces.end(), [](const ConstrainedFace& a, const ConstrainedFace& b) {
@@ -189,7 +190,8 @@ class Examination {
         return refuse(CertificateRefusal::not_a_boundary, "a face belongs to two facets", facet);
       }
       constraint_of_[place] = static_cast<Index>(oriented_.size());
-      // The declared normal of (a, b, c) points to `above` if that is the sorted order.
+      // The declared normal of (a, b, c) points to `above` if (a, b, c) is the sorted order,
+      // rotated.
       const bool is_sorted =
           t[0] < t[1] ? (t[1] < t[2] || t[2] < t[0]) : (t[1] < t[2] && t[2] < t[0]);
       oriented_.push_back(
@@ -204,9 +206,9 @@ class Examination {
     return std::nullopt;
   }
 
-  /// The faces of each shell are a 2-manifold: every edge has two of them, and the faces around
-  /// each vertex form one fan. The exact tests say the same of the canonical triangles; here it is
-  /// asked of the faces themselves.
+  /// Checks that the faces of each shell are a 2-manifold: every edge has two of them, and the
+  /// faces around each vertex form one fan. The exact tests check the canonical triangles for this;
+  /// this step checks the faces themselves.
   Checked check_manifold() {
     std::vector<FaceEdge> edges;
     edges.reserve(3 * oriented_.size());
@@ -225,7 +227,8 @@ class Examination {
     return check_fans(edges, vertices);
   }
 
-  /// Requires edges sorted by their ends, then by shell.
+  /// Checks that every edge has two faces and every vertex one fan. Requires edges sorted by their
+  /// ends, then by shell.
   Checked check_fans(std::span<const FaceEdge> edges, std::size_t vertices) {
     geometry::DisjointSets corners(edges.size());
     for (std::size_t i = 0; i < edges.size(); i += 2) {
@@ -253,8 +256,8 @@ class Examination {
     return region_of_[tetrahedron == kNone ? data_.tetrahedra.size() : tetrahedron];
   }
 
-  /// Regions are what unconstrained faces connect; region 0 is the outside. Each constrained face
-  /// must separate an odd region from an even one.
+  /// Finds the regions: sets of tetrahedra that unconstrained faces connect. Region 0 is the
+  /// outside. Each constrained face must separate an odd region from an even one.
   Checked check_regions() {
     const auto outside = static_cast<Index>(data_.tetrahedra.size());
     geometry::DisjointSets sets(data_.tetrahedra.size() + 1);
@@ -320,8 +323,8 @@ class Examination {
     return std::nullopt;
   }
 
-  /// The first facet of the part of the interior with the fewest facets: whatever the
-  /// tetrahedralization, the same.
+  /// The first facet of the part of the interior with the fewest facets. The result does not depend
+  /// on the tetrahedralization.
   Index facet_of_smallest_part() const {
     std::vector<std::vector<Index>> facets(region_count_);
     for (const OrientedFace& face : oriented_) facets[region(face.inner)].push_back(face.facet);
@@ -355,7 +358,8 @@ class Examination {
     return std::nullopt;
   }
 
-  /// The exterior shell bounds the outside, each inner shell one cavity of its own.
+  /// Checks that the exterior shell bounds the outside, and each interior shell one cavity of its
+  /// own.
   Checked check_cavities() {
     std::vector<Index> shell_of_region(region_count_, kNone);
     std::vector<Index> region_of_shell(solid_.shell_count(), kNone);
@@ -381,9 +385,10 @@ class Examination {
     return std::nullopt;
   }
 
-  /// Six times the volume, in coordinates divided by the unit: of the canonical triangles, exactly,
-  /// against the sum over interior tetrahedra. They may differ by the rounding of Steiner points,
-  /// by how facets that are not planar are filled, and by the arithmetic of the sum.
+  /// Compares six times the volume, in coordinates divided by the unit: that of the canonical
+  /// triangles, exactly, with the sum over interior tetrahedra. The two may differ by the rounding
+  /// of Steiner points, by how facets that are not planar are filled, and by the arithmetic of the
+  /// sum.
   Checked check_volume() {
     std::vector<Point> scaled = data_.points;
     for (Point& p : scaled) p = {p.x / unit_[0], p.y / unit_[1], p.z / unit_[2]};
@@ -406,11 +411,11 @@ class Examination {
         terms += std::fabs(first) + std::fabs(second);
       }
     }
-    // Each term has its own rounding, and each addition that of the sum so far.
+    // Each term has a rounding of its own, and each addition that of the sum so far.
     const double additions = 6 * (static_cast<double>(data_.tetrahedra.size()) + 1) * 0x1p-53;
     const double slack =
         volume_slack_ + terms * (kArithmetic + additions) + std::fabs(expected) * 0x1p-52;
-    // Not ">": volumes that are no numbers must fail.
+    // Not ">": a volume that is not a number must fail.
     if (!(std::fabs(sum - expected) <= slack)) {
       return refuse(CertificateRefusal::volume_mismatch,
                     "the tetrahedra's volume differs from the boundary's");
@@ -419,7 +424,8 @@ class Examination {
   }
 
   double expected_volume(std::span<const Point> scaled) const {
-    // Doubles of any size could overflow; integers cannot, and are quicker as they are.
+    // Doubles of any size could overflow, so they are scaled first. Integers cannot overflow, and
+    // unscaled ones take less time.
     if (solid_.lattice().kind == LatticeKind::float64) {
       return geometry::six_volume(scaled.first(data_.input_count), canonical_.triangles);
     }
@@ -434,7 +440,7 @@ class Examination {
   std::array<double, 3> unit_{1, 1, 1};
   Complex complex_;
   std::vector<OrientedFace> oriented_;
-  std::vector<Index> constraint_of_;  // face of the complex -> place in oriented_
+  std::vector<Index> constraint_of_;  // face of the complex -> index in oriented_
   std::vector<Index> region_of_;      // tetrahedron (and at the end the outside) -> region
   std::vector<Index> parity_;         // region -> 0 outside or cavity, 1 interior
   Index region_count_ = 0;

@@ -20,28 +20,30 @@ namespace watertight::delaunay {
 struct Certificate {
   Rung rung = Rung::none;
   Tetrahedralization tetrahedralization;
-  std::vector<bool> is_interior;  // per tetrahedron
-  double largest_deviation = 0;   // of a Steiner point from its facet, world units
+  std::vector<bool> is_interior;  // tetrahedron -> whether it is in the interior
+  double largest_deviation = 0;   // the largest distance of a Steiner point from its facet, world
+                                  // units
   /// Facets that are not exactly planar and that the faces fill with other triangles than the
   /// canonical ones: "valid within tolerance".
   std::vector<Index> refilled_facets;
 };
 
-/// Outcome of the check. Not accepted = `refusal` names the first failed item and the place.
+/// Outcome of the check. Unless accepted, `refusal` names the first item that fails, and `detail`
+/// and `facet` name the place.
 struct CertificateResult {
   CertificateRefusal refusal = CertificateRefusal::none;
   std::string detail;
   Index facet = kNone;
-  /// As Certificate::refilled_facets. If this is not empty after a refusal, the refusal concerns
-  /// another surface than the canonical one, so it says nothing about the solid. (A refusal before
-  /// the facets are examined leaves the list empty.)
+  /// The same as Certificate::refilled_facets. If this list is not empty after a refusal, the
+  /// refusal concerns another surface than the canonical one, so the refusal says nothing about the
+  /// solid. (A refusal before the facets are examined leaves the list empty.)
   std::vector<Index> refilled_facets;
-  Certificate certificate;  // when refusal is none
+  Certificate certificate;  // set if `refusal` is none
 };
 
-/// Requires merged vertices, rings that are divided as the triangles are (divided_solid), `facets`
-/// = triangulate_facets(solid), and a solid that passed the exact tests. `is_cancelled` is asked
-/// every few thousand steps. Cost: O(n log n) in tetrahedra.
+/// Checks a tetrahedralization of a solid. Requires merged vertices, rings that are divided as the
+/// triangles are (divided_solid), `facets` = triangulate_facets(solid), and a solid that passed the
+/// exact tests. `is_cancelled` is asked every few thousand steps. Cost: O(n log n) in tetrahedra.
 CertificateResult check_certificate(const Solid& solid, const tessellate::FacetTriangles& facets,
                                     Tetrahedralization tetrahedralization, Rung rung,
                                     const CancelPoll& is_cancelled = {});

@@ -12,7 +12,7 @@
 namespace watertight::delaunay {
 namespace {
 
-/// Hull faces tried as targets of the ray before giving up on degenerate hits.
+/// The number of hull faces at which rays are aimed until one meets no edge.
 constexpr std::size_t kRayTargets = 64;
 
 ComplexFault fault(ComplexFault::Kind kind, std::string detail) {
@@ -26,7 +26,7 @@ struct Side {
   bool is_above = false;
 };
 
-/// True if sorting takes an even number of exchanges.
+/// Sorts the triangle. Returns true if that takes an even number of exchanges.
 bool sort_counting(Triangle& t) {
   bool is_even = true;
   const auto exchange = [&](std::size_t i, std::size_t j) {
@@ -65,7 +65,7 @@ std::string name(const Triangle& t) {
   return text;
 }
 
-/// Hull faces oriented outward.
+/// The hull faces, oriented outward.
 std::vector<Triangle> hull_of(const Complex& complex) {
   std::vector<Triangle> hull;
   for (const ComplexFace& face : complex.faces) {
@@ -85,7 +85,7 @@ Point mean(std::span<const Point> points, std::span<const Index> which) {
   return sum;
 }
 
-/// Roughly six times the volume; only ever compared.
+/// Six times the volume, with rounding errors; for comparisons only.
 double rough_volume(std::span<const Point> points, const geometry::Tetrahedron& t) {
   std::array<std::array<double, 3>, 3> m{};
   for (std::size_t row = 0; row < 3; ++row) {
@@ -104,7 +104,7 @@ bool is_inside_all(std::span<const Point> points, std::span<const Triangle> hull
   });
 }
 
-/// A point strictly inside every hull face, or nothing.
+/// A point strictly on the inner side of every hull face, or nothing.
 std::optional<Point> inner_point(const Tetrahedralization& data, std::span<const Triangle> hull) {
   const geometry::Tetrahedron* largest = &data.tetrahedra.front();
   double volume = -1;
@@ -120,7 +120,7 @@ std::optional<Point> inner_point(const Tetrahedralization& data, std::span<const
   return std::nullopt;
 }
 
-/// Number of hull faces that the ray from o through q meets; nothing if it meets an edge.
+/// The number of hull faces that the ray from o through q meets; nothing if the ray meets an edge.
 std::optional<std::size_t> faces_met(std::span<const Point> points, std::span<const Triangle> hull,
                                      const Point& o, const Point& q) {
   std::size_t met = 0;

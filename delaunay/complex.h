@@ -13,8 +13,9 @@
 
 namespace watertight::delaunay {
 
-/// Vertices sorted. `above` is the tetrahedron on the side to which the normal (b-a) x (c-a) of the
-/// sorted triple (a, b, c) points, `below` the other; kNone outside the hull.
+/// A face with its vertices sorted. `above` is the tetrahedron on the side to which the normal
+/// (b-a) x (c-a) of the sorted triple (a, b, c) points, `below` the one on the other side; kNone
+/// outside the hull.
 struct ComplexFace {
   Triangle vertices{};
   Index above = kNone;
@@ -29,14 +30,14 @@ struct Complex {
   Index find(Triangle vertices) const;
 };
 
-/// Why a list of tetrahedra is no embedded complex.
+/// The reason why a list of tetrahedra is no embedded complex.
 struct ComplexFault {
   enum class Kind : std::uint8_t { not_a_complex, not_convex } kind = Kind::not_a_complex;
   std::string detail;
 };
 
-/// Requires indices in range. Every tetrahedron must be positively oriented (exactly), and every
-/// face must have at most one tetrahedron on each side.
+/// Builds the complex. Requires indices in range. Returns a fault unless every tetrahedron is
+/// positively oriented (exactly) and every face has at most one tetrahedron on each side.
 std::optional<ComplexFault> build_complex(const Tetrahedralization& tetrahedralization,
                                           Complex& complex);
 

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Steps for one facet:
-//   1. every edge of its faces has two of them on opposite sides, or one (the boundary);
+//   1. every edge of the facet's faces belongs to two of these faces, on opposite sides, or to one
+//      (the boundary);
 //   2. the faces are connected by edges and have the Euler characteristic of a disc with as many
 //      holes as there are interior rings, so there is no handle, bubble or pinch. Rings may touch
 //      in vertices: each such touch joins two components of the boundary into one;
-//   3. turned consistently, the boundary runs along the rings: each ring edge is a chain of edges
-//      through points that lie on it, in order: Steiner points but for rounding, vertices of other
-//      shells exactly. Each edge of the boundary is in one chain;
-//   4. vertices are the rings', or other shells' that lie exactly on a canonical triangle (shells
-//      may touch in points), or Steiner points in the facet's slab (the space between the two
-//      parallels of its fitted plane that hold the rings) but for rounding;
-//   5. in projection the faces cover no more area than the canonical triangles: with 3, no fold.
+//   3. when the faces are turned consistently, the boundary runs along the rings: each ring edge is
+//      a chain of edges through points that lie on the ring edge, in order: Steiner points but for
+//      rounding, vertices of other shells exactly. Each edge of the boundary is in one chain;
+//   4. each vertex of the faces is a vertex of the rings, or a vertex of another shell that lies
+//      exactly on a canonical triangle (shells may touch in points), or a Steiner point in the
+//      facet's slab (the space between the two parallels of its fitted plane that hold the rings)
+//      but for rounding;
+//   5. in projection the faces cover no more area than the canonical triangles: together with step
+//      3 this excludes folds.
 #include "delaunay/facet_surface.h"
 
 #include <algorithm>
@@ -25,7 +28,7 @@
 namespace watertight::delaunay {
 namespace {
 
-/// Rounding of the double arithmetic below, in relative terms: at most 32 operations each.
+/// The relative rounding error of one term of the sums below: at most 32 operations.
 constexpr double kArithmetic = 32 * 0x1p-53;
 
 }  // namespace
@@ -68,10 +71,10 @@ class FacetSurfaces::Mesh {
 
   const std::vector<Triangle>& faces() const { return faces_; }
   const std::vector<Index>& vertices() const { return vertices_; }
-  /// Directed boundary edges, sorted; from turn() on.
+  /// The directed boundary edges, sorted. Requires turn() before.
   const std::vector<std::pair<Index, Index>>& boundary() const { return boundary_; }
 
-  /// Turns the faces consistently. Returns what is wrong, or nothing.
+  /// Turns the faces consistently. Returns the fault as a clause, or null.
   const char* turn() {
     if (!link()) return "an edge of its faces has more than two of them";
     std::vector<char> is_seen(faces_.size(), 0);
@@ -134,7 +137,8 @@ class FacetSurfaces::Mesh {
  private:
   using EdgeSides = std::span<const geometry::EdgeSide>;
 
-  /// Finds each face's neighbours. False if an edge has three faces. Requires the faces as given.
+  /// Finds the neighbours of each face. Returns false if an edge has more than two faces. Requires
+  /// the faces as given, not turned.
   bool link() {
     neighbour_.assign(faces_.size(), {kNone, kNone, kNone});
     by_vertex_.reserve(2 * sides_.size());
@@ -160,7 +164,7 @@ class FacetSurfaces::Mesh {
     return k < 3 && faces_[face][(k + 1) % 3] == to;
   }
 
-  /// Position of a vertex in a face, 3 if it has another.
+  /// The index of a vertex in a face; 3 if the face does not have the vertex.
   std::size_t corner(Index face, Index vertex) const {
     const Triangle& t = faces_[face];
     return static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
@@ -216,7 +220,7 @@ class FacetSurfaces::Mesh {
 
   std::vector<Triangle> faces_;
   std::vector<Index> vertices_;
-  std::vector<geometry::EdgeSide> sides_;  // of the faces as given
+  std::vector<geometry::EdgeSide> sides_;  // the sides of the faces as given
   std::vector<std::array<Index, 3>> neighbour_;
   std::vector<std::pair<Index, Index>> by_vertex_;
   std::vector<std::pair<Index, Index>> boundary_;
@@ -243,7 +247,7 @@ FacetSurfaces::Plane FacetSurfaces::plane_of(Index facet) const {
     return data_.points[vertex][static_cast<int>(axis)] / unit_[axis];
   };
   Plane plane;
-  std::array<double, 3> terms{};  // sums of what is added up, for the rounding
+  std::array<double, 3> terms{};  // the sums of the magnitudes of the terms, for the rounding
   std::array<double, 3> reach{};
   for (const auto& [a, b, c] : canonical_of(facet)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -326,9 +330,10 @@ double FacetSurfaces::largest_deviation(const Plane& plane, const Mesh& mesh) co
   return largest;
 }
 
-/// How far along the segment the point is, between 0 and 1; nothing if it is not near the segment.
-/// Measured along the axis in which the segment is longest in terms of the rounding, so that the
-/// rounding of the place moves the foot point by no more than one rounding in any axis.
+/// The position of the vertex along the segment, between 0 and 1; nothing if the vertex is not near
+/// the segment. The position is measured along the axis in which the segment is longest in terms of
+/// the rounding, so that the rounding of the position moves the foot point by no more than one
+/// rounding in any axis.
 std::optional<double> FacetSurfaces::place_near_segment(Index vertex, Index from, Index to) const {
   const Point& p = data_.points[vertex];
   const Point& a = data_.points[from];
@@ -361,9 +366,10 @@ bool FacetSurfaces::is_contact(Index facet, Index vertex) const {
   });
 }
 
-/// Where a chain along the segment passes the vertex, as place_near_segment(); nothing if it may
-/// not pass it: it may pass a Steiner point near the segment, or another shell's vertex exactly on
-/// it. Requires stamped ring vertices.
+/// The position at which a chain along the segment passes the vertex, as place_near_segment() gives
+/// it; nothing if the chain may not pass the vertex. A chain may pass a Steiner point near the
+/// segment, and another shell's vertex exactly on the segment. Requires the ring vertices in
+/// facet_stamp_.
 std::optional<double> FacetSurfaces::place_on_chain(Index facet, Index vertex, Index from,
                                                     Index to) const {
   if (!is_steiner(vertex)) {
@@ -375,8 +381,9 @@ std::optional<double> FacetSurfaces::place_on_chain(Index facet, Index vertex, I
 }
 
 /// The edge of the boundary on which a chain along the segment goes on from `current`, as an index
-/// into the list, or the list's size. Where rings touch, several edges leave a vertex: the one that
-/// follows the segment is taken. Only there does the choice ask for more than a start.
+/// into mesh.boundary(), or the size of that list if there is none. Where rings touch, several
+/// edges leave a vertex: the one that follows the segment is taken. A single edge is taken without
+/// a test.
 std::size_t FacetSurfaces::boundary_step(Index facet, const Mesh& mesh, Index current, Index from,
                                          Index to) const {
   const auto& boundary = mesh.boundary();
@@ -388,7 +395,7 @@ std::size_t FacetSurfaces::boundary_step(Index facet, const Mesh& mesh, Index cu
   };
   if (begin == end) return boundary.size();
   if (end - begin == 1) return place_of(begin);
-  // A Steiner point, or a vertex of another shell, where the boundary touches itself.
+  // The boundary touches itself at a Steiner point or at a vertex of another shell.
   if (current != from) return boundary.size();
   const auto straight = std::lower_bound(begin, end, std::pair(current, to));
   if (straight != end && straight->second == to) return place_of(straight);
@@ -450,7 +457,7 @@ std::optional<FacetFault> FacetSurfaces::check_area(Index facet,
     const std::array<double, 2> b{p[1][0] - p[0][0], p[1][1] - p[0][1]};
     const std::array<double, 2> c{p[2][0] - p[0][0], p[2][1] - p[0][1]};
     // Each corner may be off by `moved`, which changes the doubled area by at most four times the
-    // extents of the triangle times that; the arithmetic by less.
+    // extents of the triangle times `moved`; the arithmetic changes it by less.
     slack +=
         4 * ((std::fabs(b[0]) + std::fabs(c[0])) * (moved[1] + kArithmetic) +
              (std::fabs(b[1]) + std::fabs(c[1])) * (moved[0] + kArithmetic) + moved[0] * moved[1]);
@@ -460,7 +467,7 @@ std::optional<FacetFault> FacetSurfaces::check_area(Index facet,
   double covered = 0;
   for (const Triangle& t : canonical_of(facet)) expected += area(t);
   for (const Triangle& t : faces) covered += area(t);
-  // Not ">": areas that are no numbers must fail.
+  // Not ">": an area that is not a number must fail.
   if (!(covered <= expected + slack)) return FacetFault{"its faces fold over each other"};
   return std::nullopt;
 }

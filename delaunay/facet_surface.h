@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Whether the faces that a tetrahedralization gives to a facet really are that facet: a disc, with
+// Checks that the faces that a tetrahedralization gives to a facet are that facet: a disc, with
 // holes, that has the facet's rings as its boundary, made of the facet's own vertices, of vertices
-// of other shells that lie on it exactly, and of Steiner points that differ from it by rounding
-// only. For the certificate.
+// of other shells that lie on it exactly, and of Steiner points that differ from the facet by
+// rounding only. For the certificate.
 #pragma once
 
 #include <array>
@@ -19,26 +19,29 @@
 
 namespace watertight::delaunay {
 
-/// Engines round Steiner points to doubles. Each is constructed from points of the input or from
-/// earlier Steiner points, and each construction adds a few units in the last place of the largest
-/// coordinate; chains of constructions add up. The largest measured on 1,800 city solids was 32
-/// units; the bound leaves room for chains of thirty. It is about 2e-13 of the solid's size.
+/// Engines round Steiner points to doubles. Each Steiner point is constructed from points of the
+/// input or from earlier Steiner points, and each construction adds a few units in the last place
+/// of the largest coordinate; chains of constructions add up. The largest error measured on 1,800
+/// city solids was 32 units; the bound leaves room for chains of thirty. The bound is about 2e-13
+/// of the solid's size.
 inline constexpr double kSteinerUnits = 1024;
 
-/// Per axis: kSteinerUnits units in the last place of the largest coordinate.
+/// The bound on each axis: kSteinerUnits units in the last place of the largest coordinate.
 std::array<double, 3> steiner_rounding(std::span<const Point> vertices);
 
 /// A facet's faces, turned so that their boundary is the facet's rings.
 struct FacetSurface {
   std::vector<Triangle> faces;
-  /// Every diagonal of the canonical triangulation is a chain of edges: the same surface.
+  /// True if every diagonal of the canonical triangulation is a chain of edges of the faces: then
+  /// both are the same surface.
   bool follows_canonical = true;
-  double largest_deviation = 0;  // of Steiner points from the plane, in world units
-  double volume_slack = 0;       // six times the volume between this surface and the canonical
-                                 // triangles, at most; coordinates divided by `unit`
+  double largest_deviation = 0;  // the largest distance of a Steiner point from the plane, world
+                                 // units
+  double volume_slack = 0;       // at least six times the volume between this surface and the
+                                 // canonical triangles; coordinates divided by `unit`
 };
 
-/// Why faces are not their facet, as a clause about the facet.
+/// The reason why faces are not their facet, as a clause about the facet.
 struct FacetFault {
   std::string reason;
 };
@@ -46,11 +49,11 @@ struct FacetFault {
 /// Works on one facet after the other. Not thread-safe; cheap to make for each solid.
 class FacetSurfaces {
  public:
-  /// Keeps references to all four; `unit` is a power of two per axis near the solid's size.
+  /// Keeps references to the first three; `unit` is a power of two per axis near the solid's size.
   FacetSurfaces(const Solid& solid, const tessellate::FacetTriangles& canonical,
                 const Tetrahedralization& tetrahedralization, const std::array<double, 3>& unit);
 
-  /// `faces` are all faces of `facet`. Cost: O(k log k).
+  /// Checks `faces`, which are all faces of `facet`. Cost: O(k log k) for k faces.
   std::variant<FacetSurface, FacetFault> check(Index facet, std::span<const ConstrainedFace> faces);
 
  private:
@@ -77,7 +80,7 @@ class FacetSurfaces {
   const Tetrahedralization& data_;
   std::array<double, 3> unit_;
   std::array<double, 3> rounding_;
-  std::vector<Index> facet_stamp_;  // vertex -> last facet whose ring holds it
+  std::vector<Index> facet_stamp_;  // vertex -> the last facet whose rings have it
 };
 
 }  // namespace watertight::delaunay

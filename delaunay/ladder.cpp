@@ -29,11 +29,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Extents of the axes further apart than this factor go to the scaled rungs at once: engines
-/// work with distances, and boxes in degrees and metres look flat to them.
+/// A solid whose extents on two axes differ by more than this factor goes to the scaled rungs at
+/// once: engines work with distances, and boxes in degrees and metres look flat to them.
 constexpr double kAnisotropy = 1024;
-/// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra a vertex; far more means a
-/// degenerate set for which rung 0 must not use up the memory.
+/// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra for each vertex; far more
+/// means a degenerate set for which rung 0 must not use up the memory.
 constexpr std::uint64_t kTetrahedraPerVertex = 256;
 
 double seconds_since(Clock::time_point start) {
@@ -68,7 +68,7 @@ RungOutcome outcome_of(workers::JobOutcome outcome) {
   return RungOutcome::garbage;
 }
 
-/// The complex in the engines' order, and the way back.
+/// The complex in the engines' order, and the vertices and facets of the solid that it stands for.
 struct EngineInput {
   PiecewiseLinearComplex complex;
   std::vector<Index> vertex_at;  // engine's vertex -> vertex of the solid
@@ -83,7 +83,8 @@ std::vector<Index> sorted_vertices(std::span<const Point> vertices) {
   return order;
 }
 
-/// Some facets are given triangle by triangle, not as patches.
+/// Makes the input of the engines. A facet for which `is_taken_apart` is true is given triangle by
+/// triangle, all others as patches.
 EngineInput engine_input(const Solid& solid, const tessellate::FacetTriangles& canonical,
                          const std::vector<bool>& is_taken_apart) {
   EngineInput input;
@@ -117,7 +118,7 @@ EngineInput engine_input(const Solid& solid, const tessellate::FacetTriangles& c
   return input;
 }
 
-/// Powers of two that bring the extent of each axis into [0.5, 1); 1 where that is not exact.
+/// Powers of two that bring the extent of each axis into [0.5, 1); 1 where scaling is not exact.
 std::array<double, 3> unit_scale(std::span<const Point> vertices) {
   const Box box = geometry::box_of(vertices);
   std::array<double, 3> scale{1, 1, 1};
@@ -142,7 +143,7 @@ Point unscaled(const Point& p, const std::array<double, 3>& scale) {
   return {p.x / scale[0], p.y / scale[1], p.z / scale[2]};
 }
 
-/// The answer in the solid's coordinates and numbering.
+/// Returns the answer of an engine in the solid's coordinates and numbering.
 Tetrahedralization restore(Tetrahedralization answer, const EngineInput& input,
                            const std::array<double, 3>& scale, const Solid& solid) {
   std::vector<Index> number(answer.points.size());
@@ -164,8 +165,9 @@ Tetrahedralization restore(Tetrahedralization answer, const EngineInput& input,
   return answer;
 }
 
-/// The rungs of the engine that is asked for come first. No engine decides: where it has no answer,
-/// the others are asked, so that a verdict does not depend on the choice.
+/// The order in which rungs are tried: those of the engine that is asked for come first. No engine
+/// decides: where it has no answer, the others are asked, so that a verdict does not depend on the
+/// choice.
 std::array<Rung, 5> order_of_rungs(Engine engine) {
   using enum Rung;
   if (engine == Engine::cgal) return {patch, patch_scaled, triangles_scaled, delaunay, tetgen};
@@ -218,9 +220,10 @@ class Climb {
     return contacts_.has_contacts() ? contacts_.triangles : canonical_;
   }
 
-  /// From here on facets that are not flat follow their canonical triangles. The exact tests prove
-  /// that a solid of one shell has one interior (Jordan-Brouwer), so that another filling of such
-  /// facets, which is easier to have, decides nothing as long as it is accepted.
+  /// Makes facets that are not flat follow their canonical triangles from now on. For a solid of
+  /// one shell that is not needed: the exact tests prove that it has one interior (Jordan-Brouwer),
+  /// so that an accepted certificate may fill such facets otherwise, which engines find more
+  /// easily.
   void keep_canonical() {
     is_kept_.resize(solid_.facet_count());
     for (Index facet = 0; facet < solid_.facet_count(); ++facet) {
@@ -228,12 +231,12 @@ class Climb {
       is_kept_[facet] = !is_one_triangle && !tessellate::is_flat(solid_, facet);
     }
     input_ = EngineInput{};
-    // The attempt under way had the constraints before.
+    // The attempt under way still had the former constraints.
     first_of_constraints_ = static_cast<std::ptrdiff_t>(result_.attempts.size()) + 1;
   }
 
-  /// Facets that engines get triangle by triangle: those that hold vertices or edges of other
-  /// shells, as engines do not expect constraints inside a patch, and those that must follow their
+  /// The facets that engines get triangle by triangle: facets that hold vertices or edges of other
+  /// shells, as engines do not expect constraints inside a patch, and facets that must follow their
   /// canonical triangles.
   std::vector<bool> taken_apart() const {
     if (is_kept_.empty()) return contacts_.is_touched;
@@ -266,7 +269,7 @@ class Climb {
                                                              : Constraints::triangles;
   }
 
-  /// Scaling changes the angles that decide where Steiner points go: it is used only where needed.
+  /// Scaling changes the angles that decide where Steiner points go: rungs scale only where needed.
   std::array<double, 3> scale_of(Rung rung) const {
     const bool keeps_coordinates =
         rung == Rung::patch || (rung == Rung::tetgen && !is_anisotropic());
@@ -274,8 +277,8 @@ class Climb {
     return unit_scale(solid_.vertices());
   }
 
-  /// False if CGAL had the same task on a rung before: the same constraints, because every facet is
-  /// one triangle, on the same points but for one power of two for all axes.
+  /// False if CGAL had the same task on an earlier rung: the same constraints (or every facet is
+  /// one triangle), and the same points up to one power of two for all axes.
   bool is_new(Rung rung) const {
     const auto same = [&](const RungAttempt& attempt) {
       const bool is_of_cgal = attempt.rung != Rung::delaunay && attempt.rung != Rung::tetgen;
@@ -286,7 +289,7 @@ class Climb {
       const std::array<double, 3> b = scale_of(rung);
       return has_same_constraints && a[1] / a[0] == b[1] / b[0] && a[2] / a[0] == b[2] / b[0];
     };
-    // Before keep_canonical() the constraints were others.
+    // Attempts before keep_canonical() had other constraints.
     return std::none_of(result_.attempts.begin() + first_of_constraints_, result_.attempts.end(),
                         same);
   }
@@ -378,9 +381,9 @@ class Climb {
     judge(restore(std::move(*answer->tetrahedralization), input_, scale, solid_), rung);
   }
 
-  /// An engine takes about 0.1 ms a triangle on ordinary solids and up to 10 ms on nasty ones.
-  /// CPU time decides, so that a busy machine does not change a verdict; the wall clock only ends
-  /// what sleeps.
+  /// An engine takes about 0.1 ms a triangle on ordinary solids and up to 10 ms on hard ones. CPU
+  /// time decides, so that a busy machine does not change a verdict; the wall clock only ends a
+  /// worker that sleeps.
   workers::WorkerLimits limits(Rung rung) const {
     const double triangles = static_cast<double>(canonical_.triangles.size());
     double seconds = rung == Rung::patch ? 2 : 6;
@@ -466,7 +469,7 @@ double default_ladder_seconds(std::size_t triangles) {
 
 EngineWorkers::EngineWorkers(const Options& options)
     : cgal_(make_pool(options.cgal_executable, "watertight-worker", options.processes, 500)),
-      // TetGen keeps tables in globals and frees twice on errors: one job a process.
+      // TetGen keeps tables in globals and frees twice on errors: a process runs one job.
       tetgen_(make_pool(options.tetgen_executable, "watertight-tetgen", options.processes, 1)) {}
 
 EngineWorkers::EngineWorkers() : EngineWorkers(Options{}) {}

@@ -23,7 +23,7 @@ namespace watertight::delaunay {
 /// The engine that is asked first; automatic: none before the canonical DT.
 enum class Engine : std::uint8_t { automatic, cgal, tetgen };
 
-/// The processes a ladder may use. One object per process of ours; thread-safe.
+/// The processes that a ladder may use. One object for each process of ours; thread-safe.
 class EngineWorkers {
  public:
   struct Options {
@@ -46,7 +46,8 @@ class EngineWorkers {
 
 struct LadderOptions {
   Engine engine = Engine::automatic;
-  bool strict = false;  // triangle mode only: the CDT must hold the canonical triangles
+  bool strict = false;  // true: constraints are triangles only; the CDT must hold the canonical
+                        // triangles
   Rung first_rung = Rung::delaunay;  // the paper's table and tests leave out the rungs before it
   Rung last_rung = Rung::tetgen;
   double seconds_per_rung = 0;  // CPU time of an engine on one rung; 0: by size (2 s and more)
@@ -54,10 +55,10 @@ struct LadderOptions {
   /// default_ladder_seconds()). A rung gets the time that those before it left.
   double seconds_in_all = 0;
   CancelPoll cancel = {};
-  /// divide_at_contacts() of the solid, where the caller has it; null: the ladder divides.
+  /// The result of divide_at_contacts() for the solid, or null: the ladder calls it.
   const ContactTriangles* contacts = nullptr;
-  /// The exact tests have shown one interior: a refusal that calls the solid wrong does not end the
-  /// climb, and counts as a property only if no rung is accepted.
+  /// True if the exact tests have shown one interior: a refusal that calls the solid wrong does not
+  /// end the climb, and counts as a property only if no rung is accepted.
   bool is_interior_known = false;
 };
 
@@ -69,20 +70,21 @@ struct LadderOptions {
 double default_ladder_seconds(std::size_t triangles);
 
 struct LadderResult {
-  std::optional<Certificate> certificate;  // the accepted one
+  std::optional<Certificate> certificate;  // the accepted certificate
   /// A refusal that is a property of the solid (interior_disconnected, cavity_mismatch,
   /// wrong_orientation): the solid is invalid, whatever the engine.
   CertificateRefusal property = CertificateRefusal::none;
   std::string detail;
   Index facet = kNone;
-  /// Why engines hardly find an answer (edges of shells that cross in no vertex), or empty.
+  /// The reason why engines hardly find an answer (edges of shells that cross in no vertex), or
+  /// empty.
   std::string obstacle;
   std::vector<RungAttempt> attempts;
 };
 
 /// Requires a solid that passed the exact tests, with rings that are divided as the triangles are
-/// (FacetTriangles::divided_solid). Neither result set = undecided.
-/// `workers` may be null: rung 0 only.
+/// (FacetTriangles::divided_solid). If neither `certificate` nor `property` is set, the solid is
+/// undecided. `workers` may be null: rung 0 only.
 LadderResult climb_ladder(const Solid& solid, const tessellate::FacetTriangles& facets,
                           EngineWorkers* workers, const LadderOptions& options);
 

@@ -60,11 +60,11 @@ std::string_view to_string(RungOutcome outcome);
 struct RungAttempt {
   Rung rung = Rung::none;
   std::string outcome;  // for people: "accepted", "refused: ...", "crashed: ...", "timed-out", ...
-  double seconds = 0;   // wall
+  double seconds = 0;   // wall-clock time
   RungOutcome result = RungOutcome::not_started;
-  CertificateRefusal refusal = CertificateRefusal::none;  // when refused_by_certificate
+  CertificateRefusal refusal = CertificateRefusal::none;  // if refused_by_certificate
   /// CPU times: of the calling thread, of the worker process, and of the engine's own call within
-  /// that (0 when it did not answer).
+  /// that process (0 if the engine did not answer).
   double cpu_seconds = 0;
   double worker_seconds = 0;
   double engine_seconds = 0;

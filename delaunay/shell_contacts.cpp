@@ -4,7 +4,8 @@
 // facet at the vertices of other shells that lie on them; make the edges of other shells that lie
 // on a facet edges of its triangles, by flips (after S. W. Sloan, "A fast algorithm for generating
 // constrained Delaunay triangulations", 1993). A straight edge that runs over two triangles lies in
-// both planes, so what is flipped is coplanar even where the facet as a whole is not.
+// both planes, so that the two triangles of a flip are coplanar even where the facet as a whole is
+// not.
 #include "delaunay/shell_contacts.h"
 
 #include <algorithm>
@@ -27,7 +28,8 @@ constexpr std::uint64_t kMostPairs = 20'000'000;
 
 Edge sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// The signs of the turns of a point around a triangle in projection, +1 inside.
+/// For each edge of a triangle in projection: +1 if the point is on the inner side, 0 on the line
+/// of the edge, -1 on the outer side.
 std::array<int, 3> sides(std::span<const Point> points, const Triangle& t, const Point& p,
                          int axis) {
   const int turn = geometry::orient2d(points[t[0]], points[t[1]], points[t[2]], axis);
@@ -44,7 +46,7 @@ bool do_cross(std::span<const Point> points, const Edge& first, const Edge& seco
   const auto [c, d] = second;
   if (a == c || a == d || b == c || b == d) return false;
   if (geometry::orient3d(points[a], points[b], points[c], points[d]) != 0) return false;
-  // Along an axis in which the common plane is not seen edge-on, all four turns count.
+  // The turns decide along any axis along which the common plane has an area in projection.
   for (int axis = 0; axis < 3; ++axis) {
     const int c_side = geometry::orient2d(points[a], points[b], points[c], axis);
     const int d_side = geometry::orient2d(points[a], points[b], points[d], axis);
@@ -66,7 +68,7 @@ class FacetMesh {
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
 
-  /// Each triangle with the vertex in an edge or inside becomes two or three.
+  /// Divides each triangle that has the vertex inside into three, or in an edge into two.
   void divide(Index vertex) {
     const std::size_t count = triangles_.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -88,7 +90,8 @@ class FacetMesh {
     }
   }
 
-  /// To be called after the last divide(). The directed edges with a triangle on one side only.
+  /// Notes which triangle is beside each edge, after the last divide(). Returns the directed edges
+  /// with a triangle on one side only.
   std::vector<Edge> link() {
     left_of_.clear();
     for (std::size_t t = 0; t < triangles_.size(); ++t) connect(t);
@@ -103,12 +106,12 @@ class FacetMesh {
     return left_of_.contains(edge) || left_of_.contains({edge.second, edge.first});
   }
 
-  /// Makes the segment an edge if it lies on the facet. Requires linked triangles.
+  /// Makes the segment an edge if it lies on the facet. Requires link() before.
   void insert(const Edge& segment) {
     if (has_edge(segment)) return;
     std::optional<std::deque<Edge>> crossed = edges_across(segment);
     if (!crossed) return;
-    // Each flip that does not help at once is put off; k edges need at most some k^2 flips.
+    // A flip that does not help at once is put off; k edges need at most some k^2 flips.
     std::size_t left = 16 + 4 * crossed->size() * crossed->size();
     while (!crossed->empty() && left-- > 0) {
       const Edge edge = crossed->front();
@@ -160,7 +163,7 @@ class FacetMesh {
     return std::nullopt;
   }
 
-  /// The edge opposite the segment's start through which it leaves the first triangle.
+  /// The edge of the segment's first triangle through which the segment leaves that triangle.
   std::optional<Edge> first_across(const Edge& segment) const {
     for (const Triangle& t : triangles_) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -190,7 +193,7 @@ class FacetMesh {
 
   std::span<const Point> points_;
   std::vector<Triangle> triangles_;
-  std::map<Edge, std::size_t> left_of_;  // directed edge -> the triangle it belongs to
+  std::map<Edge, std::size_t> left_of_;  // directed edge -> the index of its triangle
   int axis_;
   int turn_;
 };
@@ -263,7 +266,8 @@ class ContactDivision {
     }
   }
 
-  /// Edges of both shells that cross, and edges that run over a facet.
+  /// Notes the facets where an edge inside a facet crosses an edge of another shell, and reports
+  /// edges of two shells that cross in no vertex.
   void note_crossing(const geometry::IntersectingPair& pair) {
     const Triangle& first = canonical_.triangles[pair.first];
     const Triangle& second = canonical_.triangles[pair.second];
@@ -281,7 +285,7 @@ class ContactDivision {
     }
   }
 
-  /// An edge of the surface: of a ring, or a fold of a facet that is not planar.
+  /// True for an edge of the surface: one of a ring, or a fold of a facet that is not planar.
   bool is_fixed(const Edge& edge, Index facet) const {
     if (is_ring_edge(edge)) return true;
     std::vector<Index> apexes;
@@ -380,7 +384,8 @@ class ContactDivision {
   std::span<const Point> points_;
   std::vector<Edge> ring_edges_;
   std::set<Index> touched_;
-  std::set<std::pair<Index, Index>> meeting_;  // facets of different shells, both ways
+  std::set<std::pair<Index, Index>> meeting_;  // pairs of facets of different shells that meet, in
+                                               // both orders
   std::map<Index, std::set<Index>> inside_;    // facet -> vertices of other shells on it
   std::map<Index, FacetMesh> meshes_;
   ContactTriangles result_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where shells of one solid touch inside each other's facets and edges. Different shells may touch
-// in points and along edges; a tetrahedralization then must have these points and edges within the
-// facets, and engines want them in their input.
+// Finds where shells of one solid touch inside each other's facets and edges. Different shells may
+// touch in points and along edges; a tetrahedralization then must have these points and edges
+// within the facets, and engines need them in their input.
 #pragma once
 
 #include <string>
@@ -16,12 +16,13 @@ namespace watertight::delaunay {
 
 struct ContactTriangles {
   /// The canonical triangles divided at vertices and edges of other shells that lie exactly on
-  /// them. Grouped by facet and turned alike, as the canonical ones. Empty without contacts.
+  /// them. Grouped by facet and turned alike, as the canonical triangles are. Empty without
+  /// contacts.
   tessellate::FacetTriangles triangles;
   std::vector<bool> is_touched;  // facet -> holds a vertex or an edge of another shell
-  /// Not empty: two edges of different shells (or folds of facets that are not planar) cross in a
-  /// point that is no vertex of the solid, so that no triangulation by its vertices exists. For
-  /// people.
+  /// A text for people if two edges of different shells (or folds of facets that are not planar)
+  /// cross in a point that is no vertex of the solid, so that no triangulation by the vertices
+  /// exists; else empty.
   std::string obstacle;
   bool has_contacts() const { return !is_touched.empty(); }
 };
@@ -34,8 +35,8 @@ Result<ContactTriangles> divide_at_contacts(const Solid& solid,
                                             const tessellate::FacetTriangles& canonical,
                                             const CancelPoll& is_cancelled = {});
 
-/// True if the point lies in the closed triangle, exactly. `axis` is one along which the triangle
-/// has an area in projection.
+/// True if the point lies in the closed triangle, exactly. `axis` is an axis along which the
+/// triangle has an area in projection.
 bool is_on_triangle(std::span<const Point> points, const Triangle& triangle, const Point& point,
                     int axis);
 

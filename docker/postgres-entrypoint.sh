@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs PostgreSQL with the extension watertight in the foreground. First start: creates the cluster,
-# the role and the database, and the extension in it. Later starts: recovers and runs.
+# Runs PostgreSQL with the extension watertight in the foreground. The first start creates the
+# cluster, the role and the database with the extension; later starts recover and run.
 #   POSTGRES_PASSWORD   required at the first start: password of the role watertight (SCRAM)
 #   POSTGRES_PORT       default 5432
 #   POSTGRES_LISTEN     default '*'

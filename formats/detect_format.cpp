@@ -48,7 +48,7 @@ std::size_t string_end(std::string_view text, std::size_t at) {
 std::string_view json_type(std::string_view text) {
   std::size_t depth = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {
-    if (text[at] != '"' && text[at] < '[') continue;  // skips numbers and all between values
+    if (text[at] != '"' && text[at] < '[') continue;  // skips numbers and everything between values
     if (text[at] == '{' || text[at] == '[') ++depth;
     if ((text[at] == '}' || text[at] == ']') && depth > 0) --depth;
     if (text[at] != '"') continue;
@@ -67,8 +67,8 @@ std::string_view json_type(std::string_view text) {
   return {};
 }
 
-// Decides by the type, which CityJSON, its sequences and (JSON-FG as) GeoJSON have. A sequence has
-// a second JSON text after the line that ends the first.
+// The format of a JSON text by its type, which CityJSON, CityJSONSeq and GeoJSON (and so JSON-FG)
+// have. A sequence has a second JSON text after the line that ends the first one.
 Format json_format(std::string_view text) {
   const std::string_view type = json_type(text);
   if (type == "Feature" || type == "FeatureCollection") return Format::json_fg;
@@ -96,8 +96,8 @@ bool is_obj_line(std::string_view text) {
   return false;
 }
 
-// "solid NAME" with "facet" or "endsolid" in the next line that is not blank; WKT goes on with a
-// bracket.
+// Whether the text begins with "solid NAME", followed by "facet" or "endsolid" in the next line
+// that is not blank. WKT goes on with a bracket.
 bool is_text_stl_head(std::string_view text) {
   if (lower_case(text.substr(0, 5)) != "solid") return false;
   const std::size_t line_end = text.find('\n');
@@ -108,7 +108,7 @@ bool is_text_stl_head(std::string_view text) {
   return word.starts_with("facet") || word == "endsolid";
 }
 
-// Decides by the first bytes of the first line that is neither blank nor a comment.
+// The format by the first bytes of the first line that is neither blank nor a comment.
 Result<Format> format_of_text(std::string_view text) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t start = text.find_first_not_of(" \t\r\n\x1E");
@@ -147,7 +147,7 @@ Result<Format> detect_format(std::string_view file_name, ByteView bytes) {
   if (name.ends_with(".geojson") || name.ends_with(".jsonfg")) return Format::json_fg;
   if (name.ends_with(".json")) return json_format(as_text(bytes));
   if (is_binary_stl(bytes)) return Format::stl;
-  // EWKB: byte order 0 or 1, then a type whose bytes no text has.
+  // EWKB begins with the byte order 0 or 1, which no text does.
   if (bytes.size() >= 9 && bytes[0] <= 1) return Format::ewkb;
   return format_of_text(as_text(bytes));
 }

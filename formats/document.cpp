@@ -20,7 +20,7 @@ bool is_city(Format format) {
   return format == Format::city_json || format == Format::city_json_seq;
 }
 
-// The solids of all features, one after the other.
+// Writes the solids of all features, one after the other.
 Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
   const auto has_solids = [](const Feature& feature) { return !feature.solids.empty(); };
   if (std::none_of(features.begin(), features.end(), has_solids)) {
@@ -138,7 +138,8 @@ Result<Document> read_as(ByteView bytes, Format format, const ReadOptions& optio
   return Error{ErrorCode::unsupported, "no reader for " + std::string(to_string(format))};
 }
 
-// Before the text of a mesh or of WKT. The readers of JSON and XML know it themselves.
+// Whether a byte order mark precedes the text of a mesh or of WKT. The readers of JSON and XML skip
+// it themselves.
 bool has_byte_order_mark(ByteView bytes, Format format) {
   switch (format) {
     case Format::obj:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Documents: bytes to features with solids, and back. A feature keeps everything that is not solid
-// geometry in a skeleton, so that writing returns the same document (docs/formats.md).
+// Reads documents into features with solids, and writes them again. A feature keeps everything that
+// is not solid geometry in a skeleton, so that writing returns the same document (docs/formats.md).
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,9 @@ std::string_view to_string(Format format);
 /// The format of this name. Errors: malformed.
 Result<Format> format_named(std::string_view name);
 
-/// By file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb", "x.ewkb", "x.gml",
-/// "x.xml", "x.stl", "x.ply", "x.poly"), else by the first bytes. Errors: unsupported.
+/// The format by the file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb",
+/// "x.ewkb", "x.gml", "x.xml", "x.stl", "x.ply", "x.poly"), else by the first bytes. Errors:
+/// unsupported.
 Result<Format> detect_format(std::string_view file_name, ByteView bytes);
 
 /// Where a solid stands in its document.
@@ -61,17 +62,17 @@ struct SubmittedSolid {
   /// Rings whose last position does not repeat the first, in formats that demand it (finding 103);
   /// indices into the rings of `solid`, ascending.
   std::vector<Index> unclosed_rings = {};
-  /// gml:id of each facet's polygon, "" for those without one; empty when none has one.
+  /// The gml:id of the polygon of each facet, "" where it has none; empty when no polygon has one.
   std::vector<std::string> facet_ids = {};
   /// Unused vertices of a file whose list of vertices is for this solid alone.
   geometry::UnusedVertices unused = {};
   bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
 };
 
-/// A geometry template where an instance puts it. Judged like a solid there, but not one of the
-/// feature: writing takes it from the skeleton.
+/// An instance of a geometry template. It is validated where its placement puts it, like a solid,
+/// but is no solid of the feature: writing takes it from the skeleton.
 struct TemplateInstance {
-  SolidSource source;  // `pointer` leads to the geometry that is the instance; no LoD of its own
+  SolidSource source;                 // `pointer` leads to the instance; `lod` is empty
   std::uint64_t template_number = 0;  // SolidSource::geometry of its solids in Document::templates
   geometry::Placement placement;
 };
@@ -88,7 +89,7 @@ struct Feature {
   /// How the text of the document was written (ReadOptions::keep_text), so that the same bytes come
   /// back; empty: compact JSON is written. Opaque (formats/text/text_layout.h).
   Bytes layout = {};
-  /// Instances of geometry templates, also of those that are no solids; in document order.
+  /// Instances of geometry templates, also of templates that are no solids; in document order.
   std::vector<TemplateInstance> instances = {};
 };
 
@@ -101,7 +102,7 @@ struct Document {
   std::vector<std::string> notes;  // readings of doubtful input, one clause each
   /// Solids of CityJSON geometry templates, for validation only: writing takes them from `header`.
   /// Coordinates are the templates' own, on no reference system; `source.pointer` is, for example,
-  /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's position.
+  /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's index.
   std::vector<SubmittedSolid> templates = {};
   /// Instances that belong to no feature: in GML an object without solids is not a feature.
   std::vector<TemplateInstance> instances = {};
@@ -112,10 +113,10 @@ struct Document {
 
 /// The contract levels: how much of a document comes back.
 enum class Contract : std::uint8_t {
-  exact,    // its very bytes, if it was read with ReadOptions::keep_text; else its values and order
-  lattice,  // its values; solids in canonical form (geometry/canonical_form.h), what is listed by
-            // facet or ring with them, and vertices numbered by the solids
-  boundary  // solids in canonical form; of the rest only city objects, their types and families
+  exact,    // the bytes of the document if it kept its text (keep_text), else its values in order
+  lattice,  // the values of the document; solids in canonical form (geometry/canonical_form.h),
+            // lists by facet or ring in the same order, and vertices numbered by the solids
+  boundary  // solids in canonical form; else only city objects with types, parents and children
 };
 std::string_view to_string(Contract contract);
 /// The contract of this name. Errors: invalid_argument.
@@ -123,29 +124,30 @@ Result<Contract> contract_named(std::string_view name);
 
 struct ReadOptions {
   Limits limits;
-  /// false: a CityJSON document becomes one feature whose skeleton returns the whole document
-  /// (files); true: one feature per top-level object (stores). Solids are the same either way.
+  /// Whether a CityJSON document becomes one feature per top-level object (stores), or one feature
+  /// whose skeleton returns the whole document (files). The solids are equal either way.
   bool split_features = true;
-  /// true: a whole CityJSON, a CityJSONFeature of a sequence and a sequence are written byte for
-  /// byte as they were read. The features of a document that is split have no text of their own.
+  /// Whether a whole CityJSON, a sequence and a CityJSONFeature of a sequence can be written byte
+  /// for byte as they were read. The features of a document that is split have no text of their
+  /// own.
   bool keep_text = false;
 };
 
-/// Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or JSON Pointer
-/// (content). Cost: linear; CityJSON is read by SAX, boundaries never become JSON values.
+/// Reads a document. Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or
+/// JSON Pointer (content). Cost: linear; boundaries of CityJSON never become JSON values.
 Result<Document> read_document(ByteView bytes, Format format, const ReadOptions& options = {});
 
-/// The feature with its solids put back: a CityJSONFeature (one line) for CityJSON and Seq. Solids
-/// must be in the order and with the facet, ring and vertex order of the feature that was read.
-/// Errors: malformed if skeleton and solids do not fit, or if the text is not the one that was
-/// read.
+/// The text of a feature with its solids put back: a CityJSONFeature (one line) for CityJSON and
+/// CityJSONSeq. Solids must be in the order and with the facet, ring and vertex order of the
+/// feature that was read. Errors: malformed if skeleton and solids do not fit, or if the feature's
+/// layout belongs to another text.
 Result<std::string> write_feature(const Document& document, const Feature& feature);
 
-/// The whole document. City models: a CityJSON of all features when `format` is city_json, header
-/// line + feature lines when city_json_seq; a document that kept its text gives it back in its own
-/// format. For obj, off, wkt and ewkb the solids of all features.
+/// The bytes of a whole document. City models become a CityJSON of all features (city_json), or a
+/// header line and feature lines (city_json_seq); a document that kept its text returns it in its
+/// own format. For obj, off, wkt and ewkb: the solids of all features.
 /// Errors: unsupported when a format cannot hold the document (OFF: several solids; OBJ, OFF: rings
-/// with holes are triangulated only by `convert`, never silently here).
+/// with holes, which only `convert` triangulates).
 Result<Bytes> write_document(const Document& document, Format format);
 
 }  // namespace watertight::formats

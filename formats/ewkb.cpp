@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Well-known binary as PostGIS extends it: the type word carries flags for Z, M and SRID; ISO's
-// thousands (1015) are read too. docs/formats.md gives the layout of a SOLID Z.
+// Well-known binary as PostGIS extends it: the type word carries flags for Z, M and SRID. Types of
+// ISO, with thousands instead of flags (1015), are read too. docs/formats.md gives the layout of a
+// SOLID Z.
 #include "formats/ewkb.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ constexpr std::uint32_t kPolygon = 3;
 constexpr std::uint32_t kPolyhedralSurface = 15;
 constexpr std::uint32_t kTin = 16;
 constexpr std::uint32_t kTriangle = 17;
-constexpr std::uint32_t kSolid = 101;  // the number SFCGAL gives its Solid; PostGIS has none
+constexpr std::uint32_t kSolid = 101;  // the number that SFCGAL gives its Solid; PostGIS has none
 
 class EwkbReader {
  public:
@@ -70,7 +71,7 @@ class EwkbReader {
     return std::bit_cast<double>(is_big_endian_ ? __builtin_bswap64(bits) : bits);
   }
 
-  // Byte order, type with flags, SRID. Returns the type without flags.
+  // Reads byte order, type with flags, and SRID. Returns the type without flags.
   Result<std::uint32_t> head() {
     const std::uint8_t order = reader_.u8();
     if (reader_.failed()) return reader_.error("geometry");
@@ -97,7 +98,7 @@ class EwkbReader {
     return type;
   }
 
-  // A count whose elements take at least `least` bytes each.
+  // Reads a number of elements, which take at least `least` bytes each.
   Result<std::uint32_t> count(std::size_t least, const char* what) {
     const std::uint32_t value = u32();
     if (reader_.failed()) return reader_.error(what);

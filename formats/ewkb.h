@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// EWKB (PostGIS) and WKT of solids: POLYHEDRALSURFACE Z (one shell) and SOLID Z (shells).
-// For SQL, CLI and the service. Solids with cavities need SOLID Z; see docs/format.md for its
-// layout.
+// EWKB (PostGIS) and WKT of solids: POLYHEDRALSURFACE Z (one shell) and SOLID Z (shells). For SQL,
+// CLI and the service. Solids with cavities need SOLID Z; docs/formats.md gives its layout.
 #pragma once
 
 #include "base/bytes.h"
@@ -13,7 +12,7 @@ namespace watertight::formats {
 
 Result<SubmittedSolid> read_ewkb(ByteView bytes, const Limits& limits = {});
 Result<SubmittedSolid> read_wkt(std::string_view text, const Limits& limits = {});
-/// Doubles are the nearest to the exact world coordinates; rings are closed.
+/// Writes the doubles nearest to the exact world coordinates, and closed rings.
 Bytes write_ewkb(const Solid& solid);
 std::string write_wkt(const Solid& solid);
 

@@ -8,10 +8,11 @@ namespace watertight::formats {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 18U;
-/// Bytes after the first line that show whether it is a sequence or a document of several lines.
+/// The number of bytes after the first line that show whether the input is a sequence or a document
+/// of several lines.
 constexpr std::size_t kGlimpse = 4096;
 
-/// Without the record separator of RFC 8142 and the blanks before the text.
+/// The position after the record separator of RFC 8142 and the blanks that precede a text.
 std::size_t text_start(std::string_view line) {
   return std::min(line.find_first_not_of("\x1E \t\r"), line.size());
 }
@@ -28,7 +29,7 @@ Error in_line(Error error, const FeatureText& text) {
 
 }  // namespace
 
-/// Appends what the source gives next.
+/// Appends the next bytes of the source to the buffer.
 Status FeatureReader::fill() {
   if (used_ > 0) {
     buffer_.erase(0, used_);
@@ -50,7 +51,7 @@ Status FeatureReader::fill() {
   return Done{};
 }
 
-/// Until the buffer has a line end or the source is at its end.
+/// Reads until the buffer has a line end or the source is at its end.
 Status FeatureReader::fill_to_line_end() {
   for (;;) {
     const std::size_t end = buffer_.find('\n', std::max(searched_, used_));
@@ -121,8 +122,8 @@ Status FeatureReader::read_header() {
   return Done{};
 }
 
-/// Without the blanks of its end, which go to the framing: files that differ there only (in line
-/// ends) have one header.
+/// The text of the header without the blanks at its end, which go to the framing: files that differ
+/// only there (in line ends) have one header.
 std::string FeatureReader::header_line(FeatureText text) {
   const std::size_t size = text.line.find_last_not_of(" \t\r") + 1;
   gap_.insert(0, text.line, size);
@@ -154,7 +155,8 @@ Result<std::optional<FeatureText>> FeatureReader::next_line() {
   }
 }
 
-/// `blanks` stand at the start of a line; `has_text`: a text follows them in that line.
+/// Adds `blanks`, which stand at the start of a line, to the gap between texts; `has_text`: a text
+/// follows in that line.
 void FeatureReader::note_gap(std::string_view blanks, bool has_text) {
   gap_ += blanks;
   if (!has_text) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Documents read feature by feature. A CityJSONSeq of any length takes the memory of its longest
+// Reads documents feature by feature. A CityJSONSeq of any length takes the memory of its longest
 // line; other formats are read whole first. For pipelines; stores and services that need the whole
 // document use formats/document.h.
 #pragma once
@@ -16,44 +16,44 @@
 
 namespace watertight::formats {
 
-/// Fills the span from the input and returns how many bytes; 0 at the end of the input.
+/// Fills the span from the input and returns the number of bytes; 0 at the end of the input.
 using ByteSource = std::function<Result<std::size_t>(std::span<std::uint8_t>)>;
 
 /// A feature found but not yet read: a line of a sequence, or a feature of a document that was read
 /// whole.
 struct FeatureText {
   std::string line;
-  std::uint64_t line_number = 0;  // from 1
-  std::uint64_t offset = 0;       // of the line in the input, bytes
+  std::uint64_t line_number = 0;  // number of the line, from 1
+  std::uint64_t offset = 0;       // start of the line in the input, bytes
   std::optional<Feature> ready;
 };
 
 class FeatureReader {
  public:
-  /// Looks at the start of the input. `file_name` helps to detect the format, as in
-  /// detect_format(). Errors: those of detect_format(), of the source, and of the header of a
+  /// Opens a reader and looks at the start of the input. `file_name` helps to detect the format, as
+  /// in detect_format(). Errors: those of detect_format(), of the source, and of the header of a
   /// sequence; for other formats those of read_document().
   static Result<FeatureReader> open(ByteSource source, std::string_view file_name,
                                     const ReadOptions& options = {});
   /// A reader of a document that is in memory already.
   static FeatureReader of(Document document);
 
-  /// Finds the next feature; nothing at the end. After an error the input is at its end.
-  /// Errors: those of the source; limit_exceeded for a line longer than Limits::bytes.
-  /// Cost: linear in the line. Not thread-safe.
+  /// Finds the next feature; nullopt at the end. After an error the input is at its end. Errors:
+  /// those of the source; limit_exceeded for a line longer than Limits::bytes. Cost: linear in the
+  /// line. Not thread-safe.
   Result<std::optional<FeatureText>> next();
 
-  /// Reads what next() found. Thread-safe, also beside next().
-  /// Errors: as read_city_json_feature(), naming the line; byte offsets are those of the input.
+  /// Reads a feature that next() found. Thread-safe, also while next() runs. Errors: those of
+  /// read_city_json_feature(), with the line number; byte offsets are those of the input.
   Result<Feature> read(FeatureText text) const;
 
-  /// Format, header and notes; its features are the reader's.
+  /// The format, header and notes of the document; next() takes its features.
   const Document& document() const { return document_; }
   /// The bytes between the lines of a sequence that was read to its end, with
   /// ReadOptions::keep_text (Document::framing).
   Bytes framing() const;
   std::uint64_t bytes_read() const { return bytes_read_; }
-  /// Features in all; unknown for a sequence.
+  /// The number of all features; nullopt for a sequence.
   std::optional<std::size_t> feature_count() const {
     if (is_sequence_) return std::nullopt;
     return document_.features.size();
@@ -73,14 +73,14 @@ class FeatureReader {
   ReadOptions options_;
   Document document_;
   CityHeader header_;
-  std::string buffer_;  // bytes read and not used yet: from used_ on
+  std::string buffer_;  // bytes that were read; those from used_ on are not used yet
   std::size_t used_ = 0;
-  std::size_t searched_ = 0;  // there is no line end in buffer_ before it
+  std::size_t searched_ = 0;  // end of the part of buffer_ without a line end
   FramingWriter framing_;
-  std::string gap_;                // since the end of the last line that was not blank
-  std::uint64_t line_number_ = 0;  // of the last line, from 1
+  std::string gap_;                // the bytes since the last line that was not blank
+  std::uint64_t line_number_ = 0;  // number of the last line, from 1
   std::uint64_t bytes_read_ = 0;
-  std::size_t given_ = 0;  // features of a document that was read whole
+  std::size_t given_ = 0;  // the number of features that next() has returned
   bool is_sequence_ = false;
   bool is_at_end_ = false;  // the source has ended
 };

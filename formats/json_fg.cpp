@@ -20,12 +20,12 @@ Error wrong(std::string message, std::string pointer) {
   return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
 }
 
-/// The solids of one place; all of them share a lattice.
+/// Reads the solids of one place, which share a lattice.
 class PlaceReader {
  public:
   PlaceReader(std::uint32_t srid, const Limits& limits) : srid_(srid), limits_(limits) {}
 
-  /// The coordinates of one polyhedron: shells of polygons of rings of positions.
+  /// Reads the coordinates of one polyhedron: shells of polygons of rings of positions.
   Status polyhedron(const Json& shells, SolidSource source) {
     if (!shells.is_array()) return wrong("a polyhedron is an array of shells", source.pointer);
     Part part;
@@ -64,7 +64,7 @@ class PlaceReader {
  private:
   struct Part {
     SolidArrays arrays;     // ring vertices are positions, counted from `begin`
-    std::size_t begin = 0;  // into positions_
+    std::size_t begin = 0;  // index of the first position in positions_
     std::size_t end = 0;
     SolidSource source;
     std::vector<Index> unclosed_rings;
@@ -259,9 +259,9 @@ class JsonFgReader {
     return Done{};
   }
 
-  // A URI or safe CURIE ("[EPSG:7415]"), a reference object with one in "href", or an array of
-  // these; the first of an array with an EPSG code counts, as compounds start with the horizontal
-  // one. 0 when there is none.
+  // The EPSG code of a reference system: a URI or safe CURIE ("[EPSG:7415]"), an object with one of
+  // them in "href", or an array of systems, of which the first with a code counts (compound systems
+  // start with the horizontal one). 0 when there is none.
   static std::uint32_t srid_of(const Json* crs) {
     if (crs == nullptr) return 0;
     if (crs->is_string()) return epsg_code(crs->get_ref<const std::string&>());
@@ -276,8 +276,8 @@ class JsonFgReader {
 
   const Limits& limits_;
   Document document_;
-  std::size_t left_out_ = 0;   // features without a polyhedron
-  std::size_t fallbacks_ = 0;  // features with a geometry beside their place
+  std::size_t left_out_ = 0;   // the number of features without a polyhedron
+  std::size_t fallbacks_ = 0;  // the number of features with a geometry beside their place
 };
 
 }  // namespace

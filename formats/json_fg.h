@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // JSON-FG (OGC 21-045r1): GeoJSON whose features have a `place` in any reference system, which may
-// be a Polyhedron. Internal to formats/; the public face is formats/document.h.
+// be a Polyhedron. Internal to formats/; the public interface is formats/document.h.
 #pragma once
 
 #include <string_view>

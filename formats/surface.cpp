@@ -15,7 +15,7 @@ Result<SubmittedSolid> submitted(SolidArrays arrays, const Lattice& lattice, Sol
   return SubmittedSolid{std::move(*solid), std::move(source), {}};
 }
 
-/// The vertices of `all` that are not in `used`.
+/// The number of the vertices of `all` that are not in `used`, and the first of them.
 geometry::UnusedVertices unused_vertices(const std::vector<std::array<GridNumber, 3>>& all,
                                          const std::vector<Index>& used) {
   geometry::UnusedVertices unused{all.size() - used.size(), 0, {}};

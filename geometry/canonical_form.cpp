@@ -37,8 +37,8 @@ std::optional<std::vector<Index>> inverse_of(std::span<const Index> order) {
   return inverse;
 }
 
-/// Works out the order of a solid bottom up: vertices, ring starts, rings, facets, shells. The
-/// solid keeps its arrangement; only ring vertices are renumbered and rotated in a copy.
+/// Finds the canonical order of a solid bottom up: vertices, ring starts, rings, facets, shells.
+/// Does not change the solid; ring vertices are renumbered and rotated in a copy.
 class Arranger {
  public:
   explicit Arranger(const Solid& solid) : solid_(solid) {
@@ -69,11 +69,11 @@ class Arranger {
 
   const Solid& solid_;
   std::vector<Index> vertex_order_;  // canonical vertex -> source vertex
-  std::vector<Index> rotated_;       // ring vertices, canonical numbers, each ring rotated
-  std::vector<Index> ring_start_;    // per source ring
-  std::vector<Index> ring_order_;    // sorted within each facet
-  std::vector<Index> facet_order_;   // sorted within each shell
-  std::vector<Index> shell_order_;
+  std::vector<Index> rotated_;       // the ring vertices in canonical numbers, each ring rotated
+  std::vector<Index> ring_start_;    // source ring -> index of its first vertex once it is rotated
+  std::vector<Index> ring_order_;    // the source rings, sorted within each facet
+  std::vector<Index> facet_order_;   // the source facets, sorted within each shell
+  std::vector<Index> shell_order_;   // canonical shell -> source shell
 };
 
 void Arranger::sort_vertices() {
@@ -192,7 +192,7 @@ CanonicalSolid Arranger::arrange() const {
     }
     arrays.end_shell();
   }
-  // A solid or an oriented boundary stays one when it is rearranged: both make() calls succeed.
+  // A rearranged solid or oriented boundary is still one, so the two make() calls succeed.
   auto solid = Solid::make(std::move(arrays), solid_.lattice(), solid_.srid(), kNoLimits);
   WATERTIGHT_ASSERT(solid.has_value());
   auto boundary = OrientedBoundary::make(std::move(solid).value());
@@ -204,12 +204,12 @@ Error malformed_order(const char* what) {
   return {ErrorCode::malformed, std::string("the source order does not fit the solid: ") + what};
 }
 
-/// Source arrangement that a SourceOrder describes, checked against the canonical solid.
+/// The inverses of the permutations of a SourceOrder.
 struct Inverse {
-  std::vector<Index> vertex;  // source -> canonical, likewise below
-  std::vector<Index> shell;
-  std::vector<Index> facet;
-  std::vector<Index> ring;
+  std::vector<Index> vertex;  // source vertex -> canonical vertex
+  std::vector<Index> shell;   // source shell -> canonical shell
+  std::vector<Index> facet;   // source facet -> canonical facet
+  std::vector<Index> ring;    // source ring -> canonical ring
 };
 
 Result<Inverse> invert(const Solid& canonical, const SourceOrder& order) {
@@ -236,7 +236,7 @@ Result<Inverse> invert(const Solid& canonical, const SourceOrder& order) {
   return Inverse{std::move(*vertex), std::move(*shell), std::move(*facet), std::move(*ring)};
 }
 
-/// Source facets must be those of the source shell in whose place they stand.
+/// True if each source shell has the facets of its canonical shell.
 bool facets_stay_in_shells(const Solid& canonical, const Inverse& inverse) {
   Index source_facet = 0;
   for (const Index shell : inverse.shell) {
@@ -249,7 +249,7 @@ bool facets_stay_in_shells(const Solid& canonical, const Inverse& inverse) {
   return true;
 }
 
-/// Source rings must be those of their source facet, the exterior ring first.
+/// True if each source facet has the rings of its canonical facet, the exterior ring first.
 bool rings_stay_in_facets(const Solid& canonical, const Inverse& inverse) {
   Index source_ring = 0;
   for (const Index facet : inverse.facet) {

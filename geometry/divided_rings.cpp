@@ -11,15 +11,15 @@
 namespace watertight::geometry {
 namespace {
 
-/// At most so many pairs of an edge and a vertex are tested in one solid: two seconds of work. Only
-/// long oblique edges beside many vertices come near it.
+/// The largest number of pairs of an edge and a vertex that are tested in one solid: two seconds of
+/// work. Only long oblique edges beside many vertices come near this number.
 constexpr std::uint64_t kMostPairs = 100'000'000;
 
-/// Rings that do not share segments are a planar graph once they are divided: at most 3 edges for
-/// each vertex, and each touch makes one edge more.
+/// A facet has at most this number of touches for each ring vertex. Divided rings that share no
+/// segments are a planar graph with at most 3 edges for each vertex, and each touch adds an edge.
 constexpr std::size_t kMostEdgesPerVertex = 3;
 
-/// A vertex of a ring, with its point beside it: a search reads memory in order.
+/// A vertex of a ring with a copy of its point, so that a search reads memory in order.
 struct RingVertex {
   Point point;
   Index vertex = 0;
@@ -54,7 +54,7 @@ class TouchFinder {
 
   const Solid& solid_;
   std::span<const Point> vertices_;
-  std::array<std::vector<RingVertex>, 3> by_axis_;  // the facet's ring vertices, by x, y and z
+  std::array<std::vector<RingVertex>, 3> by_axis_;  // the facet's ring vertices sorted by x, y, z
   std::uint64_t pairs_ = 0;
   std::vector<RingTouch> touches_;
 };
@@ -73,7 +73,7 @@ void TouchFinder::sort_vertices(IndexRange rings) {
   }
 }
 
-/// The vertices between a and b along the axis along which there are fewest.
+/// The vertices between a and b along one axis, the axis along which there are fewest.
 Candidates TouchFinder::beside(const Point& a, const Point& b) const {
   Candidates fewest = by_axis_[0];
   for (int axis = 0; axis < 3; ++axis) {

@@ -23,8 +23,9 @@ constexpr unsigned kBits = 512;
 /// Cyclic Jacobi converges quadratically: 3 x 3 matrices need 5 to 8 sweeps in doubles, 4 more in
 /// 512 bits.
 constexpr int kMostSweeps = 40;
-/// Doubles are enough where the bound of their rounding is below this share of the distance from
-/// the limit, and of a result beyond the limit.
+/// Doubles are enough where the bound of the rounding error is at most kSafeShare of the difference
+/// between the result and the limit and, for a result beyond the limit, at most kDigitsShare of the
+/// result.
 constexpr double kSafeShare = 1e-3;
 constexpr double kDigitsShare = 1e-6;
 
@@ -57,7 +58,8 @@ mpf_class negligible<mpf_class>(const MatrixOf<mpf_class>& m) {
   return share;
 }
 
-/// Twice the angle of a rotation that zeroes m[p][q] has the tangent 1 / theta.
+/// Rotates the matrix so that m[p][q] becomes zero, and applies the rotation to the vectors. The
+/// tangent of twice the angle is 1 / theta.
 template <class Real>
 void rotate(MatrixOf<Real>& m, MatrixOf<Real>& vectors, std::size_t p, std::size_t q,
             const Real& zero) {
@@ -79,12 +81,12 @@ void rotate(MatrixOf<Real>& m, MatrixOf<Real>& vectors, std::size_t p, std::size
   for (std::size_t k = 0; k < 3; ++k) turn(vectors[k][p], vectors[k][q]);
 }
 
-/// A fitted plane, and how well the arithmetic knows it.
+/// The plane fitted to points.
 template <class Real>
 struct FittedPlane {
   VectorOf<Real> mean;
   VectorOf<Real> normal;
-  VectorOf<Real> eigenvalues;  // ascending
+  VectorOf<Real> eigenvalues;  // the eigenvalues of the covariance, ascending
 };
 
 template <class Real>
@@ -159,9 +161,9 @@ PlaneDistance largest_distance(std::span<const Triple> points, const FittedPlane
   return result;
 }
 
-/// A bound of the rounding of a distance, for points no further than 1 from the first in any axis:
-/// the covariance is off by no more than e = 8 (n + 8) units of rounding of its largest eigenvalue,
-/// which turns the normal by at most 4 e / (gap of the two smallest eigenvalues).
+/// A bound of the rounding error of a distance, for points at most 1 from the first one along each
+/// axis: the covariance is wrong by at most e = 8 (n + 8) units of rounding of its largest
+/// eigenvalue, which turns the normal by at most 4 e / (gap of the two smallest eigenvalues).
 double rounding(const FittedPlane<double>& plane, std::size_t count) {
   const double unit = 8 * (static_cast<double>(count) + 8) * 0x1p-53;
   const double gap = plane.eigenvalues[1] - plane.eigenvalues[0];
@@ -178,7 +180,8 @@ PlaneDistance distance_to_fitted_plane(std::span<const Triple> points, double li
   }
   if (!(largest > 0) || !std::isfinite(largest)) return {};
   const int exponent = std::ilogb(largest) + 1;
-  // Two factors, since one may exceed the doubles. Both are powers of two: nothing is rounded.
+  // The scale is applied as two factors, since it may exceed the range of doubles. Both factors are
+  // powers of two, so nothing is rounded.
   const double factor = std::ldexp(1.0, -exponent / 2);
   const double rest = std::ldexp(1.0, -exponent - -exponent / 2);
   std::vector<Triple> scaled(points.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How far points are from the plane fitted through them by least squares. A measurement, in the
-// unit of the points: it decides nothing but tolerance rules. For validate.
+// Measures how far points are from the plane fitted through them by least squares. Only tolerance
+// rules use the result. For validate/.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 namespace watertight::geometry {
 
 struct PlaneDistance {
-  double distance = 0;    // the largest distance of a point from the plane
-  std::size_t point = 0;  // which point: the first with that distance
+  double distance = 0;    // the largest distance of a point from the plane, in the points' unit
+  std::size_t point = 0;  // the index of the first point with that distance
 };
 
-/// The plane passes through the mean of the points, and its normal is the direction in which the
-/// sum of their squared distances to it is least (total least squares: the eigenvector of the
-/// smallest eigenvalue of the covariance, by cyclic Jacobi rotations). Points that are listed
-/// twice count twice.
+/// The largest distance of a point from the plane fitted to all points. The plane passes through
+/// the mean of the points, and its normal makes the sum of the squared distances least (total least
+/// squares: the normal is the eigenvector of the smallest eigenvalue of the covariance, by cyclic
+/// Jacobi rotations). Points that are listed twice count twice.
 ///
-/// Computed in doubles where a bound of their rounding is far below the distance of the result
-/// from `limit`, and far below a result beyond it; else in 512-bit arithmetic. No size of
-/// coordinates underflows or overflows before the result does. The same doubles on every machine.
-/// Fewer than 4 points are on their plane. Requires finite points. Cost: linear; some 0.2 ms where
-/// doubles do not suffice.
+/// The distance is computed in doubles where a bound of the rounding error is far below the
+/// difference between the result and `limit`, and far below a result beyond `limit`; else in
+/// 512-bit arithmetic. No size of coordinates underflows or overflows before the result does. Every
+/// machine computes the same doubles. Fewer than 4 points have distance 0. Requires finite points.
+/// Cost: linear; some 0.2 ms where doubles do not suffice.
 PlaneDistance distance_to_fitted_plane(std::span<const std::array<double, 3>> points, double limit);
 
 }  // namespace watertight::geometry

@@ -19,7 +19,7 @@
 namespace watertight::geometry {
 namespace {
 
-/// numerator / denominator * 2^exponent.
+/// The number numerator * 2^exponent.
 struct ExactVolume {
   mpz_class numerator = 0;
   std::int64_t exponent = 0;
@@ -35,8 +35,8 @@ mpz_class to_big(Wide value) {
   return is_negative ? mpz_class(-result) : result;
 }
 
-/// Largest distance from the first vertex on any axis if all coordinates are integers that make
-/// the sum of all determinants fit 127 bits: 6 * distance^3 * count < 2^126.
+/// True if all coordinates are integers and the sum of all determinants fits 127 bits: 6 *
+/// distance^3 * count < 2^126, with the largest distance from the first vertex along an axis.
 bool fits_wide(std::span<const Point> vertices, std::span<const Triangle> triangles) {
   double distance = 1;
   for (const Triangle& triangle : triangles) {
@@ -91,7 +91,7 @@ mpz_class big_sum_of_determinants(std::span<const Point> vertices,
     mpz_class value(static_cast<long>(std::ldexp(fraction, 53)));
     const int shift = exponent - 53 - unit;
     if (shift >= 0) return mpz_class(value << static_cast<unsigned long>(shift));
-    return mpz_class(value >> static_cast<unsigned long>(-shift));  // drops zeros only
+    return mpz_class(value >> static_cast<unsigned long>(-shift));  // only zero bits are lost
   };
   const std::array origin{big(triangles[0][0], 0), big(triangles[0][0], 1),
                           big(triangles[0][0], 2)};
@@ -147,7 +147,7 @@ double world_volume(const ExactVolume& six_volume, const Lattice& lattice) {
   return nearest_quotient(std::move(numerator), denominator, exponent);
 }
 
-/// Sum with the rounding errors carried along (Neumaier 1974): accurate in any order of terms.
+/// A sum that also adds up its rounding errors (Neumaier 1974): accurate for any order of terms.
 class CompensatedSum {
  public:
   void add(double term) {
@@ -175,15 +175,14 @@ double world_area(const Solid& solid, std::span<const Triangle> triangles) {
       u[at] = (solid.vertices()[b][axis] - origin) * scale[at];
       v[at] = (solid.vertices()[c][axis] - origin) * scale[at];
     }
-    area.add(std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                        u[0] * v[1] - u[1] * v[0]) /
-             2);
+    const Vector3 normal = cross(u, v);
+    area.add(std::hypot(normal[0], normal[1], normal[2]) / 2);
   }
   return area.value();
 }
 
-/// V - E + F of a shell, the number of vertices less that of edges plus that of facets. Each
-/// interior ring subtracts one more: a cut that joins it to the exterior ring would add an edge.
+/// The number of vertices of a shell, less the number of edges, plus the number of facets. Each
+/// interior ring subtracts one more: a cut from the ring to the exterior ring would add an edge.
 std::int64_t euler_characteristic(const Solid& solid, Index shell) {
   std::vector<Index> vertices;
   std::vector<std::pair<Index, Index>> edges;

@@ -29,7 +29,7 @@ class Crew {
     }
   }
 
-  /// The pieces that one thread gets.
+  /// Does pieces of the work, on the thread that calls, until none is left.
   void take_part(bool is_caller) {
     try {
       for (std::size_t i = next_++; i < count_; i = next_++) work_(i, is_caller);
@@ -80,8 +80,8 @@ class Crew {
   std::atomic<std::size_t> next_ = 0;
   std::mutex mutex_;
   std::condition_variable has_finished_;
-  std::size_t finished_ = 0;    // helpers; under the mutex
-  std::exception_ptr failure_;  // the first; under the mutex
+  std::size_t finished_ = 0;    // the number of finished helpers; mutex_ guards it
+  std::exception_ptr failure_;  // the first exception; mutex_ guards it
   std::vector<std::thread> threads_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Independent pieces of work on several threads.
+// Does independent pieces of work on several threads.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@ namespace watertight::geometry {
 
 /// Calls work(i, is_caller) for all i < count, each once, on at most `threads` threads: the
 /// caller's (is_caller is true there) and others. Pieces are begun in ascending order. While the
-/// caller waits for others it calls wait() some hundred times a second; it may be empty.
-/// The caller throws again what `work` throws, after all threads have ended. Where the system gives
-/// no more threads, fewer do the work.
+/// caller waits for other threads it calls wait() some hundred times a second; `wait` may be empty.
+/// An exception from `work` or `wait` is thrown again on the caller's thread, after all threads
+/// have ended. Where the system gives no more threads, fewer threads do the work.
 void for_each_piece(std::size_t count, unsigned threads,
                     const std::function<void(std::size_t, bool)>& work,
                     const std::function<void()>& wait = {});

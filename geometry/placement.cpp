@@ -13,7 +13,7 @@ namespace {
 
 using Matrix = std::array<std::array<BigInteger, 3>, 3>;
 
-/// The linear part times 10^scale, in integers.
+/// The linear part of a placement, times 10^scale, in integers.
 struct ScaledMatrix {
   Matrix rows;
   std::int64_t scale = 0;
@@ -41,9 +41,9 @@ BigInteger determinant(const Matrix& m) {
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-/// Requires the arrays of a solid in another order or with other finite coordinates.
+/// Makes a solid from the arrays of a solid in which orders or coordinates have been changed.
 Result<Solid> remade(SolidArrays arrays, const Lattice& lattice, std::uint32_t srid) {
-  Limits limits;  // the solid has been admitted already
+  Limits limits;  // no limits: the original solid has kept them already
   limits.vertices = limits.facets = limits.rings = limits.shells = kNone;
   return Solid::make(std::move(arrays), lattice, srid, limits);
 }

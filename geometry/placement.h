@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where an instance of a geometry template stands: an affine map, and what it does to the solid.
-// The map is exact; single points and solids in the world are rounded.
+// The placement of an instance of a geometry template: an affine map, and the solid and points
+// under this map. The map is exact; points and solids in the world are rounded.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ struct Placement {
   std::array<std::array<GridNumber, 3>, 3> linear{
       // row by row
       {{{{1, 0}, {0, 0}, {0, 0}}}, {{{0, 0}, {1, 0}, {0, 0}}}, {{{0, 0}, {0, 0}, {1, 0}}}}};
-  std::array<GridNumber, 3> offset{};  // the matrix's own shift
+  std::array<GridNumber, 3> offset{};  // the shift that the matrix contains
   std::array<GridNumber, 3> anchor{};  // the point that the instance stands on
-  std::uint32_t srid = 0;              // of the world
+  std::uint32_t srid = 0;              // the EPSG code of the world coordinates, 0 if not stated
   friend auto operator<=>(const Placement&, const Placement&) = default;
 };
 
-/// Exact sign (-1, 0, +1) of the linear part's determinant.
+/// The exact sign (-1, 0, +1) of the linear part's determinant.
 int determinant_sign(const Placement& placement);
 
 /// True if the linear part is a rotation, exactly: its inverse is its transpose, its determinant 1.
@@ -35,18 +35,19 @@ double rounded(const GridNumber& decimal);
 /// The linear part as nearest doubles, row by row.
 std::array<std::array<double, 3>, 3> linear_part(const Placement& placement);
 
-/// Where the template's origin lies in the world, rounded.
+/// The world coordinates of the template's origin, rounded.
 std::array<double, 3> shift_of(const Placement& placement);
 
-/// Where a point of the template lies in the world, rounded; not finite beyond the doubles.
+/// The world coordinates of a point of the template, rounded; not finite beyond the range of
+/// doubles.
 std::array<double, 3> place(const Placement& placement, const std::array<double, 3>& point);
 
-/// The solid with rounded vertices in the world, for measures and pictures; nothing is decided on
-/// it. Errors: malformed if a coordinate leaves the doubles.
+/// The solid with rounded vertices in the world, for measures and pictures, never for decisions.
+/// Errors: malformed if a coordinate is beyond the range of doubles.
 Result<Solid> placed(const Solid& solid, const Placement& placement);
 
-/// The solid with all rings reversed. Under a map with negative determinant the facets of a solid
-/// turn as those of the solid turned over do under a map with positive determinant.
+/// The solid with all rings reversed. A map with a negative determinant reverses the orientation of
+/// all facets; turning the solid over before restores it.
 Solid turned_over(const Solid& solid);
 
 }  // namespace watertight::geometry

@@ -21,14 +21,14 @@ struct Point {
 
   double operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
   double& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
-  /// Lexicographic by x, y, z. Total: coordinates are finite and -0 never occurs.
+  /// The lexicographic order by x, y, z. It is total: coordinates are finite and never -0.
   friend auto operator<=>(const Point&, const Point&) = default;
 };
 
 using Triangle = std::array<Index, 3>;
 using Tetrahedron = std::array<Index, 4>;
 
-/// Closed axis-parallel box; empty when min > max.
+/// A closed axis-parallel box; empty when min > max.
 struct Box {
   Point min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
             std::numeric_limits<double>::infinity()};

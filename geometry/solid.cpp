@@ -73,7 +73,7 @@ MergedSolid merge_equal_vertices(const Solid& solid) {
   std::vector<bool> is_used(vertices.size(), false);
   for (const Index vertex : solid.arrays().ring_vertices) is_used[vertex] = true;
 
-  // Sorted with their points beside them: the sort reads memory in order.
+  // The used vertices with copies of their points, so that the sort reads memory in order.
   std::vector<std::pair<Point, Index>> by_point;
   by_point.reserve(vertices.size());
   for (Index vertex = 0; vertex < vertices.size(); ++vertex) {

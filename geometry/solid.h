@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The solid as submitted: immutable flat arrays of vertices, rings, facets and shells. Guarantees
-// that indices are in range, and nothing about geometry. For every folder above.
+// The solid as submitted: immutable flat arrays of vertices, rings, facets and shells. The class
+// guarantees that indices are in range, and nothing about geometry. For all other folders.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@
 
 namespace watertight::geometry {
 
-/// Half-open range of indices into the next lower array: rings of a facet, facets of a shell.
+/// A half-open range of indices: those of the rings of a facet, or of the facets of a shell.
 struct IndexRange {
   Index begin = 0;
   Index end = 0;
   Index size() const { return end - begin; }
 };
 
-/// Flat arrays. Offsets start with 0 and end with the size of the array below: ring r is
-/// ring_vertices[ring_offsets[r] .. ring_offsets[r+1]).
+/// The parts of a solid in flat arrays. Offsets start with 0 and end with the number of elements to
+/// which they point: ring r is ring_vertices[ring_offsets[r] .. ring_offsets[r+1]).
 struct SolidArrays {
   std::vector<Point> vertices;
   std::vector<Index> ring_vertices;
-  std::vector<Index> ring_offsets{0};   // ring -> ring_vertices
+  std::vector<Index> ring_offsets{0};   // ring -> index of its first vertex in ring_vertices
   std::vector<Index> facet_offsets{0};  // facet -> rings; the first ring of a facet is exterior
   std::vector<Index> shell_offsets{0};  // shell -> facets; shell 0 is exterior
 
@@ -41,13 +41,13 @@ struct SolidArrays {
 /// Vertices that a source lists and no ring uses, where a reader leaves them out of the solid.
 struct UnusedVertices {
   std::uint64_t count = 0;
-  std::uint64_t first = 0;  // its number in the source, from 0
+  std::uint64_t first = 0;  // the index of the first unused vertex in the source
   std::array<double, 3> place{};
 };
 
 /// A solid with its lattice and coordinate reference system. The closing vertex of a ring is not
-/// repeated. Rings may be short, facets may be empty, vertices may repeat or be unused: those are
-/// findings, not errors. Cheap to move, thread-safe to read.
+/// repeated. Rings may be short, facets may be empty, vertices may repeat or be unused: the
+/// validator reports such defects as findings. Cheap to move, thread-safe to read.
 class Solid {
  public:
   /// Errors: malformed if offsets are not monotone, an index is out of range, a coordinate is not
@@ -61,7 +61,7 @@ class Solid {
   Index facet_count() const { return static_cast<Index>(arrays_.facet_offsets.size() - 1); }
   Index shell_count() const { return static_cast<Index>(arrays_.shell_offsets.size() - 1); }
 
-  /// Vertices of a ring, in order.
+  /// The vertices of a ring, in order.
   std::span<const Index> ring(Index ring) const {
     return std::span<const Index>(arrays_.ring_vertices)
         .subspan(arrays_.ring_offsets[ring],
@@ -78,7 +78,7 @@ class Solid {
 
   const SolidArrays& arrays() const { return arrays_; }
   const Lattice& lattice() const { return lattice_; }
-  /// EPSG code, 0 when not stated.
+  /// The EPSG code of the reference system, 0 when not stated.
   std::uint32_t srid() const { return srid_; }
   Box box() const { return box_of(arrays_.vertices); }
   std::array<double, 3> world(Index vertex) const {
@@ -96,8 +96,8 @@ class Solid {
   std::uint32_t srid_ = 0;
 };
 
-/// The same solid with exactly equal vertices merged (first one kept) and unused ones dropped.
-/// `vertex_of[i]` is the merged index of source vertex i, or kNone if unused.
+/// A solid in which exactly equal vertices are merged (the first one is kept) and unused vertices
+/// are dropped. `vertex_of[i]` is the new index of source vertex i, or kNone if it is unused.
 struct MergedSolid {
   Solid solid;
   std::vector<Index> vertex_of;

@@ -15,9 +15,9 @@ Error not_encodable(std::string message) { return {ErrorCode::not_encodable, std
 
 /// A directed edge of a ring. Its name is the same in both directions.
 struct DirectedEdge {
-  std::uint64_t name;  // smaller vertex in the high half
-  Index position;      // index of the edge among all edges of the rings
-  bool is_forward;     // from the smaller to the larger vertex
+  std::uint64_t name;  // the smaller vertex in the high 32 bits, the larger vertex in the low ones
+  Index position;      // the index of the edge among all edges of the rings
+  bool is_forward;     // true if the edge runs from the smaller to the larger vertex
 };
 
 std::uint64_t edge_name(Index a, Index b) {

@@ -18,9 +18,9 @@ namespace watertight::geometry {
 /// The tolerances under which a solid was certified, in the units that their names say. They
 /// measure; no decision about side, order or crossing uses them.
 struct Tolerances {
-  double planarity_metres = 0.01;   // largest distance of a facet's vertex to its fitted plane
-  double planarity_degrees = 20.0;  // largest angle between two triangles of a facet
-  double snap_metres = 0.0;         // 0: only exactly equal vertices are one vertex
+  double planarity_metres = 0.01;   // the largest distance of a vertex from its fitted plane
+  double planarity_degrees = 20.0;  // the largest angle between two triangles of a facet
+  double snap_metres = 0.0;         // the snap distance; with 0, only equal vertices are merged
   friend bool operator==(const Tolerances&, const Tolerances&) = default;
 };
 
@@ -30,10 +30,10 @@ enum class Proof : std::uint8_t {
   boundary = 1             // exact tests only
 };
 
-/// The number of the rule set that this program applies. Raised when a rule changes.
+/// The number of the rule set that this program applies. A changed rule raises the number.
 inline constexpr std::uint16_t kRuleSet = 1;
 
-/// The rules and tolerances under which a valid solid was accepted; stored with it.
+/// The rules and tolerances under which a valid solid was accepted; they are stored with the solid.
 struct Acceptance {
   Tolerances tolerances;
   Proof proof = Proof::tetrahedralization;
@@ -41,14 +41,15 @@ struct Acceptance {
   friend bool operator==(const Acceptance&, const Acceptance&) = default;
 };
 
-/// Closed and oriented by edges: every directed ring edge is met by its reverse exactly as often,
-/// at least where a vertex of a ring that lies inside an edge of another ring of its facet splits
-/// that edge (geometry/divided_rings.h). It promises nothing about geometry. The codec works on it,
-/// and so do benches on dirty meshes.
+/// A boundary that is closed and oriented by edges: every directed edge of a ring is met by its
+/// reverse exactly as often, as submitted or with divided rings (geometry/divided_rings.h). The
+/// class promises nothing about geometry. The codec works on boundaries, and so do benchmarks on
+/// meshes with defects.
 class OrientedBoundary {
  public:
-  /// Errors: not_encodable naming the first unmatched edge, a ring below 3 vertices, a facet
-  /// without rings or a repeated vertex in a ring. Equal vertices must have been merged.
+  /// Errors: not_encodable, if the solid or a shell has no facets or a facet has no rings, if a
+  /// ring has fewer than 3 vertices or a vertex twice, if equal vertices are not merged, or if an
+  /// edge is unmatched (the message names the first).
   static Result<OrientedBoundary> make(Solid solid);
   const Solid& solid() const { return solid_; }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Layout: magic (8 bytes), version (1), the parts, a zero byte, CRC-32C of all before (4). A part
-// is the length of its texts, the texts as one Zstandard frame, the length of its page file (0 for
-// none), the page file, and the blobs of the solids that no page has. All texts of a part are
-// compressed together, as features of one document resemble each other; parts are small enough to
-// be held in memory and large enough to lose nothing by that.
+// The layout: magic (8 bytes), version (1), the parts, a zero byte, CRC-32C of all bytes before
+// (4). A part is the length of its texts, the texts as one Zstandard frame, the length of its page
+// file (0 for none), the page file, and the blobs of the solids that no page has. All texts of a
+// part are compressed together, as features of one document resemble each other; parts are small
+// enough for memory and large enough to compress well.
 #include "pipeline/container.h"
 
 #include <algorithm>
@@ -28,12 +28,12 @@ void write_text(ByteWriter& writer, ByteView text) {
 
 void write_text(ByteWriter& writer, std::string_view text) { write_text(writer, as_bytes(text)); }
 
-/// The page file of those of the solids that may stand in pages: all but those whose blob has
-/// Steiner vertices, which pages do not keep.
+/// The page file of the solids that may be in pages: all but the solids whose blobs have Steiner
+/// vertices, which pages do not keep.
 struct Paged {
   Bytes file;
-  std::size_t blob_bytes = 0;    // the bytes of the blobs that it replaces
-  std::vector<bool> is_in_file;  // solid -> whether it is in the file
+  std::size_t blob_bytes = 0;    // the bytes of the blobs that the file replaces
+  std::vector<bool> is_in_file;  // for each solid, whether it is in the file
 };
 
 Result<Paged> make_pages(const std::vector<const Bytes*>& blobs, const EncodeOptions& options) {
@@ -53,7 +53,7 @@ Result<Paged> make_pages(const std::vector<const Bytes*>& blobs, const EncodeOpt
   return paged;
 }
 
-/// The page file, or nothing where blobs are smaller.
+/// The page file, or an empty one where the blobs are smaller.
 Result<Paged> pages_if_smaller(const std::vector<const Bytes*>& blobs,
                                const EncodeOptions& options) {
   Paged none;
@@ -82,7 +82,8 @@ void write_feature(ByteWriter& writer, std::uint64_t document, const EncodedFeat
   }
 }
 
-/// A document of this feature alone, whose solids have been decoded.
+/// The feature as it was before encoding. Its solids have been decoded and are moved out of
+/// `feature`.
 Result<Feature> restored(ContainerFeature& feature, const std::string& format,
                          const Limits& limits) {
   feature.encoded.format = format;

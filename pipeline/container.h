@@ -19,18 +19,18 @@ bool is_container(ByteView bytes);
 /// header of each document.
 class ContainerWriter {
  public:
-  /// `pages`: how the solids are coded in pages. Those with Steiner vertices stay blobs.
+  /// `pages` says how the solids are coded in pages. Solids with Steiner vertices stay blobs.
   explicit ContainerWriter(const EncodeOptions& pages = {});
 
-  /// The document that features of this format and header belong to. Without this call their first
-  /// feature makes it. Cost: linear in the number of documents.
+  /// Adds the document of the features with this format and header. Without this call the first
+  /// such feature adds it. Cost: linear in the number of documents.
   void add_document(const std::string& format, const SharedText& header, Bytes framing = {});
-  /// Features of a document keep their order. Errors: malformed (a blob is damaged);
-  /// limit_exceeded; not_encodable.
+  /// Adds a feature. Features of a document keep their order. Errors: malformed (a blob is
+  /// damaged); limit_exceeded; not_encodable.
   Status add(EncodedFeature feature);
   /// The bytes written since the last call, to be appended to the file.
   Bytes take();
-  /// The rest of the file. Errors: as add().
+  /// The rest of the file. Errors: those of add().
   Result<Bytes> finish() &&;
 
  private:
@@ -38,34 +38,35 @@ class ContainerWriter {
   void write(ByteView bytes);
 
   EncodeOptions pages_;
-  std::map<std::pair<std::string, SharedText>, std::uint64_t> documents_;  // format, header
+  std::map<std::pair<std::string, SharedText>, std::uint64_t> documents_;  // by format and header
   std::uint64_t new_documents_ = 0;
   ByteWriter new_document_texts_;
-  std::vector<std::pair<std::uint64_t, EncodedFeature>> features_;  // of the part, with document
+  // The features of the open part, each with the number of its document.
+  std::vector<std::pair<std::uint64_t, EncodedFeature>> features_;
   std::size_t part_bytes_ = 0;
   std::uint32_t checksum_ = 0;
   Bytes written_;
 };
 
-/// A whole document. Features must have format and header of the document.
-/// Errors: invalid_argument if they do not; as ContainerWriter::add().
+/// Writes a whole document, whose features must have its format and header. Errors:
+/// invalid_argument if they do not; those of ContainerWriter::add().
 Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages = {});
 
-/// The documents in a Watertight file, with all their features. Trusts nothing.
-/// Errors: malformed (with byte offset), unsupported (version), limit_exceeded; those of decode().
+/// The documents in a Watertight file, with all their features. The bytes may be hostile. Errors:
+/// malformed (with byte offset), unsupported (version), limit_exceeded; those of decode().
 Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& limits = {});
 
 /// The contents of a Watertight file, counted.
 struct ContainerInfo {
-  std::vector<Format> formats;  // of each document
+  std::vector<Format> formats;  // the format of each document
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t pages = 0;
-  std::uint64_t solid_bytes = 0;        // of page files and blobs
-  std::map<std::string, double> parts;  // part of the stream -> bytes
+  std::uint64_t solid_bytes = 0;        // the bytes of page files and blobs
+  std::map<std::string, double> parts;  // the bytes by part of the stream
 };
 
-/// Decodes all solids. Errors: as decode_container().
+/// Decodes all solids and counts them. Errors: those of decode_container().
 Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits = {});
 
 }  // namespace watertight::pipeline

@@ -29,20 +29,20 @@ std::uint32_t read_index(ByteReader& reader, bool& is_in_range) {
   return static_cast<std::uint32_t>(value);
 }
 
-/// The texts of a part. `sizes` are the bytes of each solid's blob, 0 for one in the page file.
+/// The texts of a part. `sizes` are the bytes of each solid's blob, 0 for a solid in the page file.
 struct Texts {
   ContainerPart part;
   std::vector<std::uint64_t> sizes;
 };
 
-/// False when there are more than may still come.
+/// Takes `count` items from those that may still come; false when there are fewer.
 bool take_items(std::uint64_t count, std::uint64_t& items_left) {
   if (count > items_left) return false;
   items_left -= count;
   return true;
 }
 
-/// False when the texts do not hold a feature.
+/// Reads a feature; false when the texts do not hold one.
 bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& items_left,
                   Texts& texts) {
   bool is_in_range = true;
@@ -65,7 +65,7 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& it
   return !reader.failed() && is_in_range && feature.document < documents;
 }
 
-/// False when the texts do not fit a part that follows so many documents.
+/// Reads the texts of a part that follows `documents` documents; false when the texts do not fit.
 bool read_texts(ByteView bytes, std::uint64_t documents, std::uint64_t& items_left, Texts& texts) {
   ByteReader reader(bytes);
   const std::uint64_t added = reader.varint();

@@ -13,7 +13,8 @@
 
 namespace watertight::pipeline {
 
-/// Like PNG's: a byte above 127, and line ends that a text-mode transfer would change.
+/// The first bytes of a Watertight file. Like those of PNG they have a byte above 127, and line
+/// ends that a text-mode transfer would change.
 inline constexpr std::uint8_t kContainerMagic[8] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n'};
 inline constexpr std::uint8_t kContainerVersion = 1;
 
@@ -25,29 +26,31 @@ struct ContainerDocument {
 };
 
 struct ContainerFeature {
-  std::uint64_t document = 0;   // counted over the file
-  EncodedFeature encoded;       // its blobs are empty
-  std::vector<Decoded> solids;  // one per encoded.solids
+  std::uint64_t document = 0;   // number of the document in the file
+  EncodedFeature encoded;       // the feature, with empty blobs
+  std::vector<Decoded> solids;  // one for each of encoded.solids
 };
 
 struct ContainerPart {
   std::vector<ContainerDocument> new_documents;
   std::vector<ContainerFeature> features;
   std::uint64_t pages = 0;
-  std::uint64_t solid_bytes = 0;  // of its page file and blobs
+  std::uint64_t solid_bytes = 0;  // the bytes of the page file and the blobs
 };
 
-/// Trusts nothing: what it makes is bounded by what it read and by the limits.
+/// Reads a file that may be hostile: memory is bounded by the bytes that were read and by the
+/// limits.
 class ContainerReader {
  public:
   /// Checks version and checksum. `bytes` must outlive the reader.
   /// Errors: malformed; unsupported; limit_exceeded.
   static Result<ContainerReader> open(ByteView bytes, const Limits& limits);
-  /// The next part, nothing after the last. Errors: malformed; limit_exceeded; those of decode().
+  /// The next part, nullopt after the last. Errors: malformed; limit_exceeded; those of decode().
   Result<std::optional<ContainerPart>> next();
 
  private:
-  // Texts may be compressed a thousandfold, so what they name is bounded by the bytes of the file.
+  // Texts may be compressed a thousandfold, so the bytes of the file bound the number of their
+  // items.
   static constexpr std::uint64_t kFreeItems = 65'536;
   static constexpr std::uint64_t kItemsPerByte = 4;
 

@@ -23,7 +23,7 @@ constexpr const char* kOtherDocument =
     "of another document than those before, which a sequence cannot hold; a Watertight file (.wt) "
     "can";
 
-/// The header of a sequence of all features. Errors: as CollectionExport::start().
+/// The header of a sequence of all features. Errors: those of CollectionExport::start().
 Result<std::string> sequence_header(SolidStore& store, const std::string& collection) {
   const auto documents = store.documents(collection, 2);
   if (!documents) return documents.error();
@@ -58,7 +58,7 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
   auto header = sequence_header(store, collection);
   if (!header) return std::move(header).error();
   started.header_ = *std::move(header);
-  // It was checked when it came in.
+  // The header was checked when it was stored.
   auto city_header =
       formats::read_city_json_header(started.header_, Limits{.bytes = ~0ULL, .nesting = 256});
   if (!city_header) return std::move(city_header).error();
@@ -103,7 +103,7 @@ Status CollectionExport::add(StoredFeature feature, Bytes& bytes) {
 
 Status CollectionExport::add_line(StoredFeature feature, Bytes& bytes) {
   const std::string id = feature.id;
-  // Only features that were put after start() can have another one.
+  // Only features that were stored after start() can have another format or header.
   if (!is_city_model(feature.format) || feature.header != header_) {
     return about(id, {ErrorCode::unsupported, kOtherDocument});
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A whole collection out of a store, in order of place numbers (SolidStore::walk), so that
+// Writes a whole collection of a store, in order of place numbers (SolidStore::walk), so that
 // neighbours share pages. Memory does not grow with the collection: one batch of features, or one
 // part of a Watertight file, at a time. When features change meanwhile, the export holds old or new
-// ones, and a feature that moves may be in it twice; each is whole.
+// ones, and a feature that moves may be in it twice; each feature is whole.
 #pragma once
 
 #include <cstdint>
@@ -31,20 +31,20 @@ struct Exported {
 /// An export that is under way. The store must outlive it. Not thread-safe.
 class CollectionExport {
  public:
-  /// Errors: those of the store; not_found (no collection, no features); unsupported when the
-  /// features cannot be in one sequence (not of city models, several headers: their coordinates and
-  /// references differ).
+  /// Starts an export. Errors: those of the store; not_found (no collection, no features);
+  /// unsupported when the features cannot be in one sequence (not of city models, or with several
+  /// headers, under which coordinates and references differ).
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
                                         ExportFormat format, const EncodeOptions& pages = {});
 
   /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file. Empty
-  /// after the last ones. Errors: those of the store; malformed when what is stored is damaged;
-  /// unsupported as start(). After one of them the file has no end.
+  /// after the last ones. Errors: those of the store; malformed when a stored feature is damaged;
+  /// unsupported as for start(). After an error the file has no end.
   Result<Bytes> next();
 
   /// True when the last bytes have been returned.
   bool is_at_end() const { return is_last_; }
-  /// Counts of what next() has read so far.
+  /// The numbers of features and solids that next() has read so far.
   const Exported& exported() const { return exported_; }
 
  private:
@@ -56,9 +56,9 @@ class CollectionExport {
   SolidStore* store_;
   std::string collection_;
   std::optional<ContainerWriter> container_;        // none for a sequence
-  std::string header_;                              // of a sequence
-  std::optional<formats::CityHeader> city_header_;  // the same, read
-  std::string after_;                               // of the next batch
+  std::string header_;                              // the header of a sequence
+  std::optional<formats::CityHeader> city_header_;  // the same header, parsed
+  std::string after_;                               // where the next batch starts
   bool is_first_ = true;
   bool is_last_ = false;
   Exported exported_;

@@ -17,7 +17,8 @@ bool are_of_one_geometry(const SolidSource& a, const SolidSource& b) {
          a.geometry_type == b.geometry_type && a.lod == b.lod;
 }
 
-/// Geometries are runs of solids whose ordinals ascend: first solid of each, and the end.
+/// The first solid of each geometry, and the end. A geometry is a run of solids whose ordinals
+/// ascend.
 std::vector<std::size_t> geometry_starts(Candidates candidates) {
   std::vector<std::size_t> starts;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -44,7 +45,7 @@ void add(DraftGroup& draft, std::size_t begin, std::size_t end, std::size_t geom
 
 std::vector<DraftGroup> draft_groups(Candidates candidates) {
   std::vector<DraftGroup> drafts;
-  std::map<std::pair<std::string, std::string>, DraftGroup> buildings;  // building, lod
+  std::map<std::pair<std::string, std::string>, DraftGroup> buildings;  // by id and LoD
   const std::vector<std::size_t> starts = geometry_starts(candidates);
   for (std::size_t geometry = 0; geometry + 1 < starts.size(); ++geometry) {
     const std::size_t begin = starts[geometry];

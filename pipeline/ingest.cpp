@@ -29,7 +29,7 @@ Error cancelled() {
   return Error{ErrorCode::cancelled, "stopped before all features were validated"};
 }
 
-/// A feature validated, and encoded if it is valid and will be stored.
+/// A feature that was validated, and encoded if it is valid.
 struct Processed {
   FeatureOutcome outcome;
   std::optional<EncodedFeature> encoded;
@@ -108,7 +108,7 @@ Status check_ids(const Document& document) {
   return Done{};
 }
 
-/// All features of a collection share one CRS.
+/// Checks that the document and the collection have one CRS.
 Status check_crs(const Document& document, SolidStore& store, const std::string& collection) {
   if (document.features.empty()) return Done{};
   auto existing = store.collection(collection);
@@ -123,7 +123,7 @@ Status check_crs(const Document& document, SolidStore& store, const std::string&
   return Done{};
 }
 
-/// Reduces what the features share to what the contract promises.
+/// Reduces header and framing, which the features share, to what the contract promises.
 Status reduce_to(formats::Contract contract, Document& document) {
   if (contract == formats::Contract::exact) return Done{};
   document.framing.clear();
@@ -134,7 +134,7 @@ Status reduce_to(formats::Contract contract, Document& document) {
   return Done{};
 }
 
-/// Stores what was encoded. `outcome` has a feature per entry of `processed`.
+/// Stores the encoded features. `outcome` has a feature per entry of `processed`.
 Status store_all(std::vector<Processed>& processed, SolidStore& store, IngestOutcome& outcome) {
   std::vector<StoredFeature> features;
   std::vector<std::size_t> places;

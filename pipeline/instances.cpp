@@ -11,7 +11,7 @@
 namespace watertight::pipeline {
 namespace {
 
-/// Effects remembered for each template: bounds the memory of a document with many instances.
+/// The most effects that are remembered per template, as a document may have many instances.
 constexpr std::size_t kMostEffects = 4096;
 
 /// True if no finding and no reason in the group's report refers to a member.
@@ -20,8 +20,8 @@ bool is_silent(const InspectedGroup& group) {
          group.report.not_run.empty();
 }
 
-/// The candidates that are solids of the feature: its own, the first ones; instances that are not
-/// valid; and those that the report of a group refers to.
+/// The candidates that are solids of the feature: the first `own` ones, instances that are not
+/// valid, and members of the groups whose reports say something.
 std::vector<bool> shown(std::span<const GroupCandidate> candidates, std::size_t own,
                         std::span<const InspectedGroup> groups) {
   std::vector<bool> is_shown(candidates.size());
@@ -118,7 +118,8 @@ InstanceSolid TemplateInspector::inspect_solid(std::size_t solid,
     return result;
   }
   const std::lock_guard lock(mutex_);
-  // An instance that relied on another's proof finds the solid here: both are set together.
+  // An instance that relied on the proof of another one finds the solid here, because proof and
+  // solid are set together.
   if (!uses.solid) uses.solid = std::move(inspection.unplaced);
   uses.is_proven = uses.is_proven || geometry::determinant_sign(instance.placement) > 0;
   WATERTIGHT_ASSERT(uses.solid);
@@ -161,7 +162,7 @@ void TemplateInspector::compare_members(std::size_t first, InspectedInstances& i
   }
 }
 
-/// Nothing for a placement that is congruent in metres: the template then stands for the instance.
+/// nullopt for a placement that is congruent in metres: the template then stands for the instance.
 TemplateInspector::Effect TemplateInspector::effect_of(const geometry::Placement& placement) {
   Effect effect = full_effect_of(placement);
   const bool is_in_metres = effect->second == std::array<double, 3>{1, 1, 1};
@@ -193,7 +194,7 @@ Inspection TemplateInspector::judge(std::size_t solid, const formats::TemplateIn
   return inspection;
 }
 
-/// Requires the lock.
+/// Notes that an instance is valid. Requires the lock of mutex_.
 void TemplateInspector::note_valid(std::size_t solid, const formats::TemplateInstance& instance,
                                    const Effect& effect) {
   Uses& uses = uses_[solid];
@@ -210,13 +211,13 @@ void TemplateInspector::note_valid(std::size_t solid, const formats::TemplateIns
 std::size_t TemplateInspector::show(InstanceSolid solid, InspectedFeature& feature) const {
   const SubmittedSolid& source = templates_[solid.template_solid];
   const geometry::Placement& placement = solid.instance->placement;
-  if (!solid.inspection) {  // valid: only its report is missing
+  if (!solid.inspection) {  // a valid solid lacks only its report
     CertifyOptions own = options_for(source, options_);
     own.placement = &placement;
     own.is_proven = true;
     solid.inspection = certify(source.solid, nullptr, own);
   }
-  // An instance whose coordinates exceed the doubles cannot be shown: its template is.
+  // If the coordinates of an instance exceed the doubles, its template is shown.
   auto in_place = geometry::placed(source.solid, placement);
   SubmittedSolid submitted{in_place ? *std::move(in_place) : source.solid, std::move(solid.source)};
   const int sign = geometry::determinant_sign(placement);
@@ -278,7 +279,7 @@ void add_groups(InspectedInstances instances, const TemplateInspector& templates
     groups.push_back(std::move(group));
   }
   const std::vector<bool> is_shown = shown(candidates, own, groups);
-  // Candidate -> its index among the feature's solids, for those that are shown.
+  // For each candidate that is shown, its index among the feature's solids.
   std::vector<std::size_t> place(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i < own) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The line: the number of source vertices; for each its merged vertex, or "x:y:z" when no ring uses
-// it; then, for each ring vertex whose merged vertex came from several, the source vertex it was.
+// The line has the number of source vertices; for each its merged vertex, or "x:y:z" when no ring
+// uses it; then, for each ring vertex whose merged vertex has several sources, its source vertex.
 #include "pipeline/merged_vertices.h"
 
 #include <array>
@@ -52,7 +52,7 @@ std::optional<Point> point_in(std::string_view word) {
   return point;
 }
 
-/// How many source vertices each merged vertex came from.
+/// The number of source vertices of each merged vertex.
 std::vector<Index> count_sources(const std::vector<Index>& vertex_of, Index merged_count) {
   std::vector<Index> count(merged_count, 0);
   for (const Index merged : vertex_of) {
@@ -111,7 +111,7 @@ Result<std::string> describe_merge(const Solid& source, const Solid& merged) {
       if (axis > 0) line += ':';
       append_number(line, point[axis]);
     }
-    // "5:6:7" can be no index, so the first word shows which of the two it is.
+    // "5:6:7" is no index, so the word itself shows whether it is an index or a point.
   }
   for (const Index vertex : source.arrays().ring_vertices) {
     if (sources[merge.vertex_of[vertex]] < 2) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Outcomes and measures as JSON text, for the store, the service and the command line. Reports of
-// single solids are validate/report_json.h's.
+// Outcomes and measures as JSON text, for the store, the service and the command line.
+// validate/report_json.h writes the reports of single solids.
 #pragma once
 
 #include <string>
@@ -11,13 +11,15 @@
 
 namespace watertight::pipeline {
 
-/// {"volume", "area", "boxMin", "boxMax", "genus", "vertices", "facets", "rings", "shells"}
+/// The text {"volume", "area", "boxMin", "boxMax", "genus", "vertices", "facets", "rings",
+/// "shells"}.
 std::string measures_json(const geometry::Measures& measures);
 
-/// {"verdict", "stored", "features": [{"id", "verdict", "stored", "solids": [{"object",
+/// The text {"verdict", "stored", "features": [{"id", "verdict", "stored", "solids": [{"object",
 /// "geometryType", "lod", "geometry", "ordinal", "pointer", "blobBytes", "report"}], "groups":
-/// [{"kind", "object", "lod", "solids", "verdict", "findings", "findingsOmitted", "notRun"}]}]}
-/// "groups" only where there are any; "solid" in their findings is a position in "solids".
+/// [{"kind", "object", "lod", "solids", "verdict", "findings", "findingsOmitted", "notRun"}]}]}.
+/// Features without groups have no "groups"; "solid" in a finding of a group is an index into the
+/// feature's "solids".
 std::string outcome_json(const IngestOutcome& outcome);
 
 }  // namespace watertight::pipeline

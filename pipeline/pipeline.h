@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The whole path, shared by service and command line: document in, validated, encoded, stored;
-// stored, decoded, document out.
+// The whole path of a document, shared by service and command line: it is validated, encoded and
+// stored; a stored one is decoded and written.
 #pragma once
 
 #include <cstddef>
@@ -37,16 +37,16 @@ struct InspectedGroup {
 };
 
 struct InspectedFeature {
-  /// Its own solids, then those of each instance of a geometry template that is not valid or in
-  /// whose group something was found, with rounded vertices in their place. So a feature that is
-  /// valid has no other solids than its own.
+  /// The feature with its own solids, then those of each instance of a geometry template that is
+  /// not valid or in whose group something was found, as placed, with rounded vertices. So a
+  /// feature that is valid has no other solids than its own.
   Feature feature;
-  std::vector<InspectedSolid> solids;  // one per feature.solids, same order
+  std::vector<InspectedSolid> solids;  // one for each of feature.solids, in order
   std::vector<InspectedGroup> groups;  // in order of their first members
-  Verdict verdict() const;             // the worst of solids and groups; valid when it has none
+  Verdict verdict() const;             // the worst of solids and groups; valid without any
 };
 
-/// The options with what the reader knows of one solid. Keeps references to it.
+/// The options with what the reader of a solid noted about it. Keeps references to `submitted`.
 CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions& options);
 
 /// The worse of two verdicts: invalid, then undecided, then valid.
@@ -54,14 +54,15 @@ Verdict worse(Verdict a, Verdict b);
 
 class TemplateInspector;
 
-/// The options with the certification's limit of findings, and its poll if they have none.
+/// The options for groups, with the limit of findings of `options`, and with its poll if they have
+/// none.
 validate::GroupOptions group_options(const validate::GroupOptions& groups,
                                      const CertifyOptions& options);
 
 /// Validates every solid of a feature, its instances of the geometry templates that `templates`
-/// knows (null: of none), and the groups of both. Guarantees one InspectedSolid per solid. A
-/// solid with vertices that the reader rounded, or rings that the source left open, gets the
-/// findings for them. Groups keep no more findings than solids, and are cancelled like them.
+/// knows (null: of none), and the groups of both. Guarantees one InspectedSolid per solid. A solid
+/// with vertices that the reader rounded, or rings that the source left open, gets the findings for
+/// them. The limit of findings and the cancellation of solids hold for groups too.
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups = {},
                          TemplateInspector* templates = nullptr);
@@ -71,8 +72,8 @@ struct SolidOutcome {
   SolidSource source;
   Report report;
   std::string report_json;       // the JSON of the report, without times
-  std::size_t blob_bytes = 0;    // when encoded
-  std::size_t source_bytes = 0;  // as plain arrays: 24 a vertex, 4 a ring vertex
+  std::size_t blob_bytes = 0;    // 0 unless encoded
+  std::size_t source_bytes = 0;  // bytes as plain arrays: 24 a vertex, 4 a ring vertex
 };
 
 /// The outcome of one feature of a document.
@@ -82,13 +83,13 @@ struct FeatureOutcome {
   std::vector<SolidOutcome> solids;
   std::vector<InspectedGroup> groups;
   bool is_stored = false;
-  std::uint64_t version = 0;  // when stored
+  std::uint64_t version = 0;  // 0 unless stored
 };
 
 /// The treatment of a document in which not all features are valid.
 enum class InvalidFeatures : std::uint8_t { refuse_document, skip };
 
-/// Called with features done and features in all; from one thread at a time.
+/// Called with the number of features that are done and of all, from one thread at a time.
 using Progress = std::function<void(std::size_t, std::size_t)>;
 
 /// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
@@ -113,10 +114,12 @@ struct IngestOptions : FeatureEncoding {
 
 /// A feature with its solids encoded.
 struct EncodedFeature : store::FeatureRecord {
+  /// Feature::skeleton; before it, a line for each solid whose equal vertices were merged; after
+  /// it, a line feed and Feature::layout if the feature has one (pipeline/stored_feature.cpp).
   std::string skeleton;
 };
 
-/// A document with its solids encoded: what the features share, as Document has it, and they.
+/// A document with its solids encoded; `header` and `framing` are those of Document.
 struct EncodedDocument {
   std::string format;  // to_string(Format)
   SharedText header;
@@ -130,15 +133,15 @@ struct EncodedDocument {
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
                                       const FeatureEncoding& options);
 
-/// The document (with one feature) that encode_feature() was given.
-/// Errors: malformed when the feature is not as encode_feature() makes them; those of decode().
+/// The document (with one feature) that encode_feature() was given. Errors: malformed when
+/// encode_feature() did not make the feature; those of decode().
 Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits = {});
-/// The same for solids that are decoded already, one per feature.solids; its blobs are not
-/// used.
+/// The document of a feature whose solids are decoded already, one for each of feature.solids; the
+/// feature's blobs are not used.
 Result<Document> decode_feature(const EncodedFeature& feature, std::vector<Solid> solids,
                                 const Limits& limits = {});
 
-/// The part of a feature that the store keeps. Errors: those of pack_text().
+/// The feature as the store keeps it, with a compressed skeleton. Errors: those of pack_text().
 Result<StoredFeature> pack(EncodedFeature feature);
 /// The feature that pack() was given. Errors: those of unpack_text().
 Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {});
@@ -148,7 +151,7 @@ Result<Document> from_stored(StoredFeature stored, const Limits& limits = {});
 struct IngestOutcome {
   std::vector<FeatureOutcome> features;  // in document order
   Verdict verdict = Verdict::valid;      // the worst of all features
-  std::size_t stored = 0;                // features
+  std::size_t stored = 0;                // the number of features that were stored
 };
 
 /// A document encoded feature by feature, but not stored.
@@ -157,19 +160,19 @@ struct EncodeOutcome {
   IngestOutcome outcome;
 };
 
-/// Validates and encodes. Errors: cancelled; those of encode().
+/// Validates and encodes a document. Errors: cancelled; those of encode().
 Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers* workers,
                                       const IngestOptions& options);
 
-/// Validates, encodes and stores a document in one transaction: all features if all are valid,
-/// else none (refuse_document) or the valid ones (skip). Nothing is stored when it fails.
-/// Errors: malformed (two features of one id, an empty id); conflict (another CRS than the
-/// collection's); cancelled; those of SolidStore::put() and encode().
+/// Validates, encodes and stores a document in one transaction: all features if all are valid, else
+/// none (refuse_document) or the valid ones (skip). Nothing is stored after an error. Errors:
+/// malformed (two features of one id, an empty id); conflict (another CRS than the collection's);
+/// cancelled; those of SolidStore::put() and encode().
 Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options);
 
-/// The same document in another format; facets with holes become triangles where the format has no
-/// holes (OBJ, OFF). Errors: those of write_document(); not_encodable naming a facet that has no
+/// The document in another format; facets with holes become triangles where the format has no holes
+/// (OBJ, OFF). Errors: those of write_document(); not_encodable naming a facet that has no
 /// triangulation.
 Result<Bytes> convert_document(const Document& document, Format format);
 

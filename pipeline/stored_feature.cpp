@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Features to stored features and back. The skeleton of an EncodedFeature is the feature's and, if
-// it has a layout, a line feed and the layout; all preceded by one line "merged <solid> <line of
-// describe_merge>" for each solid with equal vertices.
+// Encodes features for the store, and decodes them. The skeleton of an EncodedFeature is that of
+// the feature and, if the feature has a layout, a line feed and the layout. Before them stands one
+// line "merged <solid> <line of describe_merge>" for each solid with equal vertices.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -57,7 +57,7 @@ Result<StoredSolid> store_solid(const InspectedSolid& solid, const Solid& submit
   return stored;
 }
 
-/// Takes the merge lines off the front of a stored skeleton: one per solid, "" for most.
+/// Takes the merge lines off the front of a stored skeleton; a solid without such a line gets "".
 Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleton,
                                                        std::size_t solids) {
   std::vector<std::string_view> lines(solids);

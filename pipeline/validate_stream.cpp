@@ -14,13 +14,13 @@
 namespace watertight::pipeline {
 namespace {
 
-/// Features between reading and handing on, per thread: enough that a slow one does not hold up
-/// the others for long.
+/// The most features between reading and handing on, per thread: enough that a slow feature does
+/// not hold up the others for long.
 constexpr std::uint64_t kFeaturesInFlight = 32;
-/// Lines between reading and handing on; more only when one line is longer.
+/// The most bytes of lines between reading and handing on; more only when one line is longer.
 constexpr std::uint64_t kBytesInFlight = std::uint64_t{32} << 20U;
 
-/// A feature on its way through: numbered, then validated or found unreadable.
+/// A feature between reader and sink: it gets a number, then is validated or found unreadable.
 struct Passage {
   std::uint64_t bytes = 0;
   std::optional<ValidatedFeature> feature;
@@ -97,14 +97,14 @@ class Stream {
   std::uint64_t most_in_flight_ = 0;
   TemplateInspector templates_;
 
-  std::mutex mutex_;  // guards all below, and reader_.next()
+  std::mutex mutex_;  // guards the members below, and reader_.next()
   std::condition_variable room_;
-  std::map<std::uint64_t, Passage> passages_;  // in flight; without both members while validated
+  std::map<std::uint64_t, Passage> passages_;  // in flight; a passage is empty while validated
   std::uint64_t taken_ = 0;
   std::uint64_t handed_on_ = 0;
-  std::uint64_t bytes_ = 0;  // of the lines in flight
+  std::uint64_t bytes_ = 0;  // bytes of the lines in flight
   bool is_handing_on_ = false;
-  bool is_over_ = false;  // nothing more is taken
+  bool is_over_ = false;  // no more features are taken
   std::optional<Error> failure_;
   StreamOutcome outcome_;
 };
@@ -127,7 +127,7 @@ std::optional<Stream::Found> Stream::take_next() {
     return found;
   }
   is_over_ = true;
-  if (!text) {  // the rest cannot be read: the error has its turn
+  if (!text) {  // the rest cannot be read; the error waits for its turn
     passages_[taken_++].error = std::move(text).error();
     hand_on_in_order(lock);
   }
@@ -155,7 +155,7 @@ void Stream::put_back(std::uint64_t number, Passage passage) {
   hand_on_in_order(lock);
 }
 
-/// Hands on what is complete, in order; one thread at a time, without the lock during calls.
+/// Hands on the complete passages in order; one thread at a time, without the lock during calls.
 void Stream::hand_on_in_order(std::unique_lock<std::mutex>& lock) {
   if (is_handing_on_) return;
   is_handing_on_ = true;
@@ -180,7 +180,7 @@ void Stream::hand_on_in_order(std::unique_lock<std::mutex>& lock) {
   is_handing_on_ = false;
 }
 
-/// Only the thread that hands on changes outcome_.
+/// Calls the sink of a passage. Only the thread that hands on changes outcome_.
 Status Stream::hand_on(Passage passage) {
   if (passage.error) {
     ++outcome_.unreadable;
@@ -191,7 +191,7 @@ Status Stream::hand_on(Passage passage) {
   return on_feature_(*std::move(passage.feature));
 }
 
-/// The geometry templates come last: what they count as depends on their instances.
+/// Hands on the geometry templates, last because what they count as depends on their instances.
 void Stream::add_templates() {
   auto inspected = templates_.inspect_templates(reader_.document().instances);
   if (!inspected) return;

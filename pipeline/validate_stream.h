@@ -13,36 +13,36 @@
 
 namespace watertight::pipeline {
 
-/// A feature with everything that is known of it.
+/// A feature and the results of its validation.
 struct ValidatedFeature {
-  std::uint64_t number = 0;  // in the document, from 0
+  std::uint64_t number = 0;  // number in the document, from 0
   InspectedFeature inspected;
 };
 
 /// Takes features in document order, from one thread at a time. An error ends the run.
 using FeatureSink = std::function<Status(ValidatedFeature&&)>;
-/// Takes what could not be read: one feature, or the rest of the document.
+/// Takes the error of a feature, or of the rest of the document, that could not be read.
 using ErrorSink = std::function<Status(const Error&)>;
 
 struct StreamOptions {
   CertifyOptions certify;
   validate::GroupOptions groups;
-  std::size_t threads = 1;  // threads for the features; a document of one feature has them all
+  std::size_t threads = 1;  // threads for the features; a document of one feature uses all
   CancelPoll is_cancelled = {};
-  /// Called with features done and bytes read; from one thread at a time.
+  /// Called with the numbers of features done and of bytes read, from one thread at a time.
   std::function<void(std::uint64_t, std::uint64_t)> progress = {};
 };
 
 struct StreamOutcome {
-  std::uint64_t features = 0;    // validated
-  std::uint64_t unreadable = 0;  // features that could not be read
+  std::uint64_t features = 0;    // the number of features that were validated
+  std::uint64_t unreadable = 0;  // the number of features that could not be read
   Verdict verdict = Verdict::valid;
 };
 
-/// Validates all features of a reader. The order in which sinks are called is the document's and
-/// does not depend on `threads`. At most a few features per thread are in memory at once.
-/// Errors: cancelled; those of the sinks. An error of the reader is passed to `on_error`, and the
-/// run goes on with the next feature.
+/// Validates all features of a reader. The sinks are called in the order of the document, whatever
+/// `threads` is. At most a few features per thread are in memory at once. Errors: cancelled; those
+/// of the sinks. An error of the reader is passed to `on_error`, and the run goes on with the next
+/// feature.
 Result<StreamOutcome> validate_stream(formats::FeatureReader& reader,
                                       delaunay::EngineWorkers* workers,
                                       const StreamOptions& options, const FeatureSink& on_feature,

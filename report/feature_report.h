@@ -17,7 +17,7 @@
 
 namespace watertight::report {
 
-/// Takes the next piece of text. An error ends the report and is handed to its caller.
+/// Takes the next piece of text. An error ends the report and is returned to the report's caller.
 using TextSink = std::function<Status(std::string_view)>;
 
 /// The facts that hold for all documents of a run.
@@ -33,13 +33,13 @@ struct ReportHead {
 /// The facts about a document that are known before its features.
 struct DocumentHead {
   std::string file;              // as the user named it; any bytes
-  std::optional<Format> format;  // nothing when it could not be detected
+  std::optional<Format> format;  // nullopt when it could not be detected
 };
 
 /// The facts about a document that are known after its features.
 struct DocumentEnd {
   std::vector<std::string> notes;  // Document::notes
-  double seconds = 0;              // wall
+  double seconds = 0;              // wall time
 };
 
 /// Writes one report. Call begin_document(), then add() and add_error() in document order, then
@@ -52,29 +52,29 @@ class FeatureReport {
   virtual ~FeatureReport() = default;
   virtual Status begin_document(const DocumentHead& head) = 0;
   virtual Status add(const pipeline::ValidatedFeature& feature) = 0;
-  /// Something that could not be read: a feature, or the rest of the document.
+  /// Adds the error of a feature, or of the rest of the document, that could not be read.
   virtual Status add_error(const Error& error) = 0;
   virtual Status end_document(const DocumentEnd& end) = 0;
   virtual Status finish() = 0;
 };
 
-/// One line of JSON for each document: docs/schema/report-2.schema.json. Deterministic when
+/// Writes one line of JSON for each document: docs/schema/report-2.schema.json. Deterministic when
 /// `head.time` is empty.
 std::unique_ptr<FeatureReport> json_report(TextSink sink, ReportHead head);
 
-/// One GeoJSON FeatureCollection for all documents: a point for each finding, in the coordinates of
-/// the document, whose reference system is named by the member "crs".
+/// Writes one GeoJSON FeatureCollection for all documents: a point for each finding, in the
+/// coordinates of the document, whose reference system is named by the member "crs".
 std::unique_ptr<FeatureReport> geojson_report(TextSink sink, ReportHead head);
 
 struct HtmlOptions {
   std::size_t most_rows = 5000;     // findings in the table; the page says how many there are
   std::size_t most_pictures = 500;  // findings with a picture
   std::size_t most_pictures_per_code = 300;
-  std::size_t most_facets = 160;  // of one picture, the nearest ones
+  std::size_t most_facets = 160;  // the most facets in one picture, the nearest ones
 };
 
-/// One page of HTML for all documents that needs nothing but itself. Written by finish(): what it
-/// holds until then is bounded by the options.
+/// Writes one page of HTML for all documents, which loads nothing else. finish() writes the page;
+/// the options bound the memory until then.
 std::unique_ptr<FeatureReport> html_report(TextSink sink, ReportHead head,
                                            const HtmlOptions& options = {});
 

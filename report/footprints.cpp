@@ -45,8 +45,8 @@ std::string Footprints::svg() const {
   const double scale = std::min((kWidth - 2 * kMargin) / std::max(width, 1e-9),
                                 (kHeight - 2 * kMargin) / std::max(height, 1e-9));
   if (!std::isfinite(width) || !std::isfinite(height) || !std::isfinite(scale)) return "";
-  // The view box has the proportions of the area that the features cover. So a browser, which
-  // scales it to the width of the page, shows the map without empty borders.
+  // The view box has the proportions of the area that the features cover. A browser, which scales
+  // the view box to the width of the page, so shows the map without empty borders.
   const double shown_width = width * scale + 2 * kMargin;
   const double shown_height = height * scale + 2 * kMargin;
   std::string html = "<svg viewBox=\"0 0 ";

@@ -13,9 +13,10 @@ namespace watertight::report {
 
 class Footprints {
  public:
-  /// Remembers where a feature is; the first 20,000 only, and those of the first reference system.
+  /// Remembers where a feature is; only the first 20,000 features, in the first one's reference
+  /// system.
   void add(const pipeline::InspectedFeature& feature);
-  /// "" when there are too few features for a map.
+  /// The map as an <svg> element; "" when there are too few features for a map.
   std::string svg() const;
 
  private:

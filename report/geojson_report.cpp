@@ -52,7 +52,7 @@ class GeoJsonReport final : public FeatureReport {
   Status finish() override { return sink_((is_open_ ? "" : opening(0)) + "\n]}\n"); }
 
  private:
-  /// The reference system is that of the first finding, before which this is written.
+  /// The text before the first finding. The reference system of the layer is that of this finding.
   std::string opening(std::uint32_t srid) {
     is_open_ = true;
     srid_ = srid;

@@ -15,13 +15,13 @@
 namespace watertight::report {
 namespace {
 
-/// Documents that the page lists by name; more are counted only.
+/// The most documents that the page lists by name; more documents are only counted.
 constexpr std::size_t kMostFiles = 200;
 
-/// Errors of reading that get a row of their own.
+/// The most errors of reading that get a row of their own.
 constexpr std::size_t kMostErrors = 200;
 
-/// Facets looked at for pictures in all: bounds the time spent on very large solids.
+/// The most facets that all pictures together look at, which limits the time for very large solids.
 constexpr std::uint64_t kMostFacetsVisited = 40'000'000;
 
 std::string number_text(double value) {
@@ -32,7 +32,7 @@ std::string number_text(double value) {
   return {buffer.data(), end};
 }
 
-/// 12345 as "12,345".
+/// A count with separators, such as "12,345".
 std::string count_text(std::uint64_t count) {
   std::string digits = std::to_string(count);
   for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
@@ -163,7 +163,7 @@ class HtmlReport final : public FeatureReport {
   std::vector<std::string> files_;
   std::vector<std::string> notes_;
   std::vector<std::string> rows_;
-  std::map<int, std::size_t> pictures_of_;  // by code
+  std::map<int, std::size_t> pictures_of_;  // the number of pictures by code
   std::size_t documents_ = 0;
   std::size_t pictures_ = 0;
   std::size_t errors_ = 0;
@@ -193,7 +193,7 @@ std::string HtmlReport::picture_cell(const pipeline::InspectedFeature& feature,
   ++of_code;
   std::string cell = "<td class=\"pic\"><figure tabindex=\"0\" role=\"button\" ";
   cell += "aria-label=\"Enlarge the view\" data-scene='";
-  cell += picture->scene;  // numbers and brackets only
+  cell += picture->scene;  // JSON without apostrophes
   cell += "'>";
   cell += picture->svg;
   return cell + "</figure></td>";

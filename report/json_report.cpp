@@ -7,7 +7,7 @@
 namespace watertight::report {
 namespace {
 
-/// Errors of reading that are listed; more are counted only.
+/// The most errors of reading that are listed; more errors are only counted.
 constexpr std::size_t kMostErrors = 1000;
 
 template <class Codes>

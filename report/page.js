@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The script of the HTML report (html_report.cpp): filters and sorts the table of findings, and
-// turns a finding's picture in a dialog. The page is complete without it.
+// turns a finding's picture in a dialog. The page is complete without the script.
 
 (function() {
 'use strict';

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The findings of a feature, those of its solids and of its groups alike, and where they are.
-// Internal to report/.
+// The findings of the solids and groups of a feature, and their places. Internal to report/.
 #pragma once
 
 #include <array>
@@ -17,32 +16,33 @@ namespace watertight::report {
 /// A finding with the solids that its places are in.
 struct PlacedFinding {
   const Finding* finding = nullptr;
-  Index solid = kNone;        // of Finding::place, among InspectedFeature::solids
-  Index other_solid = kNone;  // of Finding::other
+  Index solid = kNone;        // index in InspectedFeature::solids, for Finding::place
+  Index other_solid = kNone;  // index in InspectedFeature::solids, for Finding::other
   const pipeline::InspectedGroup* group = nullptr;  // null: a finding about one solid
 };
 
-/// In order of solids, then groups. A finding about a whole group is placed in its first member.
+/// The findings in order of solids, then groups. A finding about a whole group is placed in its
+/// first member.
 std::vector<PlacedFinding> findings_of(const pipeline::InspectedFeature& feature);
 
-/// The solid that was submitted, or null for kNone.
+/// The solid with index `solid` that was submitted, or null for kNone.
 const Solid* submitted_solid(const pipeline::InspectedFeature& feature, Index solid);
 
-/// Where to look: the witness, else the vertex, else the middle of the facet's exterior ring, else
-/// nothing. World coordinates.
+/// The point at which to look: the witness, else the vertex, else the middle of the facet's
+/// exterior ring, else nullopt. World coordinates.
 std::optional<std::array<double, 3>> point_of(const pipeline::InspectedFeature& feature,
                                               const PlacedFinding& placed);
 
 /// val3dity's path of a solid: "coid=b|geom=0|solid=1".
 std::string solid_id(const SolidSource& source);
 
-/// How places in a solid of a feature are written.
+/// The options with which places in a solid of a feature are written.
 validate::ReportJsonOptions json_options_of(const SolidSource& source, Index solid);
 
-/// JSON Pointer into the document, "" when there is none.
+/// The JSON Pointer of a place in the document, "" when there is none.
 std::string pointer_of(const pipeline::InspectedFeature& feature, Index solid, const Place& place);
 
-/// The document's name for the reference system, "urn:ogc:def:crs:EPSG::7415"; "" for 0.
+/// The name of a reference system in documents, "urn:ogc:def:crs:EPSG::7415"; "" for 0.
 std::string crs_name(std::uint32_t srid);
 
 /// val3dity's name for a format: "CityJSON", "OBJ", ...

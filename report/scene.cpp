@@ -12,12 +12,13 @@
 namespace watertight::report {
 namespace {
 
-constexpr double kRadius = 1000;  // of a scene, from its centre
+constexpr double kRadius = 1000;  // the radius of a scene
 
-/// Solids with more corners than this get no lines for open edges: finding them costs a sort.
+/// Solids with more corners than this get no lines for open edges: a sort of all edges finds them.
 constexpr std::size_t kMostCornersForEdges = 1'000'000;
 
-/// Metres around a point of the document, so that far coordinates and degrees draw alike.
+/// Converts to metres around a point of the document, so that far coordinates and degrees look
+/// alike.
 class LocalMetres {
  public:
   LocalMetres(const Solid& solid, const Triple& centre)
@@ -38,8 +39,8 @@ struct Candidate {
   const Solid* solid = nullptr;
   Index facet = kNone;
   Role role = Role::other_facet;
-  double distance = 0;  // from the centre to the facet's box, squared
-  double size = 0;      // diagonal of the facet's box, squared
+  double distance = 0;  // squared, from the centre to the facet's box
+  double size = 0;      // squared diagonal of the facet's box
 };
 
 double squared_diagonal(const Triple& low, const Triple& high) {
@@ -57,7 +58,7 @@ double squared_distance_to_box(const Triple& low, const Triple& high) {
   return sum;
 }
 
-/// Approximate positions of all vertices: cheaper than Solid::world.
+/// Approximate positions of all vertices, which cost less than those of Solid::world().
 std::vector<Triple> positions_of(const Solid& solid, const LocalMetres& metres) {
   std::vector<Triple> positions;
   positions.reserve(solid.vertex_count());
@@ -95,7 +96,7 @@ void add_candidates(const Solid& solid, const LocalMetres& metres, Role role_of_
   }
 }
 
-/// Facets concerned first, then by distance; ties in order of the document.
+/// The order of facets: those concerned first, then by distance; ties in order of the document.
 bool is_nearer(const Candidate& a, const Candidate& b) {
   const bool a_first = a.role != Role::other_facet;
   const bool b_first = b.role != Role::other_facet;
@@ -104,8 +105,8 @@ bool is_nearer(const Candidate& a, const Candidate& b) {
   return a.facet < b.facet;
 }
 
-/// How many of the sorted candidates to show: all that fit; of a large solid those within a few
-/// times the size of the facets concerned, so that these can be seen.
+/// The number of sorted candidates to show: all that fit; of a large solid those within a few times
+/// the size of the facets concerned, so that the facets concerned can be seen.
 std::size_t count_shown(const std::vector<Candidate>& sorted, std::size_t total,
                         std::size_t concerned) {
   constexpr std::size_t kFewest = 24;
@@ -151,8 +152,8 @@ SceneFacet facet_of(const Candidate& candidate, const LocalMetres& metres,
   return facet;
 }
 
-/// Edges that are not used exactly twice, for the findings that speak of them. An edge that a
-/// vertex of another ring of its facet splits counts as its parts.
+/// Adds lines for the edges that are not used exactly twice, for findings about such edges. An edge
+/// that a vertex of another ring of its facet splits counts as its parts.
 void add_bad_edges(const Solid& solid, const LocalMetres& metres, std::size_t most, Scene& scene) {
   if (solid.arrays().ring_vertices.size() > kMostCornersForEdges) return;
   const Solid merged = geometry::merge_equal_vertices(solid).solid;
@@ -189,7 +190,7 @@ void add_ring_line(const Solid* solid, const Place& place, const LocalMetres& me
   scene.lines.push_back(std::move(line));
 }
 
-/// The middle of the solids' box: where a finding without a place of its own is shown.
+/// The middle of a solid's box, where a finding without a place of its own is shown.
 Triple middle_of(const Solid& solid) {
   const Box box = solid.box();
   Triple middle{};
@@ -209,8 +210,9 @@ void for_each_point(Scene& scene, Function function) {
   if (scene.witness) function(*scene.witness);
 }
 
-/// Moves the facets into a ball of kRadius around their middle. When farther facets are left out,
-/// the ball is that of `reach` metres and large facets stick out of it.
+/// Scales the scene into a ball of kRadius around the middle of its facets; false if they have no
+/// extent. When farther facets are left out, the ball is that of `reach` metres and large facets
+/// stick out of it.
 bool fit(Scene& scene, double reach) {
   Triple low;
   Triple high;

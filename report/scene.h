@@ -24,29 +24,30 @@ struct SceneFacet {
 
 struct Scene {
   std::vector<SceneFacet> facets;
-  std::vector<std::vector<Triple>> lines;  // open edges, rings concerned
+  std::vector<std::vector<Triple>> lines;  // bad edges and rings concerned
   std::optional<Triple> witness;
   std::size_t hidden_facets = 0;  // the number of facets that are too far away to be shown
 };
 
-/// Nothing when there is no facet to show.
+/// The scene of a finding; nullopt when there is no facet to show.
 std::optional<Scene> scene_of(const pipeline::InspectedFeature& feature,
                               const PlacedFinding& placed, const PictureOptions& options);
 
-/// Where a picture is seen from, degrees: azimuth from east, elevation above the horizon.
+/// The direction from which a picture is seen, degrees: azimuth from east, elevation above the
+/// horizon.
 struct View {
   double azimuth = 0;
   double elevation = 0;
 };
 
-/// A view in which the facets concerned face the viewer, from above where both are as good.
+/// A view in which the facets concerned face the viewer, from above where that is as good.
 View best_view(const Scene& scene);
 
-/// The <svg> element, painted from the back to the front.
+/// The <svg> element of a scene, painted from the back to the front.
 std::string svg_of(const Scene& scene, const View& view);
 
-/// {"f": [[role, ring, ...], ...], "l": [line, ...], "w": point, "v": [azimuth, elevation]} with
-/// rings as flat arrays of whole numbers.
+/// The text {"f": [[role, ring, ...], ...], "l": [line, ...], "w": point, "v": [azimuth,
+/// elevation]} with rings as flat arrays of whole numbers.
 std::string json_of(const Scene& scene, const View& view);
 
 }  // namespace watertight::report

@@ -17,7 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 using geometry::dot;
 
-/// Twice the area vector of a ring (Newell), of length 1 or 0.
+/// The normal of a ring by Newell's method, of length 1; 0 for a ring without area.
 Triple normal_of(const std::vector<Triple>& ring) {
   Triple sum{};
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -32,7 +32,7 @@ Triple normal_of(const std::vector<Triple>& ring) {
   return {sum[0] / length, sum[1] / length, sum[2] / length};
 }
 
-/// Right, up and towards the viewer.
+/// The unit vectors to the right, up and towards the viewer.
 struct Axes {
   Triple right;
   Triple up;
@@ -47,7 +47,7 @@ Axes axes_of(const View& view) {
           {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}};
 }
 
-/// Scene coordinates to those of the picture.
+/// Projects coordinates of a scene to those of the picture.
 class Projection2 {
  public:
   Projection2(const Scene& scene, const Axes& axes) : axes_(axes) {
@@ -95,11 +95,12 @@ class Projection2 {
 
 struct Drawn {
   const SceneFacet* facet = nullptr;
-  double depth = 0;  // towards the viewer
+  double depth = 0;  // the mean distance towards the viewer
   std::string_view style;
 };
 
-/// Class names of the page's style: facets concerned, then others by how they face the light.
+/// The class of a facet in the page's style: that of a facet concerned, else one by how the facet
+/// faces the light.
 std::string_view style_of(const SceneFacet& facet, const Triple& normal, const Axes& axes) {
   if (facet.role == Role::first) return "a";
   if (facet.role == Role::second) return "b";
@@ -202,7 +203,7 @@ std::string svg_of(const Scene& scene, const View& view) {
   for (const Drawn& facet : drawn) {
     const std::string path = path_of(facet.facet->rings, project, true);
     svg += path_element(facet.style, path);
-    // These facets show through everything in front of them.
+    // The outlines of the facets concerned show through everything in front of them.
     if (facet.facet->role == Role::first) outlines += path_element("oa", path);
     if (facet.facet->role == Role::second) outlines += path_element("ob", path);
   }

@@ -8,7 +8,8 @@ namespace {
 
 constexpr int kUnknownError = 999;
 
-/// Types come from the document: more different ones than this are counted together.
+/// The most types that are counted apart. Types come from the document; further types count
+/// together.
 constexpr std::size_t kMostTypes = 1000;
 
 void count(std::map<std::string, VerdictCount>& types, const std::string& type, Verdict verdict) {

@@ -30,21 +30,22 @@ class Tally {
   const std::map<std::string, VerdictCount>& solids() const { return solids_; }
   VerdictCount all_features() const;
   VerdictCount all_solids() const;
-  /// Findings of each code, omitted ones not counted; errors of reading under their codes.
+  /// The number of findings of each code, without omitted ones; errors of reading count under their
+  /// codes.
   const std::map<int, std::uint64_t>& findings() const { return findings_; }
   const std::set<int>& errors() const { return errors_; }
   const std::set<int>& warnings() const { return warnings_; }
   const std::set<int>& first_level() const { return first_level_; }
   std::uint64_t unreadable() const { return unreadable_; }
   std::uint64_t omitted() const { return omitted_; }
-  /// The worst of all features; at least undecided when something could not be read.
+  /// The worst verdict of all features; at least undecided when something could not be read.
   Verdict verdict() const;
   bool is_valid() const { return verdict() == Verdict::valid; }
 
  private:
   void add_finding(const Finding& finding);
 
-  std::map<std::string, VerdictCount> features_;  // by type
+  std::map<std::string, VerdictCount> features_;  // by type of the feature
   std::map<std::string, VerdictCount> solids_;
   std::map<int, std::uint64_t> findings_;
   std::set<int> errors_;
@@ -56,7 +57,7 @@ class Tally {
 };
 
 /// val3dity's number for something that could not be read: 901, 903, 904, or 999 where the fault is
-/// not the input's.
+/// not in the input.
 int code_of(const Error& error);
 
 /// The name of a finding's code or of 999.

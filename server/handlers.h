@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The handlers behind the route table, and what they share. Internal to server/.
+// The handlers in the route table, and the functions and constants that they share. Internal to
+// server/.
 #pragma once
 
 #include <string>
@@ -35,7 +36,7 @@ struct Route {
   std::string_view path;  // "/collections/{collectionId}": as in the OpenAPI document
   Lane lane;
   Handler handler;
-  std::vector<std::string_view> parameters;  // query parameters it knows
+  std::vector<std::string_view> parameters;  // the query parameters that the route knows
 };
 
 /// All routes; the OpenAPI document describes exactly these (a test compares them).
@@ -54,10 +55,10 @@ Response delete_item(const RoutedRequest& request);
 Response get_export(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 
-/// A plain problem.
+/// The answer with a problem that has no further members.
 Response refuse(unsigned status, std::string kind, std::string detail);
 
-/// CRS URI of an EPSG code; the OGC's "unknown" for 0.
+/// The CRS URI of an EPSG code; the OGC's "unknown" for 0.
 std::string crs_uri(std::uint32_t srid);
 
 /// crs_uri() in the form of the value of a Content-Crs field.

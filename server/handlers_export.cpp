@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The handler of a whole collection as one file, made part by part while it is sent.
+// The handler that sends a whole collection as one file, which is made part by part meanwhile.
 #include <array>
 #include <memory>
 
@@ -34,11 +34,11 @@ const FileFormat* chosen_file(const RoutedRequest& request) {
 
 Response refuse_export(const Error& error) {
   switch (error.code) {
-    case ErrorCode::unsupported:  // the collection is there, but not in this form
+    case ErrorCode::unsupported:  // the collection exists, but not in this form
       return refuse(406, "not-acceptable", error.message);
     case ErrorCode::malformed:
     case ErrorCode::limit_exceeded:
-    case ErrorCode::not_encodable:  // a fault of what is stored, not of the request
+    case ErrorCode::not_encodable:  // the fault is in the store, not in the request
       return refuse(500, "internal", "the collection cannot be exported: " + error.message);
     default:
       return to_response(to_problem(error));
@@ -60,7 +60,7 @@ Response get_export(const RoutedRequest& request) {
   auto started = pipeline::CollectionExport::start(*request.service.store, id, file->format);
   if (!started) return refuse_export(started.error());
   const auto exporting = std::make_shared<pipeline::CollectionExport>(*std::move(started));
-  // The first part before the status goes out: most of what can be wrong shows there.
+  // The first part is made before the status is sent, because most errors show there.
   auto first = exporting->next();
   if (!first) return refuse_export(first.error());
   Response response{200, std::string(file->type), std::string(as_text(*first)), {}};

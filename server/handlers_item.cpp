@@ -39,7 +39,8 @@ std::optional<ItemFormat> chosen_format(const RoutedRequest& request) {
   return kFormats[*chosen];
 }
 
-/// Names the representation: versions are never used twice, so version and format are enough.
+/// The entity tag of a representation. Versions are never used twice, so version, format and the
+/// number of the solid are enough.
 std::string etag_of(const StoredFeature& feature, const RoutedRequest& request,
                     const ItemFormat& format) {
   std::string etag = "\"";
@@ -55,7 +56,7 @@ std::string etag_of(const StoredFeature& feature, const RoutedRequest& request,
   return etag;
 }
 
-/// RFC 9110, section 13.1.2: a list of tags, compared weakly.
+/// Whether a list of tags, compared weakly, has the tag (RFC 9110, section 13.1.2).
 bool is_listed(std::string_view list, std::string_view etag) {
   if (list == "*") return true;
   while (!list.empty()) {
@@ -73,6 +74,9 @@ bool is_listed(std::string_view list, std::string_view etag) {
 Result<Bytes> blob_of(const StoredFeature& feature, const Target& target) {
   const std::string* text = target.parameter("solid");
   const std::string count = std::to_string(feature.solids.size());
+  if (feature.solids.empty()) {
+    return Error{ErrorCode::not_encodable, "this feature has no solids, so there is no blob of it"};
+  }
   std::size_t solid = 0;
   if (text != nullptr) {
     const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), solid);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Handlers that only look: landing, health, collections, lists of items.
+// Handlers that only read: landing, health, collections, lists of items.
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -42,7 +42,8 @@ constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;vers
 constexpr std::string_view kTitle = "Watertight";
 constexpr std::string_view kDescription = "Validates, stores and compresses 3D solids";
 
-/// The landing page for a browser: the links of the JSON one, nothing from elsewhere.
+/// The landing page in HTML. It has the links of the page in JSON, and loads nothing from
+/// elsewhere.
 std::string landing_html(const Json& links) {
   std::string html = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>";
   html.append(kTitle).append("</title>\n<style>body{font:16px/1.5 sans-serif;margin:3em auto;");
@@ -56,7 +57,8 @@ std::string landing_html(const Json& links) {
   return html.append("</ul>\n</html>\n");
 }
 
-/// JSON or HTML, by `f` or the Accept header; nothing when the client wants neither.
+/// The type of the landing page by `f` or the Accept header; nullopt when the client wants neither
+/// JSON nor HTML.
 std::optional<std::string_view> landing_type(const RoutedRequest& request) {
   if (const std::string* format = request.target.parameter("f")) {
     if (*format == "json") return kJson;
@@ -102,7 +104,7 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
-/// A box of 4 numbers has no limit in z.
+/// A box from 4 or 6 numbers; a box of 4 numbers has no limit in z.
 Result<store::StoredBox> parse_box(std::string_view text) {
   const Error wrong{ErrorCode::invalid_argument,
                     "bbox needs 4 or 6 comma-separated numbers: minima, then maxima"};
@@ -129,7 +131,8 @@ Result<store::StoredBox> parse_box(std::string_view text) {
   return box;
 }
 
-/// `bbox` counts in the collection's own CRS only, and the client has to say so.
+/// The box of a request. It counts in the collection's own CRS only, and the client has to state
+/// that.
 Result<std::optional<store::StoredBox>> box_of_request(const Target& target,
                                                        const store::StoredCollection& collection) {
   const std::string* box = target.parameter("bbox");

@@ -26,7 +26,7 @@ pipeline::IngestOptions ingest_options(const RoutedRequest& request) {
   return options;
 }
 
-/// 422: what is wrong is in the report.
+/// The answer 422; the report in it says what is wrong.
 Response refused_document(const pipeline::IngestOutcome& outcome) {
   Problem problem;
   problem.status = 422;
@@ -51,7 +51,7 @@ Result<bool> parse_flag(const Target& target, std::string_view name) {
   return Error{ErrorCode::invalid_argument, std::string(name) + " is true or false"};
 }
 
-/// Sets `value` from a parameter in (0, limit]; leaves it when there is none.
+/// Sets `value` from a parameter in (0, limit]; leaves `value` when there is no such parameter.
 Status read_tolerance(const Target& target, std::string_view name, double limit, double& value) {
   const std::string* text = target.parameter(name);
   if (text == nullptr) return Done{};
@@ -59,8 +59,8 @@ Status read_tolerance(const Target& target, std::string_view name, double limit,
   const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
   if (error != std::errc{} || end != text->data() + text->size() || !(number > 0) ||
       number > limit) {
-    return Error{ErrorCode::invalid_argument,
-                 std::string(name) + " is a number above 0, at most " + std::to_string(limit)};
+    return Error{ErrorCode::invalid_argument, std::string(name) + " is a number above 0, at most " +
+                                                  std::to_string(static_cast<int>(limit))};
   }
   value = number;
   return Done{};
@@ -97,8 +97,8 @@ std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::Tex
   return report::json_report(std::move(sink), std::move(head));
 }
 
-/// Validates a document and answers with its report: 0 JSON, 1 GeoJSON, 2 HTML. Equal documents get
-/// equal answers, so the report has no times.
+/// Validates a document and answers with its report; `kind` is 0 for JSON, 1 for GeoJSON, 2 for
+/// HTML. Equal documents get equal answers, so the report has no times.
 Response report_of(Document document, const RoutedRequest& request,
                    const pipeline::IngestOptions& options, std::size_t kind) {
   constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};
@@ -132,7 +132,7 @@ Response report_of(Document document, const RoutedRequest& request,
   return status ? std::move(response) : to_response(to_problem(status.error()));
 }
 
-/// The header that a bare feature needs: that of the collection it goes into.
+/// The header of the collection if the body is a bare feature, which needs one; else "".
 Result<std::string> header_for(const RoutedRequest& request) {
   if (!is_bare_feature(request)) return std::string();
   const auto collection = request.service.store->collection(request.target.segments[1]);
@@ -162,7 +162,7 @@ Response post_items(const RoutedRequest& request) {
   const bool is_refused = outcome->verdict != Verdict::valid &&
                           options.invalid_features == pipeline::InvalidFeatures::refuse_document;
   if (is_refused) return refused_document(*outcome);
-  // Skipping: some may be stored, the report says which.
+  // With invalid=skip some features may be stored; the report says which.
   Response response{outcome->stored > 0 ? 201U : 200U,
                     std::string(kJson),
                     pipeline::outcome_json(*outcome) + "\n",

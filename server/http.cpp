@@ -206,7 +206,7 @@ const std::string* Target::parameter(std::string_view name) const {
 }
 
 Result<Target> parse_target(std::string_view target) {
-  // The absolute form, which every server must take (RFC 9112, section 3.2.2).
+  // Every server must accept the absolute form (RFC 9112, section 3.2.2).
   if (target.starts_with("http://") && target.find('/', 7) != std::string_view::npos) {
     target.remove_prefix(target.find('/', 7));
   }
@@ -216,7 +216,7 @@ Result<Target> parse_target(std::string_view target) {
   Target parsed;
   std::string_view query = target.substr(0, target.find('#'));
   std::string_view path = cut(query, '?').substr(1);
-  // One slash at the end is the same resource.
+  // A path with one slash at its end names the same resource.
   if (path.ends_with('/')) path.remove_suffix(1);
   while (!path.empty()) {
     const bool is_last = path.find('/') == std::string_view::npos;

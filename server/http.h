@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Requests and responses as plain values, so that routes are functions that need no socket. The
+// Requests and responses as plain values, so that routes are functions that need no socket; and the
 // parts of HTTP that routes use: percent-decoding, query parameters, content types, Accept.
 #pragma once
 
@@ -26,11 +26,12 @@ struct Request {
   std::vector<HeaderField> headers;
   std::string body;
 
-  /// The first field of that (lower-case) name.
+  /// The value of the first field `name` (lower case); nullptr if there is none.
   const std::string* header(std::string_view name) const;
 };
 
-/// The next part of a body; "" after the last. An Error cuts the answer off: its status is out.
+/// The next part of a body; "" after the last. An error cuts the answer off, whose status has been
+/// sent.
 using BodyParts = std::function<Result<std::string>()>;
 
 struct Response {
@@ -38,9 +39,8 @@ struct Response {
   std::string content_type;  // "" for a response without body
   std::string body;
   std::vector<HeaderField> headers = {};
-  /// Makes the parts that follow `body` while they are sent; none for a body that is whole. One
-  /// thread at a time calls it, after the part before was sent, and never again once the client is
-  /// gone.
+  /// Makes the parts that follow `body` while they are sent; empty if `body` is whole. One thread
+  /// at a time calls it, after the part before was sent, and never again once the client is gone.
   BodyParts rest = {};
 };
 
@@ -58,25 +58,25 @@ std::string percent_encode(std::string_view text);
 bool is_utf8(std::string_view text);
 
 /// A request target taken apart. Segments are decoded one by one, so an encoded slash stays inside
-/// its segment; there is no file system behind them and "." and ".." mean nothing.
+/// its segment. Segments are no paths of files: "." and ".." have no meaning.
 struct Target {
-  std::vector<std::string> segments;  // of "/collections/a" : "collections", "a"; of "/": none
+  std::vector<std::string> segments;  // "collections", "a" for "/collections/a"; none for "/"
   std::vector<std::pair<std::string, std::string>> parameters;
 
   const std::string* parameter(std::string_view name) const;
 };
 
-/// Errors: malformed (not an absolute path, an empty segment, a broken escape); invalid_argument
-/// for a parameter given twice.
+/// Takes a request target apart. Errors: malformed (not an absolute path, an empty segment, a
+/// broken escape); invalid_argument for a parameter given twice.
 Result<Target> parse_target(std::string_view target);
 
-/// A media type without its parameters, lower case: "application/json" of
-/// "Application/JSON; charset=utf-8".
+/// A media type without its parameters, lower case: "application/json" for "Application/JSON;
+/// charset=utf-8".
 std::string media_type(std::string_view content_type);
 
-/// Chooses among `offers` (media types, best first) by an Accept header (RFC 9110, section 12.5.1):
-/// index of the offer with the highest quality, the earlier one on ties. No header accepts all.
-/// Returns nothing when none is acceptable.
+/// Chooses among `offers` (media types, best first) by an Accept header (RFC 9110, section 12.5.1).
+/// Returns the index of the offer with the highest quality, the earlier one on ties; nullopt when
+/// none is acceptable. Without a header all are acceptable.
 std::optional<std::size_t> negotiate(const std::string* accept,
                                      const std::vector<std::string_view>& offers);
 

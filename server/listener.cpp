@@ -96,7 +96,7 @@ awaitable<void> AsioServer::accept() {
       begin_session(std::move(socket));
       continue;
     }
-    // Out of descriptors or memory: those that are open may end; try again soon.
+    // Descriptors or memory ran out. Open connections may end, so accepting is tried again soon.
     timer.expires_after(kPause);
     co_await timer.async_wait(redirect_error(use_awaitable, error));
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The HTTP/1.1 server under the routes: listens, limits, hands requests to worker threads and
-// drains. Knows nothing of solids; what is answered is an Application's business.
+// drains. It knows nothing of solids; an Application makes the answers.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@
 
 namespace watertight::server {
 
-/// Where a request is answered. Quick ones on the I/O thread, so that they are answered whatever
-/// the others do; those that wait for the database and those that compute each have threads of
+/// The threads that answer a request. Quick requests are answered on the I/O thread, whatever the
+/// others do; requests that wait for the database and requests that compute each have threads of
 /// their own.
 enum class Lane : std::uint8_t { quick, reading, computing };
 
@@ -32,15 +32,15 @@ using LogLine = std::function<void(const std::string& line)>;
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8080;  // 0: any free one
+  std::uint16_t port = 8080;  // 0: any free port
   std::uint32_t header_bytes = 16 * 1024;
   std::uint64_t body_bytes = 256ULL << 20;            // the most bytes of the body of one request
-  std::uint64_t body_bytes_together = 1024ULL << 20;  // of all requests that are being received
-  double idle_seconds = 60;                           // between requests of one connection
+  std::uint64_t body_bytes_together = 1024ULL << 20;  // the most for all requests being received
+  double idle_seconds = 60;                           // the longest time between requests
   double header_seconds = 10;   // the longest time from the first byte of a header to its last
   double body_seconds = 120;    // the longest time for the whole body
   double answer_seconds = 300;  // the longest time of computing; then engines are cancelled
-  double write_seconds = 60;    // for the answer or a part of it, plus one for each 100 kB
+  double write_seconds = 60;    // the longest time for an answer or a part, plus 1 for each 100 kB
   double drain_seconds = 30;    // the longest time for requests in flight when stopping
   std::size_t connections = 512;
   std::size_t computing_threads = 2;
@@ -53,13 +53,15 @@ struct ServerOptions {
 /// A listening server with its threads.
 class HttpServer {
  public:
-  /// Errors: invalid_argument (address), unavailable (address in use, no permission).
+  /// Starts to listen. Errors: invalid_argument (address), unavailable (address in use, no
+  /// permission).
   static Result<std::unique_ptr<HttpServer>> start(const ServerOptions& options,
                                                    Application application, LogLine log);
   virtual ~HttpServer() = default;
   virtual std::uint16_t port() const = 0;
-  /// Graceful: stops accepting, closes idle connections, lets requests in flight finish within
-  /// drain_seconds, then cancels and closes. Blocks until done; later calls do nothing.
+  /// Stops gracefully: accepts no more connections, closes idle ones, lets requests in flight
+  /// finish within drain_seconds, then cancels and closes the rest. Blocks until done; later calls
+  /// do nothing.
   virtual void stop() = 0;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "not-found" -> "Not found".
+/// The title of a kind: "Not found" for "not-found".
 std::string title_of(std::string_view kind) {
   std::string title(kind);
   for (char& c : title) {
@@ -56,7 +56,8 @@ Response to_response(const Problem& problem) {
     const Json extension = Json::parse(problem.extension, nullptr, false);
     if (extension.is_object()) json.update(extension);
   }
-  // Details quote the sender's bytes, which need not be UTF-8: others are replaced, nothing throws.
+  // Details quote the sender's bytes, which need not be UTF-8: wrong bytes are replaced, nothing
+  // throws.
   return Response{problem.status, "application/problem+json",
                   json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
                   problem.headers};

@@ -13,22 +13,22 @@
 
 namespace watertight::server {
 
-/// Kinds of problems; the `type` member is kProblemPrefix followed by the kind.
+/// The start of the `type` of a problem, which its kind follows.
 inline constexpr std::string_view kProblemPrefix = "urn:watertight:problem:";
 
 struct Problem {
   unsigned status = 500;
   std::string kind;    // "not-found", "malformed", ...: one per cause, listed in docs/api.md
   std::string detail;  // one sentence for the sender
-  std::optional<std::uint64_t> byte_offset = {};  // into the request body
+  std::optional<std::uint64_t> byte_offset = {};  // offset into the request body
   std::string pointer = {};                       // JSON Pointer into the request body
   /// Further members as a JSON object ("" = none), e.g. the report of an invalid document.
   std::string extension = {};
   std::vector<HeaderField> headers = {};
 };
 
-/// application/problem+json with type, title (the kind in words), status, detail, byteOffset,
-/// pointer and the extension's members.
+/// The answer application/problem+json with type, title (the kind in words), status, detail,
+/// byteOffset, pointer and the extension's members.
 Response to_response(const Problem& problem);
 
 /// The problem of an error met while reading the request body (400, 413, 415), the store (404, 409,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The routes of the service (docs/api.md): pure functions of a request, a store and the engines.
-// Nothing here knows of sockets.
+// The routes know nothing of sockets.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@
 namespace watertight::server {
 
 struct RouteOptions {
-  Limits limits;  // of a submitted document
+  Limits limits;  // limits of a submitted document
   std::size_t threads_per_request = 1;
-  std::uint64_t largest_page = 1000;  // features
+  std::uint64_t largest_page = 1000;  // the most features of a page
   std::uint64_t default_page = 10;
-  std::uint64_t largest_findings = 1000;  // kept per report in answers
+  std::uint64_t largest_findings = 1000;  // the most findings of a report in an answer
 };
 
 /// The parts that routes work with. Store and workers must outlive the service and be thread-safe.
@@ -36,7 +36,7 @@ Response respond(const Service& service, const Request& request, const CancelPol
 /// The threads that should answer a request.
 Lane lane_of(const Request& request);
 
-/// The two functions above as the server wants them.
+/// lane_of() and respond() in the form in which the server calls them.
 Application make_application(const Service& service);
 
 }  // namespace watertight::server

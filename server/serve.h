@@ -17,15 +17,15 @@ struct ServeOptions {
   Limits limits;
 };
 
-/// Keeps SIGTERM and SIGINT for serve() to wait for, in this and all later threads. For callers
-/// that start threads before serve(); a signal that comes in between stops serve() at once,
-/// gracefully.
+/// Blocks SIGTERM and SIGINT in this thread and those that it starts later, so that serve() can
+/// wait for the signals. For callers that start threads before serve(); a signal that comes in
+/// between stops serve() at once, gracefully.
 void hold_stop_signals();
 
-/// Blocks. Prints "listening on http://ADDRESS:PORT" on standard output when requests are taken,
-/// log lines on standard error. Returns after a graceful stop.
-/// Errors: unavailable (database, address), invalid_argument.
-/// Requires that no other thread takes the two signals: see hold_stop_signals().
+/// Runs the service and blocks until it has stopped gracefully. Prints "listening on
+/// http://ADDRESS:PORT" on standard output when requests are taken, and log lines on standard
+/// error. Errors: unavailable (database, address), invalid_argument. Requires that no other thread
+/// takes SIGTERM and SIGINT: see hold_stop_signals().
 Status serve(const ServeOptions& options);
 
 }  // namespace watertight::server

@@ -33,7 +33,7 @@ using Parser = http::request_parser<http::string_body>;
 constexpr std::size_t kReadBytes = 16 * 1024;
 constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
-constexpr double kBytesPerSecond = 100e3;  // slowest reader that gets its whole answer
+constexpr double kBytesPerSecond = 100e3;  // the slowest client that gets its whole answer
 
 Clock::duration seconds(double value) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(value));
@@ -197,7 +197,7 @@ class Session {
   beast::flat_buffer buffer_;
   std::string method_;
   std::string target_;
-  std::optional<BudgetShare> body_share_;  // from the header to the answer
+  std::optional<BudgetShare> body_share_;  // held from the header to the answer
   bool is_head_ = false;
   unsigned version_ = 11;
 };
@@ -260,7 +260,7 @@ awaitable<std::optional<Response>> Session::receive(Parser& parser) {
   co_return std::nullopt;
 }
 
-/// Has the request answered in its lane.
+/// Answers the request on the threads of its lane.
 awaitable<Response> Session::answer(const Request& request) {
   const Clock::time_point deadline = Clock::now() + seconds(options_.answer_seconds);
   const SessionEnvironment& environment = environment_;
@@ -328,7 +328,7 @@ awaitable<bool> Session::send(Response response, bool keep_alive) {
 /// Makes the next part on a thread for computing.
 awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
   if (environment_.is_cancelled) co_return Error{ErrorCode::cancelled, "the server is stopping"};
-  using Made = std::optional<Result<std::string>>;  // co_spawn wants a default
+  using Made = std::optional<Result<std::string>>;  // co_spawn needs a type with a default value
   auto work = [&parts]() -> awaitable<Made> { co_return next_part_guarded(parts); };
   Made made = co_await asio::co_spawn(environment_.computing.get_executor(), std::move(work),
                                       use_awaitable);
@@ -366,8 +366,9 @@ awaitable<Status> Session::send_parts(Response response, bool keep_alive, std::u
   co_return Done{};
 }
 
-/// An answer in parts, if there are not too many already. True when it was sent to its end; else
-/// the connection is reset, because without chunks its end alone would look like that of the body.
+/// Sends an answer in parts, unless too many are being sent. True when the answer is sent and the
+/// connection can go on. An answer that is cut off resets the connection, because without chunks
+/// the end of the connection alone would look like that of the body.
 awaitable<bool> Session::download(Response response, bool keep_alive, Clock::time_point start) {
   const BudgetShare place(environment_.downloads, 1);
   if (!place.is_granted()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One connection: reads requests within limits, has them answered in their lane, writes answers.
+// One connection: reads requests within limits, has each answered in its lane, writes the answers.
 // Includes Asio: for session.cpp and listener.cpp only.
 #pragma once
 
@@ -49,11 +49,12 @@ class BudgetShare {
   bool is_granted_;
 };
 
-/// The stream of one connection, shared with the listener so that stopping can close idle ones.
+/// The stream of a connection, shared with the listener so that stopping can close idle
+/// connections.
 struct Connection {
   explicit Connection(boost::asio::ip::tcp::socket socket) : stream(std::move(socket)) {}
   boost::beast::tcp_stream stream;
-  bool is_idle = true;  // waits for the first byte of a request; only on the stream's executor
+  bool is_idle = true;  // waits for the first byte of a request; for the stream's executor only
   std::string peer;
 };
 

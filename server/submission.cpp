@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Stops as soon as the top-level "type" was seen.
+/// Finds the top-level "type" of a JSON text, and stops as soon as it has seen it.
 class TypeFinder : public nlohmann::json_sax<Json> {
  public:
   bool null() override { return true; }
@@ -92,7 +92,8 @@ Problem unsupported_type(AcceptedFormats accepted) {
   return Problem{415, "unsupported", "send a body of one of these types: " + known, {}, {}, {}, {}};
 }
 
-/// Nothing when neither f= nor Content-Type names a format taken here.
+/// The format of a body; nullopt when f= and Content-Type name no accepted format. Without both,
+/// the body's first bytes decide.
 std::optional<Format> stated_format(const RoutedRequest& request, AcceptedFormats accepted) {
   const std::string* parameter = request.target.parameter("f");
   const std::string* content_type = request.request.header("content-type");
@@ -129,7 +130,7 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
   }
   auto city_header = formats::read_city_json_header(header);
   if (!city_header) return std::move(city_header).error();
-  // Line ends outside strings are white space, and inside strings JSON has none.
+  // Line ends outside strings are white space, and JSON allows none inside strings.
   std::replace(body.begin(), body.end(), '\n', ' ');
   std::replace(body.begin(), body.end(), '\r', ' ');
   auto feature = formats::read_city_json_feature(*city_header, body, options);
@@ -178,7 +179,7 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
     submission.document = *std::move(document);
   } else {
     submission.problem = to_problem(document.error());
-    // A known format with content that this service does not know is the body's fault.
+    // An accepted format whose content the reader does not support is the body's fault.
     if (document.error().code == ErrorCode::unsupported) submission.problem->status = 422;
   }
   return submission;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Reads a submitted body: which format it is, and the document in it. Internal to server/.
+// Reads a submitted body: finds its format and reads the document. Internal to server/.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ std::string top_level_type(std::string_view json);
 /// The formats that clients may send.
 enum class AcceptedFormats : std::uint8_t { city_models, all };
 
-/// The document in the body, by f= or else by Content-Type. `header` is the document header that a
-/// bare CityJSONFeature needs (that of the collection), "" when there is none.
-/// Returns a problem: 400 malformed, 413, 415.
+/// The document in a body, or the problem with it: 400 malformed, 413, 415, 422. The format follows
+/// from f=, else from Content-Type. `header` is the document header that a bare CityJSONFeature
+/// needs (that of the collection), "" when there is none.
 struct Submission {
   std::optional<Document> document;
   std::optional<Problem> problem;

@@ -25,9 +25,9 @@ struct wt_engine {
 namespace watertight::sql {
 namespace {
 
-// A detail names this many findings; wt_validate gives the whole report.
+// The most findings that a detail names; wt_validate gives the whole report.
 constexpr std::size_t kFindingsShown = 20;
-// A varlena of PostgreSQL holds less than 1 GiB.
+// The most bytes of a result: a varlena of PostgreSQL holds less than 1 GiB.
 constexpr std::size_t kLargestValue = (1ULL << 30) - 1024;
 
 char* copy_of(std::string_view text) noexcept {
@@ -45,7 +45,7 @@ void fail(wt_reply* reply, std::string_view state, std::string_view message,
   const std::size_t length = std::min(message.size(), sizeof(failure.message) - 1);
   std::memcpy(failure.message, message.data(), length);
   failure.message[length] = '\0';
-  // Never end within a UTF-8 character.
+  // The message must not end within a UTF-8 character.
   for (std::size_t end = length; end < message.size() && end > 0; --end) {
     if ((static_cast<unsigned char>(message[end]) & 0xC0) != 0x80) {
       failure.message[end] = '\0';
@@ -121,7 +121,8 @@ struct Examined {
   Inspection inspection;
 };
 
-/// Reads and certifies at the default tolerances. A failure unless the verdict is valid or invalid.
+/// Reads and certifies a solid at the default tolerances. Fails unless the verdict is valid or
+/// invalid.
 Result<Examined> examine(const wt_job& job) {
   Result<SubmittedSolid> submitted = formats::read_ewkb(bytes_of(job));
   if (!submitted) return std::move(submitted).error();
@@ -156,7 +157,8 @@ std::string errors_of(const Report& report) {
 void validate_into(const wt_job& job, wt_reply* reply) {
   const Result<Examined> examined = examine(job);
   if (!examined) return fail(reply, examined.error());
-  // An immutable function must not report how the verdict was reached: a helper can crash once.
+  // The report of an immutable function must not say how the verdict was reached, as a helper can
+  // crash once.
   Report report = examined->inspection.report;
   report.attempts.clear();
   report.rung = delaunay::Rung::none;
@@ -217,7 +219,7 @@ wt_engine* wt_engine_make(const char* libexec) noexcept {
       options.cgal_executable = std::string(libexec) + "/watertight-worker";
       options.tetgen_executable = std::string(libexec) + "/watertight-tetgen";
     }
-    // A plain pointer, because the owner is C: wt_engine_end().
+    // The pointer is plain, because C owns the engine until wt_engine_end().
     engine = std::make_unique<wt_engine>(wt_engine{watertight::delaunay::EngineWorkers(options)})
                  .release();
   });

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * The frontier between PostgreSQL (C) and geometry (C++): bytes in, bytes or a failure out. Nothing
- * of PostgreSQL is known behind it and no exception crosses it. Callers may leave by longjmp at any
- * time, except out of wt_poll: no C++ object lives in a frame above these functions.
+ * The interface between PostgreSQL (C) and geometry (C++): bytes in, bytes or a failure out. The
+ * code behind it knows nothing of PostgreSQL, and no exception leaves it. Callers may leave by
+ * longjmp at any time, except out of wt_poll: no C++ object lives in a frame above these functions.
  */
 #ifndef WATERTIGHT_SQL_BRIDGE_H
 #define WATERTIGHT_SQL_BRIDGE_H
@@ -18,7 +18,7 @@ extern "C" {
 #define WATERTIGHT_NOEXCEPT
 #endif
 
-/** Asked every few milliseconds of a long computation; true ends it. Must return. */
+/** Called every few milliseconds of a long computation; true ends the computation. Must return. */
 typedef bool (*wt_poll)(void);
 
 /** The helper processes of one backend. */
@@ -31,7 +31,7 @@ typedef struct wt_failure {
   char* detail;      /* may be NULL; owned by the reply */
 } wt_failure;
 
-/** The answer of a function. Start from all zero bytes; wt_reply_clear() frees and zeroes it. */
+/** The answer of a function, all zero bytes at first; wt_reply_clear() frees and zeroes it. */
 typedef struct wt_reply {
   uint8_t* bytes; /* the value: a blob, EWKB, or JSON text */
   size_t size;
@@ -41,8 +41,8 @@ typedef struct wt_reply {
 
 void wt_reply_clear(wt_reply* reply) WATERTIGHT_NOEXCEPT;
 
-/** Helpers from the folder `libexec`, or from their usual places when it is "". Starts none yet.
- *  NULL when there is no memory. */
+/** Makes an engine with helpers from the folder `libexec`, or from their usual places when it is
+ *  "". Starts no helper yet. NULL when there is no memory. */
 wt_engine* wt_engine_make(const char* libexec) WATERTIGHT_NOEXCEPT;
 /** Kills the helpers. NULL does nothing. */
 void wt_engine_end(wt_engine* engine) WATERTIGHT_NOEXCEPT;
@@ -55,20 +55,20 @@ typedef struct wt_job {
   wt_poll poll;
 } wt_job;
 
-/* Each fills a reply that is all zero. An undecided solid is a failure (57014, can be tried again),
- * never a value; so is a reached limit (54000). */
+/* Each function below fills a reply that is all zero. An undecided solid is a failure (57014, can
+ * be tried again), never a value; a reached limit is a failure too (54000). */
 
-/** EWKB -> the report as JSON, without times. */
+/** Answers EWKB with the report as JSON, without times. */
 void wt_bridge_validate(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** EWKB -> whether the solid is valid. */
+/** Answers EWKB with whether the solid is valid. */
 void wt_bridge_is_valid(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** EWKB -> blob. An invalid solid fails with 22023, its findings in detail. */
+/** Answers EWKB with a blob. An invalid solid fails with 22023; its findings are the detail. */
 void wt_bridge_encode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** Blob -> EWKB. */
+/** Answers a blob with EWKB. */
 void wt_bridge_decode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** Blob -> header, counts and part sizes as JSON. */
+/** Answers a blob with its header, counts and part sizes as JSON. */
 void wt_bridge_info(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** "0.1.0"; static. */
+/** The version, such as "0.1.0"; static. */
 const char* wt_bridge_version(void) WATERTIGHT_NOEXCEPT;
 
 #ifdef __cplusplus

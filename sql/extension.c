@@ -19,10 +19,10 @@ PG_MODULE_MAGIC;
 
 void _PG_init(void);
 
-/* A backend serves one connection in one thread; its state is what PostgreSQL calls static. */
+/* A backend serves one connection in one thread, so its state can be static. */
 static char *libexec_setting = NULL; /* watertight.libexec */
 static wt_engine *engine = NULL;
-static char *engine_libexec = NULL; /* what `engine` was made with */
+static char *engine_libexec = NULL; /* the libexec with which `engine` was made */
 
 static void
 end_engine(int code, Datum argument)
@@ -101,7 +101,7 @@ raise_failure(const wt_failure *failure)
 
 	if (code == ERRCODE_QUERY_CANCELED)
 	{
-		/* If it was asked for, PostgreSQL says why (statement_timeout, user, shutdown). */
+		/* PostgreSQL reports a requested end with its reason (statement_timeout, user, shutdown). */
 		CHECK_FOR_INTERRUPTS();
 		ereport(ERROR,
 				(errcode(code), errmsg("%s", from_utf8(failure->message)),

@@ -7,7 +7,8 @@
 namespace watertight::sql {
 namespace {
 
-/// Members of a JSON object in the order they are added. Names and texts are ASCII without quotes.
+/// The members of a JSON object in the order in which they are added. Names and texts are ASCII
+/// without quotes.
 class JsonObject {
  public:
   JsonObject& add(const char* name, const std::string& json) {

@@ -9,8 +9,8 @@
 
 namespace watertight::sql {
 
-/// UTF-8 JSON: format, mode, acceptance, SRID, lattice, counts, and the bytes of each part.
-/// Deterministic.
+/// The facts as UTF-8 JSON: format, mode, acceptance, SRID, lattice, counts, and the bytes of each
+/// part. Deterministic.
 std::string info_json(const codec::BlobInfo& info, std::size_t bytes);
 
 }  // namespace watertight::sql

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
 -- A solid that is undecided (a helper crashed or reached its limits) raises 57014 and a limit
--- raises 54000: every value these functions return is final, hence IMMUTABLE.
+-- raises 54000: every value that these functions return is final, so they are IMMUTABLE.
 \echo Use "CREATE EXTENSION watertight" to load this file. \quit
 
 CREATE FUNCTION wt_version() RETURNS text

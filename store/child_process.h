@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Starting and watching PostgreSQL's programs (initdb, postgres) for private_cluster only. No shell
-// is involved, so paths need no quoting.
+// Starts and watches PostgreSQL's programs (initdb, postgres), for private_cluster only. No shell
+// is started, so paths need no quoting.
 #pragma once
 
 #include <sys/types.h>
@@ -18,15 +18,15 @@ namespace watertight::store {
 struct SpawnOptions {
   std::string folder;        // working directory of the child
   std::string log;           // file that stdout and stderr are appended to
-  bool own_session = false;  // signals to our terminal's process group do not reach the child
+  bool own_session = false;  // signals to the terminal's process group do not reach the child
 };
 
-/// Starts `arguments[0]` (a path) with an environment free of PG*, LC_* and LANG* variables, no
-/// descriptors but 0 to 2 and default signals. Errors: unavailable.
+/// Starts `arguments[0]` (a path) with default signals, no descriptors but 0 to 2, and an
+/// environment without PG*, LC_* and LANG* variables, in which LC_ALL is C. Errors: unavailable.
 Result<pid_t> spawn(const std::vector<std::string>& arguments, const SpawnOptions& options);
 
-/// "exited with status 1" or "was killed by signal 9" once the child has ended (it is then reaped);
-/// empty while it runs. A process that is not our child never ends here.
+/// How a child ended: "exited with status 1" or "was killed by signal 9"; nullopt while the child
+/// runs. A child that ended is reaped. Always nullopt for a process that is not our child.
 std::optional<std::string> ended(pid_t child);
 
 /// Waits for the end of a child and kills it after `limit`.

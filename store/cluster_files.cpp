@@ -31,10 +31,11 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kLockPoll{20};
-// "/.s.PGSQL.5432" and, for its lock file, ".lock".
+// The length of "/.s.PGSQL.5432", the name of the socket in its folder.
 constexpr std::size_t kSocketNameBytes = 14;
 
-/// mkdir with mode 0700, or a directory of ours that no one else may enter.
+/// Creates a directory with mode 0700. An existing one must belong to this user and is closed to
+/// others.
 Status private_folder(const std::string& path) {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return system_error("create " + path);
   struct stat status {};
@@ -142,7 +143,7 @@ Result<std::string> prepare_data_directory(const std::string& folder) {
     return Error{ErrorCode::invalid_argument,
                  folder + " is not empty and holds no cluster of Watertight"};
   }
-  // A symbolic link is followed to the folder itself, which must be ours.
+  // A symbolic link is followed to the folder itself, which must belong to this user.
   const fs::path place = fs::weakly_canonical(folder, failure);
   if (failure) {
     return Error{ErrorCode::unavailable, "cannot find " + folder + ": " + failure.message()};

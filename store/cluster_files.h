@@ -4,7 +4,7 @@
 // private_cluster only.
 //
 //   DATA/cluster.lock    held exclusively while someone starts or stops the cluster
-//   DATA/cluster.users   held shared by every process that uses it
+//   DATA/cluster.users   held shared by every process that uses the cluster
 //   DATA/server.log      PostgreSQL's messages
 //   DATA/socket/         the Unix socket (elsewhere when the path is too long for one)
 //   DATA/postgres/       PostgreSQL's own directory (PGDATA)
@@ -30,10 +30,11 @@ class FileLock {
   ~FileLock();
 
   enum class Kind { shared, exclusive };
-  /// Opens (and creates) `path` and takes the lock. Errors: unavailable when others hold it for
-  /// longer than `patience`.
+  /// Opens (and creates) `path` and takes the lock. Errors: unavailable when the file cannot be
+  /// opened, or other processes hold the lock for longer than `patience`.
   static Result<FileLock> take(const std::string& path, Kind kind, std::chrono::seconds patience);
-  /// From shared to exclusive, now or never: false when someone else holds it too.
+  /// Turns a shared lock into an exclusive one without waiting; false when another process holds
+  /// the lock too.
   bool try_exclusive();
 
  private:
@@ -41,29 +42,31 @@ class FileLock {
   int descriptor_ = -1;
 };
 
-/// The first lines of postmaster.pid.
+/// The process number and the socket folder in a file postmaster.pid.
 struct PostmasterFile {
   pid_t pid = 0;
-  std::string socket_folder;  // "" while it starts
+  std::string socket_folder;  // "" while the server starts
 };
 std::optional<PostmasterFile> read_postmaster_file(const std::string& pgdata);
 
-/// Whether `pid` is a PostgreSQL process that works in `pgdata` (a real path): a process that took
-/// over the number of a dead postmaster is not.
+/// Whether `pid` is a PostgreSQL process that works in `pgdata` (a real path). False for another
+/// program that took over the number of a dead postmaster.
 bool is_postgres_in(pid_t pid, const std::string& pgdata);
-/// All processes of that kind: postmaster, backends, and backends that a killed postmaster left.
+/// All PostgreSQL processes that work in `pgdata`: postmaster, backends, and backends that a killed
+/// postmaster left.
 std::vector<pid_t> postgres_processes_in(const std::string& pgdata);
 
-/// Creates `folder` with mode 0700, or accepts an existing one of ours that is empty or holds a
-/// cluster. Returns its real path. Errors: invalid_argument, unavailable.
+/// Creates `folder` with mode 0700, or accepts an existing folder of this user that is empty or
+/// holds a cluster. Returns the folder's real path. Errors: invalid_argument, unavailable.
 Result<std::string> prepare_data_directory(const std::string& folder);
 
-/// The folder for the socket: in `data` if the path fits a Unix socket address and a
-/// connection string, else a short one in
-/// /tmp, private to the user and named after `data`. Errors: unavailable.
+/// Creates the folder for the Unix socket and returns its path: in `data` if that path fits a
+/// socket address and a connection string, else a short path in /tmp, private to the user and named
+/// after `data`. Errors: unavailable.
 Result<std::string> prepare_socket_folder(const std::string& data);
 
-/// Replaces a file durably. Errors: unavailable.
+/// Replaces a file by `content`, which is on the disk before the old file goes; sync_folder() then
+/// makes the replacement last. Errors: unavailable.
 Status write_file(const std::string& path, const std::string& content);
 Status sync_folder(const std::string& path);
 

@@ -10,11 +10,11 @@
 namespace watertight::store {
 namespace {
 
-// Type numbers of pg_type.dat, fixed in every PostgreSQL.
+// The numbers of types in pg_type.dat, which are equal in every PostgreSQL.
 constexpr std::uint32_t kBytea = 17, kInt8 = 20, kText = 25, kFloat8 = 701;
 constexpr std::uint32_t kByteaArray = 1001, kTextArray = 1009, kInt8Array = 1016,
                         kFloat8Array = 1022;
-constexpr std::size_t kArrayFlagOffset = 4;  // of "has nulls" in the binary form of an array
+constexpr std::size_t kArrayFlagOffset = 4;  // the offset of "has nulls" in a binary array
 
 void append_big_endian(std::string& bytes, std::uint64_t value, int width) {
   for (int i = width - 1; i >= 0; --i) bytes.push_back(static_cast<char>(value >> (8 * i)));
@@ -57,12 +57,12 @@ void Parameters::add(std::uint32_t type, std::optional<std::string> value) {
 void Parameters::begin_array(std::uint32_t array_type, std::uint32_t element_type,
                              std::size_t count) {
   std::string header;
-  append_big_endian(header, count == 0 ? 0 : 1, 4);  // dimensions
-  append_big_endian(header, 0, 4);                   // has nulls
+  append_big_endian(header, count == 0 ? 0 : 1, 4);  // the number of dimensions
+  append_big_endian(header, 0, 4);                   // whether there are nulls
   append_big_endian(header, element_type, 4);
   if (count != 0) {
     append_big_endian(header, count, 4);
-    append_big_endian(header, 1, 4);  // lower bound
+    append_big_endian(header, 1, 4);  // the lowest index
   }
   add(array_type, std::move(header));
 }
@@ -164,8 +164,8 @@ DatabaseSession::~DatabaseSession() = default;
 
 std::variant<std::unique_ptr<DatabaseSession>, DatabaseSession::OpenFailure> DatabaseSession::open(
     const std::string& connection) {
-  // Keywords before `dbname` are defaults that the connection string may override, those after it
-  // are not for the user to choose.
+  // Keywords before `dbname` are defaults that the connection string may override; keywords after
+  // `dbname` hold whatever the connection string says.
   const std::array<const char*, 7> keywords{"connect_timeout",
                                             "tcp_user_timeout",
                                             "keepalives_idle",
@@ -177,7 +177,7 @@ std::variant<std::unique_ptr<DatabaseSession>, DatabaseSession::OpenFailure> Dat
                                           "UTF8", nullptr};
   char* complaint = nullptr;
   PQconninfoOption* parsed = PQconninfoParse(connection.c_str(), &complaint);
-  PQfreemem(complaint);  // not shown: it can quote a password
+  PQfreemem(complaint);  // the message is not shown, because it can quote a password
   if (parsed == nullptr && connection.find_first_of("=:/ ") != std::string::npos) {
     return OpenFailure{{ErrorCode::invalid_argument, "the database URL cannot be understood"}};
   }
@@ -202,8 +202,9 @@ std::variant<std::unique_ptr<DatabaseSession>, DatabaseSession::OpenFailure> Dat
   }
   PQsetNoticeProcessor(
       raw, [](void*, const char*) {}, nullptr);
-  // "Stored" means on disk, whatever the server's default; stronger settings are left alone. A
-  // writer that vanished must not hold its locks, nor one of ours wait for them for ever.
+  // A feature counts as stored when it is on the disk, whatever the server's default; stronger
+  // settings are left alone. A writer that vanished must not keep its locks, and no session of ours
+  // may wait for a lock for ever.
   const Result<Rows> durable = opened->run(
       "SELECT set_config('lock_timeout', '30s', false),"
       " set_config('idle_in_transaction_session_timeout', '60s', false),"
@@ -224,7 +225,7 @@ Error DatabaseSession::failure(const pg_result* result) {
 }
 
 Result<Rows> DatabaseSession::run(const std::string& statement, const Parameters& parameters) {
-  // The protocol counts parameters and values in signed 32-bit bytes and caps a message at 1 GiB.
+  // The protocol gives lengths in bytes as signed 32-bit numbers and limits a message to 1 GiB.
   constexpr std::size_t kLargestMessage = (1ULL << 30) - (1ULL << 16);
   std::vector<const char*> values;
   std::vector<int> lengths;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One PostgreSQL session and a bounded pool of them, over libpq with binary parameters and results.
-// For postgres_store and private_cluster only. No retry policy lives here; libpq stays in the .cpp.
+// One PostgreSQL session and a bounded pool of sessions, over libpq with binary parameters and
+// results. For postgres_store and private_cluster only. Nothing is tried again here, and only
+// connection.cpp includes libpq.
 #pragma once
 
 #include <condition_variable>
@@ -69,28 +70,29 @@ class Rows {
 /// A session with UTF-8 encoding and synchronous commit. Not thread-safe.
 class DatabaseSession {
  public:
-  /// Errors: invalid_argument when the connection string cannot be parsed; unavailable with the
-  /// server's words. `may_come_back` in the failure says whether waiting can help.
+  /// The reason why a session could not be opened. Errors: invalid_argument when the connection
+  /// string cannot be parsed; limit_exceeded without memory; unavailable with the server's message.
+  /// `may_come_back` says whether waiting can help.
   struct OpenFailure {
     Error error;
     bool may_come_back = false;
   };
-  explicit DatabaseSession(pg_conn* connection) : connection_(connection) {}  // for open()
+  explicit DatabaseSession(pg_conn* connection) : connection_(connection) {}  // used by open() only
   static std::variant<std::unique_ptr<DatabaseSession>, OpenFailure> open(
       const std::string& connection);
   ~DatabaseSession();
   DatabaseSession(const DatabaseSession&) = delete;
   DatabaseSession& operator=(const DatabaseSession&) = delete;
 
-  /// Runs one statement. Errors: the server's words under a fitting code; state() and is_lost() say
-  /// more.
+  /// Runs one statement. Errors: the server's message, with a code that follows from its SQLSTATE;
+  /// limit_exceeded for parameters of more than 1 GiB. state() and is_lost() say more.
   Result<Rows> run(const std::string& statement, const Parameters& parameters = {});
-  /// Ends a transaction that failed. Nothing to do when none is open.
+  /// Ends a transaction that failed. Does nothing when no transaction is open.
   void roll_back();
 
   /// SQLSTATE of the last failed statement; "" when the server did not answer.
   const std::string& state() const { return state_; }
-  /// The session is gone: this object is of no more use.
+  /// Whether the session is gone, so that this object is of no more use.
   bool is_lost() const;
 
  private:
@@ -110,7 +112,7 @@ ServerState server_state(const std::string& connection);
 /// `keyword='value'` for a connection string, quoted.
 std::string connection_option(std::string_view keyword, std::string_view value);
 
-/// At most `size` sessions; whoever leases a session opens it. Thread-safe.
+/// A pool of at most `size` sessions, which the holders of leases open. Thread-safe.
 class ConnectionPool {
  public:
   ConnectionPool(std::string connection, std::size_t size)

@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint64_t kLargestPage = 10'000;
 constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
-/// The condition of a query: $1 is the collection and, with a box, $2 ... $7 are its numbers. The
-/// index knows x and y only; the comparison of the six numbers decides (PostgreSQL's box operator
-/// is generous by 1e-6, so it never misses).
+/// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
+/// are its smallest and largest coordinates. The index finds candidates in x and y; PostgreSQL's
+/// box operator is generous by 1e-6, so none is missed. The comparison of the six numbers decides.
 std::string matching(const FeatureQuery& query) {
   return std::string(" FROM watertight.feature WHERE collection = $1") +
          (query.box ? " AND min_x IS NOT NULL"
@@ -30,7 +30,8 @@ const char* const kFeatureColumns =
     "SELECT id, version, type, format, srid, header, skeleton,"
     " min_x, min_y, min_z, max_x, max_y, max_z";
 
-/// The features of `rows` (kFeatureColumns), still without header and solids.
+/// The features in `rows`, whose columns are kFeatureColumns. The features have no solids yet, and
+/// fill_headers() has still to replace the digests of their headers.
 std::vector<StoredFeature> features_of(const Rows& rows, const std::string& collection) {
   std::vector<StoredFeature> features(static_cast<std::size_t>(rows.size()));
   for (int row = 0; row < rows.size(); ++row) {
@@ -41,7 +42,7 @@ std::vector<StoredFeature> features_of(const Rows& rows, const std::string& coll
     feature.type = rows.text(row, 2);
     feature.format = rows.text(row, 3);
     feature.srid = static_cast<std::uint32_t>(rows.int8(row, 4));
-    feature.header = std::string(rows.text(row, 5));  // its digest, until fill_headers()
+    feature.header = std::string(rows.text(row, 5));  // the header's digest, until fill_headers()
     const ByteView skeleton = as_bytes(rows.text(row, 6));
     feature.skeleton.bytes.assign(skeleton.begin(), skeleton.end());
     feature.box = box_of(rows, row, 7);
@@ -107,7 +108,8 @@ Status fill(DatabaseSession& connection, const std::string& collection,
   return fill_solids(connection, collection, features);
 }
 
-/// $1 collection and, with a box, $2 ... $7.
+/// The parameters of matching(): $1 is the collection and, if there is a box, $2 ... $7 are its
+/// smallest and largest coordinates.
 Parameters filter_parameters(const FeatureQuery& query) {
   Parameters parameters;
   parameters.text(query.collection);
@@ -141,9 +143,9 @@ FeatureSummary summary_of(const Rows& rows, int row) {
   return summary;
 }
 
-/// A position in a walk: the features after it have a higher (place, id).
+/// The place number and the id after which the next batch of features begins.
 struct WalkPlace {
-  std::int64_t place = -1;  // below every feature's: place_number() is not negative
+  std::int64_t place = -1;  // less than the place number of every feature
   std::string id;
 };
 
@@ -165,7 +167,7 @@ Result<WalkPlace> walk_place(const std::string& text) {
   return Error{ErrorCode::invalid_argument, "a batch cannot start after '" + text + "'"};
 }
 
-/// `columns` and the place numbers of the features that come next, in order of place number and id.
+/// Selects `columns` and the place numbers of the next features, in order of place number and id.
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit) {
   return connection.run(columns +
@@ -174,7 +176,7 @@ Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                         Parameters().text(collection).int8(after.place).text(after.id).int8(limit));
 }
 
-/// How many of the next features (at most `limit`) make a batch, and whether more come after them.
+/// How many of the next features make a batch, and whether it is the last batch.
 struct BatchSize {
   std::int64_t features = 0;
   bool is_last = true;

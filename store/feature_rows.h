@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// Features as rows: the SQL of postgres_store, each function a part of one transaction that the
-// caller begins and ends. For postgres_store.cpp only.
+// Writes and reads features as rows: the SQL of postgres_store. Each function is a part of a
+// transaction that the caller begins and ends. For postgres_store.cpp only.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +15,17 @@
 
 namespace watertight::store {
 
-/// Ok when every feature can be kept as it is: ids present, short enough for an index and UTF-8
-/// without NUL, boxes finite, no feature or solid twice. Errors: invalid_argument, conflict.
+/// Ok when every feature can be stored as it is: ids are present, short enough for an index and
+/// UTF-8 without NUL, boxes are finite, and no feature or solid occurs twice. Errors:
+/// invalid_argument, conflict.
 Status check_features(std::span<const StoredFeature> features);
 Status check_collection_id(const std::string& id);
 Status check_box(const StoredBox& box);
 /// False for an id that no stored feature can have.
 bool is_possible_id(const std::string& id);
 
-/// Writes headers, collections, features and solids; returns the versions in order.
-/// Requires check_features(). Errors: conflict when a feature's CRS is not its collection's.
+/// Writes headers, collections, features and solids. Returns the version of each feature. Requires
+/// check_features(). Errors: conflict when the CRS of a feature is not that of its collection.
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
                                                   std::span<const StoredFeature> features);
 

@@ -16,8 +16,8 @@ namespace {
 
 // A B-tree entry of PostgreSQL holds 2704 bytes; two ids and a collection name must fit together.
 constexpr std::size_t kLongestId = 1024;
-// Rows of one statement: large enough that round trips do not matter, small enough for the server's
-// memory (a single larger row still goes).
+// The bytes of the rows in one statement: so many that round trips do not matter, and few enough
+// for the server's memory. A row that is larger is sent all the same.
 constexpr std::size_t kStatementBytes = 64ULL << 20;
 
 /// Well-formed UTF-8 (no overlong forms, no surrogates) without NUL, which PostgreSQL's text cannot
@@ -92,7 +92,8 @@ Status check_feature(const StoredFeature& feature) {
 
 using Order = std::vector<std::size_t>;
 
-/// Features by (collection, id): concurrent writers lock rows in one order and cannot deadlock.
+/// The indices of the features in order of (collection, id): concurrent writers lock rows in one
+/// order and cannot deadlock.
 Order sorted_by_key(std::span<const StoredFeature> features) {
   Order order(features.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -103,7 +104,7 @@ Order sorted_by_key(std::span<const StoredFeature> features) {
   return order;
 }
 
-/// Puts each distinct header into its table. Returns header -> SHA-256 of it.
+/// Stores each distinct header once. Returns the SHA-256 of each header.
 Result<std::map<SharedText, Bytes>> write_headers(DatabaseSession& connection,
                                                   std::span<const StoredFeature> features) {
   std::map<SharedText, Bytes> digests;
@@ -196,7 +197,8 @@ struct FeatureColumns {
   }
 };
 
-// The new version is drawn after the row is locked: it is above every earlier one of the row.
+// PostgreSQL draws the new version after it locked the row, so the version is above every earlier
+// version of the row.
 constexpr const char* kPutFeatures = R"(
   INSERT INTO watertight.feature AS f (collection, id, type, format, srid, header, skeleton,
     solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)
@@ -216,7 +218,8 @@ constexpr const char* kDropSolids = R"(
   USING unnest($1::text[], $2::text[]) AS k (collection, feature)
   WHERE s.collection = k.collection AND s.feature = k.feature)";
 
-/// Writes features[order[begin, end)]; their versions go to `versions` at the features' places.
+/// Writes the features with the indices `places`, puts the version of each at the same index of
+/// `versions`, and deletes the solids that the features had.
 Status write_feature_rows(DatabaseSession& connection, std::span<const StoredFeature> features,
                           std::span<const std::size_t> places,
                           const std::map<SharedText, Bytes>& digests,

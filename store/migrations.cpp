@@ -47,7 +47,7 @@ constexpr Migration kMigrations[] = {
               CHECK (min_x <= max_x AND min_y <= max_y AND min_z <= max_z)))",
          R"(COMMENT ON TABLE watertight.feature IS
               'One city object (or geometry): its document without the solids, and their box')",
-         // Finds candidates in x and y; the query compares the six numbers exactly.
+         // The index finds candidates in x and y; the query compares the six numbers exactly.
          R"(CREATE INDEX feature_box ON watertight.feature
               USING gist (box(point(max_x, max_y), point(min_x, min_y))) WHERE min_x IS NOT NULL)",
          R"(CREATE INDEX feature_header ON watertight.feature (header))",
@@ -67,8 +67,8 @@ constexpr Migration kMigrations[] = {
          R"(ALTER TABLE watertight.solid ALTER COLUMN blob SET STORAGE EXTERNAL)",
          R"(COMMENT ON TABLE watertight.solid IS
               'The valid solids of a feature as blobs (wt_decode), in the order of position')",
-         // A write leaves its token here, so that after a connection was lost during COMMIT the
-         // writer can find out whether it happened. Rows older than a day are removed.
+         // A write leaves its token here: a writer whose connection was lost during COMMIT can find
+         // out whether the commit happened. Rows older than a day are removed.
          R"(CREATE TABLE watertight.write_receipt (
               token bytea PRIMARY KEY,
               written timestamptz NOT NULL DEFAULT now()))",
@@ -78,7 +78,7 @@ constexpr Migration kMigrations[] = {
      {
          // PostgreSQL multiplies the sides of the boxes in an index page, and refuses products that
          // overflow or underflow: one box of 1e200 or 1e-200 would refuse every later feature. So
-         // the index has the box rounded outwards to multiples of 2^-20, within +-1e18.
+         // the index holds each box rounded outwards to multiples of 2^-20, within +-1e18.
          R"(CREATE FUNCTION watertight.index_box(min_x double precision, min_y double precision,
                                                  max_x double precision, max_y double precision)
               RETURNS box LANGUAGE sql IMMUTABLE PARALLEL SAFE
@@ -89,15 +89,15 @@ constexpr Migration kMigrations[] = {
                       floor(least(greatest(min_y, -1e18::float8), 1e18::float8) * 1048576)
                         / 1048576)))",
          R"(DROP INDEX watertight.feature_box)",
-         // Finds candidates in x and y; the query compares the six numbers exactly.
+         // The index finds candidates in x and y; the query compares the six numbers exactly.
          R"(CREATE INDEX feature_box ON watertight.feature
               USING gist (watertight.index_box(min_x, min_y, max_x, max_y))
               WHERE min_x IS NOT NULL)",
      }},
     {"an index of features by place",
      {
-         // store/place.h; features that were stored before get the place number of features without
-         // a box.
+         // store/place.h defines the place number. Features that were stored before this step get
+         // the place number of features without a box.
          R"(ALTER TABLE watertight.feature ADD COLUMN place bigint NOT NULL
               DEFAULT 9223372036854775807)",
          R"(COMMENT ON COLUMN watertight.feature.place IS
@@ -159,7 +159,7 @@ constexpr Migration kMigrations[] = {
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);
 
-// Any number will do that no other program locks; this one is "watertig" in ASCII.
+// The number of the lock is "watertig" in ASCII; any number will do that no other program locks.
 constexpr const char* kLock = "SELECT pg_advisory_xact_lock(x'7761746572746967'::bigint)";
 
 /// The highest migration that was applied; 0 when there is none.

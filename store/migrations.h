@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The numbered steps that bring a database to the schema this program works with. All objects live
-// in the schema `watertight`. A step that was released is never changed; the next one corrects it.
+// The numbered steps that bring a database to the schema this program works with. All objects are
+// in the schema `watertight`. A released step is never changed; a later step corrects it.
 #pragma once
 
 #include "base/result.h"

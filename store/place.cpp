@@ -7,13 +7,13 @@
 namespace watertight::store {
 namespace {
 
-constexpr double kHalf = 1073741824;               // 2^30: half of the cells of an axis
+constexpr double kHalf = 1073741824;               // 2^30, half the number of cells on an axis
 constexpr std::uint64_t kLastCell = 2147483647;    // 2^31 - 1
 constexpr double kCellsPerDegree = 1048576 * 2.0;  // 2^21
 constexpr double kLargestDegree = 360;
 
 std::uint64_t cell_number(double low, double high, double cells_per_unit) {
-  const double bound = 2 * kHalf;  // keeps the sum finite
+  const double bound = 2 * kHalf;  // a limit that keeps the sum finite
   const double twice_centre = std::clamp(low, -bound, bound) + std::clamp(high, -bound, bound);
   const double cell = std::floor(twice_centre * (cells_per_unit / 2));
   return static_cast<std::uint64_t>(std::clamp(cell, -kHalf, kHalf - 1) + kHalf);
@@ -27,7 +27,7 @@ bool may_be_degrees(const StoredBox& box) {
   return largest <= kLargestDegree;
 }
 
-/// The number of a cell along the curve: two bits for each halving of the square.
+/// The number of a cell along the Hilbert curve: two bits for each halving of the square.
 std::int64_t hilbert_number(std::uint64_t x, std::uint64_t y) {
   std::uint64_t number = 0;
   for (std::uint64_t half = (kLastCell + 1) / 2; half > 0; half /= 2) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The store in PostgreSQL: pool, transactions and what happens when the connection breaks.
+// The store in PostgreSQL: the pool, the transactions, and new attempts after a connection broke.
 #include <sys/random.h>
 
 #include <algorithm>
@@ -21,22 +21,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A restarted server replays its log and is back within seconds; after that the caller gets an
-// error.
+// The longest time to wait for the server. A restarted server replays its log within seconds.
 constexpr std::chrono::seconds kPatience{10};
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
 constexpr double kLeaseSeconds = 30;
 constexpr double kPingLeaseSeconds = 2;
-// Receipts are swept at the start and after this many writes.
+// Old receipts are removed after the first write and then once in this many writes.
 constexpr std::uint64_t kWritesPerSweep = 1000;
 // The changes of collections' counts are summed up at the start and after this many writes.
 constexpr std::uint64_t kWritesPerFold = 100;
 
-/// Waits longer each time, until the patience is used up.
+/// Pauses between attempts, each pause longer than the one before, until kPatience is used up.
 class Backoff {
  public:
-  /// False when no time is left. Sleeps.
+  /// Sleeps; or returns false at once when no time is left.
   bool pause() {
     const Clock::time_point now = Clock::now();
     if (now + pause_ > deadline_) return false;
@@ -50,13 +49,14 @@ class Backoff {
   std::chrono::milliseconds pause_ = kFirstPause;
 };
 
-/// Concurrent transactions got into each other's way; the same one can succeed now. A foreign key
-/// fails (23503) only when a header was swept as unused while a writer was about to use it.
+/// Whether concurrent transactions got into each other's way, so that the same transaction can
+/// succeed now. A foreign key fails (23503) only when a header was removed as unused while a writer
+/// was about to use it.
 bool is_collision(const std::string& state) {
   return state == "40001" || state == "40P01" || state == "55P03" || state == "23503";
 }
 
-/// Names one write. Random, so that no two writes of any instance share one.
+/// A random number that names one write, so that no two writes of any instance have the same name.
 using Token = std::array<std::uint8_t, 16>;
 
 Result<Token> new_token() {
@@ -164,15 +164,15 @@ class PostgresStore final : public SolidStore {
     return {ErrorCode::not_found, "there is no such collection"};
   }
 
-  /// For ids that cannot be shown as text.
+  /// The error for ids that cannot be shown as text.
   static Error no_such_feature(const std::string& collection) {
     return {ErrorCode::not_found, check_collection_id(collection)
                                       ? "collection '" + collection + "' has no such feature"
                                       : "there is no such collection"};
   }
 
-  /// Runs `work` with a session, again on a new one when the session was lost or transactions
-  /// collided. Requires work that may be run again.
+  /// Runs `work` with a session, and runs it again when transactions collided or the session was
+  /// lost, then with a new session. Requires work that may be run again.
   template <class Value>
   Result<Value> with_session(const Work<Value>& work) {
     Result<ConnectionPool::Lease> lease = pool_.lease(kLeaseSeconds);
@@ -199,7 +199,7 @@ class PostgresStore final : public SolidStore {
     }
   }
 
-  /// One snapshot for all statements of `work`.
+  /// Runs `work` in a transaction in which all statements see one state of the database.
   template <class Value>
   Result<Value> read(const Work<Value>& work) {
     return with_session<Value>([&](DatabaseSession& session) -> Result<Value> {
@@ -213,9 +213,9 @@ class PostgresStore final : public SolidStore {
     });
   }
 
-  /// One durable transaction, exactly once. Its token is written with it: if the connection breaks
-  /// during COMMIT, the next attempt's insert of the token waits for the first attempt's end and
-  /// then fails exactly when that one was committed.
+  /// Runs `work` in one durable transaction, exactly once. The transaction also inserts a token: if
+  /// the connection breaks during COMMIT, the insert of the token in the next attempt waits for the
+  /// end of the first attempt, and fails exactly when the first attempt was committed.
   template <class Value>
   Result<Value> write(const Work<Value>& work) {
     const Result<Token> token = new_token();
@@ -276,7 +276,7 @@ class PostgresStore final : public SolidStore {
       }
       return Done{};
     });
-    static_cast<void>(swept);  // the next sweep takes what this one left
+    static_cast<void>(swept);  // after a failure the next sweep removes the rest
   }
 
   ConnectionPool pool_;

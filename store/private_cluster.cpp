@@ -34,8 +34,8 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr seconds kLockPatience{180};    // another process may be creating or recovering it
-constexpr seconds kInitdbPatience{180};  // 3 s on an idle machine
+constexpr seconds kLockPatience{180};    // another process may create or recover the cluster
+constexpr seconds kInitdbPatience{180};  // initdb takes 3 s on an idle machine
 constexpr seconds kRecoveryPatience{600};
 constexpr seconds kOrphanPatience{30};
 constexpr seconds kStopPatience{30};
@@ -58,7 +58,8 @@ bool holds_programs(const std::string& folder) {
          access((folder + "/postgres").c_str(), X_OK) == 0;
 }
 
-/// The folder of PostgreSQL's programs; `version` is that of an existing cluster or "".
+/// The folder of PostgreSQL's programs. `version` is the major version of an existing cluster, or
+/// "".
 Result<std::string> find_programs(const std::string& wanted, const std::string& version) {
   std::vector<std::string> folders;
   if (!wanted.empty()) {
@@ -95,7 +96,7 @@ Result<std::string> user_name() {
   return std::string(found->pw_name);
 }
 
-/// A value in postgresql.conf.
+/// A value, as postgresql.conf quotes it.
 std::string quoted_setting(const std::string& value) {
   std::string quoted = "'";
   for (const char c : value) {
@@ -105,7 +106,7 @@ std::string quoted_setting(const std::string& value) {
   return quoted + "'";
 }
 
-/// A name in a list of folders.
+/// A name, as a list of folders in postgresql.conf quotes it.
 std::string quoted_name(const std::string& name) {
   std::string quoted = "\"";
   for (const char c : name) {
@@ -115,8 +116,8 @@ std::string quoted_name(const std::string& name) {
   return quoted + "\"";
 }
 
-/// The cluster on the disk and its processes; it does not know who uses it. Calls are made under
-/// the exclusive lock.
+/// The cluster on the disk and its processes. Callers start and stop it under the exclusive lock,
+/// and know whether others use it.
 class Cluster {
  public:
   Cluster(std::string data, std::string programs, std::string user)
@@ -130,7 +131,7 @@ class Cluster {
            connection_option("user", user_) + " " + connection_option("dbname", database);
   }
 
-  /// The postmaster's number if it runs.
+  /// The process number of the postmaster if it runs.
   std::optional<pid_t> postmaster() {
     reap();
     const std::optional<PostmasterFile> file = read_postmaster_file(pgdata());
@@ -138,7 +139,8 @@ class Cluster {
     return file->pid;
   }
 
-  /// Creates, recovers, starts or joins.
+  /// Creates or recovers the cluster where needed, starts it unless it runs, and waits until it
+  /// accepts connections.
   Status ensure_running() {
     if (Status created = ensure_created(); !created) return created;
     if (!postmaster()) {
@@ -148,7 +150,8 @@ class Cluster {
     return wait_until_accepting();
   }
 
-  /// Stops the postmaster: fast, then immediately (which recovers at the next start).
+  /// Stops the postmaster with a fast shutdown or, when that takes too long, an immediate one,
+  /// after which the next start recovers.
   void stop() {
     stop_postmaster();
     if (!socket_folder_.starts_with(data_)) rmdir(socket_folder_.c_str());
@@ -168,7 +171,7 @@ class Cluster {
     }
   }
 
-  /// Ends the zombie of a postmaster that we started.
+  /// Reaps the postmaster if this process started it and it has ended.
   void reap() {
     if (child_ != 0 && ended(child_)) child_ = 0;
   }
@@ -179,7 +182,7 @@ class Cluster {
     if (fs::exists(pgdata(), failure)) {
       return refused(pgdata() + " exists and is not a PostgreSQL cluster");
     }
-    // The cluster is made in another folder and moved: PGDATA is always whole.
+    // The cluster is made in another folder and moved, so that PGDATA is always whole.
     const std::string fresh = data_ + "/postgres.new";
     fs::remove_all(fresh, failure);
     const Result<pid_t> child =
@@ -198,8 +201,8 @@ class Cluster {
     return sync_folder(data_);
   }
 
-  /// After a crash: waits for backends that outlived their postmaster (a new one beside them would
-  /// destroy data), then removes lock files that name a process that is not a postmaster.
+  /// After a crash: waits for backends that outlived their postmaster (a new postmaster beside them
+  /// would destroy data), then removes lock files that name a process that is not a postmaster.
   Status clear_remains() {
     const Clock::time_point deadline = Clock::now() + kOrphanPatience;
     std::vector<pid_t> orphans = postgres_processes_in(pgdata());
@@ -226,7 +229,7 @@ class Cluster {
   Status start_postmaster() {
     const Result<std::string> socket = prepare_socket_folder(data_);
     if (!socket) return socket.error();
-    // Nothing but this user's processes on this machine can connect.
+    // The settings let only processes of this user on this machine connect.
     if (Status written = write_file(
             pgdata() + "/watertight.conf",
             "# Written at each start.\n"
@@ -276,7 +279,7 @@ class Cluster {
   const std::string programs_;
   const std::string user_;
   std::string socket_folder_;
-  pid_t child_ = 0;  // the postmaster if we started it and have not reaped it
+  pid_t child_ = 0;  // the postmaster if this process started and has not reaped it, else 0
 };
 
 Result<std::unique_ptr<DatabaseSession>> connect(const std::string& connection) {
@@ -299,8 +302,8 @@ Status ensure_database(const Cluster& cluster) {
   return Done{};
 }
 
-/// Where the server has the extension, the database gets it. Storing needs no extension, so a
-/// failure is no error: CREATE EXTENSION by hand says why.
+/// Creates or updates the extension where the server has it. Storing needs no extension, so a
+/// failed statement is no error; CREATE EXTENSION by hand shows the reason.
 Status ensure_extension(const Cluster& cluster) {
   const Result<std::unique_ptr<DatabaseSession>> session =
       connect(cluster.connection("watertight"));
@@ -348,12 +351,13 @@ class RunningCluster final : public PrivateCluster {
   }
 
  private:
-  /// Only the supervisor and, after it, the destructor use cluster_.
+  /// Starts the server again. Only the supervisor and, after its end, the destructor use cluster_.
   void revive() {
     const Result<FileLock> lock = FileLock::take(lock_path_, FileLock::Kind::exclusive, seconds(1));
     if (!lock) return;
     const Status running = cluster_.ensure_running();
-    static_cast<void>(running);  // tried again at the next look; until then the store reports it
+    static_cast<void>(running);  // a failure is tried again at the next look; until then the store
+                                 // reports it
   }
 
   Cluster cluster_;

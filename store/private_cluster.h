@@ -18,26 +18,29 @@ struct ClusterOptions {
   bool supervise = true;          // start the server again if it dies while this object lives
 };
 
-/// A running private cluster. The last process that uses it stops it (fast shutdown) when its
-/// object is destroyed; a process that is killed leaves it running for the next one to join.
+/// A running private cluster. The last process that uses the cluster stops it (fast shutdown) by
+/// destroying this object; a killed process leaves the cluster running for the next process to
+/// join.
 class PrivateCluster {
  public:
-  /// Creates the cluster when the directory is empty, recovers from a crash (stale postmaster.pid
-  /// and socket lock, also when another process has the old number meanwhile; backends that a
-  /// killed postmaster left), starts it or joins a running one; creates the database "watertight"
-  /// and, where the server has it, the extension. Any number of processes may do so at once.
-  /// Must not run as root. Only the operating system's user can connect (mode 0700, peer).
-  /// Errors: unavailable with the reason and the last lines of the server log; invalid_argument.
+  /// Creates the cluster when the directory is empty, recovers it after a crash, starts it or joins
+  /// a running one; creates the database "watertight" and, where the server has it, the extension.
+  /// Recovery removes a stale postmaster.pid and socket lock, also when another process has the old
+  /// number meanwhile, and waits for backends that a killed postmaster left. Any number of
+  /// processes may call this at once. Must not run as root. Only the operating system's user can
+  /// connect (mode 0700, peer). Errors: unavailable with the reason and the last lines of the
+  /// server log; invalid_argument.
   static Result<std::unique_ptr<PrivateCluster>> start(const ClusterOptions& options);
   virtual ~PrivateCluster() = default;
-  /// libpq connection string to the database "watertight".
+  /// The libpq connection string to the database "watertight".
   virtual const std::string& connection() const = 0;
 };
 
-/// If the process is root: switches to the system user `watertight` (created by quickstart; see
-/// README) after handing it `directory`. Does nothing for other users. Before any thread starts.
-/// Errors: unavailable when there is no such user or it cannot use the directory;
-/// invalid_argument for a directory that is someone else's or not one of ours.
+/// If the process runs as root: gives `directory` to the system user `watertight` (created by
+/// quickstart; see README) and becomes that user. Does nothing for other users. Must be called
+/// before any thread starts. Errors: unavailable when there is no such user or it cannot use the
+/// directory; invalid_argument for a directory that is not the user's, unless it is root's and
+/// empty.
 Status drop_root_privileges(const std::string& directory);
 
 }  // namespace watertight::store

@@ -37,8 +37,8 @@ Result<User> find_user() {
   return User{found->pw_uid, found->pw_gid};
 }
 
-/// Gives the directory (not what is in it) to the user. Only a new or empty one, or one that is the
-/// user's already: a slip of the hand must not give /etc away.
+/// Gives the directory (not its contents) to the user. The directory must be the user's already, or
+/// root's and empty, so that a mistyped path cannot give /etc away.
 Status hand_over(const std::string& directory, const User& user) {
   std::error_code failure;
   std::filesystem::create_directories(directory, failure);
@@ -70,7 +70,7 @@ Status drop_root_privileges(const std::string& directory) {
   if (initgroups(kUser, user->gid) != 0 || setgid(user->gid) != 0 || setuid(user->uid) != 0) {
     return system_error("become the user 'watertight'");
   }
-  // Once given up, root must not come back.
+  // The process must not be able to become root again.
   if (setuid(0) == 0 || geteuid() != user->uid) {
     return Error{ErrorCode::unavailable, "the system did not let go of root"};
   }

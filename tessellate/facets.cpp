@@ -3,11 +3,11 @@
 // Based on: L. P. Chew, "Constrained Delaunay triangulations", Algorithmica 4 (1989); ties after
 // O. Devillers and M. Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D
 // triangulations" (2011), in the plane: of four points on a circle the lexicographically largest
-// counts as outside. With that rule no edge is a tie, so the triangulation is unique. Facets of one
-// ring of four points that are not in one plane take the shorter diagonal instead, so that the
-// mirror image of such a facet is triangulated as the mirror image. Departures: regions are found
-// by winding numbers per ring instead of nesting depth, because depth by edge crossings is wrong in
-// a pocket sealed off by two holes that touch twice.
+// counts as outside. With that rule no edge is a tie, so the triangulation is unique. For a facet
+// of one ring of four points that are not in one plane, a tie gives the shorter diagonal instead,
+// so that the mirror image of the facet has the mirror image of its triangles. Departures: regions
+// are found by winding numbers per ring instead of nesting depth, because a depth counted by edge
+// crossings is wrong in a pocket that two holes enclose by touching twice.
 #include "tessellate/facets.h"
 
 #include <algorithm>
@@ -31,14 +31,15 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using PlanePoint = Kernel::Point_2;
 
-/// How often a region lies inside the exterior ring and inside interior rings.
+/// The winding numbers of a region: how often the exterior ring and the interior rings go around
+/// it.
 struct Winding {
   int exterior = 0;
   int interior = 0;
 };
 
 struct PlaneFace {
-  std::array<Winding, 3> change{};  // across edge i, out of this face
+  std::array<Winding, 3> change{};  // the change of the winding across edge i, out of this face
   std::array<bool, 3> is_ring_edge{};
   Winding winding;
   bool is_visited = false;
@@ -60,7 +61,7 @@ class FacetTriangulator {
  public:
   explicit FacetTriangulator(const Solid& solid) : solid_(solid), vertices_(solid.vertices()) {}
 
-  /// Appends the triangles of a facet.
+  /// Appends the triangles of a facet to `triangles`.
   FacetState triangulate(Index facet, std::vector<Triangle>& triangles);
 
  private:
@@ -88,7 +89,7 @@ class FacetTriangulator {
   std::span<const Point> vertices_;
   Projection projection_;
   std::vector<Index> used_;            // the facet's vertices, ascending, once each
-  std::vector<VertexHandle> handles_;  // parallel to used_
+  std::vector<VertexHandle> handles_;  // the handles of the vertices in used_
   std::vector<Index> scratch_;
 };
 
@@ -113,10 +114,10 @@ FacetState FacetTriangulator::triangulate_three(std::span<const Index> ring,
   return FacetState::triangulated;
 }
 
-/// For four points on a circle in projection: true if the diagonal 0-2 is taken. Where they are not
-/// in one plane the shorter diagonal in space is taken: a choice that is the same in the mirror
-/// image, in every numbering and from both sides of the facet. Coordinates decide between equal
-/// diagonals, and in flat facets, where the choice makes no difference.
+/// For four points whose projections are on a circle: true if the diagonal 0-2 is chosen. If the
+/// points are not in one plane, the shorter diagonal in space is chosen, which is the same for the
+/// mirror image, for every numbering and from both sides of the facet. Coordinates decide between
+/// equal diagonals, and in flat facets, where the choice makes no difference.
 bool FacetTriangulator::is_even_diagonal(std::span<const Index> ring,
                                          const std::array<PlanePoint, 4>& p) const {
   const auto at = [&](std::size_t i) -> const Point& { return vertices_[ring[i]]; };
@@ -128,7 +129,8 @@ bool FacetTriangulator::is_even_diagonal(std::span<const Index> ring,
   return (std::max_element(p.begin(), p.end()) - p.begin()) % 2 == 1;
 }
 
-/// Returns false, having done nothing, unless the quadrilateral is strictly convex.
+/// Appends the two triangles of a strictly convex quadrilateral. False, and no triangles, for
+/// others.
 bool FacetTriangulator::triangulate_convex_four(std::span<const Index> ring,
                                                 std::vector<Triangle>& triangles) {
   std::array<PlanePoint, 4> p;
@@ -152,7 +154,7 @@ bool FacetTriangulator::triangulate_convex_four(std::span<const Index> ring,
   return true;
 }
 
-/// False if a ring is too short or passes a vertex twice.
+/// Collects the vertices of the facet. False if a ring is too short or passes a vertex twice.
 bool FacetTriangulator::collect_vertices(IndexRange rings) {
   used_.clear();
   for (Index r = rings.begin; r < rings.end; ++r) {
@@ -168,7 +170,7 @@ bool FacetTriangulator::collect_vertices(IndexRange rings) {
   return true;
 }
 
-/// False if two vertices have the same projection.
+/// Inserts the vertices into the triangulation. False if two of them have the same projection.
 bool FacetTriangulator::insert_vertices(PlaneTriangulation& plane) {
   std::vector<PlanePoint> points;
   std::vector<std::size_t> order;
@@ -194,7 +196,7 @@ bool FacetTriangulator::insert_vertices(PlaneTriangulation& plane) {
   return true;
 }
 
-/// False if an edge of the ring crosses an earlier one.
+/// Inserts the edges of a ring. False if an edge crosses an edge inserted before.
 bool FacetTriangulator::insert_ring(PlaneTriangulation& plane, std::span<const Index> ring) {
   VertexHandle from = handle_of(ring.back());
   for (const Index vertex : ring) {
@@ -209,7 +211,7 @@ bool FacetTriangulator::insert_ring(PlaneTriangulation& plane, std::span<const I
   return true;
 }
 
-/// +1 if the ring turns left, -1 right, 0 when its smallest vertex is a spike.
+/// +1 if the ring turns left, -1 if right, 0 if it has a spike at its smallest vertex.
 int FacetTriangulator::turn_of_ring(std::span<const Index> ring) const {
   std::size_t smallest = 0;
   for (std::size_t i = 1; i < ring.size(); ++i) {
@@ -220,8 +222,8 @@ int FacetTriangulator::turn_of_ring(std::span<const Index> ring) const {
                            project(ring[(smallest + 1) % count]));
 }
 
-/// False if an edge of the ring is not an edge of the triangulation (a vertex lies on it) or is
-/// also an edge of another ring.
+/// Notes for each edge of a ring how the winding changes across it. False if an edge of the ring is
+/// not an edge of the triangulation (a vertex lies on it) or is also an edge of another ring.
 bool FacetTriangulator::label_ring(PlaneTriangulation& plane, std::span<const Index> ring,
                                    bool is_exterior) {
   const int turn = turn_of_ring(ring);
@@ -328,7 +330,7 @@ FacetTriangles triangulate_each(const Solid& solid) {
   return result;
 }
 
-/// Facets with several rings that bound no region, as long as no vertex splits an edge.
+/// The facets with several rings that bound no region unless vertices split their edges.
 std::vector<Index> facets_to_divide(const Solid& solid, const FacetTriangles& facets) {
   std::vector<Index> list;
   for (Index facet = 0; facet < solid.facet_count(); ++facet) {
@@ -338,7 +340,7 @@ std::vector<Index> facets_to_divide(const Solid& solid, const FacetTriangles& fa
   return list;
 }
 
-/// Removes the touches in facets that bound no region in spite of them.
+/// Removes the touches of facets whose rings bound no region even when they are divided.
 void keep_triangulated(const Solid& solid, const FacetTriangles& facets,
                        std::vector<geometry::RingTouch>& touches) {
   Index facet = 0;

@@ -10,10 +10,10 @@ namespace watertight::tessellate {
 namespace {
 
 __extension__ using Wide = __int128;
-/// Products of three differences below this, six of them summed, stay below 2^127.
+/// A sum of six products of three differences below this value stays below 2^127.
 constexpr std::int64_t kMostDifference = std::int64_t{1} << 40U;
 
-/// b - a where that is exact and a small integer on all axes.
+/// The difference b - a if both points are integers and the difference is small; else nothing.
 std::optional<std::array<std::int64_t, 3>> integer_difference(const Point& a, const Point& b) {
   std::array<std::int64_t, 3> result{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,7 +30,7 @@ std::optional<std::array<std::int64_t, 3>> integer_difference(const Point& a, co
   return result;
 }
 
-/// The ring vertices of a facet, in order.
+/// The vertices of all rings of a facet, in order.
 std::span<const Index> corners_of(const Solid& solid, Index facet) {
   const SolidArrays& arrays = solid.arrays();
   const IndexRange rings = solid.rings_of(facet);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Whether the points of a facet are in one plane, exactly. A flat facet is the same set of points
-// under every triangulation; its canonical triangles define any other facet. For validate and
-// delaunay.
+// Decides exactly whether the points of a facet are in one plane. A flat facet is the same set of
+// points under every triangulation; a facet that is not flat is defined by its canonical triangles.
+// For validate and delaunay.
 #pragma once
 
 #include "geometry/point.h"
@@ -10,8 +10,8 @@
 
 namespace watertight::tessellate {
 
-/// Exact for any finite doubles; much faster than orient3d() where the answer is yes and the
-/// coordinates are integers. Requires four different points.
+/// True if four points are in one plane. Exact for any finite doubles; much faster than orient3d()
+/// where the answer is yes and the coordinates are integers. Requires four different points.
 bool are_coplanar(const Point& a, const Point& b, const Point& c, const Point& d);
 
 /// True if all ring vertices of a facet are in one plane, exactly. Cost: linear.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The axis along which a facet is projected, decided exactly.
+// Decides exactly along which axis a facet is projected.
 #include <algorithm>
 #include <cmath>
 
@@ -14,16 +14,16 @@ namespace {
 
 __extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
 
-// Integer coordinates up to 2^53 give differences below 2^54 and terms below 2^109: this many of
-// them cannot overflow 127 bits.
+// Integer coordinates up to 2^53 give differences of at most 2^54 and terms of at most 2^109. Sums
+// of fewer terms than this do not overflow 127 bits.
 constexpr std::size_t kMostWideTerms = 1U << 17;
 constexpr double kLargestInteger = 9007199254740992.0;  // 2^53
-// Steps whose exponents are further apart than this compare like steps this far apart: beyond it,
-// one axis decides whatever the coordinates are (finite doubles span fewer than 2^2100).
+// The largest difference of exponents of steps that counts. With a larger difference, one axis has
+// the largest component whatever the coordinates are (finite doubles span fewer than 2^2100).
 constexpr std::int32_t kMostStepSpread = 5000;
-// Metres in a degree beside metres of height: 2 pi * 6,378,137 m / 360 = 111,320 m = 2^16.76 on the
-// equator, rounded to a power of two. One constant for all latitudes, both axes, grads (100,188 m)
-// and heights in feet: a factor of a few only moves the slope at which the axis changes.
+// Metres per degree: 2 pi * 6,378,137 m / 360 = 111,320 m = 2^16.76 on the equator, rounded to a
+// power of two. One constant serves all latitudes, both axes, grads (100,188 m) and heights in
+// feet: a factor of a few only changes the slope at which the axis changes.
 constexpr double kDegree = 131072.0;  // 2^17
 
 bool is_wide_enough(const Point& p) {
@@ -34,7 +34,7 @@ bool is_wide_enough(const Point& p) {
   return true;
 }
 
-/// Components of the exact doubled area vector of a ring, in lattice units.
+/// The components of the exact doubled area vector of a ring, in lattice units.
 template <class Number>
 std::array<Number, 3> doubled_area(std::span<const Point> vertices, std::span<const Index> ring) {
   std::array<Number, 3> area{Number(0), Number(0), Number(0)};
@@ -58,7 +58,8 @@ std::array<Number, 3> doubled_area(std::span<const Point> vertices, std::span<co
   return area;
 }
 
-/// `weight` is the factor that brings a component into world scale.
+/// The projection along the axis of the largest component of a doubled area vector. `weight` has
+/// the factors that bring the components into world scale.
 template <class Number>
 Projection largest_component(const std::array<Number, 3>& area,
                              const std::array<Number, 3>& weight) {
@@ -88,7 +89,7 @@ CGAL::Exact_rational power(int radix, std::int32_t exponent) {
 }
 
 /// True if the horizontal axes of a ring are angles. As for measures, coordinates beyond a full
-/// turn cannot be angles. Each ring is asked by itself, so that only its own coordinates decide.
+/// turn cannot be angles. Only the coordinates of the ring decide, not those of the whole solid.
 bool is_in_angles(const Solid& solid, std::span<const Index> ring) {
   const double largest = geometry::largest_angle(solid.srid());
   if (largest == 0) return false;
@@ -99,8 +100,9 @@ bool is_in_angles(const Solid& solid, std::span<const Index> ring) {
   });
 }
 
-/// The component along an axis scales with the product of the two other units, that is, up to a
-/// common factor, with one over its own unit: its lattice step, times a degree where it is one.
+/// The factors that bring the components of an area vector into world scale. The component along an
+/// axis scales with the product of the units of the two other axes, that is, up to a common factor,
+/// with one over the unit of the axis itself: its lattice step, times kDegree for an angle.
 std::array<CGAL::Exact_rational, 3> world_weights(const Lattice& lattice, bool is_in_angles) {
   std::int32_t largest = lattice.step[0].exponent;
   for (const GridNumber& step : lattice.step) largest = std::max(largest, step.exponent);

@@ -14,13 +14,13 @@
 namespace watertight::tessellate {
 namespace {
 
-/// Pairs of edges looked at per facet; beyond it the list of problems is not complete. About one
-/// second of work.
+/// The largest number of pairs of edges that are examined in a facet; with more pairs the list of
+/// problems is not complete. About one second of work.
 constexpr std::uint64_t kMostPairs = 20'000'000;
 
 struct Edge {
-  Index ring = 0;      // within the facet
-  Index position = 0;  // of its first vertex in the ring
+  Index ring = 0;      // the index of the ring in the facet
+  Index position = 0;  // the index, in the divided ring, of the vertex where the edge starts
   Index from = 0;
   Index to = 0;
   std::array<double, 2> min{};
@@ -29,7 +29,7 @@ struct Edge {
 
 struct Contact {
   Point witness;
-  bool is_at_shared_vertex = false;  // nothing but one vertex that both edges end in
+  bool is_at_shared_vertex = false;  // true if the edges have only an end vertex in common
 };
 
 class RingExaminer {
@@ -69,12 +69,12 @@ class RingExaminer {
   double u(Index vertex) const { return vertices_[vertex][(axis_ + 1) % 3]; }
   double v(Index vertex) const { return vertices_[vertex][(axis_ + 2) % 3]; }
   bool is_same_in_plane(Index a, Index b) const { return u(a) == u(b) && v(a) == v(b); }
-  /// The turn from ab to bc in the projection: 0 if two of the points are the same there.
+  /// The turn from ab to bc in the projection: 0 if two of the projected points are the same.
   int turn(Index a, Index b, Index c) const {
     if (is_same_in_plane(a, b) || is_same_in_plane(b, c) || is_same_in_plane(a, c)) return 0;
     return geometry::orient2d(vertices_[a], vertices_[b], vertices_[c], axis_);
   }
-  /// Requires q on the line of the edge.
+  /// True if q lies on the edge. Requires q on the line of the edge.
   bool is_between(Index q, const Edge& e) const {
     return e.min[0] <= u(q) && u(q) <= e.max[0] && e.min[1] <= v(q) && v(q) <= e.max[1];
   }
@@ -84,7 +84,7 @@ class RingExaminer {
   IndexRange rings_;
   std::size_t most_;
   const CancelPoll& cancel_;
-  std::size_t steps_ = 0;  // since `cancel` was asked
+  std::size_t steps_ = 0;  // the number of steps since the last call of cancel_
   int axis_ = 2;
   struct Box {
     std::array<double, 2> min{};
@@ -93,12 +93,12 @@ class RingExaminer {
   /// A ring with the vertices that split its edges.
   struct DividedRing {
     std::vector<Index> vertices;
-    std::vector<Index> position_of;  // index of the start of its edge in the submitted ring
+    std::vector<Index> position_of;  // the index, in the submitted ring, of the undivided edge
   };
   std::vector<DividedRing> divided_;
   std::vector<Edge> edges_;
-  std::vector<Box> boxes_;         // of each ring, in the plane of projection
-  std::vector<bool> is_left_out_;  // rings that are short, collapsed or a duplicate
+  std::vector<Box> boxes_;         // the box of each ring in the plane of projection
+  std::vector<bool> is_left_out_;  // ring -> whether it is short, collapsed or a duplicate
   RingProblems result_;
 };
 
@@ -121,7 +121,8 @@ void RingExaminer::divide(Index facet) {
   }
 }
 
-/// The axis of the facet's projection or, without an area, one along which a ring has a turn.
+/// Chooses the axis of the facet's projection or, if the facet has no area, an axis along which the
+/// projection of a ring has a turn. False if there is none.
 bool RingExaminer::choose_axis(Index facet) {
   const Projection projection = facet_projection(solid_, facet);
   axis_ = projection.axis;
@@ -147,7 +148,7 @@ void RingExaminer::add(RingProblem problem) {
   }
 }
 
-/// False if the search is to end; then it is not complete.
+/// False if the search is cancelled; the list of problems is then not complete.
 bool RingExaminer::goes_on(std::size_t steps) {
   constexpr std::size_t kAskInterval = std::size_t{1} << 16U;
   steps_ += steps;
@@ -230,7 +231,7 @@ void RingExaminer::find_contacts() {
     if (pairs > kMostPairs) result_.is_complete = false;
     if (!goes_on(active.size() + 1)) return;
     for (const std::size_t a : active) {
-      // Exact witnesses of problems that nobody will see could take hours.
+      // To compute the exact witnesses of problems that are not reported could take hours.
       if (!result_.is_complete) return;
       const Edge& other = edges_[a];
       if (other.max[1] < edge.min[1] || edge.max[1] < other.min[1]) continue;
@@ -244,7 +245,7 @@ void RingExaminer::find_contacts() {
   }
 }
 
-/// Requires a before b in facet order.
+/// Adds the problem of two edges, if they have one. Requires a before b in facet order.
 void RingExaminer::examine_pair(const Edge& a, const Edge& b) {
   const bool is_same_ring = a.ring == b.ring;
   const bool are_neighbours =
@@ -256,9 +257,11 @@ void RingExaminer::examine_pair(const Edge& a, const Edge& b) {
        a.position, b.ring, b.position, found->witness});
 }
 
-/// Neighbours meet beyond their common vertex when they run over each other.
+/// The contact of neighbouring edges beyond their common vertex: they have one if they lie on each
+/// other.
 std::optional<Contact> RingExaminer::neighbour_contact(const Edge& a, const Edge& b) const {
-  // By position: where a ring runs out to a point and back, both ends of the edges are common.
+  // The positions decide which end is the joint: where a ring runs to a point and back, the edges
+  // have both ends in common.
   const Index joint = a.position + 1 == b.position ? a.to : a.from;
   const Index end_of_a = a.to == joint ? a.from : a.to;
   const Index end_of_b = b.to == joint ? b.from : b.to;
@@ -279,14 +282,15 @@ std::optional<Contact> RingExaminer::contact(const Edge& a, const Edge& b) const
   const int to_b = turn(a.from, a.to, b.to);
   if (from_b * to_b > 0) return std::nullopt;
   if (from_a * to_a < 0 && from_b * to_b < 0) {
-    // On the same edge, however the facet is written.
+    // The edge with the smaller ends gets the witness, so that it does not depend on the order of
+    // the source.
     const auto ends = [&](const Edge& e) {
       return std::minmax(vertices_[e.from], vertices_[e.to]);
     };
     return Contact{ends(a) <= ends(b) ? crossing(a, b) : crossing(b, a), false};
   }
 
-  // Some end lies on the other edge or at least on its line.
+  // An end of one edge lies on the other edge or at least on its line.
   std::vector<Index> ends;
   if (from_a == 0 && is_between(a.from, b)) ends.push_back(a.from);
   if (to_a == 0 && is_between(a.to, b)) ends.push_back(a.to);
@@ -303,7 +307,8 @@ std::optional<Contact> RingExaminer::contact(const Edge& a, const Edge& b) const
   return Contact{vertices_[end], is_one_vertex && is_end_of(end, a) && is_end_of(end, b)};
 }
 
-/// Requires edges that cross properly. The exact point on edge a, rounded once per coordinate.
+/// The exact point of edge a in which the edges cross, rounded once per coordinate. Requires edges
+/// of which each has its ends on different sides of the other.
 Point RingExaminer::crossing(const Edge& a, const Edge& b) const {
   using Number = CGAL::Exact_rational;
   const auto area = [&](Index p) -> Number {  // a value: gmpxx would return references
@@ -321,7 +326,8 @@ Point RingExaminer::crossing(const Edge& a, const Edge& b) const {
   return witness;
 }
 
-/// +1 inside, -1 outside, 0 on the ring: the parity of the crossings of a ray along +u.
+/// +1 if the point is inside a ring, -1 if outside, 0 if on the ring: decided by the parity of the
+/// crossings of a ray along +u.
 int RingExaminer::side_of_ring(const Point& p, std::span<const Index> around) const {
   const double pu = p[(axis_ + 1) % 3];
   const double pv = p[(axis_ + 2) % 3];
@@ -343,7 +349,8 @@ int RingExaminer::side_of_ring(const Point& p, std::span<const Index> around) co
   return is_inside ? 1 : -1;
 }
 
-/// Whether ring `inner` lies within ring `outer`; `is_mixed` when parts lie on both sides.
+/// True if ring `inner` lies within ring `outer`, false if outside of it, nothing if all points
+/// tried are on `outer`. `is_mixed` becomes true if parts of `inner` lie on both sides of `outer`.
 std::optional<bool> RingExaminer::is_within(Index inner, Index outer, bool& is_mixed) const {
   const std::span<const Index> corners = ring(inner);
   std::optional<bool> result;
@@ -392,7 +399,8 @@ bool RingExaminer::are_apart(Index a, Index b) const {
   return false;
 }
 
-/// Requires rings that share at most vertices.
+/// Finds interior rings outside the exterior ring or inside another. Requires rings that have at
+/// most vertices in common.
 void RingExaminer::find_nesting() {
   measure_boxes();
   for (Index inner = 1; inner < rings_.size(); ++inner) {
@@ -416,8 +424,8 @@ void RingExaminer::find_nesting() {
   }
 }
 
-/// A point of contact, in the plane of projection, is found by each pair of edges that meet there:
-/// keeps the first, with the smallest of their witnesses. Requires sorted problems.
+/// Each pair of edges that meet in a point of the plane of projection has added a problem there.
+/// Keeps the first of these problems, with the smallest witness of all. Requires sorted problems.
 void RingExaminer::keep_one_of_each_contact() {
   using Key = std::tuple<RingProblemKind, Index, Index, double, double>;
   std::map<Key, std::size_t> kept_at;

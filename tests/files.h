@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Whole files, for tests and for the programs that tests start. Not for the product, which has
+// Reads whole files, for tests and for the programs that tests start. The product reads files with
 // limits (cli/files.h).
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace watertight::test {
 
-/// Everything that a file holds, as it is.
-/// Errors: throws, with the path, if it cannot be read. That fails a test and ends a program.
+/// The content of a file.
+/// Errors: throws, with the path, if the file cannot be read. That fails a test and ends a program.
 inline std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path)) {
@@ -24,7 +24,7 @@ inline std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The same as bytes.
+/// The content of a file as bytes. Errors: as read_text.
 inline Bytes read_bytes(const std::filesystem::path& path) {
   const std::string text = read_text(path);
   return {text.begin(), text.end()};

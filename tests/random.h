@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Random numbers for tests and benches: the same on every machine.
+// Random numbers for tests and benches: equal seeds give equal numbers on every machine.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace watertight::test {
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
+/// The generator SplitMix64 (Steele, Lea, Flood 2014).
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -23,14 +23,15 @@ class Random {
     z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
     return z ^ (z >> 31U);
   }
-  /// In [0, end), uniform enough. Requires end > 0.
+  /// A number in [0, end), nearly uniform. Requires end > 0.
   std::uint64_t below(std::uint64_t end) { return next() % end; }
-  /// In [low, high], which does not span all integers. Without signs: high - low may be too large.
+  /// A number in [low, high], which must not span all integers. Computed without signs, because
+  /// high - low may overflow.
   std::int64_t between(std::int64_t low, std::int64_t high) {
     const auto first = static_cast<std::uint64_t>(low);
     return static_cast<std::int64_t>(first + below(static_cast<std::uint64_t>(high) - first + 1));
   }
-  /// The same as a coordinate.
+  /// A whole number in [low, high], as a coordinate.
   double within(std::int64_t low, std::int64_t high) {
     return static_cast<double>(between(low, high));
   }
@@ -39,7 +40,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// The first `fixed` values stay where they are.
+/// Shuffles values; the first `fixed` of them stay where they are.
 template <class Values>
 void shuffle(Values& values, Random& random, std::size_t fixed = 0) {
   for (std::size_t i = values.size(); i > fixed + 1; --i) {
@@ -47,7 +48,7 @@ void shuffle(Values& values, Random& random, std::size_t fixed = 0) {
   }
 }
 
-/// The numbers below `size`, shuffled but for the first `fixed`.
+/// The numbers below `size`, shuffled except for the first `fixed`.
 inline std::vector<Index> permutation(std::size_t size, Random& random, std::size_t fixed) {
   std::vector<Index> order(size);
   std::iota(order.begin(), order.end(), Index{0});

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# To be sourced by tests that start a PostgreSQL, which refuses root: `hand_over FOLDER` gives the
-# folder to another user where the script runs as root, and from then on `run COMMAND...` runs as that
-# user. In the background write "${as[@]}" COMMAND... & instead: then $! is the command's own id.
+# To be sourced by tests that start a PostgreSQL, which refuses root: if the script runs as root,
+# `hand_over FOLDER` gives the folder to another user, and from then on `run COMMAND...` runs
+# commands as that user. In the background write "${as[@]}" COMMAND... & instead: then $! is the id
+# of the command's process.
 as=()
 run() { "${as[@]}" "$@"; }
 hand_over() {

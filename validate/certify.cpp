@@ -2,9 +2,9 @@
 //
 // Based on: E. Verbree and H. Si, Validation and Storage of Polyhedra through Constrained Delaunay
 // Tetrahedralization, 2008, section 3.
-// Departures: exact tests first, all of them, and the tetrahedralization only for solids that pass
-// them (engines crash, hang or succeed on others); what an engine returns is proof only after our
-// own check (delaunay/certificate.h).
+// Departures: all exact tests are made first, and the tetrahedralization only for solids that pass
+// them (on other solids engines crash, hang or succeed); the result of an engine is a proof only
+// after our own check (delaunay/certificate.h).
 #include "validate/certify.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace watertight::validate {
 
-/// One run of all rules. The only maker of a ValidSolid.
+/// One run of all rules on a solid. Only this class makes a ValidSolid.
 class Certifier {
  public:
   Certifier(const Solid& solid, const CertifyOptions& options)
@@ -44,7 +44,7 @@ class Certifier {
     return finish();
   }
 
-  /// The exact rules alone.
+  /// Applies the exact rules only.
   TolerantVerdict run_exact_rules() {
     apply_exact_rules();
     return exact_verdict();
@@ -68,7 +68,7 @@ class Certifier {
   const CertifyOptions& options_;
   ExaminedSolid examined_;
   std::vector<ShellTopology> shells_;
-  std::string incomplete_;  // why the exact tests did not finish
+  std::string incomplete_;  // the reason why the exact tests did not finish, or ""
   std::optional<delaunay::ContactTriangles>
       divided_;                     // the triangles where shells touch, for several shells
   bool is_interior_known_ = false;  // the exact tests show whether the interior is connected
@@ -106,7 +106,7 @@ void Certifier::apply_exact_rules() {
                                          : Verdict::undecided;
 }
 
-/// Requires that every other rule of shells and solids was applied.
+/// Applies rule 404. Requires that every other rule of shells and solids was applied.
 void Certifier::examine_interior(const ShellContacts& contacts) {
   if (examined_.findings.has_errors() || !incomplete_.empty() || !is_sound()) return;
   is_interior_known_ = true;
@@ -125,7 +125,7 @@ void Certifier::examine_interior(const ShellContacts& contacts) {
   is_interior_known_ = check_interior(examined_, *divided_);
 }
 
-/// Checks the facts that must hold when there are no findings.
+/// True if the facts hold that must hold for a solid without findings.
 bool Certifier::is_sound() const {
   const auto& states = examined_.triangles().state;
   return !shells_.empty() &&
@@ -204,9 +204,9 @@ void Certifier::climb(delaunay::EngineWorkers* workers) {
   }
 }
 
-/// The certificate speaks of the canonical triangles here, as the exact tests do. Where these know
-/// the interior, a certificate that says otherwise shows a defect of this program, not of the
-/// solid.
+/// Reports the property for which a certificate was refused. The certificate is about the canonical
+/// triangles, as the exact tests are. Where the exact tests have decided about the interior, a
+/// contradiction of the certificate shows a defect of this program, not of the solid.
 void Certifier::report_property(const delaunay::LadderResult& result) {
   if (is_interior_known_) {
     inspection_.report.undecided_reason = "the exact tests and the tetrahedralization disagree (";
@@ -222,7 +222,7 @@ void Certifier::report_property(const delaunay::LadderResult& result) {
     case delaunay::CertificateRefusal::cavity_mismatch:
       finding.code = kInnerShellOutside;
       break;
-    default:  // every shell is turned right by itself, so two of them cross
+    default:  // each shell alone is turned the right way, so two shells cross
       finding.code = kIntersectionShells;
       break;
   }
@@ -264,8 +264,8 @@ namespace {
 constexpr Tolerances kTolerant{
     .planarity_metres = 0.01, .planarity_degrees = 20, .snap_metres = 0.001};
 
-/// `exact` is the verdict of the exact rules under `options`. It is the tolerant verdict too when
-/// nothing but the snapping differs and that moves nothing.
+/// The verdict under kTolerant. `exact` is the verdict of the exact rules under `options`; both
+/// verdicts are the same if the tolerances differ at most in snapping and snapping moves nothing.
 TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& options,
                                  const TolerantVerdict& exact) {
   CertifyOptions tolerant = options;
@@ -310,7 +310,8 @@ Inspection examine(const Solid& solid, delaunay::EngineWorkers* workers,
   return inspection;
 }
 
-/// A closed surface pressed into a plane meets itself and encloses nothing.
+/// The result for a solid that its placement flattens: a closed surface pressed into a plane meets
+/// itself and encloses nothing.
 Inspection flattened(const CertifyOptions& options) {
   FindingCollector findings(options.limits.findings);
   for (const int code : {kShellSelfIntersection, kZeroVolume}) {

@@ -21,26 +21,28 @@ struct CertifyOptions {
   delaunay::LadderOptions ladder;
   /// Submitted vertices whose source digits were rounded (SubmittedSolid::rounded): warning 805.
   std::span<const Index> rounded = {};
-  /// Rounding its origin moved the whole, not its shape (SubmittedSolid::is_origin_rounded): 805.
+  /// True if the origin was rounded, which moved all points of the solid together
+  /// (SubmittedSolid::is_origin_rounded): warning 805.
   bool is_origin_rounded = false;
   /// Vertices that the reader left out (SubmittedSolid::unused): warning 802.
   geometry::UnusedVertices unused = {};
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
   std::span<const Index> unclosed_rings = {};
-  /// Where an instance puts a geometry template; null for other solids. The solid is judged as
-  /// placed: the determinant's exact sign gives the orientation, metres are measured there; a
-  /// determinant of zero is 306 and 806. Kept by the caller.
+  /// The placement of an instance of a geometry template; null for other solids. The solid is
+  /// judged as placed: the exact sign of the determinant gives the orientation, metres are measured
+  /// in the world; a determinant of zero gives 306 and 806. The caller keeps the object alive.
   const geometry::Placement* placement = nullptr;
-  /// True if the same template has passed with proof under another placement with a determinant of
-  /// the same sign: no proof depends on a measurement, so the exact tests suffice. `certified` is
-  /// then absent.
+  /// True if the template has passed with proof under another placement with a determinant of the
+  /// same sign: no proof depends on a measurement, so the exact tests suffice.
+  /// Inspection::certified is then absent.
   bool is_proven = false;
-  bool also_tolerant = false;  // fill Report::tolerant
-  /// For the search of intersections within one solid; the report does not depend on it.
+  bool also_tolerant = false;  // true: also fill Report::tolerant
+  /// The number of threads that search for intersections within the solid; the report does not
+  /// depend on this number.
   unsigned threads = 1;
 };
 
-/// A solid that passed, with what proves it.
+/// A solid that passed, with its proof.
 struct Certified {
   ValidSolid solid;
   std::optional<delaunay::Certificate> certificate;  // absent when proof is `boundary`
@@ -48,15 +50,17 @@ struct Certified {
 
 struct Inspection {
   Report report;
-  /// Present exactly when the verdict is valid and the solid stands where it is.
+  /// Present if the verdict is valid and there is neither a placement nor `is_proven`.
   std::optional<Certified> certified;
-  /// With a placement, present when the verdict is valid but for `is_proven`: the solid as the
-  /// template has it, turned over by a mirroring placement. For comparisons with other solids.
+  /// Present if the verdict is valid and there is a placement, but not `is_proven`: the solid in
+  /// the coordinates of the template, turned over if the placement mirrors. For comparisons with
+  /// other solids.
   std::optional<ValidSolid> unplaced;
 };
 
-/// Never fails: the report says what could not be evaluated. Deterministic but for `seconds` and
-/// time-outs of engines. `workers` may be null (rung 0 only). Thread-safe.
+/// Validates a solid. Never fails: the report lists the rules that could not be evaluated.
+/// Deterministic except for `seconds` and time-outs of engines. `workers` may be null (rung 0
+/// only). Thread-safe.
 Inspection certify(const Solid& solid, delaunay::EngineWorkers* workers,
                    const CertifyOptions& options = {});
 

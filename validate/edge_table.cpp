@@ -10,7 +10,7 @@ namespace watertight::validate {
 CornerPlace place_of_corner(const Solid& solid, Index facet, Index corner) {
   const IndexRange rings = solid.rings_of(facet);
   const auto& offsets = solid.arrays().ring_offsets;
-  // The last ring that starts at or before the corner: empty rings before it are passed over.
+  // The last ring that starts at or before the corner; empty rings before that ring are skipped.
   const auto next =
       std::upper_bound(offsets.begin() + rings.begin, offsets.begin() + rings.end + 1, corner);
   const auto ring = static_cast<Index>(next - offsets.begin() - 1);
@@ -21,14 +21,14 @@ CornerPlace place_of_corner(const Solid& solid, Index facet, Index corner) {
   return place;
 }
 
-/// Calls visit(from, to, facet, corner) in order of corners.
+/// Calls visit(from, to, facet, corner) for each ring edge of the facets, in the order of corners.
 template <class Visit>
 void EdgeTable::for_each_passage(IndexRange facets, Visit visit) const {
   for (Index facet = facets.begin; facet < facets.end; ++facet) {
     const IndexRange rings = solid_.rings_of(facet);
     for (Index r = rings.begin; r < rings.end; ++r) {
       const std::span<const Index> ring = solid_.ring(r);
-      if (ring.size() < 3) continue;  // bounds nothing
+      if (ring.size() < 3) continue;  // such a ring bounds nothing
       const Index base = solid_.arrays().ring_offsets[r];
       for (Index i = 0; i < ring.size(); ++i) {
         const Index to = ring[i + 1 == ring.size() ? 0 : i + 1];
@@ -55,7 +55,8 @@ void EdgeTable::examine(Index shell) {
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     number_of_[vertices_[i]] = static_cast<Index>(i);
   }
-  // Counting sort by the smaller vertex; the few uses that share it are sorted by comparison.
+  // A counting sort by the smaller vertex; the few uses with one smaller vertex are then sorted by
+  // comparison.
   std::vector<Index> first(vertices_.size() + 1, 0);
   for_each_passage(facets, [&](Index from, Index to, Index, Index) {
     ++first[number_of_[std::min(from, to)] + 1];

@@ -15,17 +15,17 @@ struct EdgeUse {
   Index low = 0;   // the smaller vertex
   Index high = 0;  // the larger vertex
   Index facet = 0;
-  Index corner = 0;  // index in ring_vertices of the vertex where it starts
+  Index corner = 0;  // the index in ring_vertices of the vertex where the passage starts
   bool has_edge_of(const EdgeUse& other) const { return low == other.low && high == other.high; }
 };
 
-/// The ring of a corner and the index of the corner in it.
+/// The ring of a corner and the index of the corner in that ring.
 struct CornerPlace {
   Index ring_in_facet = 0;
-  Index position = 0;  // index of the corner in its ring
-  Index next = 0;      // the corner after it
+  Index position = 0;  // the index of the corner in its ring
+  Index next = 0;      // the next corner of the ring, as an index in ring_vertices
 };
-/// Cost: logarithmic in the rings of the facet.
+/// The ring and index of a corner of a facet. Cost: logarithmic in the rings of the facet.
 CornerPlace place_of_corner(const Solid& solid, Index facet, Index corner);
 
 /// The edges of shells, one shell at a time.
@@ -33,15 +33,16 @@ class EdgeTable {
  public:
   explicit EdgeTable(const Solid& solid) : solid_(solid), number_of_(solid.vertex_count(), kNone) {}
 
-  /// Turns to another shell. Edges of no length and rings below 3 vertices are left out.
+  /// Lists the edges of a shell instead of those listed before. Edges of no length and rings below
+  /// 3 vertices are left out.
   /// Cost: linear in the shell where vertices are numbered in order of first use, or nearly.
   void examine(Index shell);
 
-  /// Sorted by vertices, then by corner.
+  /// The uses of the edges, sorted by vertices, then by corner.
   std::span<const EdgeUse> uses() const { return uses_; }
   /// The vertices of the edges, ascending.
   std::span<const Index> vertices() const { return vertices_; }
-  /// Position of a vertex among vertices(). Requires one of them.
+  /// The index of a vertex in vertices(). Requires a vertex of that list.
   Index number_of(Index vertex) const { return number_of_[vertex]; }
   bool is_forward(const EdgeUse& use) const {
     return solid_.arrays().ring_vertices[use.corner] == use.low;

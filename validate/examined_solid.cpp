@@ -26,7 +26,7 @@ bool FindingCollector::has_errors_up_to_level(int level) const {
 }
 
 void FindingCollector::move_to(Report& report) && {
-  // kNone is the largest index, so a place without a facet would come last: order it first.
+  // kNone is the largest index, and kNone + 1 is 0, so a place without a facet comes first.
   const auto whole_first = [&](const Finding& a, const Finding& b) {
     const auto shift = [](Place p) {
       return Place{p.shell + 1, p.facet + 1, p.ring + 1, p.vertex + 1};
@@ -145,7 +145,7 @@ void ExaminedSolid::index_junctions() {
   std::sort(owners_.begin(), owners_.end());
 }
 
-/// True if `with` has a vertex that `without` lacks.
+/// True if facet `with` has a vertex that lies inside an edge of facet `without`, which lacks it.
 bool ExaminedSolid::is_junction(Index without, Index with) const {
   const auto begin =
       std::lower_bound(junctions_.begin(), junctions_.end(), std::pair(without, Index{0}));

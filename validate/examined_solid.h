@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The submitted solid as the rules see it, with equal vertices merged and edges split where rings
-// touch; its canonical triangulation, its units, and the findings so far. Internal to validate/.
+// The submitted solid in the form that the rules examine, with equal vertices merged and edges
+// split where rings touch; its canonical triangulation, its units, and the findings so far.
+// Internal to validate/.
 #pragma once
 
 #include <map>
@@ -18,14 +19,14 @@
 
 namespace watertight::validate {
 
-/// Gathers findings in the order in which rules make them; keeps at most a given number per code.
+/// Collects findings in the order in which rules add them, at most a given number for each code.
 class FindingCollector {
  public:
   explicit FindingCollector(std::uint64_t most) : most_(most) {}
 
-  /// Sets code's severity.
+  /// Adds a finding and sets its severity to that of its code.
   void add(Finding finding);
-  /// Counts findings that were not even built.
+  /// Counts findings that were not made as omitted.
   void omit(std::uint64_t count) { omitted_ += count; }
   void skip(std::vector<int> codes, std::string reason) {
     skipped_.push_back({std::move(codes), std::move(reason)});
@@ -35,7 +36,7 @@ class FindingCollector {
   bool has(int code) const { return count_.count(code) != 0; }
   bool has_errors_up_to_level(int level) const;
 
-  /// Findings ordered by level, code and place; at most `most`.
+  /// Moves the findings to a report, ordered by level, place and code; at most `most`.
   void move_to(Report& report) &&;
 
  private:
@@ -49,21 +50,23 @@ class FindingCollector {
 
 class ExaminedSolid {
  public:
-  /// Keeps a reference to `submitted`. With a placement, metres are those of the placed solid.
+  /// The object keeps a reference to `submitted`. With a placement, metres are those of the placed
+  /// solid.
   ExaminedSolid(const Solid& submitted, const Tolerances& tolerances, const Limits& limits,
                 CancelPoll cancel = {}, const geometry::Placement* placement = nullptr);
 
-  /// For long loops: true once the caller wants an end. Asks now and then, and remembers.
+  /// True if the caller has cancelled the validation. For long loops: calls `cancel` only at every
+  /// 1024th call.
   bool is_cancelled();
-  /// For searches that ask now and then themselves: asks each time.
+  /// As is_cancelled(), but calls `cancel` each time: for searches that ask rarely.
   bool ask_cancelled();
   bool was_cancelled() const { return was_cancelled_; }
 
   const Solid& submitted() const { return submitted_; }
   /// The submitted solid with equal vertices merged.
   const Solid& merged() const { return merged_.solid; }
-  /// The merged solid with the vertices of rings that split edges of other rings of their facet in
-  /// those rings too: all rules look at it. Findings name places in the submitted solid.
+  /// The merged solid with divided rings, which all rules examine. Findings name places in the
+  /// submitted solid.
   const Solid& solid() const { return triangles_.divided_solid(merged_.solid); }
   /// True if a corner of solid() splits an edge and is no corner of the submitted ring.
   bool is_inserted(Index corner) const;
@@ -74,21 +77,21 @@ class ExaminedSolid {
   const std::string& unit_note() const { return metric_map_.note(); }
   Index shell_of(Index facet) const { return shell_of_[facet]; }
 
-  /// Vector in metres from one merged vertex to another.
+  /// The vector in metres from one merged vertex to another.
   std::array<double, 3> metres(Index from, Index to) const;
   std::array<double, 3> metres(const Point& from, const Point& to) const {
     return metric_map_.metres(from, to);
   }
   const MetricMap& metric_map() const { return metric_map_; }
 
-  // Places, in the numbering of the submitted solid.
+  // Places in the submitted solid.
   Place at_shell(Index shell) const;
   Place at_facet(Index facet) const;
   Place at_ring(Index facet, Index ring_in_facet) const;
-  /// The vertex at a position of a ring of solid(); the start of the submitted edge for a vertex
-  /// that splits it.
+  /// The place of the vertex at a position of a ring of solid(). If that vertex splits an edge, the
+  /// place of the start of the submitted edge.
   Place at_corner(Index facet, Index ring_in_facet, std::size_t position) const;
-  /// The first submitted vertex that became this merged one.
+  /// The first of the submitted vertices that became the given merged vertex.
   Index submitted_vertex(Index merged) const { return first_submitted_[merged]; }
   std::array<double, 3> world(Index merged) const { return solid().world(merged); }
   std::array<double, 3> world(const Point& p) const { return solid().lattice().world(p); }
@@ -104,9 +107,9 @@ class ExaminedSolid {
 
   /// Notes that a vertex lies inside an edge of a facet that lacks it (reported as 302).
   void note_junction(Index facet, Index vertex) { junctions_.emplace_back(facet, vertex); }
-  /// To be called after the last note_junction() and before is_junction_contact().
+  /// Must be called after the last note_junction() and before is_junction_contact().
   void index_junctions();
-  /// True if facets that meet so touch at a T-junction: one defect, reported once, as 302.
+  /// True if the contact of two facets is one at a T-junction, which is already reported as 302.
   bool is_junction_contact(geometry::ContactClass contact, Index a, Index b) const;
 
   FindingCollector findings;
@@ -127,8 +130,9 @@ class ExaminedSolid {
   std::vector<Index> first_submitted_;
   std::vector<bool> is_faulty_;
   std::vector<bool> is_not_planar_;
-  std::vector<std::pair<Index, Index>> junctions_;  // facet and vertex it lacks; sorted
-  std::vector<std::pair<Index, Index>> owners_;     // such a vertex and facet that has it; sorted
+  std::vector<std::pair<Index, Index>> junctions_;  // a facet and a vertex that it lacks
+  std::vector<std::pair<Index, Index>>
+      owners_;  // a vertex of junctions_ and a facet that has this vertex
 };
 
 }  // namespace watertight::validate

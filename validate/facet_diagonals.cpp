@@ -15,15 +15,16 @@ namespace {
 
 /// An edge of one triangle.
 struct Side {
-  Triangle key{};  // the smaller vertex, the larger, the facet
+  Triangle key{};  // the smaller vertex, the larger vertex, the facet
   Index triangle = 0;
   bool is_same_segment(const Side& other) const {
     return key[0] == other.key[0] && key[1] == other.key[1];
   }
 };
 
-/// Requires the sides of one shell at one segment, by facet. A diagonal is a side of two triangles
-/// of its facet. Pairs the triangles of every other facet with those of the first that has one.
+/// Appends the pairs of triangles at one segment of a shell. The first facet of which the segment
+/// is a diagonal (a side of two of its triangles) is paired with every other facet at the segment.
+/// Requires the sides of one shell at one segment, sorted by facet.
 void append_pairs(std::span<const Side> sides, std::vector<geometry::IntersectingPair>& pairs) {
   const auto diagonal = std::adjacent_find(
       sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key == b.key; });

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The diagonals of the canonical triangulation of facets: where they touch other facets, and which
-// of them can be flipped so that other triangles fill the facet. Facets of a shell share an edge
-// only where a segment is an edge of the boundary of both. Where it is a diagonal of one of them,
-// the facets touch, or cross, along it, although their triangles merely have an edge in common.
-// Internal to validate/.
+// The diagonals of the canonical triangulation of facets: where diagonals touch other facets, and
+// which diagonals can be flipped so that other triangles fill the facet. Facets of a shell share an
+// edge only where a segment is on the boundary of both facets. Where the segment is a diagonal of
+// one facet, the facets touch or cross along the segment, although their triangles only have an
+// edge in common. Internal to validate/.
 #pragma once
 
 #include <array>
@@ -20,16 +20,17 @@ struct FacetEdge {
   Index low = 0;  // the smaller vertex
   Index high = 0;
   Index facet = 0;
-  std::array<Index, 2> triangles{kNone, kNone};  // the second: kNone on the facet's boundary
+  // The triangles at the edge; the second is kNone for an edge on the facet's boundary.
+  std::array<Index, 2> triangles{kNone, kNone};
   bool is_diagonal() const { return triangles[1] != kNone; }
 };
 
 /// The edges of a facet's triangles, sorted by their vertices. Cost: O(k log k).
 std::vector<FacetEdge> facet_edges(const tessellate::FacetTriangles& facets, Index facet);
 
-/// Pairs of triangles of different facets of one shell that have an edge in common which is a
+/// The pairs of triangles of different facets of one shell that have an edge in common which is a
 /// diagonal of at least one of the facets, as ContactClass::edge_overlap with first < second. Of
-/// several facets at one segment, each is paired with the first that has it as a diagonal.
+/// several facets at one segment, each is paired with the first facet of which it is a diagonal.
 /// Cost: O(n log n) for solids with facets of more than one triangle, else linear.
 std::vector<geometry::IntersectingPair> diagonal_contacts(const Solid& solid,
                                                           const tessellate::FacetTriangles& facets);
@@ -39,10 +40,10 @@ std::vector<geometry::IntersectingPair> diagonal_contacts(const Solid& solid,
 struct Diagonal {
   Index u = 0;
   Index v = 0;
-  Index right = 0;  // corner of `first`
-  Index left = 0;   // corner of `second`
-  Index first = 0;
-  Index second = 0;
+  Index right = 0;   // the corner of `first` that is not on the diagonal
+  Index left = 0;    // the corner of `second` that is not on the diagonal
+  Index first = 0;   // a triangle at the diagonal
+  Index second = 0;  // the other triangle at the diagonal
   std::array<Triangle, 2> flipped() const { return {{{u, left, right}, {left, v, right}}}; }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The table of findings: number, name, severity, and what the number means. Each is described in
-// docs/findings.md. Numbers and names up to 799 are val3dity's; a number is never reused.
+// The table of findings: number, name, severity and meaning of each. docs/findings.md describes
+// them. Numbers and names up to 799 are val3dity's; a number is never reused.
 #pragma once
 
 #include <span>
@@ -56,18 +56,18 @@ struct FindingKind {
   int code = 0;
   std::string_view name;
   Severity severity = Severity::error;
-  std::string_view summary;    // one clause, lower case
-  std::string_view hint = {};  // what to do about it, one sentence
-  bool is_repairable = false;  // a program can mend it without guessing what was meant
+  std::string_view summary;    // the meaning of the code, one clause in lower case
+  std::string_view hint = {};  // a way to repair the defect, one sentence
+  bool is_repairable = false;  // true if a program can repair it without guessing what was meant
 };
 
-/// All kinds this program reports, ascending by code.
+/// All kinds of findings that this program reports, ascending by code.
 std::span<const FindingKind> finding_kinds();
 
 /// The kind of a code, or null.
 const FindingKind* find_kind(int code);
 
-/// The order in which findings are listed: 0 input, 1 ring, 2 facet, 3 shell, 4 solid,
+/// The level of a code, by which findings are ordered: 0 input, 1 ring, 2 facet, 3 shell, 4 solid,
 /// 5 composite solid, 6 building, 9 warnings.
 int finding_level(int code);
 

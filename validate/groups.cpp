@@ -20,34 +20,34 @@ namespace {
 
 using Pair = std::pair<Index, Index>;
 
-/// Members named in a reason; more are counted.
+/// The largest number of members that a reason names; others are only counted.
 constexpr std::size_t kMostNamed = 8;
-/// At most so many pairs of overlapping boxes, and so many looks at boxes to find them.
+/// The largest numbers of pairs of overlapping boxes, and of tests of boxes to find them.
 constexpr std::size_t kMostPairs = 10'000'000;
 constexpr std::uint64_t kMostLooks = 2'000'000'000;
 
-/// Rounded vertices lie within half a step of their exact positions along each axis; distances are
-/// computed in doubles.
+/// The distance, in steps of the grid, by which rounded vertices are assumed to be wrong. Rounding
+/// moves them by half a step along each axis; distances are computed in doubles.
 constexpr double kRoundedSteps = 16;
-/// Relative bound of the rounding of placed vertices in the world, for their boxes.
+/// A bound of the relative rounding error of placed vertices in the world, for their boxes.
 constexpr double kPlaceError = 1e-14;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Two or all members on one grid.
+/// A common grid of two members or of all.
 struct GroupGrid {
   geometry::SharedGrid grid;
   StepMetres step_metres{};
 };
 
-/// Two members that are compared, on a grid.
+/// Two members that are compared, and their surfaces on a common grid.
 struct ComparedPair {
   Index first = kNone;
   Index second = kNone;
   const GroupGrid* grid = nullptr;
   const SolidSurface* first_surface = nullptr;
   const SolidSurface* second_surface = nullptr;
-  double rounding = 0;  // metres by which vertices may be off
+  double rounding = 0;  // the metres by which vertices may be wrong
 };
 
 class GroupExaminer {
@@ -104,10 +104,10 @@ class GroupExaminer {
   std::span<const Index> unit_of_;
   GroupKind kind_;
   const GroupOptions& options_;
-  std::vector<Index> present_;     // members that are valid, ascending
-  std::vector<Index> number_;      // member -> its number among those, kNone for the others
+  std::vector<Index> present_;     // the valid members, ascending
+  std::vector<Index> number_;      // member -> its index in present_, or kNone
   std::optional<GroupGrid> grid_;  // the grid of all members; none if their placements differ
-  std::vector<Box> boxes_;         // boxes that contain the members
+  std::vector<Box> boxes_;         // member -> a box that contains it
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
   geometry::DisjointSets connected_;
   std::vector<Finding> duplicates_;
@@ -164,7 +164,8 @@ bool GroupExaminer::find_grid() {
   return true;
 }
 
-/// On the common grid, or in the world with a margin for the rounding of coordinates.
+/// Finds the boxes of the members: on the common grid if there is one, else in the world with a
+/// margin for the rounding of coordinates.
 void GroupExaminer::find_boxes() {
   for (const Index i : present_) {
     if (grid_) {
@@ -219,7 +220,8 @@ GroupGrid GroupExaminer::group_grid(geometry::SharedGrid grid) const {
   return result;
 }
 
-/// Boxes that share a point (composites: contact matters) or some inside (building parts).
+/// True if the boxes of two members share a point (composite solids, where contact matters) or have
+/// insides in common (building parts).
 bool GroupExaminer::may_meet(Index a, Index b) const {
   if (!unit_of_.empty() && unit_of_[a] == unit_of_[b]) return false;
   if (is_composite()) return boxes_[a].overlaps(boxes_[b]);
@@ -230,8 +232,8 @@ bool GroupExaminer::may_meet(Index a, Index b) const {
   return true;
 }
 
-/// A sweep along the longest axis; ordered by first, then second member. Nothing if there are too
-/// many.
+/// The pairs of members that may meet, found by a sweep along the longest axis; ordered by first,
+/// then second member. Nothing if there are too many pairs.
 std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
   Box all;
   for (const Index i : present_) {
@@ -271,7 +273,7 @@ std::optional<std::vector<Pair>> GroupExaminer::pairs() const {
   return pairs;
 }
 
-/// Null if the solid cannot be brought onto the grid.
+/// The surface of a member on a grid; null if the grid cannot hold the solid.
 std::unique_ptr<SolidSurface> GroupExaminer::surface(Index member, const geometry::SharedGrid& grid,
                                                      std::size_t number) const {
   const Solid& solid = members_[member].solid->solid();
@@ -284,7 +286,7 @@ std::unique_ptr<SolidSurface> GroupExaminer::surface(Index member, const geometr
   return std::make_unique<SolidSurface>(solid, *points, facets);
 }
 
-/// The surface on the grid of all members, made when first asked for.
+/// The surface of a member on the grid of all members, made at the first call for this member.
 const SolidSurface* GroupExaminer::kept_surface(Index member) {
   if (!surfaces_[member]) surfaces_[member] = surface(member, grid_->grid, number_[member]);
   return surfaces_[member].get();
@@ -357,7 +359,7 @@ void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRela
   (is_duplicate ? duplicates_ : report_.findings).push_back(std::move(finding));
 }
 
-/// Compares two members. False when no more pairs are to be compared.
+/// Compares two members. False if no more pairs are to be compared.
 bool GroupExaminer::compare(const Pair& pair) {
   if (options_.cancel && options_.cancel()) {
     give_up("the comparison was cancelled");

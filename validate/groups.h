@@ -18,18 +18,17 @@ namespace watertight::validate {
 enum class GroupKind : std::uint8_t { composite_solid, building_parts };
 
 struct GroupOptions {
-  /// Overlaps that reach no deeper than this are allowed; 0: none are (exact). An overlap
-  /// reaches no deeper than d if each connected part of it fits between two parallel
-  /// planes d apart. Planes across the axes and along the facets that meet the part are
-  /// tried, so the depth is never too small; for a slab between two facets it is the
-  /// thickness.
+  /// The depth in metres up to which overlaps are allowed; with 0 no overlap is (exact). An overlap
+  /// reaches no deeper than d if each connected part of it fits between two parallel planes d
+  /// apart. Planes across the axes and along the facets that meet the part are tried, so the depth
+  /// is never too small; for a slab between two facets, the depth is the thickness of the slab.
   double overlap_metres = 0;
   Limits limits;
   CancelPoll cancel = {};
 };
 
-/// A member that is compared: a valid solid; with a placement, a geometry template's where an
-/// instance puts it. A member without a solid is not valid.
+/// A member of a group: a valid solid or, with a placement, an instance of a geometry template with
+/// its valid solid. A member without a solid is not valid and is not compared.
 struct GroupMember {
   const ValidSolid* solid = nullptr;
   const geometry::Placement* placement = nullptr;
@@ -37,32 +36,33 @@ struct GroupMember {
 
 /// The result of a comparison. Places name a member by Place::solid, its index in `members`.
 struct GroupReport {
-  /// undecided when it was cancelled, or the members' coordinates have no exact common grid.
+  /// `undecided` if the comparison was cancelled or not possible, as when the members' coordinates
+  /// have no exact common grid; not_run has the reason.
   Verdict verdict = Verdict::valid;
-  std::vector<Finding> findings;       // ordered by code, then by pair
-  std::uint64_t findings_omitted = 0;  // found beyond Limits::findings
+  std::vector<Finding> findings;       // the findings, ordered by code, then by pair
+  std::uint64_t findings_omitted = 0;  // the number of findings beyond Limits::findings
   std::vector<SkippedRule> not_run;
 };
 
 /// Compares valid solids of one coordinate reference system pair by pair; a member that is not
 /// valid is not compared, and not_run says so.
 ///
-/// 501, 601: the interiors of two solids have a point in common; both facets, the depth in metres
-/// (GroupOptions::overlap_metres) and, where one was found, a point inside both. 502: two members
-/// are the same points, however their facets are divided. 503: common areas of two members do not
-/// connect all members; one finding for each part but that of the first member; not tested when
-/// members overlap or are the same, as in val3dity.
+/// 501, 601: the interiors of two solids have a point in common; the finding has both facets, the
+/// depth in metres (GroupOptions::overlap_metres) and, where one was found, a point inside both.
+/// 502: two members are the same points, however their facets are divided. 503: areas that two
+/// members have in common do not connect all members; there is one finding for each part but that
+/// of the first member; not tested if members overlap or are the same, as in val3dity.
 ///
 /// Members that share one placement, or have none, are compared exactly on their own coordinates.
-/// Other pairs are compared on a SharedGrid of the world, which never rounds two without
-/// placements. Where it had to round one of them, they overlap only if they do so wherever their
-/// vertices lie within 16 steps of that grid, some 1e-14 of their extent: the digits of a matrix
-/// can turn a contact into an overlap or a gap.
+/// Other pairs are compared on a SharedGrid of the world; two members without placements are never
+/// rounded. If a member of a pair was rounded, the two overlap only if they do so wherever their
+/// vertices lie within 16 steps of the grid, some 1e-14 of their extent: the digits of a matrix can
+/// turn a contact into an overlap or a gap.
 ///
-/// Members with the same entry in `unit_of` are not compared with each other; empty: all are.
-/// Never fails. Deterministic, independent of threads. Cost: pairs of overlapping boxes, then near
-/// linear in the triangles inside the overlap of their boxes. It ends soon after Limits::findings
-/// overlaps, and not_run says so.
+/// Members with the same entry in `unit_of` are not compared with each other; if `unit_of` is
+/// empty, all members are compared. Never fails. Deterministic, independent of threads. Cost: the
+/// pairs of overlapping boxes, then near linear in the triangles inside the overlap of the boxes.
+/// The comparison ends soon after Limits::findings overlaps, and not_run says so.
 GroupReport check_group(std::span<const GroupMember> members, GroupKind kind,
                         const GroupOptions& options = {}, std::span<const Index> unit_of = {});
 

@@ -7,8 +7,8 @@
 namespace watertight::validate {
 namespace {
 
-/// The vector times a power of two that brings its largest component near 1, so that no product of
-/// components underflows or overflows. Zero stays zero.
+/// The vector times a power of two that brings the largest component near 1, so that no product of
+/// components overflows or loses digits that matter. Zero stays zero.
 Vector near_one(const Vector& v) {
   const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   if (!(largest > 0) || !std::isfinite(largest)) return v;

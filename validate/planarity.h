@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Vectors in metres, in doubles, for measurements: they decide nothing but tolerance rules.
+// Vectors in metres, in doubles, for measurements. Only tolerance rules depend on such vectors.
 // Internal to validate/.
 #pragma once
 
@@ -14,10 +14,10 @@ using geometry::dot;
 using geometry::length;
 using geometry::operator-;
 
-/// The vector's direction, of length 1; zero stays zero. No size of vector underflows or overflows.
+/// The unit vector in the direction of v; zero stays zero. No size of v underflows or overflows.
 Vector direction_of(const Vector& v);
 
-/// The direction of cross(u, v), of length 1, for vectors of any size.
+/// The unit vector in the direction of cross(u, v), for vectors of any size.
 Vector unit_normal(const Vector& u, const Vector& v);
 
 }  // namespace watertight::validate

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Shortest text that a person needs: 6 significant digits.
+/// A number with 6 significant digits, for a person.
 std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
@@ -52,7 +52,8 @@ Json place_json(const Place& place, const ReportJsonOptions& options) {
   return json;
 }
 
-/// val3dity's path of a place; a facet counts from the start of its shell.
+/// The path of a place as val3dity writes it; the number of a facet counts from the start of its
+/// shell.
 std::string path_text(const Place& place, const PlacedSolid& solid) {
   const Solid& submitted = *solid.submitted;
   std::string text = solid.options->id_prefix;
@@ -71,7 +72,7 @@ Json make_finding(const Finding& finding, const PlacedSolid& here, const PlacedS
   const FindingKind* kind = find_kind(finding.code);
   json["code"] = finding.code;
   json["name"] = finding_name(finding.code);
-  json["description"] = finding_name(finding.code);  // val3dity's member of that content
+  json["description"] = finding_name(finding.code);  // val3dity has the name in this member
   json["severity"] = to_string(finding.severity);
   json["summary"] = kind == nullptr ? std::string_view{} : kind->summary;
   json["hint"] = kind == nullptr ? std::string_view{} : kind->hint;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Reports as JSON and as lines of text, for service, command line and SQL. The JSON says what
-// val3dity's says (validity, all_errors, parameters, errors with code, description, id, info) and
-// adds places as JSON Pointers, pairs, witnesses and measured values. Described in
-// docs/report.md; reports of whole documents are report/feature_report.h's.
+// Reports as JSON and as lines of text, for service, command line and SQL. The JSON has the members
+// of val3dity's JSON (validity, all_errors, parameters, errors with code, description, id, info)
+// and adds places as JSON Pointers, pairs, witnesses and measured values. docs/report.md describes
+// the JSON. report/feature_report.h writes the reports of whole documents.
 #pragma once
 
 #include <string>
@@ -14,54 +14,58 @@
 
 namespace watertight::validate {
 
-/// Number of this JSON layout; raised when a member changes its meaning or is removed.
+/// The number of this JSON layout; raised when a member changes its meaning or is removed.
 inline constexpr int kReportSchema = 2;
 
 enum class JsonStyle : std::uint8_t { compact, indented };
 
 struct ReportJsonOptions {
-  /// JSON Pointer to the solid's array of shells in its document ("/CityObjects/b/geometry/0/
+  /// The JSON Pointer to the solid's array of shells in its document ("/CityObjects/b/geometry/0/
   /// boundaries"); "" leaves pointers out.
   std::string pointer_prefix;
-  /// False for a geometry whose boundaries are one shell (MultiSurface): no shell step in pointers.
+  /// False for a geometry whose boundaries are one shell (MultiSurface): pointers then have no step
+  /// for the shell.
   bool has_shells = true;
   /// val3dity's path of the solid, "coid=b|geom=0|solid=1|", which starts the `id` of findings.
   std::string id_prefix;
-  /// Position of the solid in a list, the member `solid` of places; kNone leaves it out.
+  /// The index of the solid in a list, written as the member `solid` of places; kNone leaves the
+  /// member out.
   Index solid_number = kNone;
   /// False leaves out wall times, so that equal solids give equal bytes.
   bool include_times = true;
   JsonStyle style = JsonStyle::compact;
 };
 
-/// UTF-8 JSON of one solid's report. `submitted` is the solid that was certified (places are
-/// indices into it). Deterministic but for the times. Never fails: text that is not UTF-8 is
-/// replaced.
+/// The report of one solid as UTF-8 JSON. `submitted` is the solid that was given to certify();
+/// places are indices into it. Deterministic except for the times. Never fails: text that is not
+/// UTF-8 is replaced.
 std::string report_json(const Report& report, const Solid& submitted,
                         const ReportJsonOptions& options = {});
 
-/// The solid to which places refer, and how they are written.
+/// The solid to which places refer, and the options by which places are written.
 struct PlacedSolid {
   const Solid* submitted = nullptr;
   const ReportJsonOptions* options = nullptr;
 };
 
 /// One finding as compact JSON, an element of `errors` or `warnings`. `here` is the solid of
-/// Finding::place, `there` that of Finding::other: the same one but for findings about groups.
+/// Finding::place, `there` the solid of Finding::other; they differ only for findings about groups.
 std::string finding_json(const Finding& finding, const PlacedSolid& here, const PlacedSolid& there);
 
-/// {"volume", "area", "bbox", "genus", "vertices", "facets", "rings", "shells"}
+/// The measures as JSON with the members volume, area, bbox, genus, vertices, facets, rings and
+/// shells.
 std::string report_measures_json(const geometry::Measures& measures);
 
-/// JSON Pointer of a place: prefix, then shell, facet within the shell, ring, vertex within the
-/// ring, as far as they are given. "" when the prefix is empty.
+/// The JSON Pointer of a place: prefix, then shell, facet within the shell, ring, vertex within the
+/// ring, as far as the place has them. "" if the prefix is empty.
 std::string place_pointer(const Place& place, const Solid& submitted,
                           const ReportJsonOptions& options);
 
-/// One line for a person: "error 302 SHELL_NOT_CLOSED at shell 0 facet 5: a border of 4 edges ...".
+/// A finding as one line of text, for a person: "error 302 SHELL_NOT_CLOSED at shell 0 facet 5: a
+/// border of 4 edges ...".
 std::string finding_text(const Finding& finding);
 
-/// The findings as lines, after one line with the verdict.
+/// The report as lines of text: the verdict, then each finding.
 std::vector<std::string> report_text(const Report& report);
 
 }  // namespace watertight::validate

@@ -11,7 +11,7 @@ namespace watertight::validate {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
-/// Double precision could not distinguish cells beyond this number per axis.
+/// The largest number of cells on an axis that doubles distinguish.
 constexpr double kMostCells = 1e15;
 
 class Snapper {
@@ -20,7 +20,7 @@ class Snapper {
       : vertices_(solid.vertices()), metres_(metres), map_(solid, placement) {
     const Box box = solid.box();
     origin_ = box.min;
-    // Any two points of the box are less than this apart in each direction.
+    // The extent of the box along each axis of the world: no two points are further apart.
     std::array<double, 3> extent{};
     for (int axis = 0; axis < 3; ++axis) {
       Point corner = box.min;
@@ -33,7 +33,7 @@ class Snapper {
 
   bool is_possible() const { return is_possible_; }
 
-  /// In metres from the corner of the box that is least on the lattice.
+  /// The coordinates of the vertices in metres from the low corner of the box.
   std::vector<Point> places() const {
     std::vector<Point> result;
     result.reserve(vertices_.size());
@@ -44,7 +44,7 @@ class Snapper {
     return result;
   }
 
-  /// The vertex that this one becomes: itself or an earlier one.
+  /// The vertex to which a vertex moves: itself or an earlier vertex.
   Index target(Index vertex) {
     const Cell cell = cell_of(vertex);
     Index best = kNone;
@@ -98,8 +98,8 @@ Result<SnappedSolid> snap_vertices(const Solid& solid, double metres, const Canc
     return Error{ErrorCode::limit_exceeded,
                  "the snap tolerance is too small for the size of the solid"};
   }
-  // Only points that are near another one move or attract one. The search reaches a little farther
-  // than the tolerance, and is_near() decides.
+  // Only vertices near another vertex can move or be moved to. The search reaches a little farther
+  // than the tolerance, and Snapper::is_near() decides.
   constexpr double kSlack = 1e-9;
   const NearPoints near = near_points(snapper.places(), metres * (1 + kSlack), cancel);
   if (cancel && cancel()) return Error{ErrorCode::cancelled, "the snapping was cancelled"};
@@ -111,7 +111,7 @@ Result<SnappedSolid> snap_vertices(const Solid& solid, double metres, const Canc
     arrays.vertices[vertex] = to;
     ++moved;
   }
-  Limits limits;  // the submitted solid has been admitted already
+  Limits limits;  // no limits: the submitted solid has kept them already
   limits.vertices = limits.facets = limits.rings = limits.shells = kNone;
   auto snapped = Solid::make(std::move(arrays), solid.lattice(), solid.srid(), limits);
   if (!snapped) return snapped.error();

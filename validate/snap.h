@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Snapping: another solid, in which vertices within a tolerance are one. Only on request. Internal
-// to validate/.
+// Snapping: makes another solid, in which vertices within a tolerance have the same coordinates.
+// Done only on request. Internal to validate/.
 #pragma once
 
 #include "base/cancel.h"
@@ -12,13 +12,13 @@
 namespace watertight::validate {
 
 struct SnappedSolid {
-  Solid solid;      // the same arrays; a snapped vertex has the coordinates it was moved to
-  Index moved = 0;  // number of vertices that moved
+  Solid solid;      // the given solid with the coordinates of moved vertices changed
+  Index moved = 0;  // the number of vertices that moved
 };
 
-/// Each vertex moves to the first earlier vertex, in the order of the solid, that did not move
-/// itself and is at most `metres` away (val3dity's rule), as placed where a placement is given.
-/// Requires metres > 0.
+/// Snaps the vertices of a solid. Each vertex moves to the first earlier vertex, in the order of
+/// the solid, that did not move itself and is at most `metres` away (val3dity's rule). With a
+/// placement, distances are those of the placed solid. Requires metres > 0.
 /// Errors: limit_exceeded if the tolerance is too small for the size of the solid; cancelled.
 /// Cost: O(n log n).
 Result<SnappedSolid> snap_vertices(const Solid& solid, double metres, const CancelPoll& cancel = {},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The frames on the socket between a pool and its processes, and what both sides agree on. Private
-// to workers/.
+// The frames on the socket between a pool and its processes, and the constants that both sides use.
+// Private to workers/.
 //
 //   request:  u32 payload length | u32 CRC-32C of the payload | payload
 //   reply:    u32 payload length | u32 CRC-32C of the payload | u8 ReplyStatus | payload
@@ -23,7 +23,7 @@ enum class ReplyStatus : std::uint8_t { ok = 0, out_of_memory = 1, exception = 2
 /// Exit statuses of a process that ended by itself.
 inline constexpr int kExitEndOfFile = 0;
 inline constexpr int kExitBadRequest = 97;
-inline constexpr int kExitIdle = 98;  // before it read any byte of a request
+inline constexpr int kExitIdle = 98;  // idle, before the first byte of a request
 inline constexpr int kExitParentGone = 99;
 
 /// Environment variables that a pool sets for its processes.

@@ -52,8 +52,8 @@ bool transmit_reply(ReplyStatus status, ByteView payload) {
   return transmit(header.bytes()) && transmit(payload);
 }
 
-/// A job can run for long after the parent process has ended. The socket, which then closes, shows
-/// this at once.
+/// Ends the process when the parent ends, which closes the socket: a job could run for long after
+/// that.
 void end_with_parent() {
   pollfd watched{kWorkerSocket, POLLRDHUP, 0};
   while (true) {
@@ -81,7 +81,7 @@ int idle_milliseconds() {
   return value > 0 && value <= 2'000'000'000 ? static_cast<int>(value) : -1;
 }
 
-/// False if no job came in time.
+/// Waits for a job; false if no job came in time.
 bool await_job(int milliseconds) {
   pollfd watched{kWorkerSocket, POLLIN, 0};
   int ready = 0;

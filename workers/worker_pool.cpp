@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The pool: who runs a job, and the conversation with the process that runs it.
+// The pool, which chooses the process that runs a job, and the conversation with that process.
 #include "workers/worker_pool.h"
 
 #include <poll.h>
@@ -27,16 +27,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often a waiting pool asks whether it shall go on.
+/// The time after which a waiting pool asks again whether the job is cancelled.
 constexpr std::chrono::milliseconds kPollInterval{5};
-/// Bytes asked of the socket at once.
+/// The most bytes that are read from the socket at once.
 constexpr std::size_t kChunk = std::size_t{1} << 16;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// One job's conversation: sends the request, collects the reply, watches clock and caller.
+/// One job's conversation: sends the request, collects the reply, watches the limits and the
+/// caller.
 class Conversation {
  public:
   Conversation(WorkerProcess& process, ByteView request, const WorkerLimits& limits,
@@ -49,7 +50,7 @@ class Conversation {
     unsent_header_ = header_;
   }
 
-  /// The CPU time of a process that did not answer is known only when it has ended.
+  /// Runs the job. The CPU time of a process that did not answer is known only when it has ended.
   JobResult run() {
     if (converse()) return std::move(*result_);
     const Ending ending = process_.end();
@@ -60,11 +61,12 @@ class Conversation {
     return std::move(*result_);
   }
 
-  /// True if the process ended on its own before it saw this job: idle for too long.
+  /// True if the process ended on its own before it saw this job, because it was idle for too long.
   bool was_idle_end() const { return was_idle_end_; }
 
  private:
-  /// True if the process answered and can take another job. Without a result the stream ended.
+  /// True if the process answered and can take another job. If no result is there, the stream
+  /// ended.
   bool converse() {
     const Clock::time_point start = Clock::now();
     while (!result_) {
@@ -129,7 +131,8 @@ class Conversation {
     return true;
   }
 
-  /// Takes one chunk at most, so that a fast talker cannot keep the clock from being read.
+  /// Receives one chunk at most, so that a process that writes fast cannot keep the pool from
+  /// reading the clock. False if the stream has ended.
   bool receive() {
     std::array<std::uint8_t, kChunk> chunk{};
     bool has_ended = false;
@@ -185,7 +188,7 @@ class Conversation {
     }
   }
 
-  /// The stream ended without a whole reply.
+  /// Makes the result for a stream that ended without a whole reply.
   void explain(const Ending& ending) {
     was_idle_end_ = ending.known && !ending.by_signal && ending.code == kExitIdle;
     if (ending.by_signal && ending.code == SIGXCPU) {
@@ -264,8 +267,8 @@ struct WorkerPool::State {
     returned.notify_one();
   }
 
-  /// A process that waits, or a new one. Also reaps idle processes that ended or that wrote without
-  /// a request.
+  /// A waiting process of the pool, or a new one. Also reaps idle processes that ended or that
+  /// wrote without a request.
   Result<WorkerProcess> take() {
     std::vector<WorkerProcess> ended;
     {
@@ -286,8 +289,8 @@ struct WorkerPool::State {
   JobResult converse(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel,
                      std::optional<WorkerProcess>& kept) {
     JobResult result;
-    // A process can end from idleness at the very moment it gets a job: then another one runs it.
-    // A new process is never idle for long, so this ends.
+    // A process can end from idleness at the very moment it gets a job: then another process runs
+    // the job. A new process is never idle for long, so the loop ends.
     for (std::size_t attempt = 0; attempt <= options.size + 1; ++attempt) {
       Result<WorkerProcess> process = take();
       if (!process) {
@@ -296,7 +299,7 @@ struct WorkerPool::State {
       }
       if (Status limited = process->limit(limits.cpu_seconds, limits.memory_bytes); !limited) {
         result.detail = limited.error().message;
-        continue;  // it ended meanwhile
+        continue;  // the process ended meanwhile
       }
       Conversation conversation(*process, request, limits, cancel);
       result = conversation.run();

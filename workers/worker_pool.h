@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Helper processes that may crash, hang or eat memory without hurting the caller. A job is a frame
-// of bytes in and a frame of bytes out over a socketpair; what the bytes mean is the caller's
-// business. For delaunay's CDT engines; used by service, CLI and SQL alike.
+// Helper processes that may crash, hang or exhaust memory without hurting the caller. A job is a
+// frame of bytes in and a frame of bytes out over a socketpair; only the caller knows what the
+// bytes mean. For delaunay's CDT engines; used by service, CLI and SQL alike.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace watertight::workers {
 
 struct WorkerLimits {
   double wall_seconds = 20;
-  double cpu_seconds = 15;                  // kept to about 10 ms
-  double sleep_seconds = 10;                // without any CPU time used
+  double cpu_seconds = 15;                  // enforced to about 10 ms
+  double sleep_seconds = 10;                // the longest time without any CPU time used
   std::uint64_t memory_bytes = 2ULL << 30;  // RLIMIT_AS of the process
   std::uint64_t reply_bytes = 1ULL << 30;
 };
@@ -38,10 +38,10 @@ std::string_view to_string(JobOutcome outcome);
 
 struct JobResult {
   JobOutcome outcome = JobOutcome::not_started;
-  Bytes reply;             // when ok
+  Bytes reply;             // the worker's answer, when ok
   std::string detail;      // e.g. "killed by signal 11"
-  double seconds = 0;      // wall
-  double cpu_seconds = 0;  // of the worker: its start if it was new, framing and the job itself
+  double seconds = 0;      // wall time
+  double cpu_seconds = 0;  // CPU time of the worker: its start if it was new, framing and the job
 };
 
 /// A pool of processes of one executable. Thread-safe: concurrent run() calls use different
@@ -69,13 +69,13 @@ class WorkerPool {
   std::unique_ptr<State> state_;
 };
 
-/// The worker's side: reads frames from descriptor 3, answers each with `handle`, ends on end of
-/// file or when idle. Returns the exit status for main().
+/// The worker's side: reads frames from descriptor 3, answers each frame with `handle`, and ends at
+/// the end of file or when idle. Returns the exit status for main().
 int serve_jobs(const std::function<Bytes(ByteView)>& handle);
 
-/// Finds a helper executable: the WATERTIGHT_LIBEXEC environment variable's folder, the folder of
-/// the running executable, `../libexec/watertight` beside it, then the installation's libexec
-/// folder. Errors: unavailable, naming where it looked.
+/// Finds a helper executable in the folder of the environment variable WATERTIGHT_LIBEXEC, the
+/// folder of the running executable, `../libexec/watertight` beside it, or the installation's
+/// libexec folder. Errors: unavailable, naming these folders.
 Result<std::string> find_helper(const std::string& name);
 
 }  // namespace watertight::workers

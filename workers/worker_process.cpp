@@ -24,7 +24,8 @@
 namespace watertight::workers {
 namespace {
 
-// AddressSanitizer and ThreadSanitizer reserve terabytes of address space.
+// AddressSanitizer and ThreadSanitizer reserve terabytes of address space, which a limit would
+// refuse.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kCanLimitMemory = false;
 #elif defined(__has_feature)
@@ -45,7 +46,7 @@ double to_seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
 }
 
-/// Frees what posix_spawn's two parameter blocks hold.
+/// The two parameter blocks of posix_spawn; freed with the object.
 struct SpawnParameters {
   posix_spawn_file_actions_t actions{};
   posix_spawnattr_t attributes{};
@@ -61,8 +62,8 @@ struct SpawnParameters {
   SpawnParameters& operator=(const SpawnParameters&) = delete;
 };
 
-/// Descriptors: 3 is the socket, 0 to 2 are /dev/null, all others are closed. The socket moves
-/// first, because a daemon's socket may itself be one of 0 to 2.
+/// Sets the descriptors: 3 is the socket, 0 to 2 are /dev/null, all others are closed. The socket
+/// moves first, because a daemon's socket may itself be one of 0 to 2.
 int prepare_descriptors(posix_spawn_file_actions_t* actions, int socket, const char* directory) {
   int failed = posix_spawn_file_actions_adddup2(actions, socket, kWorkerSocket);
   for (int descriptor = 0; descriptor < kWorkerSocket && failed == 0; ++descriptor) {
@@ -74,7 +75,7 @@ int prepare_descriptors(posix_spawn_file_actions_t* actions, int socket, const c
   return failed;
 }
 
-/// Own process group, no blocked signals, every signal at its default.
+/// Sets a process group of its own, no blocked signals, and every signal at its default.
 int prepare_attributes(posix_spawnattr_t* attributes) {
   sigset_t none;
   sigset_t all;
@@ -88,8 +89,8 @@ int prepare_attributes(posix_spawnattr_t* attributes) {
   return failed;
 }
 
-/// A short environment of our own: nothing of the parent's leaks but where libraries are, and what
-/// sanitizers and the loader need.
+/// The short environment of a worker. From the parent's it has only the path of libraries and the
+/// options of sanitizers.
 std::vector<std::string> environment_of_worker(double idle_seconds) {
   const double milliseconds = std::min(std::max(idle_seconds, 0.0) * 1000.0, 2e9);
   std::vector<std::string> environment = {
@@ -134,8 +135,8 @@ Result<pid_t> spawn(const std::string& executable, int socket, double idle_secon
     failed = posix_spawn(&process, executable.c_str(), &parameters.actions, &parameters.attributes,
                          arguments.data(), pointers.data());
   }
-  // posix_spawn returns after the exec, so the process stands in the directory already. Unlinked,
-  // it stays empty for good (nothing can be created in it) and nobody has to clean up later.
+  // posix_spawn returns after the exec, so the process works in the directory already. Nothing can
+  // be created in a removed directory, so it stays empty and nobody has to clean up later.
   rmdir(directory->c_str());
   if (failed != 0) return system_error("cannot start " + executable, failed);
   return process;
@@ -163,7 +164,7 @@ Result<WorkerProcess> WorkerProcess::start(const std::string& executable, double
     return std::move(process).error();
   }
   WorkerProcess worker(*process, sockets[0]);
-  // No core file, whatever happens. The job's limits follow with the job.
+  // The process never writes a core file. The limits of a job follow with the job.
   const rlimit none{0, 0};
   if (prlimit(*process, RLIMIT_CORE, &none, nullptr) != 0 && errno != ESRCH) {
     return system_error("cannot limit a helper process", errno);
@@ -205,7 +206,7 @@ Status WorkerProcess::limit(double cpu_seconds, std::uint64_t memory_bytes) {
   if (prlimit(process_, RLIMIT_CPU, nullptr, &current) != 0) {
     return system_error("cannot read a helper's limits", errno);
   }
-  // The pool reads the clock and is exact; this ends the process if the parent cannot.
+  // The pool watches the CPU time and is exact; this limit ends the process if the pool cannot.
   const double seconds =
       std::ceil(this->cpu_seconds().value_or(0) + std::max(cpu_seconds, 0.0)) + 1;
   current.rlim_cur = std::min(static_cast<rlim_t>(std::min(seconds, 1e9)), current.rlim_max);
@@ -236,7 +237,8 @@ bool WorkerProcess::is_waiting() const {
 Ending WorkerProcess::end() {
   Ending ending;
   if (process_ > 0) {
-    // Until it is reaped, its process number, and so that of its group, belongs to it alone.
+    // Until the process is reaped, its number, which is also that of its group, belongs to it
+    // alone.
     kill(-process_, SIGKILL);
     int status = 0;
     rusage used{};

@@ -17,12 +17,12 @@ namespace watertight::workers {
 struct Ending {
   bool by_signal = false;
   int code = 0;            // signal number or exit status
-  bool known = false;      // false if somebody else reaped it
-  double cpu_seconds = 0;  // of its whole life
+  bool known = false;      // false if somebody else reaped the process
+  double cpu_seconds = 0;  // CPU time of its whole life
 };
 std::string to_string(const Ending& ending);
 
-/// Owns a process and our end of its socket. Not copyable; ends the process on destruction.
+/// Owns a process and the pool's end of its socket. Not copyable; the destructor ends the process.
 class WorkerProcess {
  public:
   /// Starts `executable` as described at WorkerPool. Errors: unavailable, with the system's reason.
@@ -39,7 +39,7 @@ class WorkerProcess {
 
   /// Sets the memory limit, and the CPU limit counted from now.
   Status limit(double cpu_seconds, std::uint64_t memory_bytes);
-  /// CPU time since the process started; nothing once it has ended.
+  /// CPU time since the process started; nullopt once it has ended.
   std::optional<double> cpu_seconds() const;
   /// CPU time at the end of the last job that the process answered.
   double accounted() const { return accounted_; }
@@ -49,7 +49,7 @@ class WorkerProcess {
   }
   /// True if the process has ended (and waits to be reaped).
   bool has_ended() const;
-  /// True if it waits for a job: it runs, and it has sent no bytes without a request.
+  /// True if the process waits for a job: it runs, and has sent no bytes without a request.
   bool is_waiting() const;
   /// Kills the whole group if it still runs, and reaps the process.
   Ending end();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // decide_all [--engine-only] [--attempts] FILE_OR_FOLDER...: runs certify() on every solid of the
-// files and prints how many were decided, by rung and class of outcome; what the CDT step cost
-// beside the engine's own CPU time; and every undecided solid with the reason. With --engine-only
-// rung 0 is left out, so that the engine's own CPU time is that of the whole set; with --attempts
-// every attempt that was not accepted is printed, and every one that took longer than 0.1 s.
-// Exit status 1 if a solid is undecided.
+// files. Prints how many solids were decided, by rung and class of outcome; the cost of the CDT
+// step beside the engine's own CPU time; and every undecided solid with the reason. --engine-only
+// leaves rung 0 out, so that the engine's CPU time is that of the whole set. --attempts prints
+// every attempt that was not accepted, and every one that took longer than 0.1 s. Exit status 1 if
+// a solid is undecided.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -22,7 +22,7 @@ using namespace watertight;
 
 namespace {
 
-/// Attempts that took longer than this many seconds of CPU time are printed.
+/// The CPU time in seconds above which an attempt is printed.
 constexpr double kSlow = 0.1;
 
 struct Settings {
@@ -33,8 +33,8 @@ struct Settings {
 
 struct Totals {
   std::size_t files = 0, unreadable = 0, solids = 0, valid = 0, invalid = 0;
-  double seconds = 0;  // of certify(), wall
-  /// Counts of the solids for which an engine was asked.
+  double seconds = 0;  // the elapsed time of certify()
+  /// The counts of the solids for which an engine was asked.
   delaunay::CdtStatistics with_engine;
   delaunay::CdtStatistics cdt;
   std::vector<std::string> undecided;

@@ -44,7 +44,7 @@ def square(x, y, size, z):
 
 
 def walls(model, low, high, is_turned):
-    """The side facets between two squares, outward unless turned."""
+    """The facets of the walls between two squares, outward unless turned."""
     facets = []
     for i in range(4):
         j = (i + 1) % 4
@@ -105,7 +105,8 @@ def sphere(count):
 
 
 def chazelle(n):
-    """After B. Chazelle, Convex partitions of polyhedra, 1984; triangles, ridges two units apart."""
+    """Chazelle's polyhedron, after B. Chazelle, Convex partitions of polyhedra, 1984: of triangles,
+    with ridges two units apart."""
     model, size = Model(), 4 * n
     height = 8 * size * size
     shell, front, back, left, right = [], [], [], [], []

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// mutate_blobs N SEED [WORST]: decodes N damaged blobs and pages and says how many were rejected,
-// with which code, what the slowest one took and how much memory all of them needed. What fails
-// only for its end or its checksum, and what stands in a page before the failure, is looked at too.
-// Run it in a sanitizer build too. A decoded blob must be a boundary that encodes again. With the
-// name of a file the slowest inputs are damaged further, and the slowest of all is written to it.
+// mutate_blobs N SEED [WORST]: decodes N damaged blobs and pages. Prints how many were rejected and
+// with which code, the time of the slowest one, and the memory that all of them needed. Solids that
+// fail only by the end of the stream or the checksum, and solids of a page before its failure, are
+// checked too. Also to be run in a sanitizer build. A decoded blob must give a boundary that can be
+// encoded again. With the name of a file, the slowest inputs are damaged further, and the slowest
+// of all is written to the file.
 #include <sys/resource.h>
 
 #include <charconv>
@@ -42,7 +43,7 @@ Result<std::vector<Decoded>> decode_any(ByteView bytes) {
   return std::vector<Decoded>{std::move(one).value()};
 }
 
-/// True if the solid was read and the error is about the bytes after it.
+/// True if the solid was read, and the error is in the bytes after it.
 bool is_whole(const Error& error) {
   return error.message.find("does not end where") != std::string::npos ||
          error.message.find("checksum does not match") != std::string::npos;
@@ -61,7 +62,7 @@ class Hunt {
     is_on_ = is_on;
   }
 
-  /// False if what decodes does not encode again.
+  /// Decodes one damaged blob; returns false if a decoded boundary cannot be encoded again.
   bool round() {
     Bytes blob = generated::mutated(
         is_on_ && !slow_.empty() && random_.below(2) == 0 ? slow_ : blobs_, random_);

@@ -2,8 +2,9 @@
 //
 // round_trips N SEED [LARGEST]: encodes N generated solids of 4 to LARGEST vertices in the modes,
 // alone and in pages, decodes them and compares. Each solid has a random state of its own, so that
-// a failure is found again by its number: round_trips 1 NUMBER.
-// round_trips CORPUS: the same for every solid of a corpus (bench/corpus/corpus.h), in all modes.
+// the number of a failure is enough to repeat it: round_trips 1 NUMBER.
+// round_trips CORPUS: encodes and decodes every solid of a corpus (bench/corpus/corpus.h) in all
+// modes.
 #include <sys/resource.h>
 
 #include <charconv>
@@ -25,7 +26,7 @@ using generated::RoundTrips;
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// The slowest of the solids or pages: its number and its time.
+/// The number and the time of the slowest solid or page.
 struct Slowest {
   std::uint64_t number = 0;
   double seconds = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A corpus: valid solids of many files, canonical, in one file that loads fast. For training the
-// models of the codec and for measuring it. A record is the name of a data set and a raw blob in
-// source order.
+// A corpus: valid solids of many files in canonical form, in one file that loads fast. It serves to
+// train and to measure the models of the codec. A record is the name of a data set and a raw blob
+// in source order.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@
 namespace watertight {
 
 struct CorpusSolid {
-  std::string set;  // the file it came from, without its extension
+  std::string set;  // the file of the solid, without its extension
   Acceptance acceptance;
   OrientedBoundary source;
   geometry::CanonicalSolid canonical;
@@ -25,7 +25,7 @@ struct CorpusSolid {
 /// Writes one record.
 Bytes write_corpus_record(const std::string& set, const ValidSolid& solid);
 
-/// Ends the program with a message if the file is not a corpus.
+/// Reads a corpus. Ends the program with a message if the file is not a corpus.
 std::vector<CorpusSolid> read_corpus(const std::string& path);
 
 }  // namespace watertight

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// make_corpus OUT FILE...: the solids of the files that pass the exact tests, as one corpus.
+// make_corpus OUT FILE...: writes the solids of the files that pass the exact tests, as one corpus.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +16,7 @@ using namespace watertight;
 
 namespace {
 
-/// By the exact tests alone; solids of several shells by the tetrahedralization in process.
+/// The solid if it is valid: by the exact tests alone, or by the DT if it has several shells.
 std::optional<ValidSolid> valid_solid(const Solid& solid) {
   for (const Proof proof : {Proof::boundary, Proof::tetrahedralization}) {
     CertifyOptions options;

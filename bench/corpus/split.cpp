@@ -9,7 +9,7 @@
 namespace watertight {
 namespace {
 
-/// Where a solid stands: its smallest corner and its extent in x and y, to 500 steps.
+/// The least and greatest x and y of a solid, rounded to multiples of 500 steps.
 using Site = std::array<std::int64_t, 4>;
 
 Site site_of(const codec::PageSolid& stored) {
@@ -25,7 +25,7 @@ Site site_of(const codec::PageSolid& stored) {
   return {low[0] / kUnit, low[1] / kUnit, high[0] / kUnit, high[1] / kUnit};
 }
 
-/// The page of this frame with room, or a new one.
+/// The page with this frame that has room, or a new page.
 CorpusPage& page_for(std::vector<CorpusPage>& pages, const CorpusPage& wanted, std::size_t most) {
   const auto page = std::find_if(pages.rbegin(), pages.rend(), [&](const CorpusPage& other) {
     return other.set == wanted.set && other.is_test == wanted.is_test &&
@@ -41,7 +41,7 @@ CorpusPage& page_for(std::vector<CorpusPage>& pages, const CorpusPage& wanted, s
 std::vector<CorpusPage> split_corpus(const std::vector<CorpusSolid>& corpus,
                                      const std::vector<codec::PageSolid>& stored,
                                      const std::set<std::string>& excluded, std::size_t most) {
-  std::map<std::string, std::size_t> seen;  // solids of a set so far
+  std::map<std::string, std::size_t> seen;  // the number of solids of each set so far
   std::vector<bool> is_test(corpus.size(), false);
   std::set<Site> training;
   for (std::size_t i = 0; i < corpus.size(); ++i) {

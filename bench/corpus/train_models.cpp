@@ -2,14 +2,14 @@
 //
 // train_models CORPUS [--meshes FOLDER] [--out FILE] [--exclude SET]... [--only MODE] [--passes N]
 //
-// Trains the priors of the codec on the training half of a corpus, and prints what the test half
-// takes, per set and mode: bytes per solid in pages of 64 and in blobs of their own (streams alone,
-// without the bytes around them). bench/corpus/split.h says what is training and what test. With
-// --out the set of priors is written as a model file.
+// Trains the priors of the codec on the training half of a corpus, and prints the size of the test
+// half for each set and mode: bytes per solid in pages of 64 and in blobs (only the streams,
+// without the bytes around them). bench/corpus/split.h defines the two halves. With --out the set
+// of priors is written as a model file.
 //
-// First each mode learns from every solid that it can hold. Then all go on learning, through the
-// coder of pages, each from the solids for which it is the cheapest. Mode parallelogram also learns
-// from the dense meshes of a folder (bench/corpus/training_meshes.h).
+// First, each mode learns from every solid that it can hold. Then all modes go on learning through
+// the coder of pages, each from the solids for which it is the cheapest. Mode parallelogram also
+// learns from the dense meshes of a folder (bench/corpus/training_meshes.h).
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -45,12 +45,13 @@ struct Page {
 struct Options {
   std::string corpus;
   std::string out;
-  std::string meshes;  // a folder
+  std::string meshes;  // a folder, or empty
   std::set<std::string> excluded;
   std::string only;
   int passes = 2;
-  std::uint32_t least_count = 250;  // of observations of a context of mode parallelogram
-  std::uint32_t max_count = 10;     // of observations that a prior counts for
+  // The least number of observations of a context of mode parallelogram in a prior.
+  std::uint32_t least_count = 250;
+  std::uint32_t max_count = 10;  // the number of observations that a prior counts for, at most
 };
 
 struct Sums {
@@ -79,14 +80,15 @@ double bytes_of(std::uint64_t cost) {
   return static_cast<double>(cost) / (8.0 * (1 << codec::kCostBits));
 }
 
-/// Codes one solid with a set of models; false if the mode cannot hold it, which spoils the coder.
+/// Codes one solid with a set of models; returns false if the mode cannot hold the solid, after
+/// which the coder cannot be used.
 bool learn(codec::SolidCoder& coder, const codec::PageSolid& solid, Mode mode) {
   codec::PageSolid copy = solid;
   copy.mode = mode;
   return coder.code(copy).has_value();
 }
 
-/// A coder with a meter of its own.
+/// A coder with its own meter.
 struct MeteredCoder {
   codec::EntropyStream meter = codec::EntropyStream::meter();
   codec::SolidCoder coder;
@@ -94,7 +96,8 @@ struct MeteredCoder {
       : coder(meter, models, frame, Limits{}) {}
 };
 
-/// `choose` names the mode of a solid, or Mode::automatic to leave it out.
+/// Trains models on pages. `choose` returns the mode of a solid, or Mode::automatic to leave it
+/// out.
 template <class Choose>
 void train(const std::vector<Page>& pages, codec::ModelSet& models, const Choose& choose) {
   for (const Page& page : pages) {
@@ -213,8 +216,8 @@ Options read_options(int count, char** arguments) {
   return options;
 }
 
-/// Surfaces share their decisions; how much the parts of a context say differs from mesh to mesh,
-/// so that weights adapt faster from neutral ones, and counters too.
+/// The shapes of the priors. In mode parallelogram the value of the parts of a context differs from
+/// mesh to mesh, so weights and counters there adapt faster from neutral ones.
 std::array<codec::PriorShape, codec::kModelParts> shapes_of(const Options& options) {
   std::array<codec::PriorShape, codec::kModelParts> shapes{};
   shapes.fill({.max_count = options.max_count});

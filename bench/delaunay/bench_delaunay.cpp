@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The two implementations of the canonical Delaunay tetrahedralization against each other.
-//   bench_delaunay compare COUNT [FIRST]   the same result for COUNT sets, numbered from FIRST?
+// Compares the two implementations of the canonical Delaunay tetrahedralization.
+//   bench_delaunay compare COUNT [FIRST]   whether COUNT sets, numbered from FIRST, give equal
+// results
 //   bench_delaunay time [REPEATS]          microseconds per set, as a Markdown table
 #include <algorithm>
 #include <cstdint>
@@ -60,7 +61,7 @@ int compare(std::uint64_t count, std::uint64_t first) {
   return differences == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-/// CPU time, the least of some repetitions that are each long enough to be timed.
+/// The CPU time of one run: the least of some repetitions, each long enough to be measured.
 template <class Delaunay>
 double microseconds(const std::vector<Point>& points, int repeats, Delaunay delaunay) {
   const std::size_t inner = 1 + 6000 / points.size();

@@ -154,7 +154,7 @@ def crc32c(data):
 
 
 def check(row, most):
-    """True, False, or None for a set that is too large to try."""
+    """Whether the digest of a set is right; None if the set is too large to try."""
     points = make(row["set"])
     if len(points) != int(row["points"]):
         return False

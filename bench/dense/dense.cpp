@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// dense [--grid 11|14|16|source]... [--listed FACETS] [--mode MODE] FILE...: the closed meshes of
-// the files as triangles on each grid, in automatic mode or in mode walk or parallelogram. Whole
-// stand-alone blobs that decode to the same canonical solid, with the shipped priors, beside Draco
-// and meshoptimizer, which get what a blob takes for origin and grid added (as in
-// bench/ratio/compare.cpp). Meshes below --listed facets (1,000) are only summed up. If the files
-// are all those of the training data in the order of their paths, those that the priors have seen
-// are set apart (bench/corpus/training_meshes.h).
+// dense [--grid 11|14|16|source]... [--listed FACETS] [--mode MODE] FILE...: encodes the closed
+// meshes of the files as triangles on each grid, in automatic mode or in mode walk or
+// parallelogram. Counted are whole blobs with the shipped priors that decode to the same canonical
+// solid, beside Draco and meshoptimizer; the peers get the bytes added that a blob takes for origin
+// and grid (as in bench/ratio/compare.cpp). Meshes below --listed facets (1,000) are only summed
+// up. If the files are all those of the training data in the order of their paths, the meshes on
+// which the priors were trained are listed apart (bench/corpus/training_meshes.h).
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -28,7 +28,8 @@ namespace {
 
 using namespace watertight;
 
-/// The bytes that a peer does not need: three varints of the origin and two bytes of grid.
+/// The bytes of a blob that a peer does not store: three varints of the origin and two bytes of the
+/// grid.
 std::size_t placement_bytes(const OrientedBoundary& boundary) {
   ByteWriter writer;
   for (const std::int64_t number : codec::page_solid(boundary, false).origin) writer.zigzag(number);

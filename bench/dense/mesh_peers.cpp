@@ -51,7 +51,8 @@ std::size_t draco_size(const codec::IntegerSolid& mesh,
                         draco::PointIndex(mesh.ring_vertices[i + 2])});
   }
   draco::Encoder encoder;
-  // Compression level 10; its trials take minutes and gigabytes where numbers are wide: 8 there.
+  // Compression level 10; wide numbers take level 8, because the trials of level 10 would take
+  // minutes and gigabytes.
   std::int32_t widest = 0;
   for (const auto& p : positions) widest = std::max({widest, p[0], p[1], p[2]});
   const int speed = widest < (1 << 20) ? 0 : 2;

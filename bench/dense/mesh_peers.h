@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bytes that mesh coders need for a triangle mesh of integers.
+// The bytes that other mesh coders need for a triangle mesh of integers.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace watertight {
 
-/// Draco, compression level 10 (8 from 2^20 steps on), int32 positions from the minimum on; 0 = it
-/// refuses.
+/// The bytes of Draco at compression level 10 (8 from 2^20 steps on), with int32 positions counted
+/// from the minimum; 0 if Draco refuses the mesh.
 std::size_t draco_bytes(const codec::IntegerSolid& mesh);
-/// The same with all positions 0: about what its connectivity takes.
+/// The bytes of Draco with all positions 0, which are about those of the connectivity.
 std::size_t draco_connectivity_bytes(const codec::IntegerSolid& mesh);
-/// meshoptimizer's vertex and index codecs after its own reordering, through zstd -19.
+/// The bytes of meshoptimizer's vertex and index codecs after its own reordering, through zstd -19.
 std::size_t meshopt_bytes(const codec::IntegerSolid& mesh);
 
 }  // namespace watertight

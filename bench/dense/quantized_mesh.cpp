@@ -10,7 +10,7 @@
 namespace watertight {
 namespace {
 
-/// Fans: the peers know triangles only, and all get the same ones.
+/// The facets as fans of triangles: the peers take triangles only, and all get the same ones.
 std::vector<Triangle> fans_of(const Solid& solid) {
   std::vector<Triangle> triangles;
   for (Index facet = 0; facet < solid.facet_count(); ++facet) {
@@ -75,7 +75,7 @@ std::optional<codec::IntegerSolid> quantize(const Solid& solid, std::optional<in
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     kept.insert(t);
   }
-  // A sheet that quantization folded onto another one is no surface.
+  // Triangles that quantization folded onto others, turned the other way, are left out.
   std::vector<Triangle> triangles;
   for (const Triangle& t : kept) {
     if (kept.count({t[0], t[2], t[1]}) == 0) triangles.push_back(t);

@@ -11,8 +11,9 @@
 namespace watertight {
 
 /// The solid in triangles on its own grid, or quantized as Draco does: the longest side of the box
-/// to 2^bits - 1 steps. Vertices that fall together are one, triangles without area and equal ones
-/// are left out. Nothing if its edges are not used alike in both directions or the grid is none.
+/// gets 2^bits - 1 steps. Vertices at one position are merged; triangles without area and duplicate
+/// ones are left out. Nothing if some edge is not used equally often in both directions, or if the
+/// solid has no grid.
 std::optional<codec::IntegerSolid> quantize(const Solid& solid, std::optional<int> bits);
 
 }  // namespace watertight

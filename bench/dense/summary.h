@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The measurements of one mesh, and of many, as Markdown.
+// The measurements of one mesh and of many meshes, as Markdown.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,17 @@ struct MeshRow {
   std::size_t vertices = 0;
   std::size_t facets = 0;
   std::string validity;
-  WholeBlob blob;                      // with the shipped priors
-  bool is_seen = false;                // by the priors
-  std::size_t draco = 0;               // 0: it refuses
-  std::size_t meshopt = 0;             // 0: coordinates too wide for it
-  std::size_t draco_connectivity = 0;  // the mesh with all positions 0
+  WholeBlob blob;                      // the blob with the shipped priors
+  bool is_seen = false;                // the priors were trained on the mesh
+  std::size_t draco = 0;               // bytes; 0: Draco refuses the mesh
+  std::size_t meshopt = 0;             // bytes; 0: the coordinates are too wide for meshoptimizer
+  std::size_t draco_connectivity = 0;  // bytes of the mesh with all positions 0
 };
 
 void print_heading(const std::string& grid);
 void print_row(const MeshRow& row);
 
-/// Means, medians and exceptions of all rows, and of those from `listed` facets on.
+/// Means, medians and exceptions of all meshes, and of those with at least `listed` facets.
 class Summary {
  public:
   explicit Summary(std::size_t listed) : listed_(listed) {}

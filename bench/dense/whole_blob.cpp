@@ -16,14 +16,14 @@
 namespace watertight {
 namespace {
 
-/// Seconds of this thread alone: other work on the machine does not count.
+/// The CPU time of this thread in seconds: other work on the machine does not count.
 double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// A line of /proc/self/status in bytes; 0 if there is none.
+/// The value of a line of /proc/self/status in bytes; 0 if the file or the line is missing.
 double status_bytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -32,7 +32,7 @@ double status_bytes(const std::string& name) {
   return 0;
 }
 
-/// Makes the present resident set the peak, where the system lets us. Returns it.
+/// Makes the present resident set the peak, if the system allows it. Returns the peak in bytes.
 double begin_peak() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";

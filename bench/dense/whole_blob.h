@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A mesh as a whole blob: what it takes in bytes, time and memory.
+// Measures a mesh as a whole blob: bytes, time and memory.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,19 @@ namespace watertight {
 struct WholeBlob {
   std::size_t bytes = 0;
   Mode mode = Mode::automatic;
-  double connectivity_bytes = 0;  // parts `connectivity` and `facets`
+  double connectivity_bytes = 0;  // the parts `connectivity` and `facets`
   double encode_seconds =
-      0;  // of the processor; every mode tried, the chosen one written and read back
+      0;  // CPU time of trying every mode, and of writing and reading the chosen one
   double decode_seconds = 0;
-  double peak_bytes = 0;  // growth of the resident set at its peak; 0 where it cannot be had
+  double peak_bytes = 0;  // the growth of the resident set at its peak; 0 if unknown
 };
 
-/// The mesh on `lattice`, or on the lattice of its integers. Errors: as OrientedBoundary::make().
+/// The boundary of the mesh on `lattice`, or on the lattice of its integers. Errors: as
+/// OrientedBoundary::make().
 Result<OrientedBoundary> boundary_of(const codec::IntegerSolid& mesh, const Lattice* lattice);
 
-/// With the shipped priors, without source order. Ends the program if another solid comes back.
+/// Measures a blob with the shipped priors, without source order. Ends the program if the decoded
+/// solid differs.
 WholeBlob whole_blob(const OrientedBoundary& boundary, Mode mode);
 
 }  // namespace watertight

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // documents [--texts] FILE...: reads each city model with its text, writes it again and compares
-// the bytes; then encodes what is valid and does the same through a Watertight file. One line of
-// Markdown per file.
+// the bytes; then encodes the valid solids, and compares the bytes after a Watertight file. Prints
+// one line of Markdown for each file.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -18,18 +18,18 @@ using namespace watertight;
 namespace {
 
 struct Sizes {
-  std::size_t layout = 0;     // how the text was written
-  std::size_t texts = 0;      // skeletons
-  std::size_t alone = 0;      // skeletons, each compressed alone as in a store
-  std::size_t together = 0;   // skeletons compressed as one text
-  std::size_t container = 0;  // the Watertight file; 0 when not all solids are valid
-  std::size_t paged = 0;      // its solids, in pages
+  std::size_t layout = 0;     // the layouts: how the texts were written
+  std::size_t texts = 0;      // the skeletons
+  std::size_t alone = 0;      // the skeletons, each compressed alone as in a store
+  std::size_t together = 0;   // the skeletons, compressed as one text
+  std::size_t container = 0;  // the Watertight file; 0 if not all solids are valid
+  std::size_t paged = 0;      // the solids of the Watertight file, in pages
   std::size_t blobs = 0;
-  double order = 0;  // order sections
+  double order = 0;  // the source orders in the blobs, in bytes
   std::size_t solids = 0;
-  std::size_t closed = 0;           // solids whose order was measured
-  std::uint64_t order_alone = 0;    // with a neutral bank per solid, 1/65536 bit
-  std::uint64_t order_in_page = 0;  // with a bank for 128 solids
+  std::size_t closed = 0;           // the number of solids whose order was measured
+  std::uint64_t order_alone = 0;    // with a neutral bank for each solid, 1/65536 bit
+  std::uint64_t order_in_page = 0;  // with a bank for 128 solids, 1/65536 bit
 };
 
 bool is_same(const Document& document, const std::string& text) {
@@ -66,7 +66,7 @@ void add_blobs(const pipeline::EncodedDocument& document, Sizes& sizes) {
   }
 }
 
-/// The order of every closed solid.
+/// Adds the measured source order of every closed solid.
 void add_orders(const Document& document, Sizes& sizes) {
   constexpr std::size_t kPage = 128;
   const codec::ModelLayout& layout = codec::order_layout();
@@ -93,7 +93,7 @@ double bytes_each(std::uint64_t cost, std::size_t count) {
   return count == 0 ? 0 : static_cast<double>(cost) / 65536 / 8 / static_cast<double>(count);
 }
 
-/// "yes", "no", or why there is no Watertight file.
+/// "yes", "no", or the reason why there is no Watertight file.
 std::string through_container(Document document, const std::string& text,
                               delaunay::EngineWorkers& workers, Sizes& sizes) {
   auto encoded = pipeline::encode_document(std::move(document), &workers, {});

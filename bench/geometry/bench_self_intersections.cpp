@@ -2,12 +2,12 @@
 //
 // bench_self_intersections [--repeat N] [--threads N] [--set dense|worst|all] [FILE...]
 //
-// The box partition beside PMP::triangle_soup_self_intersections on the same triangles in one run,
-// A B A B, medians of N (3). Rows: the meshes given (OBJ, OFF, PLY, STL; polygons fanned, equal
-// vertices merged), then the generated shapes of the set: dense surfaces, or the worst cases (where
-// PMP is left out: it is quadratic there). Times are the processor's of all threads of the process
-// (user), and wall seconds; the ratio is of user times on one thread. Exit status 1 if the pairs
-// differ from PMP's or between numbers of threads.
+// Compares the box partition with PMP::triangle_soup_self_intersections on the same triangles in
+// one run: the two alternate, medians of N (3) each. Rows: the given meshes (OBJ, OFF, PLY, STL;
+// polygons become fans, equal vertices are merged), then the generated shapes of the set: dense
+// surfaces, or the worst cases (without PMP, whose time is quadratic there). Times are the CPU time
+// of all threads of the process (user) and elapsed seconds; the ratio is of user times on one
+// thread. Exit status 1 if the pairs differ from PMP's or between numbers of threads.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 
@@ -75,7 +75,7 @@ Seconds median(const std::vector<Seconds>& times) {
   return {middle(&Seconds::user), middle(&Seconds::wall)};
 }
 
-/// The triangles as PMP takes them.
+/// The triangles in the form that PMP takes.
 struct PmpSoup {
   std::vector<Kernel::Point_3> points;
   std::vector<std::array<std::size_t, 3>> triangles;
@@ -106,7 +106,7 @@ std::vector<geometry::IntersectingPair> own_pairs(const Soup& soup, unsigned thr
   return std::move(pairs).value();
 }
 
-/// PMP leaves triangles with the same three vertices out.
+/// The pairs without those of triangles with the same three vertices, which PMP leaves out.
 std::vector<Pair> without_duplicates(const std::vector<geometry::IntersectingPair>& pairs) {
   std::vector<Pair> result;
   for (const auto& pair : pairs) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// oracle_self_intersections [--repeat N] FILE...: for each mesh (OBJ, OFF, PLY, STL; polygons are
-// fanned, equal vertices merged) the intersecting pairs by class, and whether the box partition
-// finds the same pairs as
+// oracle_self_intersections [--repeat N] FILE...: for each mesh (OBJ, OFF, PLY, STL; polygons
+// become fans, equal vertices are merged) prints the intersecting pairs by class, and whether the
+// box partition finds the same pairs as
 //   - the classification of all pairs (up to 20,000 triangles),
 //   - box_self_intersection_d with the classification,
 //   - PMP::triangle_soup_self_intersections (without classes and without equal triangles),
-// with the seconds of each. Exit status 1 if any differs.
+// with the seconds of each. Exit status 1 if any of them differs.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/box_intersection_d.h>
@@ -149,7 +149,8 @@ bool compare(const std::string& file, int repeat) {
   const bool does_all = mesh.triangles.size() <= kAllPairs;
   const bool equals_all = !does_all || by_all_pairs(mesh) == names(pairs);
   const bool equals_boxes = from_boxes == names(pairs);
-  std::vector<geometry::IntersectingPair> for_pmp;  // which does not report equal triangles
+  // PMP does not report pairs of equal triangles.
+  std::vector<geometry::IntersectingPair> for_pmp;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(for_pmp),
                [](const auto& pair) { return pair.contact != geometry::ContactClass::duplicate; });
   const bool equals_pmp = from_pmp == names(for_pmp);

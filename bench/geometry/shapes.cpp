@@ -10,7 +10,7 @@
 namespace watertight::bench {
 namespace {
 
-/// Equal points become one vertex.
+/// Merges equal points into one vertex.
 void merge(Soup& soup) {
   std::vector<Point> sorted = soup.points;
   std::sort(sorted.begin(), sorted.end());
@@ -77,7 +77,7 @@ Soup bumpy_sphere(std::size_t count) {
     std::array<double, 3> direction{};
     double length = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      // Equal angles, so that the triangles are about equally large.
+      // Equal angles make the triangles about equally large.
       const auto at = static_cast<std::size_t>(axis);
       direction[at] = std::tan(0.78539816339744831 * p[axis] / half);
       length += direction[at] * direction[at];

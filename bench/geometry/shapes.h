@@ -18,28 +18,30 @@ struct Soup {
   std::vector<Triangle> triangles;
 };
 
-/// A closed sphere of about `count` triangles on the grid of a cube's faces, its radius bumpy.
+/// A closed sphere of about `count` triangles on the grid of a cube's faces, with an uneven radius.
 Soup bumpy_sphere(std::size_t count);
 
 /// A closed box of about `count` triangles; each of its six faces is a plane grid.
 Soup grid_box(std::size_t count);
 
-/// The front of a comb with `teeth` teeth: its back is a fan around two corners.
+/// The front of a comb with `teeth` teeth, whose back is a fan around two corners.
 Soup comb(std::size_t teeth);
 
 /// `count` triangles around one vertex, on a cone.
 Soup cone(std::size_t count);
 
-/// A star with `count` thin spikes at all angles in one oblique plane; no vertex is common to many.
+/// A star with `count` thin spikes at all angles in one oblique plane; no vertex belongs to many
+/// triangles.
 Soup star(std::size_t count);
 
-/// `count` long thin triangles, parallel to (1, 2, 3), that do not touch: each box overlaps most.
+/// `count` long thin triangles, parallel to (1, 2, 3), which do not touch; each box overlaps most
+/// others.
 Soup diagonal_needles(std::size_t count);
 
 /// `count` stacked parallel triangles across the diagonal: every box overlaps every other.
 Soup oblique_sheets(std::size_t count);
 
-/// `count` needles of all directions through one box, as a hedgehog of lines: no structure at all.
+/// `count` long thin triangles in all directions through one box, without any structure.
 Soup random_needles(std::size_t count);
 
 }  // namespace watertight::bench

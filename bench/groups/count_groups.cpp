@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// For each document: features, solids, valid solids, groups, findings of 501 to 601, and the
-// seconds of reading and validating without groups, and of the groups. On one thread, without
-// worker processes. With --list each finding.
+// For each document, prints the numbers of features, solids, valid solids, groups and findings 501
+// to 601, the seconds of reading and validating without groups, and those of the groups. Uses one
+// thread and no worker processes. With --list prints each finding.
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -62,7 +62,8 @@ void count(const std::filesystem::path& path, bool has_list) {
   for (Feature& feature : document->features) {
     pipeline::InspectedFeature inspected;
     for (const SubmittedSolid& submitted : feature.solids) {
-      // Groups compare what the exact tests accept; the CDT is not asked where they suffice.
+      // Groups compare solids that the exact tests accept; no CDT is made where these tests
+      // suffice.
       options.proof =
           submitted.solid.shell_count() == 1 ? Proof::boundary : Proof::tetrahedralization;
       inspected.solids.push_back({submitted.source, certify(submitted.solid, nullptr, options)});

@@ -3,8 +3,8 @@
 // metamorphic [--first SEED] [--count N] [--threads N] [--ladder-every N] [--nef-every N]
 //             [--largest FACETS] [--show] FILE...
 // Examines the solids of N seeds (relations.h); the solids of the files, up to `largest` facets,
-// are the real ones. Prints each disagreement with its seed, and the counts at the end; --show
-// prints the solids of the seeds as OFF-like text instead. Exit status 1 on any disagreement.
+// serve as real ones. Prints each disagreement with its seed, and the counts at the end; --show
+// prints the solids of the seeds as text like OFF instead. Exit status 1 on any disagreement.
 #include <algorithm>
 #include <atomic>
 #include <chrono>

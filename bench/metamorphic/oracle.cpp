@@ -25,7 +25,7 @@ struct Soup {
   std::vector<std::array<std::size_t, 3>> triangles;
 };
 
-/// Only the vertices that the shell uses.
+/// The soup of a shell, with only the vertices that the shell uses.
 template <class Kernel>
 Soup<Kernel> soup_of(std::span<const Point> vertices, const ShellTriangles& shell,
                      bool is_turned = false) {

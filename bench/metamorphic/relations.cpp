@@ -21,14 +21,14 @@ namespace {
 using solids::Random;
 using Codes = std::set<int>;
 
-/// The input that a seed makes, and the facts known about it.
+/// The solid that a seed makes, and the known facts about it.
 struct Subject {
   std::string family;
   Solid solid;
-  std::optional<Codes> codes = {};      // known errors
-  std::optional<int> first_level = {};  // known with them
+  std::optional<Codes> codes = {};      // the known errors
+  std::optional<int> first_level = {};  // known if the errors are
   bool needs_tetrahedra = false;
-  bool is_metric = false;  // the metric rules stay on
+  bool is_metric = false;  // true: the metric rules stay on
 };
 
 bool is_exactly_planar(const Solid& solid, Index facet) {
@@ -54,7 +54,7 @@ bool is_exactly_planar(const Solid& solid) {
   return true;
 }
 
-/// Coordinates rounded down to multiples of `grid`: what a coarser export does.
+/// The solid with coordinates rounded down to multiples of `grid`, as in a coarser export.
 Solid on_coarse_grid(const Solid& solid, double grid) {
   SolidArrays arrays = solid.arrays();
   for (Point& p : arrays.vertices) {
@@ -72,7 +72,7 @@ Subject real_subject(Random& random, std::span<const Solid> list) {
     case 0:
       return {"real, as it is", merged, {}, {}, false, true};
     case 1: {
-      // To a grid of 1 mm to about 1 m, where the lattice is millimetres.
+      // The coordinates are rounded to a grid of 1 mm to about 1 m, if the lattice is millimetres.
       const double grid = std::pow(2.0, random.within(1, 10));
       return {"real, rounded", on_coarse_grid(merged, grid), {}, {}, false, true};
     }
@@ -144,18 +144,18 @@ std::string text_of(const std::vector<int>& codes) {
 
 Codes errors_of(const Report& report) { return solids::codes_of(report, Severity::error); }
 
-/// Without codes that only a tetrahedralization finds: it may exist under one map and not the
-/// other.
+/// The errors without a code that only a tetrahedralization finds: the tetrahedralization may exist
+/// under one map and not under the other.
 Codes exact_errors_of(const Report& report) {
   Codes codes = errors_of(report);
   codes.erase(404);
   return codes;
 }
 
-/// Facets of a finding as a pair, the smaller first.
+/// The code of a finding and its two facets, the smaller first.
 using FacetFinding = std::tuple<int, Index, Index>;
 
-/// Findings whose facets do not depend on the order in which things are listed.
+/// The findings whose facets do not depend on the order of facets.
 std::vector<FacetFinding> facets_of(const Report& report, const std::vector<Index>* facet_of) {
   const auto source = [&](Index facet) {
     return facet == kNone || facet_of == nullptr ? facet : (*facet_of)[facet];
@@ -180,7 +180,7 @@ std::vector<int> all_codes(const Report& report) {
   return codes;
 }
 
-/// PMP does not compare triangles that have the same three vertices.
+/// True if two triangles have the same three vertices: PMP does not compare such triangles.
 bool has_equal_triangles(ShellTriangles triangles) {
   for (Triangle& t : triangles) std::sort(t.begin(), t.end());
   std::sort(triangles.begin(), triangles.end());
@@ -285,7 +285,7 @@ void SeedExaminer::check_map(const std::string& relation, const solids::AffineMa
   constexpr double kLargest = 1125899906842624.0;  // 2^50
   if (solids::largest_coordinate(subject_.solid, map) >= kLargest) return;
   CertifyOptions options = certify_;
-  options.proof = Proof::boundary;  // the exact tests alone
+  options.proof = Proof::boundary;  // runs only the exact tests
   const Report report = certify(solids::mapped(subject_.solid, map), nullptr, options).report;
   compare(relation + ": codes", exact_errors_of(report_), exact_errors_of(report));
   if (errors_of(report_).count(404) != 0) return;
@@ -302,7 +302,7 @@ void SeedExaminer::check_maps() {
   check_map("odd permutation, reversed", solids::axis_permutation(random_, false));
 }
 
-/// The exact tests and the certificate of one shell must agree.
+/// Checks that the exact tests and the certificate of one shell agree.
 void SeedExaminer::check_proofs() {
   if (subject_.solid.shell_count() != 1) return;
   CertifyOptions options = certify_;
@@ -312,7 +312,7 @@ void SeedExaminer::check_proofs() {
         (report.verdict == Verdict::valid) == !is_invalid() && report.verdict != Verdict::undecided,
         std::string(validate::to_string(report_.verdict)),
         std::string(validate::to_string(report.verdict)));
-  // A certificate of a shell that meets itself or is inside out would be a lie.
+  // A shell that meets itself or is inside out must have no certificate.
   const Codes errors = errors_of(report_);
   const bool is_closed_but_wrong =
       !errors.empty() && std::all_of(errors.begin(), errors.end(),
@@ -393,12 +393,13 @@ void SeedExaminer::check_solid(const std::vector<ShellTriangles>& shells,
 }
 
 void SeedExaminer::check_oracles() {
-  const Solid& solid = subject_.solid;  // merged: solid_of() and merge_equal_vertices() see to it
+  // The solid has no equal vertices: solid_of() and merge_equal_vertices() merge them.
+  const Solid& solid = subject_.solid;
   const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   for (const tessellate::FacetState state : facets.state) {
     if (state != tessellate::FacetState::triangulated) return;
   }
-  // Rules about the rings of a facet: the oracles see triangles only.
+  // The oracles get triangles only, so they do not judge errors in the rings of a facet.
   for (const int code : errors_of(report_)) {
     if (code < 300) return;
   }

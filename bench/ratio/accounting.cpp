@@ -20,7 +20,8 @@ Triangle sorted(Triangle triangle) {
   return triangle;
 }
 
-/// Border of one facet's faces: vertex -> its neighbours along edges used by a single face.
+/// The border of the faces of one facet: for each vertex, its neighbours along edges that only one
+/// face uses.
 using Border = std::map<Index, std::vector<Index>>;
 
 std::vector<Border> facet_borders(const delaunay::Tetrahedralization& cdt, Index facet_count) {
@@ -43,7 +44,7 @@ std::vector<Border> facet_borders(const delaunay::Tetrahedralization& cdt, Index
   return borders;
 }
 
-/// The Steiner points between ring neighbours `from` and `to` along a facet's border.
+/// The Steiner points on the border of a facet between two neighbours in a ring.
 std::vector<Index> chain_between(const Border& border, Index input_count, Index from, Index to) {
   const auto start = border.find(from);
   if (start == border.end()) return {};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// collective CORPUS [N]: the paper's second open question, measured. For each set, tiles of N
-// solids (400 by default) are coded once one by one and once together: one Delaunay
-// tetrahedralization of all vertices of the tile, each vertex and each shared wall once. Printed
-// per solid: vertices, facets, Delaunay faces, marked and unrecovered ones, the paper's bits (1 per
-// Delaunay face, 96 per unrecovered face), and the entropy of the marks if each were independent of
-// all others.
+// collective CORPUS [N]: measures the paper's second open question. For each set, tiles of N solids
+// (400 by default) are coded once solid by solid and once together: with one Delaunay
+// tetrahedralization of all vertices of the tile, each vertex and each shared wall once. Prints per
+// solid: vertices, facets, Delaunay faces, marked and unrecovered faces, the paper's bits (1 for
+// each Delaunay face, 96 for each unrecovered face), and the entropy of the marks as if each mark
+// were independent of all others.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -46,7 +46,8 @@ struct Count {
   }
 };
 
-/// Facets of several solids on one grid, each vertex once, a facet once whichever way it turns.
+/// The facets of several solids on one grid, with each vertex once, and a facet once in whichever
+/// orientation.
 class Tile {
  public:
   void add(const codec::IntegerSolid& solid) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// compare CORPUS [--page N] [--unseen SET]...: bytes of files that decode, per set of
-// the test half (bench/corpus/split.h), beside the peers on the same grid. A page counts all its
-// bytes and those of a page file with nothing else in it; a blob all its bytes. Peers that keep no
-// position or grid get what ours takes for them added: three varints of the origin, and two bytes
-// of grid for a blob.
+// compare CORPUS [--page N] [--unseen SET]...: prints the bytes of files that decode, for each set
+// of the test half (bench/corpus/split.h), beside those of other coders on the same grid. A page
+// counts all its bytes and those of a page file around it; a blob counts all its bytes. Other
+// coders that keep no position or grid get the bytes added that our format takes for them: three
+// varints of the origin, and two bytes of the grid for a blob.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -24,8 +24,8 @@ using namespace watertight;
 
 namespace {
 
-// Bytes of a file of one page beside the page: head and tail (17), the index with its numbers of
-// pages and solids (up to 8) and a byte for each solid (codec/page_file.h).
+// The bytes of a file of one page besides the page: head and tail (17), the index with its numbers
+// of pages and solids (up to 8), and a byte for each solid (codec/page_file.h).
 constexpr std::size_t kFileBytes = 25;
 
 struct Options {
@@ -37,7 +37,7 @@ struct Options {
 struct Sums {
   std::size_t solids = 0;
   std::size_t vertices = 0;
-  std::size_t wide = 0;  // solids that Draco cannot take; left out
+  std::size_t wide = 0;  // the number of solids that Draco cannot take, which are left out
   double paged = 0;
   double alone = 0;
   double draco_paged = 0;

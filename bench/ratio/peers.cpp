@@ -43,7 +43,7 @@ std::string point_text(const codec::GridPoint& c) {
   return join({std::to_string(c[0]), std::to_string(c[1]), std::to_string(c[2])});
 }
 
-/// The nested arrays of a Solid, each vertex index through `number`.
+/// The nested arrays of a CityJSON Solid, with each vertex index mapped by `number`.
 template <class Number>
 std::string boundaries(const Solid& solid, const Number& number) {
   std::vector<std::string> shells;
@@ -84,7 +84,7 @@ std::size_t meshopt_size(const Solid& solid, std::span<const Triangle> triangles
   for (const Triangle& triangle : triangles) {
     indices.insert(indices.end(), triangle.begin(), triangle.end());
   }
-  // In the order that its coders are made for.
+  // The reordering suits meshoptimizer's coders.
   meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
   const std::size_t used = meshopt_optimizeVertexFetch(
       vertices.data(), indices.data(), indices.size(), vertices.data(), vertices.size(), 12);
@@ -98,7 +98,7 @@ std::size_t meshopt_size(const Solid& solid, std::span<const Triangle> triangles
 }
 
 std::size_t draco_size(const Solid& solid, std::span<const Triangle> triangles) {
-  const Box box = solid.box();  // the minimum is 0 in a lattice's normal form
+  const Box box = solid.box();  // its minimum is 0 in a lattice's normal form
   if (std::max({box.max.x, box.max.y, box.max.z}) > std::numeric_limits<std::int32_t>::max())
     return 0;
   draco::Mesh mesh;

@@ -13,17 +13,18 @@ namespace watertight {
 
 struct PeerBytes {
   std::size_t wkb = 0;             // EWKB, doubles in world coordinates
-  std::size_t wkb_zstd = 0;        // the same through zstd -19
+  std::size_t wkb_zstd = 0;        // EWKB through zstd -19
   std::size_t city_json_zstd = 0;  // {"vertices":[ints],"boundaries":[...]} through zstd -19
-  std::size_t draco = 0;    // Draco, compression level 10, int32 positions; 0 = wider than it takes
-  std::size_t meshopt = 0;  // meshoptimizer's vertex and index buffers through zstd -19; likewise
+  std::size_t draco = 0;  // Draco, compression level 10, int32 positions; 0: too wide for Draco
+  // Meshoptimizer's vertex and index buffers through zstd -19; 0: too wide for it.
+  std::size_t meshopt = 0;
 };
 
-/// `triangles` = canonical triangulation of the solid. Requires an integer lattice.
+/// Measures a solid; `triangles` is its canonical triangulation. Requires an integer lattice.
 PeerBytes measure_peers(const Solid& solid, std::span<const Triangle> triangles);
 
-/// All solids as one CityJSON through zstd -19: one list of vertices, each once, from the smallest
-/// corner of all on. Requires that they share their lattice's steps.
+/// The bytes of all solids as one CityJSON through zstd -19: one list of vertices, each once,
+/// counted from the smallest corner of all. Requires that the solids have the same lattice steps.
 std::size_t whole_city_json_zstd(std::span<const Solid* const> solids);
 
 }  // namespace watertight

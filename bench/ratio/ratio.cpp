@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// ratio FILE...: per file two tables in Markdown over its valid solids. First the paper's own
-// accounting (bench/ratio/accounting.h) from no Steiner points to all of them; then the bytes of
-// real, decodable files beside the peers (bench/ratio/peers.h), all on the same grid.
+// ratio FILE...: prints two tables in Markdown for each file, over its valid solids. The first
+// table is the paper's own accounting (bench/ratio/accounting.h), from no Steiner points to all of
+// them; the second has the bytes of real, decodable files beside those of other coders
+// (bench/ratio/peers.h), on the same grid.
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -46,12 +47,13 @@ std::optional<delaunay::Certificate> engine_certificate(const Solid& solid,
                                                         bool is_triangulated) {
   delaunay::LadderOptions options;
   options.first_rung = is_triangulated ? delaunay::Rung::tetgen
-                                       : delaunay::Rung::patch;  // TetGen made the paper's numbers
+                                       // The paper's numbers come from TetGen.
+                                       : delaunay::Rung::patch;
   options.last_rung = is_triangulated ? delaunay::Rung::tetgen : delaunay::Rung::patch_scaled;
   return delaunay::climb_ladder(solid, facets, &workers, options).certificate;
 }
 
-/// All settings or none, so that every row counts the same solids.
+/// Adds all settings of a solid or none, so that every row counts the same solids.
 bool add_accounting(const Solid& solid, delaunay::EngineWorkers& workers, FileSums& sums) {
   const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   const auto polygon = engine_certificate(solid, facets, workers, false);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// check_expected FOLDER [LIST] [--all]: holds the verdicts against the codes that the authors of
-// test files state, as rows "file,expected,remark" of LIST (FOLDER/expected.csv). Compared is the
-// first level of the tolerant verdict, as sets of codes, where some codes stand for each other:
-// 202 and 206 for 201, 402 for 401, 105 for 104, 308 for 405, 304 for 303 or 302; tolerance(N) is N
-// or valid. Files with the remark "given as interior shell of F" are read as a cavity of F.
-// IndoorGML (7xx) is left out. Prints every difference (--all: every row) and exits with 1 if there
-// is one.
+// check_expected FOLDER [LIST] [--all]: compares the verdicts with the codes that the authors of
+// test files state, as rows "file,expected,remark" of LIST (FOLDER/expected.csv). The first levels
+// of the tolerant verdict are compared, as sets of codes, where some codes stand for others: 202
+// and 206 for 201, 402 for 401, 105 for 104, 308 for 405, 304 for 303 or 302; tolerance(N) is N or
+// valid. Files with the remark "given as interior shell of F" are read as a cavity of F. IndoorGML
+// (7xx) is left out. Prints every difference (--all: every row) and exits with 1 if there is one.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -36,7 +35,7 @@ std::vector<Row> read_rows(const std::filesystem::path& path) {
   std::vector<Row> rows;
   std::ifstream stream(path);
   std::string line;
-  std::getline(stream, line);  // header
+  std::getline(stream, line);  // skips the header
   while (std::getline(stream, line)) {
     const std::size_t first = line.find(',');
     const std::size_t second = line.find(',', first + 1);
@@ -47,7 +46,7 @@ std::vector<Row> read_rows(const std::filesystem::path& path) {
   return rows;
 }
 
-/// The code that stands for all that are compared as one.
+/// The code that stands for all codes that count as one.
 int representative(int code) {
   switch (code) {
     case 202:
@@ -64,7 +63,7 @@ int representative(int code) {
   }
 }
 
-/// "203+601", "valid".
+/// The codes of a text like "203+601" or "valid".
 Codes codes_of(const std::string& text) {
   Codes codes;
   for (std::size_t at = 0; at < text.size();) {
@@ -76,7 +75,7 @@ Codes codes_of(const std::string& text) {
   return codes;
 }
 
-/// The sets of codes that agree with what is expected.
+/// The sets of codes that agree with the expected text.
 std::vector<Codes> accepted(const std::string& expected) {
   constexpr std::string_view kTolerance = "tolerance(";
   if (expected.starts_with(kTolerance)) {
@@ -101,13 +100,13 @@ std::string text_of(const Codes& codes) {
   return text.empty() ? "valid" : text;
 }
 
-/// val3dity's suite gives these files together with a second cavity, a file that the data set lacks
-/// and that 402_in_1.poly repeats (code 402: duplicated shells).
+/// True for files that val3dity's suite gives together with a second cavity. The data set lacks the
+/// file of that cavity, but 402_in_1.poly is equal to it (code 402: duplicated shells).
 bool needs_twin(const std::string& name) {
   return name == "401_2.poly" || name == "401_3.poly" || name == "402_in_1.poly";
 }
 
-/// The file's document; with `exterior`, its solids become the cavity of that file's solid.
+/// The document of a file; with `exterior`, its solids become cavities of the solid in that file.
 Result<Document> read_row(const std::filesystem::path& file,
                           const std::filesystem::path& exterior) {
   auto document = bench::read_file(file);
@@ -128,7 +127,7 @@ Result<Document> read_row(const std::filesystem::path& file,
 
 struct Outcome {
   Codes tolerant, exact;
-  std::string error;  // when the file could not be read
+  std::string error;  // the reason why the file could not be read
 };
 
 Outcome outcome_of(const std::filesystem::path& file, const std::filesystem::path& exterior,
@@ -169,12 +168,12 @@ Outcome outcome_of(const std::filesystem::path& file, const std::filesystem::pat
   return outcome;
 }
 
-/// The file that a remark names as exterior shell, from the row's file; "" without one.
+/// The file that a remark names as exterior shell, as a path; "" without such a remark.
 std::filesystem::path exterior_of(const std::filesystem::path& folder, const Row& row) {
   constexpr std::string_view kRemark = "given as interior shell of ";
   const std::size_t at = row.remark.find(kRemark);
   if (at == std::string::npos) return {};
-  // The name is from the folder that holds the row's folder.
+  // The name in the remark is relative to the folder that holds the folder of the row's file.
   const auto base = (folder / row.file).parent_path().parent_path();
   std::filesystem::path file = base / row.remark.substr(at + kRemark.size());
   if (!std::filesystem::exists(file)) file.replace_extension(".off");

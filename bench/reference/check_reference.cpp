@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// check_reference LIST FOLDER [--database CONNECTION]: holds the whole path against the reference
+// check_reference LIST FOLDER [--database CONNECTION]: checks the whole path against the reference
 // list. Every solid that the list calls clean must be valid; every feature whose solids are all
-// valid goes document -> certify -> encode -> store -> decode -> document and must come back as the
-// same text, in modes raw, bitmap and automatic. Prints each closed solid that is rejected (code
-// and place) and the share per rung. Exit status 1 on any difference.
+// valid goes through document -> certify -> encode -> store -> decode -> document and must come
+// back as the same text, in modes raw, bitmap and automatic. Prints each closed solid that is
+// rejected (code and place) and the share of each rung. Exit status 1 on any difference.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -37,7 +37,7 @@ Reference read_reference(const std::string& path) {
   Reference reference;
   std::ifstream stream(path);
   std::string line;
-  std::getline(stream, line);  // header
+  std::getline(stream, line);  // skips the header
   while (std::getline(stream, line)) {
     std::vector<std::string> fields;
     std::istringstream cells(line);
@@ -61,7 +61,7 @@ struct Totals {
 
 constexpr Mode kModes[] = {Mode::automatic, Mode::raw, Mode::bitmap};
 
-/// True if every error is one of the metric rules, which the oracle does not know.
+/// True if every error is from a metric rule, which the oracle does not have.
 bool is_refused_for_planarity_only(const Report& report) {
   return report.verdict == Verdict::invalid &&
          std::all_of(report.findings.begin(), report.findings.end(), [](const Finding& finding) {
@@ -88,7 +88,7 @@ void print_rejection(const SolidKey& key, const Report& report) {
   std::printf("\n");
 }
 
-/// Solid -> blob -> solid in each mode; counts what differs.
+/// Encodes and decodes a solid in each mode; counts the differences.
 void check_solid(const SolidKey& key, const ValidSolid& solid, Totals& totals) {
   for (const Mode mode : kModes) {
     EncodeOptions options;
@@ -106,8 +106,8 @@ void check_solid(const SolidKey& key, const ValidSolid& solid, Totals& totals) {
   }
 }
 
-/// Document -> blobs -> (store, a collection per file) -> document; empty on success, else what
-/// differs.
+/// Takes a feature from the document to blobs, through the store (a collection for each file) and
+/// back to a document. Returns an empty text on success, else the difference.
 std::string round_trip(const std::string& file, const pipeline::InspectedFeature& feature,
                        const Document& document, SolidStore* store) {
   pipeline::IngestOptions options;
@@ -192,7 +192,7 @@ void print_totals(const std::string& file, const Totals& totals) {
   std::fflush(stdout);
 }
 
-/// Totals of one file, or nothing when it cannot be read.
+/// The totals of one file, or nothing if the file cannot be read.
 std::optional<Totals> check_file(const std::filesystem::path& path_to_file,
                                  const Reference& reference, const Path& path) {
   const std::string file = path_to_file.filename().string();

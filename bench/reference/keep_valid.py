@@ -11,7 +11,7 @@ import sys
 
 
 def refused(report):
-    """Object and index of each geometry with a solid that is not valid."""
+    """The object and the index of each geometry with a solid that is not valid."""
     outcome = json.load(open(report, encoding="utf-8"))["files"][0]["outcome"]
     return {(solid["object"], solid["geometry"])
             for feature in outcome["features"] for solid in feature["solids"]

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// list_clean_solids FILE... prints one line per solid: file, object, geometry, ordinal, edges that
-// are not matched, intersecting pairs, verdict. "clean" = every directed edge of the boundary is
-// met exactly once by its reverse, and PMP finds no intersecting pair in the canonical
-// triangulation. The oracle shares the reader and the triangulation with the validator, and no
-// rule.
+// list_clean_solids FILE...: prints one line for each solid: file, object, geometry, ordinal,
+// number of unmatched edges, number of intersecting pairs, verdict. A solid is "clean" if every
+// directed edge of the boundary is met exactly once by its reverse, and PMP finds no intersecting
+// pair in the canonical triangulation. The oracle shares the reader and the triangulation with the
+// validator, but no rule.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -22,21 +22,23 @@ using namespace watertight;
 
 namespace {
 
-/// Edges of the boundary by the plain count: used other than exactly twice (open), or twice in the
-/// same direction (misoriented).
+/// The numbers of wrong edges of the boundary: edges not used exactly twice (open), and edges used
+/// twice in the same direction (misoriented).
 struct EdgeCount {
   std::size_t open = 0;
   std::size_t misoriented = 0;
 };
 
 EdgeCount count_edges(const Solid& solid) {
-  std::map<std::pair<Index, Index>, std::pair<int, int>> uses;  // forward, backward
+  // For each edge, its uses forward and backward.
+  std::map<std::pair<Index, Index>, std::pair<int, int>> uses;
   for (Index ring = 0; ring < solid.ring_count(); ++ring) {
     const auto vertices = solid.ring(ring);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const Index from = vertices[i];
       const Index to = vertices[(i + 1) % vertices.size()];
-      if (from == to) continue;  // merging collapsed it; the facet has no triangulation then
+      // Merging has collapsed the edge; its facet has no triangulation then.
+      if (from == to) continue;
       auto& use = uses[std::minmax(from, to)];
       ++(from < to ? use.first : use.second);
     }
@@ -52,7 +54,8 @@ EdgeCount count_edges(const Solid& solid) {
   return count;
 }
 
-/// PMP does not report triangles with the same three vertices as intersecting.
+/// The number of triangles with the same three vertices as another, which PMP does not report as
+/// intersecting.
 std::size_t count_equal_triangles(std::vector<Triangle> triangles) {
   for (Triangle& triangle : triangles) std::sort(triangle.begin(), triangle.end());
   std::sort(triangles.begin(), triangles.end());

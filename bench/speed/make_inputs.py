@@ -42,14 +42,14 @@ def sphere(path, triangles):
 
 
 class Model:
-    """A CityJSON of one solid."""
+    """A CityJSON document of one solid."""
 
     def __init__(self):
         self.vertices = []
         self.shells = []
 
     def box(self, low, high):
-        """Eight vertices and six quads, outward."""
+        """Adds the eight vertices of a box and returns its six facets, outward."""
         first = len(self.vertices)
         for z in (low[2], high[2]):
             for x, y in ((low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])):

@@ -28,7 +28,8 @@ CASES = [
 
 
 def measure(command):
-    """Wall, user + system seconds of all processes, peak resident KiB, last lines of the table."""
+    """Elapsed seconds, user + system seconds of all processes, peak resident KiB, last lines of the
+    printed table."""
     start = time.monotonic()
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.run(["/usr/bin/time", "-f", "%M"] + command, capture_output=True, text=True)

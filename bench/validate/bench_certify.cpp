@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The cost of each group of rules on large generated solids (seconds of processor time on one
+// Measures the cost of each group of rules on large generated solids (seconds of CPU time on one
 // thread), without the constrained Delaunay tetrahedralization.
 //
 //   bench_certify [CASE FACES]...        default: all cases at 100,000 facets
 //
-// Cases: sphere (bumpy, triangles), boxgrid (box of squares), bentgrid (the same, each square off
-// its plane by a hair: rules 204 and 804), plate (a facet with FACES / 4 holes), cavities (one box
-// with FACES / 6 boxes inside), comb (FACES / 5 teeth that nearly touch), soup (squares that share
-// no edge), dust (a sphere 0.4 mm wide).
+// Cases: sphere (uneven, of triangles), boxgrid (a box of squares), bentgrid (a box of squares that
+// are each slightly off their planes: rules 204 and 804), plate (a facet with FACES / 4 holes),
+// cavities (one box with FACES / 6 boxes inside), comb (FACES / 5 teeth that nearly touch), soup
+// (squares that share no edge), dust (a sphere 0.4 mm wide).
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -40,7 +40,7 @@ class Builder {
   }
   void end_facet() { arrays_.end_facet(); }
   void end_shell() { arrays_.end_shell(); }
-  /// Axis-parallel; turned inward for cavities.
+  /// Adds an axis-parallel box, turned inward for a cavity.
   void box(const Point& low, const Point& high, bool is_inward) {
     std::array<Index, 8> v{};
     for (std::size_t i = 0; i < 8; ++i) {
@@ -102,7 +102,7 @@ Solid sphere(std::size_t facets, double radius, double step) {
   return builder.solid(step);
 }
 
-/// A box of squares of 1 m; `bend` millimetres up at every second corner of the top.
+/// A box of squares of 1 m, in which every second corner of the top is `bend` millimetres higher.
 Solid box_grid(std::size_t facets, double bend) {
   Builder builder;
   const auto n = static_cast<int>(std::sqrt(static_cast<double>(facets) / 6)) + 1;
@@ -185,7 +185,7 @@ Solid cavities(std::size_t facets) {
   return builder.solid(0.001);
 }
 
-/// Long thin teeth side by side: an extruded zigzag.
+/// A row of long thin teeth: an extruded zigzag.
 Solid comb(std::size_t facets) {
   Builder builder;
   const auto teeth = static_cast<int>(facets / 4) + 1;
@@ -240,7 +240,7 @@ Solid make(const std::string& name, std::size_t facets) {
   std::exit(1);
 }
 
-/// Processor time of this process, which uses one thread.
+/// The CPU time of this process, which uses one thread.
 class Stopwatch {
  public:
   double lap() {

@@ -19,7 +19,7 @@ Vector normal_of(const Piece& piece) {
 }
 
 /// The points p with dot(normal, p) == offset. The first coordinate of the normal that is not zero
-/// is 1, so equal planes are equal here.
+/// is 1, so that equal planes have equal members.
 struct Plane {
   Vector normal;
   Number offset;
@@ -69,7 +69,7 @@ Bounds bounds_of(const Piece& piece) {
   return bounds;
 }
 
-/// Everything that one plane is cut along.
+/// A plane and everything along which it is cut.
 struct PlaneInput {
   Plane plane;
   Bounds bounds;
@@ -127,7 +127,7 @@ class Arranger {
     }
   }
 
-  /// The points in which the rings of a piece meet the plane, in order along their line.
+  /// The points in which the rings of a piece meet the plane, in order along their common line.
   static std::vector<Vector> meeting_points(const Plane& plane, const Piece& piece) {
     std::set<Vector> found;
     for (const auto& ring : piece.rings) {
@@ -145,7 +145,7 @@ class Arranger {
     return {found.begin(), found.end()};
   }
 
-  /// Adds the intersection of a piece with a plane that is not its own.
+  /// Adds the intersection of the plane with a piece of another plane.
   void cut_by(PlaneInput& input, const Piece& piece) {
     const std::vector<Vector> along = meeting_points(input.plane, piece);
     const int axis = along.empty() ? 0 : dropped_axis(piece);
@@ -245,7 +245,7 @@ Side locate_in(const Piece& piece, const Vector& p, int axis) {
 }
 
 std::size_t complement_components(const Complex& complex) {
-  // The columns of the boundary map, reduced: each has its last edge to itself.
+  // The columns of the boundary map after reduction; each has a last edge that no other has.
   std::map<std::size_t, std::set<std::size_t>> reduced;
   std::size_t cycles = 0;
   for (const Region& region : complex.regions) {

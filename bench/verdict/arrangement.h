@@ -2,7 +2,7 @@
 //
 // The arrangement of plane polygons in space as a cell complex: all polygons are cut along each
 // other, exactly and by definition (all pairs, rational numbers), into regions, edges and points.
-// For small solids; nothing is shared with the product's geometry.
+// For small solids; it shares no code with the product's geometry.
 #pragma once
 
 #include <vector>
@@ -11,17 +11,19 @@
 
 namespace watertight::verdict {
 
-/// A polygon with holes in a plane; the points between its rings by the even-odd rule.
+/// A polygon with holes in a plane: the points between its rings by the even-odd rule.
 struct Piece {
-  std::size_t facet = 0;  // the facet that it is a part of, by any number
+  std::size_t facet = 0;  // any number of the facet that has the piece
   std::vector<std::vector<Vector>> rings;
 };
 
-/// An open, connected part of a plane that no polygon crosses; all of it is in the same facets.
+/// An open, connected part of a plane that no polygon crosses; all of it belongs to the same
+/// facets.
 struct Region {
-  std::vector<std::size_t> facets;  // sorted
-  std::vector<std::size_t> edges;   // of its boundary; twice when both sides are in the region
-  Vector sample;                    // a point of the region
+  std::vector<std::size_t> facets;  // the facets that contain the region, sorted
+  // The edges of the boundary; twice if the region is on both sides.
+  std::vector<std::size_t> edges;
+  Vector sample;  // a point of the region
 };
 /// A place where a region meets a point between two edges of its boundary.
 struct Corner {
@@ -37,25 +39,27 @@ struct LonePoint {
 /// The cells of the union of all pieces.
 struct Complex {
   std::vector<Vector> points;
-  std::vector<std::array<std::size_t, 2>> edges;  // the smaller point index first
+  // For each edge, its points, the smaller index first.
+  std::vector<std::array<std::size_t, 2>> edges;
   std::vector<Region> regions;
   std::vector<Corner> corners;
   std::vector<LonePoint> lone_points;
 };
 
-/// Requires pieces whose points lie in one plane and that have an area.
+/// The complex of pieces. Requires that the points of each piece lie in one plane and that it has
+/// an area.
 Complex arrange(const std::vector<Piece>& pieces);
 
 enum class Side { outside, boundary, inside };
-/// Where a point of the plane of a piece is. `axis` is a coordinate in which the plane's normal is
-/// not zero: it is ignored.
+/// The place of a point in the plane of a piece. `axis` is a coordinate in which the normal of the
+/// plane is not zero, and which is ignored.
 Side locate_in(const Piece& piece, const Vector& p, int axis);
-/// A coordinate in which the piece's normal is not zero.
+/// A coordinate in which the normal of the piece is not zero.
 int dropped_axis(const Piece& piece);
 
-/// The components of what remains of space without the complex: 1 + the dimension of its second
-/// homology over the field of two elements (Alexander duality). A 2-cycle holds all of a region or
-/// nothing, so regions with holes need not be triangulated.
+/// The number of components of space without the complex: 1 + the dimension of its second homology
+/// over the field of two elements (Alexander duality). A 2-cycle contains all of a region or
+/// nothing, so regions with holes need no triangulation.
 std::size_t complement_components(const Complex& complex);
 
 }  // namespace watertight::verdict

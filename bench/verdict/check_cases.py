@@ -29,7 +29,7 @@ OPTIONS = {
     "cgal": ["--engine", "cgal"],
     "tetgen": ["--engine", "tetgen"],
 }
-# Files that cases.tsv does not list: one truth for each feature.
+# The truths of files that cases.tsv does not list: one truth for each feature.
 MORE_CASES = {"D10_micro_204.wkt": ["invalid 203"] + ["valid"] * 9}
 
 
@@ -38,7 +38,7 @@ def is_ring(boundaries):
 
 
 def rewrite_rings(boundaries, rewrite):
-    """Applies a function to every ring of nested boundaries, in place of the old ring."""
+    """The nested boundaries with a function applied to every ring."""
     if is_ring(boundaries):
         return rewrite(boundaries)
     return [rewrite_rings(entry, rewrite) for entry in boundaries]
@@ -60,7 +60,8 @@ def solids_of(document):
 
 
 def mirrored(document, axis):
-    """Mirrors places, templates and matrices: each instance is the mirror image of what it was."""
+    """The document with vertices, templates and matrices mirrored: each instance becomes its mirror
+    image."""
     document = copy.deepcopy(document)
     if "transform" in document:
         document["transform"]["translate"][axis] *= -1
@@ -80,7 +81,7 @@ def mirrored(document, axis):
 
 
 def renumber(vertices, geometries, numbers):
-    """Puts vertices in another order and gives their new numbers to the rings of geometries."""
+    """Puts vertices in another order and changes the numbers in the rings of geometries."""
     order = list(range(len(vertices)))
     numbers.shuffle(order)
     place = {old: new for new, old in enumerate(order)}
@@ -121,7 +122,7 @@ def mirrored_wkt(text, axis):
 
 
 def variants_of(path):
-    """Pairs of a variant's name and its text."""
+    """The variants of a document: pairs of a name and a text."""
     text = path.read_text()
     yield "as it is", text
     if path.suffix == ".wkt":
@@ -135,7 +136,8 @@ def variants_of(path):
 
 
 def read_cases(folder):
-    """Triples of a file and its list of truths: one for the document, or one for each feature."""
+    """Pairs of a file and its list of truths: one truth for the document, or one for each
+    feature."""
     with open(folder / "cases.tsv", newline="") as table:
         rows = [row for row in csv.reader(table, delimiter="\t", quoting=csv.QUOTE_NONE) if row]
     cases = [(folder / row[0], [row[1]]) for row in rows[1:]]
@@ -158,7 +160,7 @@ def write_variants(cases, folder):
 
 
 def ask(program, paths, options):
-    """The report of each document, in order."""
+    """The report of each document, in the order of the paths."""
     command = [program, "validate", *map(str, paths), *options, "--report", "-", "-q", "--no-times"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     reports = [json.loads(line) for line in result.stdout.splitlines() if line.startswith("{")]
@@ -173,7 +175,7 @@ def codes_of(report):
 
 
 def said_of(report, truths):
-    """Pairs of a truth and what the program said: verdict, codes, reason."""
+    """Pairs of a truth and the program's answer: verdict, codes, reason."""
     parts = [report] if len(truths) == 1 else report["features"]
     assert len(parts) == len(truths), "a truth for each feature"
     for truth, part in zip(truths, parts):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points and vectors with exact rational coordinates (GMP), for the oracle of bench/verdict.
-// Nothing here uses the product's predicates or CGAL.
+// Points and vectors with exact rational coordinates (GMP), for the oracle of bench/verdict. They
+// use neither the product's predicates nor CGAL.
 #pragma once
 
 #include <gmpxx.h>
@@ -26,7 +26,7 @@ inline Number dot(const Vector& a, const Vector& b) {
 inline Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// a + (b - a) t
+/// The point a + (b - a) t.
 inline Vector between(const Vector& a, const Vector& b, const Number& t) {
   return {a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t};
 }

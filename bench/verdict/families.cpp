@@ -36,7 +36,7 @@ Number volume(const Shell& shell) {
 std::span<const Family> families() { return kFamilies; }
 
 Sample sample_of_seed(const Family& family, std::uint64_t seed) {
-  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a of the name
+  std::uint64_t hash = 14695981039346656037ULL;  // the hash FNV-1a of the family's name
   for (const char* c = family.name; *c != 0; ++c) {
     hash = (hash ^ static_cast<unsigned char>(*c)) * 1099511628211ULL;
   }
@@ -55,7 +55,7 @@ Shell outward_tetrahedron(const std::array<Point, 4>& corners) {
 }
 
 AffineMap integer_rotation(Random& random) {
-  std::int64_t a = 0, b = 0, c = 0, d = 0;  // a quaternion
+  std::int64_t a = 0, b = 0, c = 0, d = 0;  // the four numbers of a quaternion
   do {
     a = random.between(-3, 3);
     b = random.between(-3, 3);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Families of small solids near the borders of validity. Each seed gives one sample: a solid, a
-// group of solids or a document. The oracle finds its truth unless the construction gives it.
+// group of solids or a document. The oracle finds the truth about a sample unless the construction
+// gives it.
 #pragma once
 
 #include <optional>
@@ -23,11 +24,11 @@ using solids::Shape;
 using solids::Shell;
 
 struct Sample {
-  std::vector<Solid> members;  // one solid, or a group on one lattice
+  std::vector<Solid> members;  // one solid, or the group of solids on one lattice
   std::optional<validate::GroupKind> group;
-  std::string document;        // CityJSON; then there are no members
-  std::optional<Truth> truth;  // by construction; nothing: the oracle finds it
-  /// Sizes beyond 1e-140 to 1e150 m, where engines may give up.
+  std::string document;        // a CityJSON document; a sample with one has no members
+  std::optional<Truth> truth;  // the truth by construction; nothing: the oracle finds it
+  /// True for sizes beyond 1e-140 to 1e150 m and the like, where engines may give up.
   bool may_be_undecided = false;
 };
 
@@ -36,7 +37,7 @@ struct Family {
   Sample (*make)(Random& random);
 };
 std::span<const Family> families();
-/// The sample of a seed, the same on every machine.
+/// The sample of a seed; every machine makes the same one.
 Sample sample_of_seed(const Family& family, std::uint64_t seed);
 
 Sample make_diagonals(Random& random);
@@ -50,35 +51,35 @@ Sample make_large_integers(Random& random);
 Sample make_scales(Random& random);
 Sample make_instance(Random& random);
 Sample make_placed_group(Random& random);
-/// Solids of tests/solids, with random vertices moved and boxes joined: no special case in mind.
+/// Solids of tests/solids with random vertices moved, or boxes joined: no special case.
 Sample make_general(Random& random);
 
-// Helpers that the families share.
+// Functions that the families share.
 
-/// True once in `n` times.
+/// True in one of `n` cases, at random.
 inline bool one_in(Random& random, std::uint64_t n) { return random.below(n) == 0; }
 inline Point plus(const Point& a, const Point& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Point times(const Point& a, double factor) {
   return {a.x * factor, a.y * factor, a.z * factor};
 }
-/// The shell, or the shell inside out, so that its volume is positive.
+/// The shell, turned inside out if its volume is negative.
 Shell outward(Shell shell);
-/// The same as a cavity.
+/// The shell, turned so that it bounds a cavity.
 Shell as_cavity(Shell shell);
-/// A tetrahedron, outward.
+/// A tetrahedron whose facets face outward.
 Shell outward_tetrahedron(const std::array<Point, 4>& corners);
 /// A random rotation times a whole number (1 to 20), and a shift.
 AffineMap integer_rotation(Random& random);
-/// A random integer map, mirror images among them, or the identity.
+/// A random integer map, which may mirror, or the identity.
 AffineMap any_map(Random& random);
-/// The shape on the lattice of `exponent` (a power of ten of a metre), mapped, and its vertices,
+/// The mapped shape on the lattice of `exponent` (a power of ten of a metre), with its vertices,
 /// facets and ring starts in another order.
 Solid placed(const Shape& shape, const AffineMap& map, int exponent, Random& random);
 Sample sample_of(Solid solid);
-/// A cavity (outward) in the box from (0,0,0) to (size,size,size): a tetrahedron that touches its
-/// facets in vertices and edges.
+/// A tetrahedron (facing outward) for a cavity of the box from (0,0,0) to (size,size,size); it
+/// touches the facets of the box in vertices and edges.
 Shell touching_tetrahedron(Random& random, std::int64_t size);
-/// The boundaries of a solid as CityJSON writes them, its vertices numbered from `first_vertex` on.
+/// The boundaries of a solid in CityJSON, with vertices numbered from `first_vertex` on.
 std::string boundaries_text(const Solid& solid, Index first_vertex = 0);
 /// A box with a pit in its top facet and a cavity near it.
 Shape pit_and_cavity(Random& random);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Families of cavities that touch what is around them, and of pairs of solids that touch from
-// within.
+// Families of cavities that touch other shells of their solid, and of pairs of solids that touch
+// from within.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kRoom = 24;
 
-/// Points of a shell, each once.
+/// The points of a shell, each once.
 std::vector<Point> corners_of(const Shell& shell) {
   std::set<Point> corners;
   for (const Facet& facet : shell) {
@@ -32,7 +32,7 @@ Shell moved(Shell shell, const Move& move) {
   return shell;
 }
 
-/// A bipyramid that touches the facets of the room in the middle, or nearly.
+/// A bipyramid that touches the facets of the room in their middles, or nearly.
 Shell octahedron(Random& random) {
   const double half = kRoom / 2;
   const auto reach = [&] { return one_in(random, 3) ? half - random.within(1, 6) : half; };
@@ -57,8 +57,8 @@ Shell cavity_of_room(Random& random) {
   }
 }
 
-/// Another shell that relates to a cavity: the same, smaller about a corner, with a corner moved,
-/// or moved as a whole.
+/// A shell related to a cavity: equal, smaller about a corner, with one corner moved, or moved as a
+/// whole.
 Shell relative_of(const Shell& cavity, Random& random) {
   const std::vector<Point> corners = corners_of(cavity);
   const Point& pivot = corners[random.below(corners.size())];
@@ -68,7 +68,7 @@ Shell relative_of(const Shell& cavity, Random& random) {
       return cavity;
     case 2:  // half as large, about a corner
       return moved(cavity, [&](const Point& p) { return times(plus(p, pivot), 0.5); });
-    case 3: {  // with another corner moved towards the middle, or anywhere
+    case 3: {  // another corner is moved towards the middle, or anywhere
       Point target = corners[random.below(corners.size())];
       target =
           one_in(random, 2)
@@ -88,7 +88,7 @@ Shape second_member(const Shape& first, const Shell& cavity, Random& random) {
   switch (random.below(8)) {
     case 0:
       return first;
-    case 1: {  // beside the room: with an area, an edge or a corner in common, or apart
+    case 1: {  // beside the room, with an area, an edge or a corner in common, or apart
       const auto place = [&] { return random.within(-1, 2) * kRoom / 2; };
       const Point low{random.within(0, 1) * kRoom + place(), place(), kRoom};
       return {solids::box(low, plus(low, {12, 12, 12}))};
@@ -163,7 +163,7 @@ Shape pit_and_cavity(Random& random) {
   double cavity_z = one_in(random, 2) ? rim_z : random.within(3, static_cast<int>(rim_z) + 1);
   const Point low{0, 0, std::min(cavity_z - 1, random.within(0, 5))};
   const Ring ring = square(cavity_half, cavity_z, is_diamond);
-  if (one_in(random, 3)) {  // with a tip above, at the pit's tip or near it
+  if (one_in(random, 3)) {  // the cavity has a tip above, at the pit's tip or near it
     const Point high = one_in(random, 2) ? tip : Point{0, 0, cavity_z + random.within(1, 3)};
     if (high.z > cavity_z) return {room, as_cavity(solids::bipyramid(ring, high, low))};
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Families in which the diagonal of a facet decides: of quads that are not quite planar, and of
-// walls that cross along one. Lengths are in 0.01 mm before a rotation scales them by up to 20; so
-// quads stay within 8 mm of their planes.
+// Families in which the diagonal of a facet decides: diagonals of quadrilaterals that are not quite
+// planar, and walls that cross along a diagonal. Lengths are in 0.01 mm before a rotation scales
+// them by up to 20, so quadrilaterals stay within 8 mm of their planes.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,8 @@ double off_plane(Random& random) {
   return random.within(-6, 6) * (one_in(random, 3) ? 6 : 1);
 }
 
-/// The fourth corner of a quad with the corners (0,0), (a,0), (0,b): a rectangle, or a kite.
+/// The fourth corner of a quadrilateral with the corners (0,0), (a,0), (0,b): a rectangle, or a
+/// kite.
 std::array<double, 2> fourth_corner(Random& random, double a, double b) {
   if (one_in(random, 3)) return {a, b};
   const double factor = random.within(60, 140) / 100;
@@ -26,10 +27,10 @@ std::array<double, 2> fourth_corner(Random& random, double a, double b) {
   return {a * factor, b * random.within(60, 140) / 100};
 }
 
-/// A corner of three quads, and a cavity with edges along their diagonals: where these are
+/// A corner of three quadrilaterals, and a cavity with edges along their diagonals: if these are
 /// diagonals of the surface too, the cavity seals the corner off.
 Shape corner_and_cavity(Random& random) {
-  const bool is_regular = one_in(random, 2);  // else each corner has offsets of its own
+  const bool is_regular = one_in(random, 2);  // false: each corner has offsets of its own
   const auto length = [&] { return random.within(60, 200) * 100; };
   const double a = length();
   const double b = is_regular || one_in(random, 2) ? a : length();
@@ -62,8 +63,8 @@ Shape corner_and_cavity(Random& random) {
   return {outer, as_cavity(outward_tetrahedron(cavity))};
 }
 
-/// A box with corners that are a little off, so that no facet is planar, and a tetrahedron
-/// inscribed in it as cavity: its edges are one diagonal of each facet.
+/// A box whose corners are a little moved, so that no facet is planar, and an inscribed tetrahedron
+/// as cavity, whose edges are one diagonal of each facet.
 Shape box_and_inscribed(Random& random) {
   const std::array<double, 3> size{random.within(60, 200) * 100, random.within(60, 200) * 100,
                                    random.within(60, 200) * 100};
@@ -94,13 +95,13 @@ Shape box_and_inscribed(Random& random) {
 struct Loop {
   double low = 0;
   double high = 0;
-  std::array<Point, 2> ends;   // of the walls that run to the middle; ends[0] on wall A
-  std::vector<Point> between;  // more corners of its outline
+  std::array<Point, 2> ends;   // the ends of the walls that run to the middle; ends[0] is on wall A
+  std::vector<Point> between;  // further corners of the outline
 };
 
 Point at(const Point& p, double z) { return {p.x, p.y, z}; }
 
-/// Top, bottom and outer walls; what closes it are the two walls to the middle.
+/// Appends top, bottom and outer walls of a loop; the two walls to the middle are still missing.
 void append_loop(Shell& shell, const Loop& loop) {
   std::vector<Point> chain{loop.ends[0]};
   chain.insert(chain.end(), loop.between.begin(), loop.between.end());
@@ -120,7 +121,7 @@ void append_loop(Shell& shell, const Loop& loop) {
 }
 
 /// The wall of two loops, from the end of one through the middle to the end of the other.
-/// `middle_points`: whether points of the middle at which nothing bends stand in the ring.
+/// `middle_points`: whether the ring has the points of the middle, at which the wall does not bend.
 Ring wall(const Loop& first, const Loop& second, std::size_t end, bool middle_points) {
   const Point& p = first.ends[end];
   const Point& q = second.ends[end];
@@ -146,7 +147,7 @@ Loop loop_of(Random& random, const Point& on_a, const Point& on_b, bool is_level
   return loop;
 }
 
-/// A loop with two walls of its own: a prism.
+/// A prism over a loop, with two walls of its own.
 Shell prism_of(const Loop& loop) {
   Shell shell;
   append_loop(shell, loop);
@@ -158,8 +159,9 @@ Shell prism_of(const Loop& loop) {
   return shell;
 }
 
-/// A figure eight as a prism: two straight walls cross in the line above its middle, and one of its
-/// loops is inside out. Controls: one loop (valid), and two loops with walls of their own (303).
+/// A prism over a figure eight: two straight walls cross in the line above its middle, and one of
+/// its loops is inside out. For comparison: one loop (valid), and two loops with walls of their own
+/// (303).
 Shape figure_eight(Random& random) {
   const Point u{random.within(3, 9), random.within(-2, 9), 0};
   const Point w{random.within(-2, 2), random.within(10, 14), 0};
@@ -187,9 +189,9 @@ Sample make_diagonals(Random& random) {
   return sample_of(placed(shape, map, kExponent, random));
 }
 
-/// Two tetrahedra under a quad: the quad's diagonal from corner 1 to corner 3 is an edge of both.
-/// Where it is a diagonal of the surface too, they touch along it; where the other one is and
-/// stands above it, a thin hinge joins them.
+/// Two tetrahedra under a quadrilateral, whose diagonal from corner 1 to corner 3 is an edge of
+/// both. If it is a diagonal of the surface too, the tetrahedra touch along it; if the other
+/// diagonal is one, and is above, a thin hinge joins the tetrahedra.
 Sample make_hinge(Random& random) {
   const auto length = [&] { return random.within(40, 200) * 100; };
   const double half = length();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Families at the ends of the number range: integers near 2^53, and doubles from 1e-300 to 1e300.
+// Families at the ends of the range of numbers: integers near 2^53, and doubles from 1e-300 to
+// 1e300.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,7 +14,7 @@ namespace watertight::verdict {
 namespace {
 
 /// A slim box from 0 to about `top` (2^50 to 2^53) with a slanted top facet, and a tetrahedron as
-/// cavity whose corners are on the top facet and on the sides, near the top.
+/// cavity whose corners are on the top facet and on the sides near the top.
 Shape tall_box(Random& random) {
   const double top =
       std::ldexp(1, 50 + static_cast<int>(random.below(3))) + random.within(0, 1'000'000) + 100;
@@ -75,7 +76,7 @@ bool is_planar(const Solid& solid) {
                      [](const FacetModel& facet) { return facet.is_planar; });
 }
 
-/// Coordinates times a power of ten, as decimals: exact.
+/// The solid with coordinates times a power of ten, exactly, as decimals.
 Solid scaled_decimals(const Solid& solid, int exponent) {
   std::vector<std::array<GridNumber, 3>> places;
   for (const Point& p : solid.vertices()) {
@@ -89,9 +90,10 @@ Solid scaled_decimals(const Solid& solid, int exponent) {
   return solid_of_world(solid, geometry::lattice_of_decimals(places).value());
 }
 
-/// Coordinates times powers of two, one for each axis, on whatever lattice the doubles get. That
-/// may be one of their shortest decimals: then facets are not quite planar, and the oracle judges
-/// those. In metres that matters for large solids only, which are taken as decimals instead.
+/// The solid with coordinates times powers of two, one for each axis, on the lattice that the
+/// doubles get. That lattice may have their shortest decimals, so that facets are not quite planar;
+/// the oracle judges these facets. In metres the difference matters for large solids only, which
+/// are taken as decimals instead.
 Sample scaled(const Solid& solid, Random& random) {
   const int common = static_cast<int>(random.between(-990, 970));
   std::array<int, 3> exponent{common, common, common};
@@ -111,9 +113,9 @@ Sample scaled(const Solid& solid, Random& random) {
   return sample;
 }
 
-/// A cube of 1000 x 10^k with one corner raised by a thousandth of its size, a quarter of which is
-/// the distance from the best plane: 203 for k >= 0, fine below k = -2, and its fold is less than a
-/// degree at any size.
+/// A cube of 1000 x 10^k with one corner raised by a thousandth of its size. A quarter of that is
+/// the distance from the best plane: 203 for k >= 0, no finding below k = -2. The fold is less than
+/// a degree at any size.
 Sample folded_cube(Random& random) {
   const int exponent = one_in(random, 4) ? static_cast<int>(random.between(0, 200))
                                          : static_cast<int>(random.between(-280, -3));
@@ -131,7 +133,7 @@ Sample folded_cube(Random& random) {
   if (exponent >= 0) truth.codes = {203};
   truth.reason = exponent >= 0 ? "a corner is far from the plane" : "";
   sample.truth = truth;
-  sample.may_be_undecided = exponent < -143 || exponent > 147;  // 1e-140 and 1e150 m
+  sample.may_be_undecided = exponent < -143 || exponent > 147;  // beyond 1e-140 and 1e150 m
   return sample;
 }
 
@@ -143,10 +145,11 @@ Sample make_large_integers(Random& random) {
     Shape shape = tall_box(random);
     while (is_flat(shape[1])) shape = tall_box(random);
     Sample sample = sample_of(placed(shape, map, 0, random));
-    sample.may_be_undecided = true;  // extents more than 2^40 times apart
+    sample.may_be_undecided = true;  // the extents differ by a factor of more than 2^40
     return sample;
   }
-  for (std::int64_t& shift : map.shift) {  // small, but far from the origin of the lattice
+  // The solid is small, but far from the origin of the lattice.
+  for (std::int64_t& shift : map.shift) {
     const std::int64_t power = std::int64_t{1} << (50 + random.below(3));
     shift = one_in(random, 2) ? power + random.between(0, 1'000'000) : 0;
   }

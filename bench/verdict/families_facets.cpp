@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Families in which rings of one facet touch, or the edge of a hole lies in the middle of a facet.
+// Families in which rings of one facet touch, or an edge of a hole lies in the middle of a facet.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -16,7 +16,7 @@ double turn(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// True if p is inside the segment from a to b, all in one horizontal plane.
+/// True if p is inside the segment from a to b; all three are in one horizontal plane.
 bool is_inside_edge(const Point& p, const Point& a, const Point& b) {
   const double along = (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y);
   const double length = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
@@ -29,7 +29,8 @@ Ring counter_clockwise(Ring ring) {
   return area < 0 ? solids::reversed(std::move(ring)) : ring;
 }
 
-/// A ring with points of other rings that lie inside its edges, those that `takes` says.
+/// The ring with those of the points inserted that lie inside its edges and for which `takes` is
+/// true.
 template <class Takes>
 Ring with_points(const Ring& ring, const std::vector<Point>& points, const Takes& takes) {
   Ring result;
@@ -49,8 +50,8 @@ Ring with_points(const Ring& ring, const std::vector<Point>& points, const Takes
   return result;
 }
 
-/// A hole polygon in the square from (0,0) to (size,size): one that touches the side y = 0 in its
-/// first point, or is `clear` away from it. Counter-clockwise.
+/// The polygon of a hole in the square from (0,0) to (size,size), counter-clockwise: its first
+/// point is on the side y = 0, or `clear` away from it.
 Ring hole_outline(Random& random, double size, double clear) {
   const double x = random.within(3, 9);
   const double y = random.within(4, 8);
@@ -61,8 +62,8 @@ Ring hole_outline(Random& random, double size, double clear) {
   return counter_clockwise(std::move(ring));
 }
 
-/// The walls of a hole from its upper outline to its lower one, seen from inside the hole; as
-/// triangles where they are not upright.
+/// Appends the walls of a hole from its upper outline to its lower one, turned towards the hole;
+/// walls that are not upright become triangles.
 void append_hole_walls(Shell& shell, const Ring& upper, const Ring& lower) {
   for (std::size_t k = 0; k < upper.size(); ++k) {
     const std::size_t after = (k + 1) % upper.size();
@@ -80,7 +81,7 @@ Ring lifted(Ring ring, double z) {
   return ring;
 }
 
-/// The side y = 0 of a box, with points of its upper and lower edge.
+/// The side y = 0 of a box, with the given points of its upper and lower edge.
 Ring front(double size, double height, const std::vector<Point>& upper,
            const std::vector<Point>& lower) {
   const auto all = [](const Point&) { return true; };
@@ -94,8 +95,8 @@ Ring front(double size, double height, const std::vector<Point>& upper,
   return ring;
 }
 
-/// Points that stand in the ring of the front: most of those in the rings above and below it, and
-/// some of the hole's upper outline.
+/// The points to insert into the ring of the front: most points of the rings above and below it,
+/// and some of the hole's upper outline.
 std::vector<Point> points_in_front(Random& random, const Ring& upper,
                                    std::initializer_list<const Ring*> neighbours) {
   std::set<Point> found;
@@ -110,8 +111,9 @@ std::vector<Point> points_in_front(Random& random, const Ring& upper,
   return {found.begin(), found.end()};
 }
 
-/// A block with a hole from its top: through it, to some depth, or narrowing so that it leaves the
-/// front at once. The points where the hole meets the front stand in the front's ring or not.
+/// A block with a hole from its top: through the block, to some depth, or narrowing so that it
+/// leaves the front at once. The ring of the front may or may not have the points where the hole
+/// meets it.
 Shell pierced_block(Random& random) {
   const double size = 12;
   const double height = random.within(4, 12);
@@ -122,7 +124,7 @@ Shell pierced_block(Random& random) {
   Ring lower = lifted(outline, floor);
   if (narrows) {
     for (Point& p : lower) p.y = std::max(p.y, 2.0);
-    if (lower[0].y == lower[1].y) lower[0].y = 1;  // keep its area
+    if (lower[0].y == lower[1].y) lower[0].y = 1;  // keeps the area of the ring above zero
   }
   const Ring upper = lifted(outline, height);
   const auto some = [&](const Point&) { return !one_in(random, 3); };
@@ -144,8 +146,8 @@ Shell pierced_block(Random& random) {
   return shell;
 }
 
-/// A ring of a hole in the square of a top facet, with corners on the outline or on other rings
-/// more often than by chance.
+/// The ring of a hole in the square of a top facet; more corners than by chance are on the outline
+/// or on other rings.
 Ring random_hole(Random& random, double size, const std::vector<Ring>& others) {
   const double x = random.within(3, 9);
   const double y = random.within(3, 9);
@@ -175,15 +177,15 @@ std::vector<Point> all_points(const std::vector<Ring>& rings) {
   return {points.begin(), points.end()};
 }
 
-/// The mean of a ring's points, at another height.
+/// The mean of the points of a ring, at the height z.
 Point tip_of(const Ring& ring, double z) {
   Point tip{0, 0, 0};
   for (const Point& p : ring) tip = plus(tip, p);
   return at(times(tip, 1.0 / static_cast<double>(ring.size())), z);
 }
 
-/// A box whose top facet has pits with a tip each; rings of the pits touch each other and the
-/// outline, and the facets across have the points of touch or not.
+/// A box whose top facet has pits with a tip each; the rings of the pits touch each other and the
+/// outline, and the facets across may or may not have the points of contact.
 Shell box_with_pits(Random& random) {
   const double size = 12;
   const double top = 12;
@@ -241,7 +243,7 @@ Sample make_prisms(Random& random) {
 }
 
 Sample make_touching_rings(Random& random) {
-  // Tips are thirds and quarters of whole numbers.
+  // The factor 12 makes tips whole, which are thirds and quarters of whole numbers.
   return sample_of(placed({scaled(box_with_pits(random), 12)}, any_map(random), -3, random));
 }
 

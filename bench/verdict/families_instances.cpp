@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Instances of geometry templates in CityJSON documents, under random matrices. All numbers are
-// decimals, so the place of each vertex is exact.
+// decimals, so the position of each vertex is exact.
 #include "bench/verdict/families.h"
 
 namespace watertight::verdict {
 namespace {
 
-/// Integers times a power of ten.
+/// A matrix of integers times a power of ten.
 struct DecimalMatrix {
-  AffineMap map;  // the shift is not used
+  AffineMap map;  // the shift of the map is not used
   int exponent = 0;
 };
 
@@ -24,7 +24,8 @@ AffineMap product(const AffineMap& a, const AffineMap& b) {
   return result;
 }
 
-/// A rotation about an axis by an angle of a Pythagorean triple, to be divided by the third number.
+/// A rotation about an axis by an angle of a Pythagorean triple; its entries must be divided by the
+/// third number.
 AffineMap rotation(std::size_t axis, std::int64_t cosine, std::int64_t sine, std::int64_t radius) {
   AffineMap map;
   map.matrix = {};
@@ -38,7 +39,7 @@ AffineMap rotation(std::size_t axis, std::int64_t cosine, std::int64_t sine, std
   return map;
 }
 
-/// Rotations, mirror images, and `exponent` as scale: a similarity.
+/// A random similarity: rotations and mirror images, with the scale 10^exponent.
 DecimalMatrix similarity(Random& random, int exponent) {
   DecimalMatrix matrix;
   matrix.exponent = exponent;
@@ -65,7 +66,7 @@ void shear(DecimalMatrix& matrix, Random& random) {
   matrix.map = product(matrix.map, map);
 }
 
-/// Makes the matrix singular: a column is nothing, or a row is a multiple of another.
+/// Makes the matrix singular: a column becomes 0, or a row a multiple of another.
 void flatten(DecimalMatrix& matrix, Random& random) {
   auto& m = matrix.map.matrix;
   const std::size_t i = random.below(3);
@@ -102,10 +103,11 @@ struct Template {
   std::string boundaries;
 };
 
-/// Templates, and objects that have instances of them or solids of their own.
+/// A document of templates, and of objects that have instances of them or solids of their own.
 class Document {
  public:
-  /// The vertices of the shapes are times 10^exponent. Boundaries of several are a composite's.
+  /// Adds a template. The vertices of the shapes are multiplied by 10^exponent. Several shapes
+  /// become a composite solid.
   void add_template(const std::vector<Shape>& members, int exponent) {
     Template form;
     for (const Shape& member : members) {
@@ -119,13 +121,14 @@ class Document {
     templates_.push_back(std::move(form));
   }
 
-  /// Millimetres.
+  /// The text of a solid in millimetres.
   std::string solid(const Shape& shape) {
     return R"({"type": "Solid", "lod": "2", "boundaries": )" +
            boundaries_on(solids::solid_of(shape), vertices_, 0) + "}";
   }
 
-  /// `offset` is times the matrix's power of ten, `place` in millimetres.
+  /// The text of an instance. `offset` is multiplied by the matrix's power of ten; `place` is in
+  /// millimetres.
   std::string instance(std::size_t number_of_template, const DecimalMatrix& matrix,
                        const std::array<std::int64_t, 3>& offset,
                        const std::array<std::int64_t, 3>& place) {
@@ -138,7 +141,7 @@ class Document {
            R"(], "transformationMatrix": )" + text_of(matrix, offset) + "}";
   }
 
-  /// `family` is its members parents or children.
+  /// Adds an object. `family` is the JSON member with its parents or children, if any.
   void add_object(const std::string& id, const std::string& type, const std::string& geometry,
                   const std::string& family = "") {
     std::string object("\"");
@@ -189,8 +192,8 @@ class Document {
   std::vector<std::string> objects_;
 };
 
-/// A cube of 10 m in place, with a corner raised by 0.016 m or 0.12 m: a quarter of it is the
-/// distance from the best plane, so it is within 0.01 m or beyond.
+/// A cube of 10 m where the instance stands, with a corner raised by 0.016 m or 0.12 m. A quarter
+/// of that is the distance from the best plane, which is within 0.01 m or beyond it.
 Shape folded_cube(bool is_folded_far) {
   Shell box = solids::box({0, 0, 0}, {10'000, 10'000, 10'000});
   for (Facet& facet : box) {
@@ -219,7 +222,7 @@ std::int64_t sign_of_determinant(const DecimalMatrix& matrix) {
   return determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
 }
 
-/// A random box on a small grid, so that two often touch, or an L.
+/// A random box on a small grid, so that two boxes often touch, or an L-shaped block.
 Shape small_form(Random& random, double unit) {
   const auto at = [&](std::int64_t least) {
     return static_cast<double>(random.between(least, least + 2)) * unit;
@@ -232,7 +235,7 @@ Shape small_form(Random& random, double unit) {
   return {solids::box(low, high)};
 }
 
-/// matrix.map times the shape, divided by `divisor`, which leaves no remainder, and shifted.
+/// The shape under matrix.map, divided by `divisor`, which leaves no remainder, and shifted.
 Shape mapped(const Shape& shape, const DecimalMatrix& matrix, const Point& shift, double divisor) {
   Shape result = shape;
   for (Shell& shell : result) {
@@ -255,7 +258,7 @@ Shape mapped(const Shape& shape, const DecimalMatrix& matrix, const Point& shift
   return result;
 }
 
-/// The members of one composite solid.
+/// Adds a composite solid of two members.
 void add_composite(const Shape& first, const Shape& second, const DecimalMatrix& matrix,
                    Random& random, Document& document) {
   document.add_template({first, second}, -3);
@@ -265,7 +268,7 @@ void add_composite(const Shape& first, const Shape& second, const DecimalMatrix&
   }
 }
 
-/// A building and its part: a solid in place and an instance, or two instances whose matrices
+/// Adds a building with a part: a solid in place and an instance, or two instances whose matrices
 /// differ in their shifts.
 void add_building(const Shape& first, const Shape& second, const DecimalMatrix& matrix,
                   Random& random, Document& document) {
@@ -280,7 +283,7 @@ void add_building(const Shape& first, const Shape& second, const DecimalMatrix& 
   std::string own;
   if (one_in(random, 2)) {
     own = document.solid(mapped(first, matrix, shift, divisor));
-  } else {  // moved in the template by -t, in the world by the matrix times t
+  } else {  // the solid is moved in the template by -t, and in the world by the matrix times t
     const Point t{static_cast<double>(random.between(-5, 5)),
                   static_cast<double>(random.between(-5, 5)), 3};
     Shape moved = first;
@@ -333,7 +336,7 @@ Sample make_instance(Random& random) {
   const bool is_folded = one_in(random, 2);
   const bool is_folded_far = one_in(random, 2);
   const int scale = static_cast<int>(random.between(-3, 3));
-  // Where the instance stands, a unit of the template is a millimetre.
+  // In the world, a unit of the template is a millimetre.
   Document document;
   document.add_template({is_folded ? folded_cube(is_folded_far) : planar_form(random)}, -3 - scale);
   Sample sample;
@@ -356,7 +359,7 @@ Sample make_instance(Random& random) {
   return sample;
 }
 
-/// An affine map with an inverse keeps how solids lie to each other.
+/// An affine map with an inverse keeps the relation of two solids.
 Sample make_placed_group(Random& random) {
   const Shape first = small_form(random, 10'000);
   Shape second = one_in(random, 8) ? first : small_form(random, 10'000);

@@ -71,7 +71,7 @@ Truth group_truth(const Sample& sample) {
   return truth;
 }
 
-/// For a group, the truth about its members is asked first: it has none itself if one is invalid.
+/// The truth about a sample. A group with an invalid member has that member's truth.
 Truth truth_about(const Sample& sample) {
   if (sample.truth) return *sample.truth;
   Truth all;
@@ -178,7 +178,7 @@ Outcome outcome_of(const Truth& truth, const Said& said, bool may_be_undecided) 
   return is_named ? Outcome::right : Outcome::wrong_code;
 }
 
-/// Asks in one variant. `base` is the truth about the sample as it is.
+/// Adds the judgement of one variant. `base` is the truth about the sample as it is.
 void add_judgement(const Sample& sample, const Truth& base, const Variant& variant,
                    std::uint64_t seed, delaunay::EngineWorkers* workers,
                    std::vector<Judgement>& judgements) {

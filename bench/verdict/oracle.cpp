@@ -29,7 +29,8 @@ class Sets {
 
 /// The regions and facets at each edge and point of a complex.
 struct Incidence {
-  std::vector<std::vector<std::size_t>> regions_at_edge;  // twice when on both sides
+  // A region is listed twice if it is on both sides.
+  std::vector<std::vector<std::size_t>> regions_at_edge;
   std::vector<Numbers> facets_at_edge;
   std::vector<Numbers> facets_at_point;
 };
@@ -55,9 +56,9 @@ Incidence incidence_of(const Complex& complex) {
   return incidence;
 }
 
-/// Ring edges and vertices by the points of the complex.
+/// The ring edges and the vertices at the points of the complex.
 struct RingCells {
-  std::set<std::array<std::size_t, 2>> edges;  // whole ring edges that a cell lies on
+  std::set<std::array<std::size_t, 2>> edges;  // the ring edges, as wholes, on which the cell lies
   bool is_vertex = false;
 };
 
@@ -108,7 +109,7 @@ class SolidOracle {
     }
   }
 
-  /// The ring edges of a facet, by their sorted end points, that contain all the given points.
+  /// The ring edges of a facet, by their sorted end points, that contain all of the given points.
   std::set<std::array<std::size_t, 2>> ring_edges_with(std::size_t facet,
                                                        const std::vector<std::size_t>& points) {
     std::set<std::array<std::size_t, 2>> found;
@@ -122,7 +123,7 @@ class SolidOracle {
     return found;
   }
 
-  /// The interior of a facet hangs together: 205.
+  /// Checks that the interior of each facet is connected (205).
   void check_facet_interiors() {
     Sets sets(complex_.regions.size());
     std::vector<Numbers> parts(model_.facets.size());
@@ -151,9 +152,10 @@ class SolidOracle {
     return std::binary_search(facets.begin(), facets.end(), facet);
   }
 
-  /// Each ring edge has two facets of its shell, which pass it in opposite directions.
+  /// Checks that each ring edge belongs to two facets of its shell, with opposite directions.
   void check_directions() {
-    std::map<std::array<std::size_t, 3>, std::array<std::size_t, 2>> uses;  // shell, ends
+    // The key is a shell and two ends.
+    std::map<std::array<std::size_t, 3>, std::array<std::size_t, 2>> uses;
     for (std::size_t facet = 0; facet < model_.facets.size(); ++facet) {
       for (const auto& [from, to] : ring_edges_[facet]) {
         ++uses[{shell_of(facet), std::min(from, to), std::max(from, to)}][from < to ? 0 : 1];
@@ -177,7 +179,7 @@ class SolidOracle {
     }
   }
 
-  /// Two facets of a shell that share an edge of the complex have a ring edge there in common.
+  /// Checks that two facets of a shell that share an edge of the complex share the ring edge there.
   void check_edges() {
     for (std::size_t edge = 0; edge < complex_.edges.size(); ++edge) {
       const std::vector<std::size_t> ends(complex_.edges[edge].begin(), complex_.edges[edge].end());
@@ -196,7 +198,8 @@ class SolidOracle {
     }
   }
 
-  /// Likewise for points: a vertex of both, or on a common ring edge.
+  /// Checks that two facets of a shell that share a point have it as a vertex, or on a common ring
+  /// edge.
   void check_points() {
     for (std::size_t point = 0; point < complex_.points.size(); ++point) {
       const auto& facets = incidence_.facets_at_point[point];
@@ -220,9 +223,10 @@ class SolidOracle {
     return false;
   }
 
-  /// Around each vertex of a shell the corners of its facets are one cycle.
+  /// Checks that the corners of a shell's facets around each vertex form one cycle.
   void check_links() {
-    std::map<std::array<std::size_t, 2>, std::vector<const Corner*>> corners;  // point, shell
+    // The key is a point and a shell.
+    std::map<std::array<std::size_t, 2>, std::vector<const Corner*>> corners;
     for (const Corner& corner : complex_.corners) {
       Numbers shells;
       for (const std::size_t facet : complex_.regions[corner.region].facets) {
@@ -248,7 +252,7 @@ class SolidOracle {
 
   void check_components() {
     Sets sets(model_.facets.size());
-    std::map<std::array<std::size_t, 2>, std::size_t> facet_at;  // shell, vertex
+    std::map<std::array<std::size_t, 2>, std::size_t> facet_at;  // the key is a shell and a vertex
     for (std::size_t facet = 0; facet < model_.facets.size(); ++facet) {
       for (const std::size_t vertex : ring_vertices_[facet]) {
         sets.join(facet,
@@ -270,7 +274,7 @@ class SolidOracle {
                        [&](std::size_t facet) { return shell_of(facet) == shell; });
   }
 
-  /// Points of all parts into which other shells can cut a shell, one of each.
+  /// A point of each part into which other shells can cut a shell.
   std::vector<Vector> samples_of(std::size_t shell) {
     Sets sets(complex_.regions.size());
     for (std::size_t edge = 0; edge < complex_.edges.size(); ++edge) {
@@ -290,7 +294,7 @@ class SolidOracle {
     return samples;
   }
 
-  /// How many parts of one shell lie outside and inside another.
+  /// The numbers of parts of one shell that lie outside and inside another.
   std::array<std::size_t, 2> parts_in(std::size_t shell, std::size_t other) {
     std::vector<Piece> pieces;
     for (Piece& piece : pieces_of(model_)) {
@@ -340,15 +344,15 @@ class SolidOracle {
     }
   }
 
-  /// The outside, each cavity and each part of the interior are components of what is left of
-  /// space.
+  /// Checks that space without the complex has as components the outside, each cavity, and one
+  /// interior.
   void check_interior() {
     if (complement_components(complex_) != model_.shell_count + 1) {
       refuse({404}, "the interior falls into parts");
     }
   }
 
-  /// A point of the complex that lies on ring edges of two shells and is no vertex.
+  /// Notes a point of the complex that lies on ring edges of two shells and is no vertex.
   void note_crossing_edges() {
     for (std::size_t point = 0; point < complex_.points.size(); ++point) {
       Numbers shells;
@@ -365,13 +369,13 @@ class SolidOracle {
   Complex complex_;
   Incidence incidence_;
   std::map<Vector, std::size_t> number_;
-  std::vector<std::vector<std::array<std::size_t, 2>>> ring_edges_;  // by facet; from, to
+  // For each facet, pairs of ends (from, to).
+  std::vector<std::vector<std::array<std::size_t, 2>>> ring_edges_;
   std::vector<Numbers> ring_vertices_;
   Truth truth_;
 };
 
-/// True if the interior of a solid is on the side of its facet to which its normal points not, and
-/// that side is the same for a facet of another solid at the same place.
+/// True if the interiors of two solids are on the same side of facets at one place: behind both.
 bool are_on_one_side(const FacetModel& first, const FacetModel& second) {
   const auto normal = [](const FacetModel& facet) {
     const auto& ring = facet.pieces.front().front();

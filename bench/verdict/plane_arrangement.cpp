@@ -8,7 +8,8 @@
 namespace watertight::verdict {
 namespace {
 
-// Doubles of rationals are off by one unit in the last place; this is wide enough for all.
+// The relative widening of boxes: doubles of rationals are off by one unit in the last place, which
+// is much less.
 constexpr double kWidening = 1e-12;
 
 double low(double a, double b) {
@@ -50,7 +51,7 @@ bool PlaneArrangement::is_before(const Vector& a, const Vector& b) const {
   return a[u] != b[u] ? a[u] < b[u] : a[v] < b[v];
 }
 
-/// For a point on the line of a and b: is it on the closed segment?
+/// True if p, a point on the line through a and b, is on the closed segment from a to b.
 bool PlaneArrangement::is_between(const Vector& p, const Vector& a, const Vector& b) const {
   return is_before(a, b) ? !is_before(p, a) && !is_before(b, p)
                          : !is_before(p, b) && !is_before(a, p);
@@ -115,7 +116,8 @@ void PlaneArrangement::split(const std::set<Segment>& segments,
   }
 }
 
-/// The order of directions around a point, counter-clockwise from that of growing u.
+/// True if the direction of a half-edge comes before another around their point, counter-clockwise
+/// from the direction of growing u.
 bool PlaneArrangement::is_angle_before(std::size_t half_edge, std::size_t other) const {
   const HalfEdge& a = half_edges_[half_edge];
   const HalfEdge& b = half_edges_[other];
@@ -164,7 +166,8 @@ Number PlaneArrangement::area(std::size_t half_edge) const {
 }
 
 /// The cycle of the region just left (towards smaller u) of a point that is the first of its
-/// component: the cycle above the highest edge below it. kUnbounded when there is none.
+/// component: the cycle above the highest edge below the point. kUnbounded if there is no such
+/// edge.
 std::size_t PlaneArrangement::cycle_left_of(std::size_t point) const {
   const auto u = static_cast<std::size_t>(u_);
   const Vector& p = table_[point];
@@ -174,7 +177,7 @@ std::size_t PlaneArrangement::cycle_left_of(std::size_t point) const {
     const Vector& b = table_[half_edges_[i].to];
     if (!(a[u] < p[u] && p[u] <= b[u])) continue;
     if (sgn(turn(a, b, p)) <= 0) continue;
-    if (best) {  // is this edge above the best one just left of the point?
+    if (best) {  // whether this edge is above the best one just left of the point
       const Vector& c = table_[half_edges_[*best].from];
       const Vector& d = table_[half_edges_[*best].to];
       const bool starts_later = a[u] > c[u];
@@ -190,7 +193,7 @@ std::size_t PlaneArrangement::cycle_left_of(std::size_t point) const {
 void PlaneArrangement::find_regions() {
   const std::vector<std::size_t> first = find_cycles();
   region_of_.assign(first.size(), kUnbounded);
-  std::vector<std::size_t> outer(first.size(), kUnbounded);  // cycle -> the cycle around it
+  std::vector<std::size_t> outer(first.size(), kUnbounded);  // for each cycle, the cycle around it
   std::vector<bool> is_hole(first.size());
   for (std::size_t cycle = 0; cycle < first.size(); ++cycle) {
     is_hole[cycle] = sgn(area(first[cycle])) <= 0;
@@ -260,7 +263,7 @@ Vector PlaneArrangement::sample(std::size_t region) const {
       note(along(verdict::between(a, b, side_a / (side_a - side_b))));
     }
   }
-  // A region is bounded, so the ray meets its boundary. Points without an edge are not in the
+  // A region is bounded, so the ray meets its boundary. Points without an edge do not belong to the
   // region.
   Vector result;
   bool is_lone = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The arrangement of segments and points in one plane: edges that meet in end points only, and the
-// regions between them. A part of arrangement.h.
+// regions between them. It is a part of arrangement.h.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace watertight::verdict {
 
-/// Points by number; equal points have one number.
+/// Points with numbers; equal points have one number.
 class PointTable {
  public:
   std::size_t number_of(const Vector& p);
@@ -27,29 +27,29 @@ class PointTable {
   std::vector<Point> near_;
 };
 
-using Segment = std::array<std::size_t, 2>;  // the smaller number first
+using Segment = std::array<std::size_t, 2>;  // the numbers of the ends, the smaller first
 
 inline constexpr std::size_t kUnbounded = static_cast<std::size_t>(-1);
 
 class PlaneArrangement {
  public:
-  /// `axis`: the coordinate that is ignored. Segments and points lie in one plane, which no line
-  /// along that axis is part of. New points go into the table.
+  /// Arranges segments and points of one plane, which is not parallel to `axis`; the coordinate
+  /// `axis` is ignored. New points are added to the table.
   PlaneArrangement(PointTable& table, int axis, const std::set<Segment>& segments,
                    const std::set<std::size_t>& points);
 
   struct HalfEdge {
     std::size_t from = 0;
     std::size_t to = 0;
-    std::size_t next = 0;    // along the region to the left
-    std::size_t region = 0;  // to the left, or kUnbounded
+    std::size_t next = 0;    // the next half-edge along the region to the left
+    std::size_t region = 0;  // the region to the left, or kUnbounded
   };
-  /// Two for each edge, one after the other.
+  /// The half-edges; the two of an edge follow each other.
   const std::vector<HalfEdge>& half_edges() const { return half_edges_; }
   std::size_t region_count() const { return region_count_; }
-  /// Points without an edge, each with its region.
+  /// The points without an edge, each with its region.
   const std::vector<std::array<std::size_t, 2>>& lone_points() const { return lone_points_; }
-  /// A point of a region, its ignored coordinate 0. Requires region < region_count().
+  /// A point of a region; its ignored coordinate is 0. Requires region < region_count().
   Vector sample(std::size_t region) const;
 
  private:
@@ -70,12 +70,12 @@ class PlaneArrangement {
                          const std::set<std::size_t>& points);
 
   PointTable& table_;
-  int u_;  // the coordinates that count
+  int u_;  // u_ and v_ are the coordinates that are not ignored
   int v_;
   std::vector<HalfEdge> half_edges_;
-  std::vector<std::size_t> cycle_of_;   // half-edge -> cycle
-  std::vector<std::size_t> first_of_;   // region -> a half-edge of its outer boundary
-  std::vector<std::size_t> region_of_;  // cycle -> region
+  std::vector<std::size_t> cycle_of_;   // for each half-edge, its cycle
+  std::vector<std::size_t> first_of_;   // for each region, a half-edge of its outer boundary
+  std::vector<std::size_t> region_of_;  // for each cycle, its region
   std::vector<std::array<std::size_t, 2>> lone_points_;
   std::size_t region_count_ = 0;
 };

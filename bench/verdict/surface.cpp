@@ -30,7 +30,7 @@ bool is_planar(const std::vector<ExactRing>& rings, const Vector& normal) {
 
 enum class Meeting { none, point, overlap };
 
-/// How two segments of one plane meet; `point` is set for Meeting::point.
+/// The way in which two segments of one plane meet; `point` is set for Meeting::point.
 Meeting meeting_of(const ExactEdge& a, const ExactEdge& b, Vector& point) {
   std::set<Vector> ends;
   for (const Vector& p : a) {
@@ -47,7 +47,7 @@ Meeting meeting_of(const ExactEdge& a, const ExactEdge& b, Vector& point) {
   const Vector direction = difference(a[1], a[0]);
   const Vector normal = cross(direction, difference(b[1], b[0]));
   if (is_zero(normal)) return Meeting::none;
-  const Vector side_b = cross(normal, direction);  // in the plane, across a
+  const Vector side_b = cross(normal, direction);  // in the plane, at a right angle to a
   const Vector side_a = cross(normal, difference(b[1], b[0]));
   const Number b0 = dot(side_b, difference(b[0], a[0]));
   const Number b1 = dot(side_b, difference(b[1], a[0]));
@@ -62,7 +62,7 @@ ExactEdge edge_of(const ExactRing& ring, std::size_t k) {
   return {ring[k], ring[(k + 1) % ring.size()]};
 }
 
-/// The parts of an edge between the vertices of the facet that lie on it.
+/// Appends the parts of an edge between the vertices of the facet that lie on the edge.
 void append_split(const ExactEdge& edge, const std::vector<ExactRing>& rings,
                   std::vector<ExactEdge>& edges) {
   std::set<Vector> on{edge[0], edge[1]};
@@ -106,7 +106,8 @@ bool do_cross(const ExactRing& first, const ExactRing& second) {
   return false;
 }
 
-/// How many parts of a ring, split by the vertices of both, are inside another one.
+/// The numbers of parts of a ring, split by the vertices of both rings, that are outside and inside
+/// another ring.
 std::array<std::size_t, 2> parts_outside_and_inside(const ExactRing& ring, const ExactRing& other) {
   std::vector<ExactEdge> parts;
   for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -235,7 +236,7 @@ std::optional<bool> ParityLocator::try_ray(const Vector& p, const Vector& direct
 bool ParityLocator::is_inside(const Vector& p) const {
   long a = 3;
   long b = 5;
-  while (true) {  // few directions meet an edge, and no two of these are parallel
+  while (true) {  // few directions meet an edge, and no two of the directions are parallel
     const auto found = try_ray(p, {Number(a), Number(b), Number(7)});
     if (found) return *found;
     a += 17;

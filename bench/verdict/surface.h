@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A solid as the oracle sees it: facets with exact rings and the plane pieces that they consist of,
-// and the rules about the rings of one facet. A part of oracle.h.
+// The oracle's model of a solid: facets with exact rings and the plane pieces of which they
+// consist, and the rules about the rings of one facet. It is a part of oracle.h.
 #pragma once
 
 #include <optional>
@@ -13,33 +13,34 @@
 
 namespace watertight::verdict {
 
-using ExactEdge = std::array<Vector, 2>;  // from, to
+using ExactEdge = std::array<Vector, 2>;  // the ends (from, to)
 
 struct FacetModel {
   std::size_t shell = 0;
   std::vector<std::vector<Vector>> rings;
-  /// Directed edges of all rings, split where another vertex of the facet lies on them.
+  /// The directed edges of all rings, split where another vertex of the facet lies on them.
   std::vector<ExactEdge> edges;
   bool is_planar = true;
-  std::vector<std::vector<std::vector<Vector>>> pieces;  // each a list of rings
+  std::vector<std::vector<std::vector<Vector>>> pieces;  // each piece is a list of rings
 };
 
 struct SurfaceModel {
   std::size_t shell_count = 0;
   std::vector<FacetModel> facets;
-  bool is_known = true;      // every facet has a surface
-  std::set<int> ring_codes;  // of problems of single facets; the rest is defined when empty
+  bool is_known = true;  // every facet has a surface
+  // Codes of problems of single facets; the other members are defined if there are none.
+  std::set<int> ring_codes;
 };
 SurfaceModel model_of(const Solid& solid);
 
-/// All pieces of the facets, numbered from `first_facet`.
+/// All pieces of the facets, with facet numbers from `first_facet` on.
 std::vector<Piece> pieces_of(const SurfaceModel& model, std::size_t first_facet = 0);
 
-/// Tells on which side of closed surfaces points lie, by rays that meet no edge.
+/// Finds on which side of closed surfaces points lie, by rays that meet no edge.
 class ParityLocator {
  public:
   explicit ParityLocator(std::vector<Piece> pieces);
-  /// Requires a point that is on no piece.
+  /// True if the point is inside. Requires a point that is on no piece.
   bool is_inside(const Vector& p) const;
 
  private:

@@ -2,11 +2,11 @@
 //
 // verdict_families [--family NAME|all] [--first SEED] [--count N] [--variants K] [--engines K]
 //                  [--threads N] [--keep DIR] [--show N]
-// Judges the samples of N seeds of each family (families.h) with the defaults; every K-th seed is
-// also judged mirrored, renumbered, strict and by the boundary alone (--variants, 10), and by each
-// engine alone (--engines, 200); 0 is never. The first disagreements of a family (--show, 20) are
-// printed, all are counted, and --keep writes those that are printed as documents. Exit status 1 on
-// any disagreement.
+// Judges the samples of N seeds of each family (families.h) with the default options; every K-th
+// seed is also judged mirrored, renumbered, strict and by the boundary alone (--variants, 10), and
+// by each engine alone (--engines, 200); 0 is never. All disagreements are counted; the first ones
+// of a family are printed (--show, 20), and --keep writes the printed ones as documents. Exit
+// status 1 on any disagreement.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -61,13 +61,13 @@ Arguments arguments_of(int argc, char** argv) {
 
 struct Totals {
   std::uint64_t samples = 0;
-  std::uint64_t valid = 0;  // by the truth
+  std::uint64_t valid = 0;  // the number of samples that are valid according to the truth
   std::uint64_t unknown = 0;
   std::uint64_t questions = 0;
   std::array<std::uint64_t, kOutcomes> outcomes{};
-  /// Quads whose diagonals are equal in plan and in space have no canonical diagonal that a mirror
-  /// image keeps (docs/robustness.md): such surfaces that vary are counted, and are no
-  /// disagreement.
+  /// The number of disagreements. Quadrilaterals whose diagonals are equal in plan and in space
+  /// have no canonical diagonal that a mirror image keeps (docs/robustness.md): surfaces whose
+  /// verdict varies for that reason are counted, but are no disagreement.
   std::uint64_t disagreements() const {
     return questions - outcomes[static_cast<std::size_t>(Outcome::right)] -
            outcomes[static_cast<std::size_t>(Outcome::allowed)] -

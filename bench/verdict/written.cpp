@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Samples as documents, for looking at a disagreement with the command line.
+// Samples as documents, so that a disagreement can be examined with the command line.
 #include <cstdio>
 
 #include "bench/verdict/judge.h"
@@ -12,7 +12,8 @@ std::string number(const GridNumber& value) {
   return std::to_string(value.mantissa).append("e").append(std::to_string(value.exponent));
 }
 
-/// The integers of vertices on a decimal lattice; a lattice's origin is the document's translate.
+/// The vertices on a decimal lattice as integers; the origin of the lattice is the document's
+/// translate.
 std::string vertices_text(const Solid& solid) {
   std::string text;
   for (const Point& p : solid.vertices()) {
@@ -40,7 +41,8 @@ std::string city_json(const std::string& objects, const Lattice& lattice,
          "}, \"CityObjects\": {" + objects + "}, \"vertices\": [" + vertices + "]}\n";
 }
 
-/// The members of a group share one list of vertices: the second's numbers come after the first's.
+/// The second solid with the vertices of both: the members of a group share one list, in which
+/// those of the first come first.
 Solid with_first_vertices(const Solid& first, const Solid& second) {
   SolidArrays arrays = second.arrays();
   arrays.vertices.insert(arrays.vertices.begin(), first.vertices().begin(), first.vertices().end());

@@ -8,7 +8,8 @@ namespace watertight::codec {
 
 BankTrial::BankTrial(ModelBank& bank, std::size_t vertices)
     : bank_(bank), first_change_(bank.changes_.size()) {
-  // A vertex changes some hundred numbers. To note one takes several times as long as to copy one.
+  // A coded vertex changes some hundred values of the bank. To note a value takes several times as
+  // long as to copy it.
   constexpr std::size_t kCountersPerVertex = 1000;
   if (vertices > bank.counters_.size() / kCountersPerVertex) {
     before_ = bank;

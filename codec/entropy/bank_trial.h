@@ -10,9 +10,9 @@
 
 namespace watertight::codec {
 
-/// While a trial lives, the bank codes what is only measured; its end undoes what the bank learned.
-/// Trials may be nested. Cost: for a solid of few vertices, noting and undoing each change of the
-/// bank; for one of many vertices, a copy of the bank.
+/// While a trial lives, the bank codes what is only measured; the end of the trial undoes what the
+/// bank learned. Trials may be nested. Cost: for a solid of few vertices, noting and undoing each
+/// change of the bank; for one of many vertices, a copy of the bank.
 class BankTrial {
  public:
   BankTrial(ModelBank& bank, std::size_t vertices);
@@ -23,7 +23,8 @@ class BankTrial {
  private:
   ModelBank& bank_;
   std::optional<ModelBank> before_;  // the copy, for a solid of many vertices
-  std::size_t first_change_;  // else: where the changes of this trial begin in the bank's list
+  std::size_t first_change_;  // if there is no copy: the index of this trial's first change in the
+                              // bank's list
 };
 
 }  // namespace watertight::codec

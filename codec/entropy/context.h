@@ -43,22 +43,23 @@ constexpr auto combine(Context<first> a, Context<second> b, Context<others>... r
   return combine(Context<first * second>(a.value * second + b.value), rest...);
 }
 
-/// The number, or the nearest of 0 and size - 1. In the texts of the format: cap(number, size).
+/// The number from 0 to size - 1 that is nearest to `number`. In the texts of the format:
+/// cap(number, size).
 template <std::uint32_t size, std::integral Number>
 constexpr Context<size> capped(Number number) {
   if (number < 0) return Context<size>(0U);
   return Context<size>(std::min<std::uint64_t>(static_cast<std::uint64_t>(number), size - 1));
 }
 
-/// Classes of twice the width.
+/// A context with half as many classes, each of twice the width.
 template <std::uint32_t size>
 constexpr Context<(size + 1) / 2> halved(Context<size> context) {
   return Context<(size + 1) / 2>(context.value / 2);
 }
 
-/// One input may have two kinds of contexts. A context of the first kind is leading() in its table,
-/// in which `others` of the second kind follow. One of the second kind is trailing(): it comes
-/// after the `others` of the first kind.
+/// Two kinds of contexts may share the table of one input. leading() makes the index of a context
+/// of the first kind, for a table in which `others` values of the second kind follow. trailing()
+/// makes the index of a context of the second kind, after the `others` values of the first kind.
 template <std::uint32_t others, std::uint32_t size>
 constexpr Context<size + others> leading(Context<size> context) {
   return Context<size + others>(context.value);
@@ -68,13 +69,13 @@ constexpr Context<others + size> trailing(Context<size> context) {
   return Context<others + size>(others + context.value);
 }
 
-/// The last answers to one question, at most `count`: the latest is the lowest bit, answers that
-/// were never given are 0.
+/// The last answers to one question, at most `count`: the latest is the lowest bit, answers not
+/// given yet count as 0.
 template <std::uint32_t count>
 class Answers {
  public:
   void add(bool answer) { bits_ = (bits_ * 2 + (answer ? 1U : 0U)) & ((1U << count) - 1); }
-  /// The last `fewer` of them.
+  /// The last `fewer` answers.
   template <std::uint32_t fewer = count>
   Context<(1U << fewer)> last() const {
     static_assert(fewer <= count);
@@ -91,7 +92,7 @@ struct Contexts {
   std::array<std::uint32_t, sizeof...(sizes)> values{};
 
   explicit constexpr Contexts() = default;
-  // Not explicit: calls write them in braces.
+  // Not explicit: calls write the contexts in braces.
   // NOLINTNEXTLINE(google-explicit-constructor)
   constexpr Contexts(Context<sizes>... contexts) : values{contexts.value...} {}
 };

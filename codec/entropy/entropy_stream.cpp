@@ -13,7 +13,7 @@ namespace watertight::codec {
 namespace {
 
 constexpr std::uint32_t kHalf = 32768;
-constexpr std::size_t kWindow = 4;  // bytes
+constexpr std::size_t kWindow = 4;  // the number of bytes that a reader keeps ahead
 
 constexpr std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones) {
   return low + static_cast<std::uint32_t>((static_cast<std::uint64_t>(high - low) * ones) >> 16);
@@ -44,7 +44,8 @@ Tail shortest_tail(std::uint32_t low, std::uint32_t high) {
 /// log2(65536 / ones) in 1/65536 bit, by repeated squaring.
 constexpr std::uint32_t cost_of(std::uint32_t ones) {
   int whole = 0;
-  std::uint64_t mantissa = static_cast<std::uint64_t>(ones) << 15;  // 16.15 of 65536
+  std::uint64_t mantissa = static_cast<std::uint64_t>(ones) << 15;  // ones / 65536 in units of
+                                                                    // 2^-31
   while (mantissa < (std::uint64_t{1} << 31)) {
     mantissa <<= 1;
     ++whole;
@@ -61,8 +62,8 @@ constexpr std::uint32_t cost_of(std::uint32_t ones) {
   return (static_cast<std::uint32_t>(whole) << kCostBits) - fraction;
 }
 
-/// Costs by the upper 12 bits of a probability, computed for the middle of the 16 probabilities
-/// that share these bits.
+/// The costs of answers by the upper 12 bits of their probability, computed for the middle of the
+/// 16 probabilities that share these bits.
 constexpr auto kCosts = [] {
   std::array<std::uint32_t, 4096> costs{};
   for (std::uint32_t i = 0; i < costs.size(); ++i) costs[i] = cost_of(16 * i + 8);

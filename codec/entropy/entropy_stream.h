@@ -15,7 +15,7 @@
 
 namespace watertight::codec {
 
-/// The parts that a report on sizes tells apart.
+/// The parts of a stream, for reports on sizes.
 enum class StreamPart : std::uint8_t { frame, position, connectivity, facets, coordinates, order };
 inline constexpr std::size_t kStreamParts = 6;
 using StreamCosts = std::array<std::uint64_t, kStreamParts>;
@@ -33,7 +33,7 @@ class EntropyStream {
   bool is_reading() const { return direction_ == Direction::read; }
 
   /// Codes one decision whose probability of being 1 is `ones_of_65536` / 65536, 1 to 65535.
-  /// Returns `value` when writing or measuring, else what was read.
+  /// Returns `value` when writing or measuring, else the value that was read.
   bool code(bool value, std::uint32_t ones_of_65536);
   /// Codes a number below `size` with all values equally likely (truncated binary). Requires size >
   /// 0 and, unless reading, value < size.
@@ -42,13 +42,13 @@ class EntropyStream {
   /// 64.
   std::uint64_t code_bits(std::uint64_t value, int count);
 
-  /// Says that what was read cannot be. Reading yields zeros from then on. A reader that runs past
-  /// the end of its bytes fails by itself. Callers bound their loops, and ask failed() in every
-  /// loop that could be long.
+  /// Reports that the values read so far are malformed. Reading returns zeros from then on. A
+  /// reader that runs past the end of its bytes fails by itself. Callers bound their loops, and ask
+  /// failed() in every loop that could be long.
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
 
-  /// When reading: how many bytes were looked at, including the few that the coder reads ahead.
+  /// When reading, the number of bytes taken so far, including the few that the coder reads ahead.
   std::size_t position() const { return std::min(position_, source_.size()); }
   /// The cost of the decisions so far, in 1/65536 bit; within 0.1 % of the bytes.
   std::uint64_t cost() const;
@@ -56,8 +56,8 @@ class EntropyStream {
   const StreamCosts& costs() const { return costs_; }
   /// Books the costs of the decisions from here on under `part`. Changes nothing else.
   void enter(StreamPart part) { part_ = static_cast<std::size_t>(part); }
-  /// Ends a written stream. Returns the shortest bytes that a reader takes for it, and of those the
-  /// smallest.
+  /// Ends a written stream. Returns the shortest bytes from which a reader gets the same decisions,
+  /// and among byte strings of that length the smallest.
   Bytes finish() &&;
   /// True if nothing failed and the bytes end exactly as a writer would have ended them.
   bool is_finished() const;

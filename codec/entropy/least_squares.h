@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A linear prediction whose coefficients follow the data: recursive sums of the normal equations,
-// solved anew every few samples. Doubles in a fixed order, the same on every machine.
+// solved anew every few samples. Computes with doubles in a fixed order, so that every machine gets
+// the same.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ class LeastSquares {
  public:
   using Features = std::array<double, Size>;
 
-  /// Starts from `coefficients`, believed as much as `confidence` samples of feature size 1.
+  /// Starts from `coefficients`, which count as much as `confidence` samples of feature size 1.
   LeastSquares(const Features& coefficients, double confidence) : coefficients_(coefficients) {
     for (std::size_t i = 0; i < Size; ++i) {
       products_[i][i] = confidence;
@@ -36,9 +37,9 @@ class LeastSquares {
       targets_[i] += weighted * target;
     }
   }
-  /// Solves for the coefficients and lets the past count `memory` of what it did.
+  /// Solves for the coefficients, then multiplies the weight of all samples so far by `memory`.
   void solve(double memory) {
-    std::array<Features, Size> lower{};  // Cholesky
+    std::array<Features, Size> lower{};  // the lower factor of the Cholesky decomposition
     for (std::size_t i = 0; i < Size; ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
         double sum = products_[i][j];
@@ -72,7 +73,8 @@ class LeastSquares {
 
  private:
   Features coefficients_;
-  std::array<Features, Size> products_{};  // lower triangle
+  std::array<Features, Size> products_{};  // weighted sums of products of features; lower triangle
+                                           // only
   Features targets_{};
 };
 

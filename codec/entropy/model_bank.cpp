@@ -12,7 +12,7 @@ namespace {
 // In the logistic domain an integer x from -2047 to 2047 stands for the probability p with
 // ln(p / (1 - p)) = x / 256.
 constexpr std::int32_t kDomain = 2047;
-constexpr std::uint32_t kLeastProbability = 32;  // the least probability of an answer, of 65536
+constexpr std::uint32_t kLeastProbability = 32;  // the least probability of an answer, in 1/65536
 
 /// round(65536 / (1 + exp((32 - i) / 4))) for i = 0 to 64: part of the format.
 constexpr std::array<std::int32_t, 65> kSquash{
@@ -22,7 +22,7 @@ constexpr std::array<std::int32_t, 65> kSquash{
     55834, 57724, 59287, 60565, 61598, 62428, 63090, 63615, 64030, 64357, 64614, 64816, 64974,
     65097, 65194, 65269, 65328, 65374, 65410, 65438, 65459, 65476, 65489, 65500, 65508, 65514};
 
-/// The probability of 65536 at `x`, linear between the table's points.
+/// The probability, in 1/65536, at `x`; linear between the points of kSquash.
 constexpr std::int32_t squash(std::int32_t x) {
   const std::int32_t offset = std::clamp(x, -kDomain, kDomain) + 2048;
   const auto i = static_cast<std::size_t>(offset >> 6);
@@ -44,9 +44,10 @@ constexpr auto kStretch = [] {
 
 // A counter has 22 bits for its probability, and below them 10 bits for the number of observations.
 constexpr std::uint32_t kMaxCount = 250;
-constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, nothing observed
+constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // probability one half, nothing observed
 
-/// How far a counter that observed n decisions moves towards the next one: 65536 / (n + 1.5).
+/// The share, in 1/65536, by which a counter that observed n decisions moves towards the next
+/// answer: 65536 / (n + 1.5).
 constexpr auto kRates = [] {
   std::array<std::int32_t, kMaxCount + 1> rates{};
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(rates.size()); ++n) {
@@ -55,7 +56,7 @@ constexpr auto kRates = [] {
   return rates;
 }();
 
-/// How much a counter that has observed n decisions counts, of 256: n / (n + 0.4).
+/// The weight, in 1/256, of a counter that observed n decisions: n / (n + 0.4).
 constexpr auto kConfidence = [] {
   std::array<std::int32_t, kMaxCount + 1> table{};
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(table.size()); ++n) {
@@ -88,7 +89,7 @@ std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed);
 // A number has three families: its length in unary, the bits after the first, the sign.
 constexpr std::uint32_t kLengths = 48;  // greater lengths share the last context
 constexpr std::uint32_t kMantissaStates =
-    7;  // what is known of the bits after the first: none, one, two
+    7;  // the modelled bits so far: none (1 state), one (2) or two (4)
 constexpr std::uint32_t kMantissaLengths = 16;
 constexpr int kModelledBits = 3;
 
@@ -222,7 +223,7 @@ std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number
   WATERTIGHT_ASSERT(contexts.size() == lengths.inputs);
   std::array<std::uint32_t, kMaxInputs> at{};
 
-  // The bit length of the number (0 for 0) in unary: that many zeros, then a one.
+  // The bit length of the number (0 for 0) in unary: one zero for each bit, then a one.
   const auto true_length = static_cast<int>(std::bit_width(value));
   int length = 0;
   while (true) {
@@ -241,7 +242,7 @@ std::uint64_t ModelBank::code_number(EntropyStream& stream, std::uint32_t number
   std::uint64_t result = 1;
   const int modelled = std::min(length - 1, kModelledBits);
   for (int bit = 0; bit < modelled; ++bit) {
-    const auto state = static_cast<std::uint32_t>(result - 1);  // 0; 1, 2; 3 to 6
+    const auto state = static_cast<std::uint32_t>(result - 1);  // 0; then 1 or 2; then 3 to 6
     const auto lower = static_cast<std::uint32_t>(length);
     at[0] = std::min(lower, kLengths - 1) * kMantissaStates + state;
     std::size_t i = 1;

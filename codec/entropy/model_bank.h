@@ -21,9 +21,10 @@ namespace watertight::codec {
 
 /// Says how much of a trained bank a prior keeps.
 struct PriorShape {
-  std::uint32_t max_count = 10;   // observations that a counter keeps: so a bank still adapts
+  std::uint32_t max_count = 10;   // the most observations that a counter keeps: so a bank still
+                                  // adapts
   std::uint32_t least_count = 1;  // counters with fewer observations are stored as new ones
-  bool has_weights = true;        // else all inputs of a family start with the same weight
+  bool has_weights = true;        // false: all inputs of a family start with the same weight
 };
 
 class ModelBank {
@@ -43,7 +44,7 @@ class ModelBank {
   bool code(EntropyStream& stream, const ContextsOf<family>& contexts, bool value) {
     return code<family>(stream, kNothingKnown, contexts, value);
   }
-  /// The probability, of 65536, with which code() would code this decision.
+  /// The probability of a yes, in 1/65536, with which code() would code this decision.
   template <auto family>
   std::uint32_t probability(SelectorOf<family> selector, const ContextsOf<family>& contexts) const {
     static_assert(std::same_as<decltype(shape_of(family)), const FamilyShape&>);
@@ -65,7 +66,7 @@ class ModelBank {
                             std::uint64_t value, int max_length = 62) {
     return code_number<number>(stream, kNothingKnown, contexts, value, max_length);
   }
-  /// Codes the magnitude in the same way, then the sign under the same contexts.
+  /// Codes the magnitude of a number as code_number() does, then its sign under the same contexts.
   template <auto number>
   std::int64_t code_signed(EntropyStream& stream, SelectorOf<number> selector,
                            const ContextsOf<number>& contexts, std::int64_t value,
@@ -93,8 +94,8 @@ class ModelBank {
                            std::span<const std::uint32_t> contexts, std::int64_t value,
                            int max_length = 62);
 
-  /// save() returns the state as bytes, load() sets it. load() returns false and leaves the bank
-  /// neutral if the bytes are no state of this layout.
+  /// save() returns the state of the bank as bytes, load() sets it. load() returns false and
+  /// changes nothing if the bytes are no state of this layout.
   Bytes save(const PriorShape& shape) const;
   bool load(ByteView state);
 
@@ -108,8 +109,8 @@ class ModelBank {
     std::array<std::uint32_t, kMaxInputs> sizes{};
   };
   /// The inputs of one decision and the probability that their weighted sum gives. Only as many
-  /// elements are set as the family has inputs: clearing the rest took a third of the time of
-  /// mix().
+  /// elements are set as the family has inputs: clearing the other elements took a third of the
+  /// time of mix().
   struct Mix {
     Mix() {}  // NOLINT(modernize-use-equals-default, cppcoreguidelines-pro-type-member-init)
     std::array<std::uint32_t, kMaxInputs> counter;
@@ -134,12 +135,12 @@ class ModelBank {
 
   bool is_agile_ = false;
   std::vector<Family> families_;
-  std::size_t number_base_ = 0;          // first family of numbers
-  std::vector<std::uint32_t> counters_;  // 22 bits of probability, 10 of count
-  std::vector<std::int32_t> weights_;    // 16.16
-  std::vector<std::uint32_t> mixed_;     // decisions seen by each weight set
-  std::vector<Change> changes_;          // since the beginning of the outermost trial
-  int trials_ = 0;                       // trials that live now and note changes
+  std::size_t number_base_ = 0;  // index in families_ of the first family of the first number
+  std::vector<std::uint32_t> counters_;  // each: 22 bits of probability, 10 of count
+  std::vector<std::int32_t> weights_;    // fixed-point numbers, 16.16
+  std::vector<std::uint32_t> mixed_;     // set of weights -> decisions that it mixed, at most 1000
+  std::vector<Change> changes_;          // all changes since the beginning of the outermost trial
+  int trials_ = 0;                       // number of trials that live now and note changes
 };
 
 }  // namespace watertight::codec

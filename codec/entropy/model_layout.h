@@ -5,8 +5,9 @@
 // shape_of(Family) and shape_of(Number) return a row; through them ModelBank::code<family>() checks
 // the type of each context against the table when it is compiled.
 //
-// None of these is in an anonymous namespace: g++ 12 instantiates ModelBank::code<family>() of an
-// enumerator without linkage as a symbol that the linker merges with that of another file.
+// None of these declarations is in an anonymous namespace: g++ 12 instantiates
+// ModelBank::code<family>() of an enumerator without linkage as a symbol that the linker merges
+// with that of another file.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ inline constexpr std::size_t kMaxInputs = 24;
 /// The shape of a family of decisions: one set of weights for each selector, one table of counters
 /// for each input. `inputs` has the sizes of the tables and ends at the first 0.
 struct FamilyShape {
-  std::uint32_t family = 0;  // its enumerator, which is the number of its row
+  std::uint32_t family = 0;  // the enumerator of the family, which is the index of its row
   std::uint32_t selectors = 1;
   std::array<std::uint32_t, kMaxInputs> inputs{};
 };

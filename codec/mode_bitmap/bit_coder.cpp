@@ -12,8 +12,7 @@
 namespace watertight::codec::bitmap {
 namespace {
 
-constexpr std::uint32_t kLeast =
-    32;  // of 65536: a bit costs at least about 1/1400 of a bit, at most 11 bits
+constexpr std::uint32_t kLeast = 32;  // in 1/65536: to code a bit takes 1/1400 to 11 bits
 constexpr std::uint32_t kLongestMemory = 30;
 
 // The rate is 65536 / (count + 1.6): the first observation moves the estimate by 0.62 of the error,

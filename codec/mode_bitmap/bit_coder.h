@@ -18,8 +18,8 @@ enum class BitCoding : std::uint8_t { plain = 0, arithmetic = 1 };
 /// moving average later.
 class AdaptiveBit {
  public:
-  /// `ones_of_65536` is the first estimate, 32 to 65504; `confidence` counts the observations it is
-  /// worth (0 to 30).
+  /// `ones_of_65536` is the first estimate, 32 to 65504; `confidence` is the number of observations
+  /// that the estimate is worth (0 to 30).
   constexpr AdaptiveBit() : AdaptiveBit(32768, 0) {}
   constexpr AdaptiveBit(std::uint32_t ones_of_65536, std::uint32_t confidence)
       : ones_(ones_of_65536), count_(confidence) {}
@@ -37,7 +37,7 @@ class BitEncoder {
   explicit BitEncoder(BitCoding coding) : coding_(coding) {}
   /// Writes one bit under a model. A plain encoder ignores the model.
   void bit(bool value, AdaptiveBit& model);
-  /// Writes a number in unary: that many ones, then a zero, each under `model`.
+  /// Writes a number in unary: one 1 for each unit, then a 0, each under `model`.
   void unary(std::uint64_t value, AdaptiveBit& model);
   /// Ends the stream.
   Bytes finish() &&;
@@ -54,8 +54,9 @@ class BitEncoder {
   int pending_count_ = 0;
 };
 
-/// Reads what a BitEncoder wrote. Past the end it yields zeros, and failed() becomes true. Callers
-/// bound their loops themselves, and ask failed() at the end and in every loop that could be long.
+/// Reads the bits that a BitEncoder wrote. Past the end the decoder returns zeros, and failed()
+/// becomes true. Callers bound their loops themselves, and ask failed() at the end and in every
+/// loop that could be long.
 class BitDecoder {
  public:
   BitDecoder(ByteView bytes, BitCoding coding);
@@ -77,7 +78,7 @@ class BitDecoder {
   std::uint32_t low_ = 0;
   std::uint32_t high_ = 0xFFFFFFFFU;
   std::uint32_t code_ = 0;
-  int bit_position_ = 0;  // plain: next bit of bytes_[position_]
+  int bit_position_ = 0;  // plain: the index of the next bit of bytes_[position_]
   bool failed_ = false;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Brings the polygons of a solid back from the set of triangles of its boundary, once it is known
-// which edges lie inside facets and how the triangles turn: the rings are the edges that remain.
-// Composition steps 5 and 7 of the paper end here. For the facet section of mode bitmap.
+// Makes the polygons of a solid from the triangles of its boundary, given which edges lie inside
+// facets and how the triangles turn: all other edges form the rings. This is the end of composition
+// steps 5 and 7 of the paper. For the facet section of mode bitmap.
 #pragma once
 
 #include <span>
@@ -14,12 +14,13 @@
 
 namespace watertight::codec::bitmap {
 
-/// An edge at which exactly two triangles meet. Edges with more (touching shells) join nothing.
+/// An edge at which exactly two triangles meet. An edge at which more meet (touching shells) is
+/// none.
 struct Joint {
-  Index from = 0;  // smaller vertex
+  Index from = 0;  // the smaller vertex of the edge
   Index to = 0;
-  Index triangles[2] = {0, 0};  // smaller triangle first
-  Index corners[2] = {0, 0};    // the vertex of each triangle off the edge
+  Index triangles[2] = {0, 0};  // the two triangles, the smaller first
+  Index corners[2] = {0, 0};    // the vertex of each triangle that is not on the edge
 };
 
 /// A ring of a facet, without Steiner vertices, smallest vertex first.
@@ -31,13 +32,13 @@ class BoundarySurface {
   /// `vertex_count` on are Steiner vertices. Cost: O(n log n).
   BoundarySurface(std::span<const Triangle> triangles, Index vertex_count);
 
-  /// Sorted by (from, to).
+  /// All joints, sorted by (from, to).
   std::span<const Joint> joints() const { return joints_; }
   /// Components are connected through joints and numbered by their smallest triangle.
   Index component_count() const { return static_cast<Index>(components_.first.size()); }
   Index component_of(Index triangle) const { return components_.set_of[triangle]; }
 
-  /// Sets which joints lie inside a facet. Facets are connected through those joints and numbered
+  /// Notes which joints lie inside a facet. Facets are connected through these joints and numbered
   /// by their smallest triangle.
   void set_interior(std::vector<bool> is_interior);
   Index facet_count() const { return static_cast<Index>(facets_.first.size()); }
@@ -54,7 +55,7 @@ class BoundarySurface {
   std::vector<std::vector<VertexRing>> rings_of_facets() const;
 
   /// The arrays of the solid, without vertices. Each component is a shell, and `exterior_component`
-  /// comes first; of the rings of a facet, that numbered `exterior_ring[facet]` comes first.
+  /// comes first; in each facet, the ring at index `exterior_ring[facet]` comes first.
   SolidArrays assemble(const std::vector<std::vector<VertexRing>>& rings, Index exterior_component,
                        const std::vector<Index>& exterior_ring) const;
 
@@ -69,7 +70,7 @@ class BoundarySurface {
   std::vector<Joint> joints_;
   std::vector<std::vector<Index>> joints_of_;  // triangle -> at most three joints
   geometry::NumberedSets components_;          // sets of triangles
-  std::vector<bool> is_interior_;              // per joint
+  std::vector<bool> is_interior_;              // joint -> whether it lies inside a facet
   geometry::NumberedSets facets_;              // sets of triangles
   std::vector<Triangle> turned_;
 };

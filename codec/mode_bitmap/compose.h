@@ -19,10 +19,10 @@ namespace watertight::codec::bitmap {
 /// The sections of a solid in mode bitmap, as views.
 struct BitmapSections {
   ByteView vertices;
-  ByteView steiner;  // empty if there is none
+  ByteView steiner;  // empty without Steiner vertices
   BitCoding bitmap_coding = BitCoding::plain;
   ByteView bitmap;
-  ByteView unrecovered;  // empty if there is none
+  ByteView unrecovered;  // empty if every boundary face is a Delaunay face
   BitCoding facet_coding = BitCoding::plain;
   bool lists_facets = false;
   ByteView facets;
@@ -31,11 +31,11 @@ struct BitmapSections {
 /// The vertices of the solid, then the Steiner points.
 struct Nodes {
   std::vector<Point> points;
-  Index vertex_count = 0;  // the number of those that are no Steiner points
+  Index vertex_count = 0;  // the number of vertices of the solid
 };
 
 struct Composition {
-  SolidArrays arrays;  // exterior shell and ring first; else in no particular order
+  SolidArrays arrays;  // the exterior shell and exterior rings come first
   FaceCounts counts;
 };
 
@@ -50,8 +50,10 @@ Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes);
 Result<std::vector<bool>> read_bitmap(const BitmapSections& sections,
                                       const delaunay::CanonicalDelaunay& delaunay);
 
-/// 4. Order the Delaunay faces (they come ordered) and mark each as the bitmap says.
-/// 5. Create the polygonal surface out of the marked Delaunay faces. Returns them sorted.
+/// 4. Order the Delaunay faces (canonical_delaunay() returns them in order) and mark each as the
+/// bitmap says.
+/// 5. Create the polygonal surface out of the marked Delaunay faces. Returns the marked faces,
+/// sorted.
 std::vector<Triangle> create_surface(const delaunay::CanonicalDelaunay& delaunay,
                                      const std::vector<bool>& marks);
 
@@ -66,7 +68,7 @@ Result<SolidArrays> complete_boundary(const BitmapSections& sections, const Node
                                       const std::vector<Triangle>& unrecovered,
                                       const Limits& limits);
 
-/// All steps. Errors: malformed; limit_exceeded.
+/// Does all steps. Errors: malformed; limit_exceeded.
 Result<Composition> compose(const BitmapSections& sections, const Limits& limits);
 
 }  // namespace watertight::codec::bitmap

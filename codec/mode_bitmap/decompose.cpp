@@ -20,7 +20,8 @@
 namespace watertight::codec::bitmap {
 namespace {
 
-// An insphere determinant is of degree 5: inside these bounds no product leaves the exponent range.
+// An insphere determinant is of degree 5: for coordinates in these bounds no product leaves the
+// exponent range of a double.
 constexpr double kLeastMagnitude = 0x1p-100;
 constexpr double kLargestMagnitude = 0x1p100;
 
@@ -31,8 +32,8 @@ Triangle sorted(Triangle t) {
   return t;
 }
 
-/// Collects the triangles of all facets: the canonical ones of the facets that `takes_canonical`
-/// names, of the others those that follow the Delaunay tetrahedralization.
+/// Collects the triangles of all facets: the canonical triangles of each facet for which
+/// `takes_canonical` is true, else the triangles that follow the Delaunay tetrahedralization.
 void collect_triangles(const delaunay::FollowingTriangles& following,
                        const tessellate::FacetTriangles& facets,
                        const std::vector<bool>& takes_canonical, BoundaryComplex& complex) {
@@ -48,8 +49,8 @@ void collect_triangles(const delaunay::FollowingTriangles& following,
   }
 }
 
-/// Adds each facet that has a triangle in common with another facet to `takes_canonical`.
-/// Returns false if there is none to add.
+/// Adds each facet that has a triangle in common with another facet to `takes_canonical`. Returns
+/// false if no facet is added.
 bool part_equal_triangles(const BoundaryComplex& complex, std::vector<bool>& takes_canonical) {
   std::vector<std::pair<Triangle, Index>> uses;
   for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
@@ -88,7 +89,8 @@ Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical) {
     }
   }
   // Two facets that are not planar may follow the same Delaunay face; their canonical triangles
-  // differ wherever the solid is valid. Each round changes a facet, so this ends.
+  // differ wherever the solid is valid. Each round adds a facet to `takes_canonical`, so the loop
+  // ends.
   std::vector<bool> takes_canonical(solid.facet_count(), false);
   do {
     collect_triangles(following, facets, takes_canonical, complex);
@@ -103,7 +105,7 @@ std::vector<Index> inverse_of(const std::vector<Index>& order) {
   return inverse;
 }
 
-/// Requires a certificate of the solid in its source order.
+/// Does step 1 with a certificate of the solid in its source order.
 Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
                                 const delaunay::Certificate& certificate) {
   const Solid& solid = canonical.boundary.solid();
@@ -112,7 +114,8 @@ Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
   if (mesh.input_count != solid.vertex_count() || mesh.points.size() < mesh.input_count) {
     return foreign;
   }
-  std::vector<Index> canonical_vertex = inverse_of(canonical.order.vertex);  // by source vertex
+  // source vertex -> canonical vertex
+  std::vector<Index> canonical_vertex = inverse_of(canonical.order.vertex);
   for (Index i = 0; i < mesh.input_count; ++i) {
     if (mesh.points[i] != solid.vertices()[canonical_vertex[i]]) return foreign;
   }

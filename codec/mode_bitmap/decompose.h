@@ -21,9 +21,9 @@ namespace watertight::codec::bitmap {
 struct BoundaryComplex {
   std::vector<Point> points;  // canonical vertices, then Steiner vertices, sorted
   Index vertex_count = 0;
-  std::vector<Triangle> triangles;  // increasing vertices in each; in no particular order
-  std::vector<Index> facet_of;      // canonical facet of each triangle
-  /// For step 4, if step 1 had to make it already.
+  std::vector<Triangle> triangles;  // in no particular order, each of increasing vertices
+  std::vector<Index> facet_of;      // triangle -> its facet in the canonical solid
+  /// The tetrahedralization of step 4, if step 1 has made it already.
   std::optional<delaunay::CanonicalDelaunay> delaunay;
 };
 
@@ -42,7 +42,7 @@ struct Decomposition {
 /// coordinate is 0 or of a magnitude in [2^-100, 2^100], integers or not.
 bool has_storable_delaunay(std::span<const Point> points);
 
-/// The most tetrahedra that a decoder accepts for so many points, so that its time stays in
+/// The most tetrahedra that a decoder accepts for `point_count` points, so that its time stays in
 /// proportion to the blob.
 std::uint64_t storable_tetrahedra(std::size_t point_count);
 
@@ -56,7 +56,7 @@ Result<BoundaryComplex> create_cdt(const geometry::CanonicalSolid& solid,
 /// 2. Store the CDT's nodes: vertices and Steiner vertices.
 void store_nodes(const BoundaryComplex& complex, Decomposition& result);
 
-/// 3. Mark the CDT's faces on the boundary. Returns the marked ones, sorted.
+/// 3. Mark the CDT's faces on the boundary. Returns the marked faces, sorted.
 /// Errors: not_encodable if two boundary triangles coincide.
 Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex);
 
@@ -76,7 +76,7 @@ void store_bitmap(const delaunay::CanonicalDelaunay& delaunay, const std::vector
 void store_unrecovered_faces(const MarkedFaces& marked, const delaunay::CanonicalDelaunay& delaunay,
                              Decomposition& result);
 
-/// All steps, and the facet structure. Errors: not_encodable.
+/// Does all steps and codes the facet structure. Errors: not_encodable.
 Result<Decomposition> decompose(const geometry::CanonicalSolid& solid,
                                 const delaunay::Certificate* certificate);
 

@@ -12,7 +12,7 @@
 namespace watertight::codec::bitmap {
 namespace {
 
-/// For each face, whether it lies on the convex hull (one tetrahedron instead of two).
+/// Finds the faces on the convex hull, which belong to one tetrahedron instead of two.
 std::vector<bool> find_hull(const delaunay::CanonicalDelaunay& delaunay) {
   std::vector<Triangle> sides;
   sides.reserve(delaunay.tetrahedra.size() * 4);
@@ -34,7 +34,7 @@ std::vector<bool> find_hull(const delaunay::CanonicalDelaunay& delaunay) {
   return is_hull;
 }
 
-/// The three edges of every face, numbered.
+/// The three edges of each face, as numbers of edges.
 struct FaceEdges {
   std::vector<std::array<Index, 3>> edges_of;
   Index edge_count = 0;
@@ -45,7 +45,7 @@ FaceEdges number_edges(std::span<const Triangle> faces) {
     Index from;
     Index to;
     Index face;
-    Index edge;  // of the face: 0 to 2
+    Index edge;  // the index of the edge in its face: 0 to 2
   };
   std::vector<Use> uses;
   uses.reserve(faces.size() * 3);
@@ -67,7 +67,7 @@ FaceEdges number_edges(std::span<const Triangle> faces) {
   return result;
 }
 
-/// The models of the marks, and for each edge the counts that choose among them.
+/// The models of the marks, and for each edge the counts that choose a model.
 class MarkModels {
  public:
   explicit MarkModels(const delaunay::CanonicalDelaunay& delaunay)

@@ -17,8 +17,8 @@ using geometry::difference;
 using geometry::dot;
 
 /// Classes of the angle at which two triangles meet, by which the models guess whether they belong
-/// to one facet. Class 0 is an exact predicate, the others compare IEEE products and sums in a
-/// fixed order: every machine finds the same.
+/// to one facet. An exact predicate decides class 0; IEEE products and sums in a fixed order decide
+/// the others, so that every machine finds the same.
 constexpr int kBendClasses = 6;
 
 int bend_class(std::span<const Point> points, const Joint& joint) {
@@ -30,22 +30,22 @@ int bend_class(std::span<const Point> points, const Joint& joint) {
   const auto first = cross(along, difference(p, a));
   const auto second = cross(along, difference(q, a));
   const double product = dot(first, second);
-  if (!(product < 0)) return 5;  // both on one side: a right angle or sharper
+  if (!(product < 0)) return 5;  // the triangles form a right angle or a sharper one
   if (geometry::orient3d(a, b, p, q) == 0) return 0;
   const double cosine_squared = product * product;
   const double all = dot(first, first) * dot(second, second);
-  if (cosine_squared > 0.999999 * all) return 1;  // 0.06 degrees
-  if (cosine_squared > 0.9998 * all) return 2;    // 0.8 degrees
-  if (cosine_squared > 0.98 * all) return 3;      // 8 degrees
+  if (cosine_squared > 0.999999 * all) return 1;  // bent by at most 0.06 degrees
+  if (cosine_squared > 0.9998 * all) return 2;    // bent by at most 0.8 degrees
+  if (cosine_squared > 0.98 * all) return 3;      // bent by at most 8 degrees
   return 4;
 }
 
-/// The contents of the section of facets.
+/// The contents of the facet section.
 struct Structure {
-  std::vector<bool> is_interior;  // joint -> it lies inside a facet
-  std::vector<bool> is_flipped;   // component -> its smallest triangle turns the other way
+  std::vector<bool> is_interior;  // joint -> whether it lies inside a facet
+  std::vector<bool> is_flipped;   // component -> whether its smallest triangle turns the other way
   Index exterior_component = 0;
-  std::vector<Index> exterior_ring;  // facet -> its exterior ring; 0 if it has one ring
+  std::vector<Index> exterior_ring;  // facet -> index of its exterior ring among its sorted rings
 };
 
 struct Models {
@@ -83,7 +83,7 @@ std::vector<int> bend_classes(std::span<const Point> points, const BoundarySurfa
   return bends;
 }
 
-/// True if `ring` (cyclic) of a facet of the solid has the edge from -> to.
+/// True if a ring of the facet of the solid has the edge from -> to.
 bool facet_has_edge(const Solid& solid, Index facet, Index from, Index to) {
   const IndexRange rings = solid.rings_of(facet);
   for (Index r = rings.begin; r < rings.end; ++r) {
@@ -95,8 +95,8 @@ bool facet_has_edge(const Solid& solid, Index facet, Index from, Index to) {
   return false;
 }
 
-/// Finds which components are flipped. Requires a surface none of whose components is flipped: a
-/// component is flipped if a ring of one of its facets then runs against that of the solid.
+/// Finds the components that are flipped. Requires a surface oriented without flips: a component is
+/// flipped if a ring of one of its facets runs against the ring of the solid.
 std::vector<bool> find_flips(const BoundarySurface& surface, const MarkedFaces& faces,
                              const Solid& solid) {
   std::vector<bool> is_flipped(surface.component_count(), false);
@@ -122,7 +122,7 @@ Index find_exterior_component(const BoundarySurface& surface, const MarkedFaces&
   return 0;
 }
 
-/// Which of the sorted rings of each facet is the exterior one. Requires canonical rings.
+/// The index of the exterior ring among the sorted rings of each facet. Requires canonical rings.
 std::vector<Index> find_exterior_rings(const BoundarySurface& surface,
                                        const std::vector<std::vector<VertexRing>>& rings,
                                        const MarkedFaces& faces, const Solid& solid) {

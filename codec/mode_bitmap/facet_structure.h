@@ -28,14 +28,15 @@ struct CodedFacets {
   Bytes bytes;
 };
 
-/// The section in the shorter of the two codings, or nothing if it would not bring `canonical`
-/// back. `points` are the vertices of the solid, and after them the Steiner vertices. Cost: O(n log
-/// n).
+/// Writes the facet section in the shorter of the two codings. Returns nothing if the section would
+/// not bring `canonical` back. `points` are the vertices of the solid, then the Steiner vertices.
+/// Cost: O(n log n).
 std::optional<CodedFacets> write_facet_structure(std::span<const Point> points,
                                                  const MarkedFaces& faces, const Solid& canonical);
 
-/// Facet, ring and shell arrays of the solid bounded by `triangles`; no vertices; facets and shells
-/// in no particular order but the exterior first. Errors: malformed.
+/// Reads the arrays of facets, rings and shells of the solid bounded by `triangles`; the result has
+/// no vertices. The exterior shell and exterior rings come first; the rest is in no particular
+/// order. Errors: malformed.
 Result<SolidArrays> read_facet_structure(ByteView section, BitCoding coding,
                                          std::span<const Point> points,
                                          std::span<const Triangle> triangles, Index vertex_count);

@@ -16,7 +16,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-constexpr std::int64_t kRange = std::int64_t{1} << 54;  // values are smaller in magnitude
+constexpr std::int64_t kRange = std::int64_t{1} << 54;  // values are below this in magnitude
 constexpr int kShiftBits = 6;
 constexpr int kMostShift = 40;
 constexpr int kStepBits = 61;
@@ -26,8 +26,8 @@ constexpr int kCountBits = 32;
 // that stands alone, or the distance of a value from the one before it in a list.
 constexpr Context<2> kAlone{0U};
 constexpr Context<2> kInList{1U};
-constexpr std::uint32_t kLengths = 16;  // classes of the number of bits of such a distance
-// Numbers that stand alone have the contexts before those of the lengths.
+constexpr std::uint32_t kLengths = 16;  // classes of the bit length of a distance in a list
+// Numbers that stand alone have the contexts before those of the bit lengths.
 constexpr Context<2 * kLengths> kOfStep{0U};
 constexpr Context<2 * kLengths> kOfCount{1U};
 constexpr Context<kLengths * kLengths> kNoneBefore{0U};
@@ -39,7 +39,7 @@ constexpr double kShare = 0.7;
 struct Line {
   double least = 0;  // the least and the greatest offset that give all values
   double greatest = 0;
-  std::size_t lower = 0;  // the values that set these bounds
+  std::size_t lower = 0;  // the indices of the values that set these bounds
   std::size_t upper = 0;
 };
 
@@ -61,8 +61,8 @@ Line offsets_at(const std::vector<std::int64_t>& values, const std::vector<std::
   return line;
 }
 
-/// For each value, how many steps lie between the first value and it. The step is narrowed down by
-/// the distances of values, short ones first. Returns nothing if no step of 1.2 or more fits.
+/// The number of steps from the first value to each value. The step is narrowed down by the
+/// distances of values, short ones first. Returns nothing if no step of 1.2 or more fits.
 std::optional<std::vector<std::int64_t>> count_steps(const std::vector<std::int64_t>& values,
                                                      double& step) {
   std::int64_t least_gap = kRange;
@@ -94,8 +94,8 @@ std::optional<std::vector<std::int64_t>> count_steps(const std::vector<std::int6
   return places;
 }
 
-/// Finds a step for which some offset gives all values, and takes the offset in the middle of those
-/// that do. False if there is no such step near `step`.
+/// Finds a step for which some offset gives all values, and takes the middle one of these offsets.
+/// Returns false if there is no such step near `step`.
 bool fit_line(const std::vector<std::int64_t>& values, const std::vector<std::int64_t>& places,
               double& step, double& offset) {
   const double reach = 2 / static_cast<double>(places.back());
@@ -134,7 +134,7 @@ std::int64_t AxisPlaces::place_of(std::int64_t value) const {
   if (kind_ == Kind::listed) {
     return std::lower_bound(list_.begin(), list_.end(), value) - list_.begin();
   }
-  // The first place whose value is not below: exactly, at any magnitude.
+  // The first place whose value is not below `value`, computed exactly.
   const Wide above = (Wide{value} << shift_) - offset_ + step_ - 1;
   return static_cast<std::int64_t>(above / step_ - (above % step_ < 0 ? 1 : 0));
 }
@@ -236,7 +236,7 @@ AxisPlaces AxisPlaces::stepped(const std::vector<std::int64_t>& values) {
   double offset = 0;
   const auto places = count_steps(values, step);
   if (!places || !fit_line(values, *places, step, offset)) return {};
-  // The first vertex has the value 0, and 0 must be the number of its place.
+  // The first vertex has the value 0, and its place must have the number 0.
   const auto zero = std::lower_bound(values.begin(), values.end(), 0) - values.begin();
   offset += static_cast<double>((*places)[static_cast<std::size_t>(zero)]) * step;
   AxisPlaces result;

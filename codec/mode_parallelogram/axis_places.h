@@ -21,22 +21,22 @@ class AxisPlaces {
  public:
   enum class Kind : std::uint8_t { every, stepped, listed };
 
-  /// Every number is the value of the place of that number.
+  /// Makes places of Kind::every: the value of each place is the number of the place.
   AxisPlaces() = default;
 
   Kind kind() const { return kind_; }
-  /// The value of a place: within 2^54 and, if listed, on the list. Nothing if it has none.
+  /// The value of a place, below 2^54 in magnitude; nothing if the place has no value.
   std::optional<std::int64_t> value_of(std::int64_t place) const;
   /// The place of a value that has one. Cost: logarithmic in the list.
   std::int64_t place_of(std::int64_t value) const;
-  /// Where a coordinate lies among the places, between them in proportion; 0 to the last place if
-  /// listed. Cost: likewise.
+  /// The place of any coordinate, as a fraction between the places of the values beside it; 0 to
+  /// the last place if listed. Cost: logarithmic in the list.
   double position_of(double coordinate) const;
-  /// How many places lie within `distance` of `coordinate`.
+  /// The length of `distance` around `coordinate`, counted in places.
   double spread_of(double coordinate, double distance) const;
 
-  /// Writes, reads or measures what the list is. The first vertex of the solid has the value 0.
-  /// Errors: malformed; limit_exceeded.
+  /// Codes the places of an axis; `before` is the kind of the axis before. The first vertex of the
+  /// solid has the value 0. Errors: malformed; limit_exceeded.
   static Result<AxisPlaces> code(EntropyStream& stream, ModelBank& models, Kind before,
                                  const AxisPlaces& places, const Limits& limits);
 
@@ -51,7 +51,7 @@ class AxisPlaces {
   static AxisPlaces stepped(const std::vector<std::int64_t>& values);
 
   Kind kind_ = Kind::every;
-  std::int64_t step_ = 0;  // the distance of two values, in units of 2^-shift_
+  std::int64_t step_ = 0;  // the distance between two values, in units of 2^-shift_
   std::int64_t offset_ = 0;
   int shift_ = 0;
   std::vector<std::int64_t> list_;

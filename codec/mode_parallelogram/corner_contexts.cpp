@@ -35,12 +35,12 @@ constexpr std::uint32_t kRatios = 12;
 constexpr int kRatioZero = 6;
 constexpr std::uint32_t kMissRatios = 14;
 constexpr int kMissZero = 8;
-// Logarithms of ratios of two areas, likewise.
+// Logarithms of ratios of two areas: the number of classes, and the class of the ratio 1.
 constexpr std::uint32_t kNearAreas = 16;
 constexpr int kNearAreaZero = 8;
 constexpr std::uint32_t kMeanAreas = 20;
 constexpr int kMeanAreaZero = 10;
-// These keep divisors above 0.
+// Values that keep divisors above 0.
 constexpr double kLeastLength = 1e-3;
 constexpr double kLeastRoom = 0.01;
 constexpr double kLeastArea = 1;
@@ -84,7 +84,7 @@ struct Degrees {
   Context<kDegrees> v;
   Context<kDegrees> w;
   Context<kDegrees> lesser;   // the lesser degree of u and w
-  Context<kDegrees> greater;  // likewise
+  Context<kDegrees> greater;  // the greater degree of u and w
 };
 
 Degrees degrees_at(const Corner& at, const SurfaceFront& front) {
@@ -95,12 +95,12 @@ Degrees degrees_at(const Corner& at, const SurfaceFront& front) {
 }
 
 struct Lengths {
-  double span;       // the third edge of the closing triangle
-  double side_u;     // its edge u v, which a known triangle has too
-  double side_w;     // likewise
+  double span;       // the length of the third edge u w of the closing triangle
+  double side_u;     // the length of u v, which is an edge of a known triangle too
+  double side_w;     // the length of v w, which is an edge of a known triangle too
   double mean_side;  // the mean of side_u and side_w
-  double mean_edge;  // the mean edge of the surface
-  double near_edge;  // the mean edge of the two known triangles
+  double mean_edge;  // the mean length of the edges of the surface
+  double near_edge;  // the mean length of the edges of the two known triangles
 };
 
 Lengths lengths_at(const Corner& at, double mean_edge) {
@@ -120,7 +120,7 @@ Lengths lengths_at(const Corner& at, double mean_edge) {
 /// The closing triangle beside its known neighbours: its area, and how it bends away from them.
 struct Areas {
   double own;
-  double near;  // mean of the neighbours
+  double near;  // the mean area of the two known triangles
   Context<kCosines> bend;
   Context<kCosines> next_bend;
 };
@@ -136,8 +136,8 @@ Areas areas_at(const Corner& at) {
 }
 
 /// The sum of the two angles opposite an edge: for the two edges that the closing triangle shares
-/// with known ones, and for its third edge, as if the triangle beyond that ended at the next vertex
-/// of the front. In a Delaunay triangulation of a plane no such sum exceeds a half turn.
+/// with known ones, and for its third edge, as if the triangle beyond this edge ended at the next
+/// vertex of the front. In a Delaunay triangulation of a plane no such sum exceeds a half turn.
 struct Opposites {
   double greater;
   double lesser;
@@ -169,7 +169,7 @@ ContextsOf<kClose> corner_contexts(const CornerView& view) {
   const double room = at.gate.room;
   const double rest_u = at.before.room - at.angle_u;
   const double rest_w = at.after.room - at.angle_w;
-  // How many triangles are missing at v if they are as wide as the known ones.
+  // The number of triangles that are missing at v if they are as wide as the known ones.
   const double missing =
       room * view.front.degree(at.gate.end) / (2 * kHalfTurn - room + kLeastRoom);
   // The distances of the expected tips from the vertices that a closing triangle would have.

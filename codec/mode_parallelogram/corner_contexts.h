@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The knowledge of mode parallelogram about a corner of the front before it codes whether a
-// triangle closes it: angles, lengths, bends and degrees, alone or combined, as contexts.
+// The contexts of the decision of mode parallelogram whether a triangle closes a corner of the
+// front: angles, lengths, bends and degrees, alone or combined.
 #pragma once
 
 #include <vector>
@@ -16,10 +16,10 @@ namespace watertight::codec::parallelogram {
 /// A corner of the front, and what is expected around it.
 struct CornerView {
   const SurfaceFront& front;
-  const std::vector<Vector>& centres;  // of the vertices
-  Index corner = 0;                    // the number of its gate
-  Vector tip;                          // expected beyond its gate
-  Vector next_tip;                     // expected beyond the next gate
+  const std::vector<Vector>& centres;  // the positions of the vertices
+  Index corner = 0;                    // the gate of the corner
+  Vector tip;                          // the tip expected beyond the gate
+  Vector next_tip;                     // the tip expected beyond the next gate
   double mean_edge = 0;
   Context<256> answers;  // the last answers of Close
 };

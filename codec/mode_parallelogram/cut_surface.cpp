@@ -13,8 +13,8 @@ namespace watertight::codec::parallelogram {
 namespace {
 
 /// The sides of the triangles of a shell, in the order in which they pair up. Where more than two
-/// meet in one edge, two pair up if their triangles are also connected across other edges. So
-/// bodies that touch along an edge are separated.
+/// sides meet in one edge, two of them pair up if their triangles are also connected across other
+/// edges. So bodies that touch along an edge are separated.
 std::vector<geometry::EdgeSide> sides_of_shell(std::span<const Triangle> triangles, Index first,
                                                Index last) {
   std::vector<geometry::EdgeSide> sides = geometry::sides_of_triangles(triangles, first, last);

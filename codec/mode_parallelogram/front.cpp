@@ -47,7 +47,8 @@ void SurfaceFront::set_room(Index gate, double room) {
   if (waiting_.size() > kMostStale + 2 * std::size_t{open_count_}) forget_stale();
 }
 
-/// Does not change which corner is next: no two entries are equal in the order of the queue.
+/// Drops stale entries. The next corner stays the same: no two entries are equal in the order of
+/// the queue.
 void SurfaceFront::forget_stale() {
   std::erase_if(waiting_, [&](const Waiting& corner) { return is_stale(corner); });
   std::make_heap(waiting_.begin(), waiting_.end(), is_later);

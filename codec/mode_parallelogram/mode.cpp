@@ -34,7 +34,7 @@ class SurfaceCoder {
         limits_(limits),
         vertices_(stream, models, memory, limits) {}
 
-  /// Measuring: ends after so many triangles.
+  /// For measuring: code() ends after this many triangles.
   void stop_after(std::size_t triangles) { most_triangles_ = triangles; }
   std::size_t triangle_count() const { return front_.triangles().size(); }
 
@@ -91,7 +91,7 @@ class SurfaceCoder {
     return Error{ErrorCode::not_encodable, "two triangles meet along two edges"};
   }
 
-  /// The number of the vertex that was coded last.
+  /// Notes the vertex that was coded last, and returns its number.
   Index note_vertex(Index true_index) {
     const Index vertex = vertices_.count() - 1;
     if (is_writing()) code_of_[true_index] = vertex;
@@ -99,7 +99,7 @@ class SurfaceCoder {
     return vertex;
   }
 
-  /// Where the new gates of the front are, by half-edges.
+  /// When writing, notes the half-edges of the last `count` gates of the front.
   void note_gates(Index count) {
     if (!is_writing()) return;
     for (Index gate = front_.gate_count() - count; gate < front_.gate_count(); ++gate) {
@@ -107,7 +107,7 @@ class SurfaceCoder {
     }
   }
 
-  /// Until the component is closed.
+  /// Codes triangles until the component is closed.
   Status walk() {
     for (Index corner = front_.next_corner(); corner != kNone; corner = front_.next_corner()) {
       if (is_stuck_) return stuck();
@@ -125,7 +125,7 @@ class SurfaceCoder {
     return front_.open_count() == 0 ? Status(Done{}) : Status(malformed());
   }
 
-  /// Whether a triangle fills the corner; adds it or refuses.
+  /// Codes whether a triangle fills the corner; adds the triangle or refuses the corner.
   bool code_close(Index corner) {
     const Gate& gate = front_[corner];
     const Gate& after = front_[gate.next];
@@ -158,14 +158,14 @@ class SurfaceCoder {
       return true;
     }
     front_.refuse(corner);
-    if (ends) {  // the same triangle at all three corners
+    if (ends) {  // one triangle would close all three corners
       front_.refuse(gate.next);
       front_.refuse(gate.previous);
     }
     return false;
   }
 
-  /// The triangle beyond the gate has a new vertex or joins the front elsewhere.
+  /// Codes the triangle beyond the gate, which has a new vertex or joins the front elsewhere.
   Status extend(Index corner) {
     const Gate gate = front_[corner];
     std::array<Index, 2> half_edges{kNone, kNone};
@@ -196,12 +196,12 @@ class SurfaceCoder {
   }
 
   /// Codes the corner of the front at which the triangle ends: its rank by distance from the
-  /// prediction among the corners near the gate on its loop, or else its number.
+  /// prediction among the corners near the gate on its loop, or else the number of its gate.
   Status join(Index corner, const std::array<Index, 2>& half_edges, const Vector& predicted) {
     const Gate& gate = front_[corner];
     Index truth = kNone;
     if (is_writing()) {
-      // The known triangle that is met first on turning around the vertex.
+      // Turns around the vertex up to the first half-edge that is an open gate.
       Index incoming = surface_->twin[half_edges[1]];
       const Index first = incoming;
       while (gate_of_[incoming] == kNone || !front_[gate_of_[incoming]].is_open) {
@@ -303,7 +303,7 @@ class SurfaceCoder {
   EntropyStream& stream_;
   ModelBank& models_;
   Limits limits_;
-  const CutSurface* surface_ = nullptr;  // nothing when reading
+  const CutSurface* surface_ = nullptr;  // null when reading
   VertexCoder vertices_;
   const std::vector<Vector>& centres_ = vertices_.centres();
   SurfaceFront front_{centres_};
@@ -316,7 +316,7 @@ class SurfaceCoder {
   double mean_edge_ = 1;
   Answers<8> close_answers_;  // the last answers of Close
   Answers<6> new_answers_;    // the last answers of New
-  bool is_stuck_ = false;     // writing: the surface has edges between the same two vertices
+  bool is_stuck_ = false;     // when writing: two edges join the same two vertices
 };
 
 /// Options are measured on this many triangles of a surface.
@@ -354,7 +354,7 @@ class OptionTrials {
 
  private:
   const CutSurface& surface_;
-  ModelBank& models_;  // after each trial it is as it was before
+  ModelBank& models_;  // unchanged after each trial
   const PageMemory& memory_;
   Limits limits_;
   VertexOptions best_;
@@ -373,8 +373,8 @@ std::array<AxisPlaces, 3> suggest_places(const CutSurface& surface) {
   return places;
 }
 
-/// Repeats and guesses are tried first, with Kind::every on all axes; then the best of these, and
-/// its variants, with the values that occur on each axis.
+/// Chooses options by trials: first repeats and guesses, with Kind::every on all axes; then the
+/// best of these options and its variants, with the values that occur on each axis.
 Result<VertexOptions> options_for(const CutSurface& surface, ModelBank& models,
                                   const PageMemory& memory, const Limits& limits) {
   OptionTrials trials(surface, models, memory, limits);

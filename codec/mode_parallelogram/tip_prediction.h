@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where the third vertex of the triangle beyond a gate is expected: a sum of offsets between the
-// vertices around it, whose coefficients follow the surface. For mode parallelogram.
+// Predicts the third vertex of the triangle beyond a gate as a sum of offsets between the vertices
+// around the gate, with coefficients that follow the surface. For mode parallelogram.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ class TipPrediction {
     /// the triangle of the next gate, and the previous gate prolonged.
     std::array<Vector, kGuesses> guesses{};
     Vector normal{};                  // the normal of the known triangle
-    double size = 0;                  // of the gate
-    Context<kBendClasses> bends{0U};  // how flat the surface is at both sides
+    double size = 0;                  // the length of the gate
+    Context<kBendClasses> bends{0U};  // how flat the surface is at both ends of the gate
     Context<kSpanClasses> spans{0U};  // how far both corners of the gate are open
   };
 
@@ -36,12 +36,13 @@ class TipPrediction {
   const Tip& predict(const SurfaceFront& front, const std::vector<Vector>& centres, Index corner);
   const Tip& tip() const { return tip_; }
 
-  /// How far to go along the axis that is coded last, when the coordinates coded before leave the
-  /// plane of the known triangle by `slope`.
+  /// Returns the shift of the prediction along the axis that is coded last, if the coordinates
+  /// coded before leave the plane of the known triangle by `slope`.
   double shift_along(std::size_t axis, double slope);
-  /// The same coordinate turned out to be `missed` from the prediction without shift.
+  /// Learns from the coordinate on that axis, which is `missed` away from the prediction without
+  /// shift; `expected` is the expected miss.
   void learn_shift(double missed, double expected);
-  /// The tip that was predicted is at `centre`; its miss was expected to be `expected`.
+  /// Learns from the predicted tip, which is at `centre`; `expected` is the expected miss.
   void learn(const Vector& centre, double expected);
 
  private:
@@ -51,8 +52,8 @@ class TipPrediction {
   using Predictor = LeastSquares<kOffsets>;
 
   Tip tip_;
-  std::array<Predictor::Features, 3> features_{};  // by axis
-  Vector middle_{};                                // of the gate
+  std::array<Predictor::Features, 3> features_{};  // axis -> the offsets on this axis
+  Vector middle_{};                                // the middle of the gate
   double shift_ = 0;                               // the shift to the plane of the known triangle
   double predicted_shift_ = 0;
   std::vector<Predictor> predictors_{kSpanClasses, Predictor{{1, 0, 0, 0, 0, 0, 0, 0, 0}, 3}};

@@ -52,7 +52,7 @@ inline double rough_log2(double x) {
   return exponent - 2 + 2 * fraction;
 }
 
-/// floor(x), limited to 0 to size - 1; 0 if x is no number.
+/// floor(x), limited to 0 to size - 1; 0 if x is not a number.
 template <std::uint32_t size>
 Context<size> bucket(double x) {
   if (!(x > 0)) return Context<size>(0U);
@@ -82,11 +82,11 @@ inline Context<kCosines> cosine_bucket(const Vector& a, const Vector& b) {
   return Context<kCosines>(at);
 }
 
-/// Classes of equal width.
+/// Divides a quantity into classes of equal width.
 template <std::uint32_t size>
 struct Scale {
-  double per_unit = 1;  // classes
-  double from = 0;      // where the first class begins
+  double per_unit = 1;  // the number of classes in one unit
+  double from = 0;      // the value at which the first class begins
 
   Context<size> operator()(double x) const { return bucket<size>((x - from) * per_unit); }
 };

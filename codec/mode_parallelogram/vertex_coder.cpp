@@ -28,12 +28,12 @@ constexpr std::uint32_t kDistances = 8;  // classes of the distance of two guess
 constexpr int kDistanceZero = 1;
 constexpr double kDistancePart = 0.1;  // the unit of distance is this part of two misses, plus 1
 constexpr Scale<4> kParts{.per_unit = 2 * 4};    // classes of the distance to the nearest place
-constexpr Scale<8> kNormals{.per_unit = 7.999};  // sizes of components of unit vectors
+constexpr Scale<8> kNormals{.per_unit = 7.999};  // classes of the size of a unit vector's component
 constexpr std::uint32_t kVerticesAround = 5;     // vertices whose coordinate a tip may repeat
 
 Error malformed() { return {ErrorCode::malformed, "a coordinate is out of range"}; }
 
-/// The axes in ascending order of the components of a normal.
+/// The axes in ascending order of the magnitudes of a normal's components.
 std::array<std::size_t, 3> axes_by_slope(const Vector& normal) {
   std::array<std::size_t, 3> axes{0, 1, 2};
   const auto is_flatter = [&](std::size_t a, std::size_t b) {
@@ -146,7 +146,7 @@ VertexCoder::TipContexts VertexCoder::contexts_of_tip(const SurfaceFront& front,
           .apex_miss = log_bucket<kMisses>(both, kTwoMissesZero)};
 }
 
-/// A coordinate of a tip, by its difference from the place where it is expected.
+/// Codes a coordinate of a tip by its difference from the place where it is expected.
 std::int64_t VertexCoder::code_coordinate(const TipContexts& tip, const Axis& axis,
                                           double expectation, std::int64_t truth) {
   const AxisPlaces& places = places_[axis.number];
@@ -273,7 +273,7 @@ std::optional<std::int64_t> VertexCoder::code_repeat(const SurfaceFront& front, 
   const Context<16> pattern(bit(around[0] == around[1], 0) + bit(around[1] == around[2], 1) +
                             bit(around[0] == around[2], 2) +
                             bit(around[0] == around[4] || around[1] == around[3], 3));
-  // The answers for the axes before: none, one or two of them.
+  // The context of the answers for the axes before: none, one or two answers.
   const Context<7> now((1U << axis.rank.value) - 1 + now_repeats_);
   const auto flatness = kNormals(std::abs(prediction_.tip().normal[k]));
   std::size_t found = 0;

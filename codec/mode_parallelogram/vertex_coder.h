@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The coordinates of the vertices of mode parallelogram, in the order in which the front meets
-// them: each is predicted, and the difference from the prediction is coded.
+// Codes the coordinates of the vertices of mode parallelogram, in the order in which the front
+// meets the vertices: each coordinate is predicted, and the difference from the prediction is
+// coded.
 #pragma once
 
 #include <array>
@@ -25,7 +26,7 @@
 namespace watertight::codec::parallelogram {
 
 /// Codes vertices one after the other. The positions that functions take are null when reading. All
-/// positions inside are relative to the first vertex of the solid, the origin.
+/// stored positions are relative to the first vertex of the solid, the origin.
 class VertexCoder {
  public:
   VertexCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
@@ -33,20 +34,21 @@ class VertexCoder {
       : stream_(stream), models_(models), memory_(memory), limits_(limits) {}
 
   void code_options(const VertexOptions& options);
-  /// Vertex `number` of the first triangle of a component. Errors: malformed; limit_exceeded.
+  /// Codes vertex `number` (0 to 2) of the first triangle of a component. Errors: malformed;
+  /// limit_exceeded.
   Status code_seed(std::uint32_t number, const GridPoint* position);
-  /// Where the tip beyond the gate of `corner` is expected.
+  /// The expected position of the tip beyond the gate of `corner`.
   Vector predict(const SurfaceFront& front, Index corner) {
     return prediction_.predict(front, centres_, corner).guesses[0];
   }
-  /// The tip at the gate of the last prediction. Errors: malformed; limit_exceeded.
+  /// Codes the tip at the gate of the last prediction. Errors: malformed; limit_exceeded.
   Status code_tip(const SurfaceFront& front, Index corner, const GridPoint* position);
 
   Index count() const { return static_cast<Index>(positions_.size()); }
   const GridPoint& origin() const { return origin_; }
   /// The positions of the vertices coded so far, relative to the origin.
   const std::vector<GridPoint>& positions() const { return positions_; }
-  /// The same positions as doubles.
+  /// The positions of the vertices coded so far, as doubles.
   const std::vector<Vector>& centres() const { return centres_; }
 
  private:
@@ -64,13 +66,13 @@ class VertexCoder {
   /// The facts that are known about a tip before its coordinates are coded.
   struct TipContexts {
     double expected;                    // the expected miss
-    Guess guess;                        // the prediction
+    Guess guess;                        // the guess that is the prediction
     Context<kSpans + kGuesses> source;  // the set of coefficients, or the guess if tips name one
-    Context<kMisses> size;              // of the gate
-    Context<kSpreads> spread;           // of the first two guesses
-    Context<kMisses> least_miss;        // of the ends of the gate
-    Context<kMisses> apex_miss;         // of the vertices opposite the gate
-    Context<kAxisMisses> missed{0U};    // the greatest of the coordinates so far
+    Context<kMisses> size;              // the length of the gate
+    Context<kSpreads> spread;           // the distance of the first two guesses
+    Context<kMisses> least_miss;        // the lesser miss of the ends of the gate
+    Context<kMisses> apex_miss;         // the misses of two vertices beside the gate
+    Context<kAxisMisses> missed{0U};    // the greatest miss of a coordinate so far
   };
 
   GridPoint relative(const GridPoint* position) const;
@@ -94,8 +96,8 @@ class VertexCoder {
   Limits limits_;
   bool has_repeats_ = false;
   bool has_guesses_ = false;
-  double naming_weight_ = 0;                   // writing
-  std::array<AxisPlaces, 3> chosen_places_{};  // writing
+  double naming_weight_ = 0;                   // when writing: as in VertexOptions
+  std::array<AxisPlaces, 3> chosen_places_{};  // when writing: as in VertexOptions
   std::array<AxisPlaces, 3> places_{};         // Kind::every until the origin is known
   GridPoint origin_{};
   std::vector<GridPoint> positions_;
@@ -106,7 +108,7 @@ class VertexCoder {
   TipPrediction prediction_;
   Context<kGuesses * kGuesses> last_guesses_{0U};  // the guesses of the two tips before
   std::array<Answers<3>, 3> history_;              // axis -> the last answers of Repeat
-  std::uint32_t now_repeats_ = 0;                  // the answers for this tip, latest lowest
+  std::uint32_t now_repeats_ = 0;  // the answers of Repeat for this tip, latest lowest
 };
 
 }  // namespace watertight::codec::parallelogram

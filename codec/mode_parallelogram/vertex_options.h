@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How the vertices of one solid are coded in mode parallelogram.
+// The options with which mode parallelogram codes the vertices of one solid.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace watertight::codec::parallelogram {
 
-/// The writer chooses these for each solid. All but `naming_weight` are in the stream.
+/// The options that a writer chooses for each solid. All but `naming_weight` are in the stream.
 struct VertexOptions {
-  bool has_repeats = false;  // coordinates of vertices nearby come again
-  bool has_guesses = false;  // each tip names the guess that it is coded from
+  bool has_repeats = false;  // true: a decision says whether a coordinate repeats one nearby
+  bool has_guesses = false;  // true: each tip names the guess that it is coded from
   std::array<AxisPlaces, 3> places{};
   /// Writer only: the weight, in the choice of a guess, of the bits that name it (0.5 or 1).
   double naming_weight = 0.5;

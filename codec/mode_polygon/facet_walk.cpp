@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shells, facets, and where a ring begins. facet_walk_ring.cpp codes its other vertices.
+// The part of SurfaceWalk that codes shells, facets and the beginnings of rings.
+// facet_walk_ring.cpp codes the other vertices of a ring.
 #include "codec/mode_polygon/facet_walk.h"
 
 #include <algorithm>
@@ -177,7 +178,7 @@ void SurfaceWalk::extend_backward() {
     truth = truth_ ? truth_->surface.previous(truth) : kNone;
     backward_.push_back({start, edge, truth});
     if (start == end_) {
-      // The last step was to the end of the ring: its edge closes it.
+      // The last step reached the end of the ring: the edge of this step closes the ring.
       forward_.push_back(backward_.back());
       backward_.pop_back();
       is_closed_ = true;
@@ -240,7 +241,7 @@ void SurfaceWalk::begin_interior(Index truth_half) {
   begin_at_vertex(known, found);
 }
 
-/// `vertex` is kNone for a new one.
+/// Begins a ring at `vertex`, or at a new vertex if that is kNone.
 void SurfaceWalk::begin_at_vertex(Index vertex, Index truth_half) {
   end_truth_ = truth_half;
   end_ = vertex;
@@ -265,9 +266,9 @@ void SurfaceWalk::code_size(bool is_interior) {
   const Index least = std::max(run, Index{3});
   const Index truth_size =
       truth_ ? truth_->surface.ring_size(truth_->surface.ring_of[end_truth_]) : least;
-  // The level, or that the ring is a further one of its facet.
+  // The ring level, or kLevels for an interior ring.
   const Context<kLevels + 1> kind(is_interior ? kLevels : ring_level_);
-  // The size that would close the loop of the front.
+  // The ring size that would close the loop of the front, or 0.
   const std::int64_t closing =
       loop_reaches_start_ ? std::int64_t{run} + static_cast<std::int64_t>(loop_.size()) : 0;
   const Index gate_size =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The walk of mode `polygon` over the facets of a surface, the same for all three directions.
+// The walk of mode `polygon` over the facets of a surface: it writes, reads or measures them.
 // Based on: M. Isenburg, "Compressing polygon mesh connectivity with degree duality prediction"
 // (Graphics Interface 2002).
 // Departures: facets are reached first in, first out; vertices on the front are coded by their
@@ -18,10 +18,11 @@
 namespace watertight::codec::polygon {
 
 inline constexpr Index kLoopLimit = 64;    // the most steps of a loop along the front
-inline constexpr Index kGateLimit = 256;   // the most open half-edges where an interior ring begins
-inline constexpr Index kGateReach = 4096;  // the most half-edges that are searched for these
+inline constexpr Index kGateLimit = 256;   // the most open half-edges at which an interior ring may
+                                           // begin
+inline constexpr Index kGateReach = 4096;  // the most half-edges that are searched for open ones
 inline constexpr Index kChainLimit = 64;   // the most chains at one vertex
-inline constexpr Index kUnaryLimit = 24;   // sizes and degrees that are asked one by one
+inline constexpr Index kUnaryLimit = 24;   // greater sizes and degrees are coded as a number
 inline constexpr int kCountBits = 28;      // the most bits of a ring size or degree
 inline constexpr int kGateBits = 9;        // the most bits of the number of a gate
 inline constexpr int kLoopBits = 6;        // the most bits of the number of a step
@@ -35,8 +36,8 @@ inline constexpr Context<2> kAtGate{1U};
 inline constexpr Context<2> kLongSize{0U};  // contexts of Long
 inline constexpr Context<2> kLongDegree{1U};
 
-/// Known facets around a vertex, each beside the next. The half-edge `in` comes to the vertex,
-/// `out` leaves it; neither has a twin yet.
+/// A chain: known facets around a vertex, each beside the next. The half-edge `in` comes to the
+/// vertex, `out` leaves it; neither has a twin yet.
 struct Chain {
   Index in = kNone;
   Index out = kNone;
@@ -46,8 +47,8 @@ struct Chain {
 /// An edge of the ring in the making, from `vertex` to the vertex of the next edge.
 struct Step {
   Index vertex = kNone;
-  Index twin = kNone;   // the known half-edge that it pairs with
-  Index truth = kNone;  // the half-edge of the given surface
+  Index twin = kNone;   // the known half-edge that pairs with this edge, or kNone
+  Index truth = kNone;  // this edge in the given surface, or kNone
 };
 
 enum class Start : std::uint8_t { fresh, gate, known };
@@ -114,24 +115,24 @@ class SurfaceWalk {
   WalkedSurface result_;
 
   std::vector<Index> remaining_;    // vertex -> corners to come
-  std::vector<Index> chain_count_;  // vertex -> its chains
-  std::vector<Index> first_chain_;  // vertex -> the first of them
+  std::vector<Index> chain_count_;  // vertex -> number of its chains
+  std::vector<Index> first_chain_;  // vertex -> its first chain
   std::vector<Chain> chains_;
   std::vector<Index> free_chains_;
-  std::vector<Index> seen_in_ring_;  // vertex -> ring that visits it
-  std::vector<std::uint8_t> level_;  // facet -> level
-  Index gate_ = 0;                   // all half-edges before it have twins
+  std::vector<Index> seen_in_ring_;  // vertex -> the last ring that visited it
+  std::vector<std::uint8_t> level_;  // facet -> its ring level
+  Index gate_ = 0;                   // the gate; all half-edges before it have twins
   std::vector<Index> half_truth_;    // half-edge -> half-edge of the truth
   std::vector<Index> known_as_;      // fan of the truth -> vertex
   std::vector<bool> facet_done_;     // facet of the truth -> whether it is coded
-  Index unvisited_ = 0;              // facets of the truth before it are done
+  Index unvisited_ = 0;              // all facets of the truth before this one are coded
 
-  // The ring in the making: the steps backward from the gate, then those forward.
+  // The ring in the making: the steps backward from the gate, then the steps forward.
   std::vector<Step> backward_;
   std::vector<Step> forward_;
   Index end_ = kNone;        // the vertex reached last
   Index end_twin_ = kNone;   // the known half-edge that the last edge pairs with
-  Index end_truth_ = kNone;  // half-edge of the truth that leaves it
+  Index end_truth_ = kNone;  // the half-edge of the truth that leaves end_
   bool is_closed_ = false;
   Index size_ = 0;
   std::uint8_t ring_level_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The vertices of a ring, and what a finished ring leaves at them.
+// The part of SurfaceWalk that codes the vertices of a ring and updates the chains at them.
 #include <algorithm>
 
 #include "codec/mode_polygon/facet_walk.h"
@@ -8,7 +8,7 @@
 
 namespace watertight::codec::polygon {
 
-/// From the end of the ring to its start, vertex by vertex.
+/// Codes the vertices of a ring from its end to its start.
 void SurfaceWalk::fill() {
   const Index start = backward_.empty() ? (forward_.empty() ? end_ : forward_.front().vertex)
                                         : backward_.back().vertex;
@@ -48,14 +48,14 @@ void SurfaceWalk::fill() {
   }
 }
 
-/// The chain along whose known edge the ring goes on, or kNone if it goes on along a new edge.
-/// `own` is the chain along which it came, if it did.
+/// Codes the chain along whose known edge the ring goes on, or kNone if the ring goes on along a
+/// new edge. `own` is the chain along which the ring came to the vertex, or kNone.
 Index SurfaceWalk::chosen_chain(Index vertex, Index own) {
   const Index chains = chain_count_[vertex];
   const Index others = own == kNone ? chains : chains - 1;
   const Index remaining = remaining_[vertex];
   const bool is_start = forward_.empty();
-  // A new edge leaves as many chains as there are, or one more; each needs a facet to come.
+  // A new edge leaves as many chains as there are, or one more; each chain needs a facet to come.
   const bool can_be_new = is_start || remaining > (own == kNone ? chains + 1 : chains);
   if (others == 0) {
     if (!can_be_new && own != kNone && remaining == 1) return own;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The families and numbers of mode polygon, with the names, the order and the sizes of
-// docs/format-polygon.md. Each call of code() says what its contexts mean.
+// docs/format-polygon.md. Each call of code() lists the contexts of its family.
 #pragma once
 
 #include <cstdint>

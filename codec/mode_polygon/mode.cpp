@@ -9,7 +9,7 @@
 namespace watertight::codec::polygon {
 namespace {
 
-/// The solid with the fans of each vertex joined again.
+/// The solid of a walked surface, with the fans of each vertex joined again.
 IntegerSolid assemble(const WalkedSurface& walked, const CodedPositions& positions) {
   const PolygonSurface& surface = walked.surface;
   IntegerSolid solid;

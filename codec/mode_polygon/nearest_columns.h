@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The columns of earlier solids of a page that are near a predicted one, the best first. A vertex
-// that stands in one of them is coded by its rank. For mode `polygon`.
+// Finds the columns of earlier solids of a page that are near a predicted column, the best first. A
+// vertex in one of these columns is coded by the rank of the column. For mode `polygon`.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace watertight::codec::polygon {
 
-/// The score of a column, lower for those that are more likely: its distance from `base` along the
-/// direction of `turn`, plus `across_weight` times that across it.
+/// The score of a column, lower for those that are more likely. With the offset from `base` turned
+/// by `turn`: `across_weight` times the magnitude of the first coordinate, plus that of the second.
 struct ColumnScore {
   GridColumn base{};
   Turn turn{Flat{}};

@@ -15,7 +15,8 @@ Vector3 between(const GridPoint& from, const GridPoint& to) {
           static_cast<double>(to[2] - from[2])};
 }
 
-// |normal z| below this part of the normal's length is a wall: 1.1 degrees.
+// A facet is a wall if the squared z of its normal is below this part of the normal's squared
+// length: within 1.1 degrees.
 constexpr double kWallSquared = 0.02 * 0.02;
 
 }  // namespace

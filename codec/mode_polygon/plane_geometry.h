@@ -25,8 +25,8 @@ std::int64_t to_whole(double value);
 
 using GridColumn = std::array<std::int64_t, 2>;
 
-/// A turn of the integer plane that is one to one: quarter turns, then three shears with rounding.
-/// Within about one step of the true rotation.
+/// A rotation of the integer plane that is one to one: quarter turns, then three shears with
+/// rounding. It is within about one step of the true rotation.
 class Turn {
  public:
   /// Turns `direction` to the first axis. The zero vector gives the identity.
@@ -43,21 +43,23 @@ class Turn {
 /// The plane of three points: normal . (point - origin) = 0.
 struct FacetPlane {
   enum class Kind : std::uint8_t { unknown, level, steep, wall };
-  std::array<Index, 3> points{kNone, kNone, kNone};  // known vertices, as many as there are
+  std::array<Index, 3> points{kNone, kNone, kNone};  // the vertices that span the plane, kNone if
+                                                     // not known
   int count = 0;
   std::array<double, 3> normal{};
   double area = 0;  // squared length of the normal
   Kind kind = Kind::unknown;
   GridPoint origin{};
 
-  /// Adds a vertex: keeps the three that span the largest triangle.
+  /// Adds a vertex to `points`, or puts it in the place of one of them if that makes their triangle
+  /// larger.
   void add(Index vertex, const std::vector<GridPoint>& points_of);
-  /// The height of the plane in a column, or that of its origin if it is 2^53 or more. Requires
-  /// that the plane is level or steep.
+  /// The height of the plane in a column, or the height of `origin` if that height is 2^53 or more
+  /// in magnitude. Requires that the plane is level or steep.
   std::int64_t height(GridColumn column) const;
-  /// How uncertain height() is in that column: 16 times the squared distance from the origin,
-  /// divided by twice the area of the triangle of `points` seen from above. Requires
-  /// the same.
+  /// The uncertainty of height() in a column: 16 times the squared distance from the origin,
+  /// divided by twice the area of the triangle of `points` seen from above. Requires that the plane
+  /// is level or steep.
   double reach(GridColumn column) const;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The sequence of steps for a vertex, and its column. position_coder_heights.cpp codes its height.
+// The part of PositionCoder that codes a vertex step by step, and its column.
+// position_coder_heights.cpp codes its height.
 #include "codec/mode_polygon/position_coder.h"
 
 #include <algorithm>
@@ -93,7 +94,7 @@ void PositionCoder::look_around(Index vertex) {
   } while (corner != half && facets_.size() < kFanLimit);
 }
 
-/// Whether the vertex is above or below a known neighbour.
+/// Codes whether the vertex is above or below a known neighbour.
 bool PositionCoder::code_upright(Index vertex) {
   std::uint32_t number = 0;
   for (const Neighbor& neighbor : neighbors_) {
@@ -123,7 +124,7 @@ bool PositionCoder::code_upright(Index vertex) {
 }
 
 /// Predicts the column from the known walls around the vertex, each a line seen from above: at the
-/// point where two lines cross, else on the one line. False if no wall is known.
+/// point where two lines cross, else on the one line. Returns false if no wall is known.
 bool PositionCoder::predict_on_walls(Prediction& prediction) const {
   const FacetPlane* first = nullptr;
   for (const Index facet : facets_) {
@@ -139,7 +140,7 @@ bool PositionCoder::predict_on_walls(Prediction& prediction) const {
     const Flat one{first->normal[0], first->normal[1]};
     const double det = cross(one, normal);
     if (det * det < kCrossing * dot(one, one) * dot(normal, normal)) continue;
-    // Where both lines meet, from the first wall's origin.
+    // `meet` runs from the first wall's origin to the point where both lines meet.
     const Flat offset{static_cast<double>(plane.origin[0] - first->origin[0]),
                       static_cast<double>(plane.origin[1] - first->origin[1])};
     const double distance = dot(normal, offset);
@@ -149,7 +150,8 @@ bool PositionCoder::predict_on_walls(Prediction& prediction) const {
     return true;
   }
   if (first == nullptr) return false;
-  // On one wall: between the neighbours if both are known, else beside the one that is.
+  // The base is the point of the only wall next to the vertex before, or next to the middle between
+  // the vertices before and after if both are known.
   const Flat along = prediction.direction;
   GridColumn near = column_of(first->origin);
   if (before_ != kNone) near = column_of(points_[before_]);
@@ -183,7 +185,7 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
       }
       return prediction;
     }
-    // Where the perpendiculars at both neighbours meet.
+    // The base is the point where the perpendiculars at the vertices before and after meet.
     const Flat one = a - p;
     const Flat two = b - q;
     const double det = cross(one, two);
@@ -208,7 +210,7 @@ Prediction PositionCoder::predicted_column(Index vertex) const {
   return prediction;
 }
 
-/// Whether the vertex stands in a column of an earlier solid.
+/// Codes whether the vertex stands in a column of an earlier solid, and in which one.
 bool PositionCoder::code_known_column(const Prediction& prediction) {
   if (memory_.columns.empty()) return false;
   const bool is_start = prediction.frame == PredictionFrame::start;
@@ -249,14 +251,14 @@ void PositionCoder::code_column(Index vertex) {
   Prediction prediction = predicted_column(vertex);
   for (const std::int64_t coordinate : prediction.base) {
     if (coordinate < kCoordinateLimit && coordinate > -kCoordinateLimit) continue;
-    prediction.base = column_of(points_[0]);  // out of all bounds: no prediction
+    prediction.base = column_of(points_[0]);  // the prediction is out of range
   }
   if (prediction.frame == PredictionFrame::start)
     prediction.base = column_of(memory_.last_position);
   if (!code_known_column(prediction)) code_offset(prediction);
 }
 
-/// A coordinate of the first vertex, from the last position of the page.
+/// Codes a coordinate of the first vertex, as a difference from the last position of the page.
 void PositionCoder::code_first(std::uint32_t axis) {
   const std::int64_t base = memory_.last_position[axis];
   const std::int64_t truth = truth_at(axis) - base;
@@ -288,7 +290,7 @@ void PositionCoder::code_offset(const Prediction& prediction) {
   for (std::size_t axis = 0; axis < 2; ++axis) point()[axis] = prediction.base[axis] + offset[axis];
 }
 
-/// The offset from a prediction: across its direction, then along it.
+/// Codes the turned offset from a prediction: the part across, then the part along.
 GridColumn PositionCoder::code_residual(const Prediction& prediction, const GridColumn& truth) {
   const Context<kFrames> frame(prediction.frame);
   const Context<2> steady(prediction.is_steady);

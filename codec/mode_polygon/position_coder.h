@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The positions of the vertices of a walked surface in mode `polygon`: columns by vertical edges,
-// walls and right angles, heights by planes and levels (docs/format-polygon.md). For the mode only.
+// Codes the positions of the vertices of a walked surface in mode `polygon`: columns by vertical
+// edges, walls and right angles, heights by planes and levels (docs/format-polygon.md). For the
+// mode only.
 #pragma once
 
 #include <algorithm>
@@ -19,33 +20,33 @@ namespace watertight::codec::polygon {
 
 inline constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
 inline constexpr int kCoordinateBits = 55;
-inline constexpr std::size_t kFanLimit = 12;      // corners of a vertex that predictions use
-inline constexpr std::size_t kLevelLimit = 12;    // heights that are remembered
-inline constexpr std::uint32_t kHeightLimit = 6;  // heights that are offered
+inline constexpr std::size_t kFanLimit = 12;    // the most corners of a vertex that predictions use
+inline constexpr std::size_t kLevelLimit = 12;  // the most heights that are remembered
+inline constexpr std::uint32_t kHeightLimit = 6;  // the most heights that are offered
 inline constexpr int kRankBits = 12;              // the most bits of the rank of a known column
 
 // Fixed by the format (docs/format-polygon.md, "Positions").
 inline constexpr double kCrossing = 0.03;       // least squared sine between two walls that cross
 inline constexpr double kPerpendicular = 0.25;  // least squared sine between two edges that cross
-// How many columns of the page are compared before and after the prediction, and how many of these
-// are offered: for the first vertex of a solid, then for all others.
+// The number of columns of the page that are compared before and after the prediction, and the
+// number of them that are offered: for the first vertex of a solid, then for all others.
 inline constexpr std::size_t kFirstWindow = 2048;
 inline constexpr std::size_t kFirstOffered = 2048;
 inline constexpr std::size_t kWindow = 64;
 inline constexpr std::size_t kOffered = 16;
-inline constexpr std::uint64_t kAcrossWeight = 4;  // the weight of an offset across the direction
+inline constexpr std::uint64_t kAcrossWeight = 4;  // the weight of the part of an offset across
 
 using Kind = FacetPlane::Kind;
 inline constexpr std::uint32_t kPlaneKinds = 4;
 
-/// How the prediction of a column was found.
+/// The way in which the base of a column was found.
 enum class PredictionFrame : std::uint8_t { start, bare, edge, corner, closing, wall, walls };
 inline constexpr std::uint32_t kFrames = 7;
 inline constexpr std::size_t kDirectionLimit = 8;
 /// The squared sine of the greatest angle between two edges of one direction.
 inline constexpr double kDirectionSlack = 0.003 * 0.003;
 
-/// Whether `edge` has the direction of `line`, up to kDirectionSlack or two grid steps.
+/// True if `edge` has the direction of `line`, up to kDirectionSlack or two grid steps.
 inline bool is_along(Flat edge, Flat line) {
   const double off = cross(edge, line);
   const double length = dot(line, line);
@@ -56,9 +57,9 @@ inline Flat quarter_turned(Flat vector) { return {-vector.y, vector.x}; }
 
 struct Neighbor {
   Index vertex = kNone;
-  Index facet = kNone;        // left of the edge to it
-  Index other_facet = kNone;  // right of it
-  Context<3> relation{2U};    // 0: the one before in the ring, 1: the one after, 2: another
+  Index facet = kNone;        // the facet left of the edge to this neighbour
+  Index other_facet = kNone;  // the facet right of that edge
+  Context<3> relation{2U};    // 0: before in the ring, 1: after in it, 2: another neighbour
 };
 
 struct Prediction {
@@ -73,7 +74,7 @@ inline std::uint32_t bits_of(std::int64_t value) {
       std::bit_width(static_cast<std::uint64_t>(value < 0 ? -value : value)));
 }
 
-/// The bit length of the greater of both coordinates.
+/// The bit length of the greater coordinate of a vector, in grid steps.
 inline std::uint32_t length_bits(Flat vector) {
   return std::max(bits_of(to_whole(vector.x)), bits_of(to_whole(vector.y)));
 }
@@ -87,8 +88,8 @@ struct CodedPositions {
   std::vector<Index> same_as;
 };
 
-/// Codes the position of each vertex of `surface` in turn. `truth` is empty when reading, else the
-/// positions.
+/// Codes the position of each vertex of `surface` in turn. `truth` is empty when reading, else it
+/// has the positions.
 class PositionCoder {
  public:
   PositionCoder(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
@@ -102,7 +103,7 @@ class PositionCoder {
   }
 
   /// Errors: malformed, or not_encodable when writing, if a coordinate is 2^53 or more. Cost:
-  /// linear; per vertex at most 128 columns of the page, for the first one 4096.
+  /// linear; compares at most 128 columns of the page for each vertex, 4096 for the first.
   Result<CodedPositions> run();
 
  private:
@@ -120,7 +121,7 @@ class PositionCoder {
   bool predict_on_walls(Prediction& prediction) const;
   void code_height(Index vertex);
   bool code_height_on_planes(Index vertex);
-  void code_other_height(Index vertex);
+  void code_other_height();
   void remember_direction(Index vertex);
   bool follow_direction(Flat& direction) const;
   void remember_height(std::int64_t height);
@@ -147,28 +148,28 @@ class PositionCoder {
   std::vector<Index> same_as_;
   bool has_copies_ = false;
   std::vector<FacetPlane> planes_;
-  std::vector<std::uint8_t> uprights_;         // facet -> vertical edges known, at most 2
-  std::vector<std::uint8_t> has_upright_;      // vertex -> vertical edges known, at most 2
+  std::vector<std::uint8_t> uprights_;     // facet -> number of known vertical edges, at most 2
+  std::vector<std::uint8_t> has_upright_;  // vertex -> number of known vertical edges, at most 2
   std::vector<std::uint8_t> in_known_column_;  // vertex -> 1 if coded by a column of the page
-  Index last_top_ = kNone;                     // the last vertex in the column of a neighbour
-  std::uint32_t known_columns_ = 0;            // vertices coded by a column of the page
-  std::vector<Flat> directions_;               // the long edges, one for each direction
+  Index last_top_ = kNone;                     // the last vertex coded in the column of a neighbour
+  std::uint32_t known_columns_ = 0;  // the number of vertices coded by a column of the page
+  std::vector<Flat> directions_;     // the long edges, one for each direction
   /// vertex -> how its offset turned (docs/format-polygon.md): 0 if none was coded, 1 if along is
   /// not negative, 2 if along is negative, 3 if the offset is nearly all across.
   std::vector<std::uint8_t> turns_;
   std::vector<std::int64_t> levels_;  // the last heights, the latest first
 
-  // About the vertex that is being coded.
+  // The vertex that is being coded, and the known vertices around it.
   Index current_ = 0;
-  Index before_ = kNone;  // its neighbours in the ring in which it was created, if known
+  Index before_ = kNone;  // the vertex before in the ring that created current_, or kNone
   Index after_ = kNone;
   Index before_two_ = kNone;
   Index after_two_ = kNone;
   std::uint32_t ring_size_ = 0;
   Context<2> in_first_facet_{false};
   std::vector<Neighbor> neighbors_;
-  std::vector<Index> facets_;  // around the vertex
-  Index below_ = kNone;        // the neighbour in the same column
+  std::vector<Index> facets_;  // the facets around current_
+  Index below_ = kNone;        // the neighbour in the same column, or kNone
 };
 
 }  // namespace watertight::codec::polygon

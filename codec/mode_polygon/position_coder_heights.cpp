@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Heights and the directions of edges.
+// The part of PositionCoder that codes heights and remembers the directions of edges.
 #include <algorithm>
 #include <bit>
 
@@ -11,18 +11,18 @@ namespace watertight::codec::polygon {
 
 namespace {
 
-/// An offered height is that of the vertex before in the ring, of the vertex after, of another
-/// neighbour, or one of the heights coded last.
+/// The number of sources of an offered height: the vertex before in the ring, the vertex after,
+/// another neighbour, the heights coded last.
 constexpr std::uint32_t kSources = 4;
-/// An edge is made longer by the vertices before it in the ring that lie on one line with it: by
-/// this many at most.
+/// The most vertices before an edge in its ring that make the edge longer because they lie on one
+/// line with it.
 constexpr int kLineLimit = 8;
 
 }  // namespace
 
 /// Replaces `direction` by the longest of the remembered edges that are parallel or perpendicular
-/// to it, turned by quarters of a full turn where needed. False if no such edge is longer than
-/// `direction`.
+/// to it, turned by quarters of a full turn where needed. Returns false if no such edge is longer
+/// than `direction`.
 bool PositionCoder::follow_direction(Flat& direction) const {
   double longest = dot(direction, direction);
   if (longest == 0) {
@@ -47,7 +47,7 @@ bool PositionCoder::follow_direction(Flat& direction) const {
 void PositionCoder::remember_direction(Index vertex) {
   if (below_ != kNone || before_ == kNone) return;
   Flat edge = flat(vertex) - flat(before_);
-  // The longer edge, if the vertices before are on one line with this one.
+  // Vertices before the edge in the ring make the edge longer if they lie on one line with it.
   Index half = surface_.previous(surface_.out_half[vertex]);
   const Flat last = flat(before_);
   for (int i = 0; i < kLineLimit; ++i) {
@@ -74,7 +74,7 @@ void PositionCoder::code_height(Index vertex) {
   if (vertex == 0) {
     code_first(2);
   } else if (!code_height_on_planes(vertex)) {
-    code_other_height(vertex);
+    code_other_height();
   }
 }
 
@@ -110,8 +110,8 @@ bool PositionCoder::code_height_on_planes(Index /*vertex*/) {
   return true;
 }
 
-void PositionCoder::code_other_height(Index /*vertex*/) {
-  // Heights of the neighbours in the ring, then those seen last.
+void PositionCoder::code_other_height() {
+  // The heights of the neighbours are offered first, then the heights that were coded last.
   std::array<std::int64_t, kHeightLimit> offered{};
   std::array<std::uint32_t, kHeightLimit> source{};
   std::uint32_t count = 0;
@@ -140,8 +140,8 @@ void PositionCoder::code_other_height(Index /*vertex*/) {
       return;
     }
   }
-  // None of these: code the difference from a neighbour in the ring that stands in another column,
-  // else from the last upright vertex, else from the neighbour in the same column.
+  // No offered height is right: codes the difference from a neighbour in the ring that stands in
+  // another column, else from the last upright vertex, else from the neighbour in the same column.
   std::uint32_t from = 3;
   Index near = current_ - 1;
   const auto is_beside = [&](Index other) {

@@ -11,7 +11,7 @@
 namespace watertight::codec::polygon {
 namespace {
 
-/// The twin of each half-edge, in the same shell. Nothing if a shell is not closed.
+/// The twin of each half-edge, in the same shell. Returns nothing if a shell is not closed.
 std::optional<std::vector<Index>> twins_of(const IntegerSolid& solid) {
   std::vector<Index> twin;
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
@@ -48,8 +48,8 @@ Index first_facet(const IntegerSolid& solid, Index shell) {
   return best;
 }
 
-/// Where the walk begins in its first facet: in the column of an earlier solid that is
-/// nearest to the last position, else at its smallest vertex.
+/// The half-edge at which the walk begins in its first facet: at the vertex in a column of an
+/// earlier solid that is nearest to the last position, else at the smallest vertex of the facet.
 Index first_half(const IntegerSolid& solid, Index facet, const PageMemory& memory) {
   const Index ring = solid.facet_offsets[facet];
   Index best = solid.ring_offsets[ring];

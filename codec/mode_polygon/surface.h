@@ -2,7 +2,7 @@
 //
 // The connectivity of a solid in mode `polygon`: oriented surfaces without boundary, each half-edge
 // with its twin. A vertex where several fans of facets meet counts once per fan, so that the
-// surface is a manifold whatever touches. Written and read by the same walk over its facets
+// surface is a manifold also where parts of it touch. The walk over its facets codes it
 // (docs/format-polygon.md). For the mode only.
 #pragma once
 
@@ -19,12 +19,12 @@ namespace watertight::codec::polygon {
 /// The half-edges of a ring are consecutive and in order. `vertex` of a half-edge is its origin.
 struct PolygonSurface {
   std::vector<Index> vertex;            // half-edge -> vertex (one per fan)
-  std::vector<Index> twin;              // half-edge -> half-edge
+  std::vector<Index> twin;              // half-edge -> its twin
   std::vector<Index> ring_of;           // half-edge -> ring
   std::vector<Index> facet_of;          // ring -> facet
   std::vector<Index> ring_offsets{0};   // ring -> its first half-edge; one more entry at the end
-  std::vector<Index> facet_offsets{0};  // facet -> its first ring, likewise
-  std::vector<Index> shell_offsets{0};  // shell -> its first facet, likewise
+  std::vector<Index> facet_offsets{0};  // facet -> its first ring; one more entry at the end
+  std::vector<Index> shell_offsets{0};  // shell -> its first facet; one more entry at the end
   std::vector<Index> degree;            // vertex -> number of its half-edges
   std::vector<Index> out_half;          // vertex -> the first of its half-edges in the walk
 
@@ -48,11 +48,11 @@ struct SurfaceTruth {
   std::vector<Index> first_half;  // shell -> the half-edge at which the walk begins
 };
 
-/// Errors: not_encodable if ring edges of a shell are not matched by edges of the same shell. Cost:
-/// O(n log n).
+/// Makes the surface of a solid. Errors: not_encodable if a shell has no facets, or an edge of a
+/// ring is not matched by an edge of the same shell. Cost: O(n log n).
 Result<SurfaceTruth> surface_of(const IntegerSolid& solid, const PageMemory& memory);
 
-/// The surface in the order of the walk, and where its vertices are in the truth when there is one.
+/// The surface in the order of the walk and, when writing, the fans of the truth.
 struct WalkedSurface {
   PolygonSurface surface;
   std::vector<Index> exterior;      // facet -> its exterior ring

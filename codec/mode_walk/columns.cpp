@@ -13,7 +13,7 @@ namespace {
 
 using Place = std::array<std::int64_t, 2>;
 
-constexpr int kMaxLength = 30;  // bits of a side of the box
+constexpr int kMaxLength = 30;  // the most bits of a side of the box
 constexpr std::int64_t kMaxMagnitude = std::int64_t{1} << 53;
 
 constexpr int kPositionBits = 54;  // the most bits of a coordinate of the first point
@@ -28,24 +28,25 @@ constexpr std::size_t kKnownReach = 4096;   // the most columns of the page that
 constexpr std::uint64_t kMostKnown = 64;    // the most known places that are listed
 constexpr std::int64_t kCornerMargin = 32;  // the most steps from the box to a corner
 
-/// The length of a number, or of the side of a box.
+/// The length in bits of a number, or of a side of the box.
 using Length = Context<kMaxLength + 1>;
 
-// The values coded under Size. The first three are the sides of the box on each axis.
+// The contexts of number Size: the values that it codes. The first three are the sides of the box
+// on each axis.
 using SizeKind = Context<6>;
 constexpr SizeKind kColumnCount{3U};
 constexpr SizeKind kFirstHeight{4U};
 
-// The values coded under TopBits.
+// The contexts of family TopBits: the values that it codes.
 using TopKind = Context<3>;
 constexpr TopKind kFirstY{0U};
 constexpr TopKind kPlaceY{1U};
 constexpr TopKind kNewHeight{2U};
 
-// The questions asked with Rank.
+// The contexts of number Rank: the rank of a known place, or of a corner.
 constexpr Context<2> kOfKnownPlace{0U};
 constexpr Context<2> kOfCorner{1U};
-// Place has the contexts of known places, then those of corners.
+// Family Place has the contexts of known places, then those of corners.
 constexpr std::uint32_t kKnownPlaceContexts = 16;
 constexpr std::uint32_t kCornerContexts = 64;
 
@@ -90,10 +91,11 @@ class Columns {
   const Limits& limits_;
 
   std::vector<Place> places_;
-  std::vector<std::size_t> first_;  // writing: place -> its first point; one more entry at the end
+  std::vector<std::size_t> first_;  // when writing: place -> index of its first point; one more
+                                    // entry at the end
   std::vector<GridPoint> decoded_;
   std::size_t place_count_ = 0;
-  std::array<int, 3> length_{};        // the lengths of the sides of the box
+  std::array<int, 3> length_{};        // the lengths of the sides of the box, in bits
   std::array<std::int64_t, 3> min_{};  // the smallest corner of the box
   std::array<std::int64_t, 3> start_{};
   std::vector<Height> heights_;  // the heights that were used, the latest first
@@ -107,7 +109,7 @@ class Columns {
 std::int64_t Columns::code_top_bits(TopKind kind, std::int64_t value, int length) {
   constexpr int kModelled = 3;
   constexpr std::uint32_t kNodes = 1U << kModelled;
-  std::uint32_t node = 1;  // the bits so far, below a leading 1
+  std::uint32_t node = 1;  // the bits so far, after a leading 1
   const int modelled = std::min(length, kModelled);
   for (int bit = 0; bit < modelled; ++bit) {
     const Context<kNodes> known(node);
@@ -124,7 +126,7 @@ std::int64_t Columns::code_top_bits(TopKind kind, std::int64_t value, int length
          static_cast<std::int64_t>(stream_.code_bits(static_cast<std::uint64_t>(value), rest));
 }
 
-/// Writing: finds the places and the box.
+/// For writing: finds the places and the box of the points.
 Status Columns::measure() {
   std::array<std::int64_t, 3> max = points_[0];
   min_ = points_[0];
@@ -184,7 +186,7 @@ Status Columns::code_box() {
 }
 
 /// Codes whether the place is a column of the page that lies in the box after the last column, and
-/// which one. False if it is none.
+/// if so its rank among these columns. Returns false if it is not.
 bool Columns::code_known_place(Place truth, Place& place) {
   const auto& known = memory_.columns;
   const std::int64_t end_x = min_[0] + (std::int64_t{1} << length_[0]);
@@ -222,7 +224,7 @@ bool Columns::code_known_place(Place truth, Place& place) {
 }
 
 /// Codes whether the place is near the fourth corner of a parallelogram of three of the last
-/// columns, and its offset from there. False if it is not.
+/// columns, and its offset from there. Returns false if it is not.
 bool Columns::code_corner(std::size_t number, Place truth, Place& place) {
   std::array<Place, kReach*(kReach - 1) * (kReach - 2) / 2> corners;
   std::size_t count = 0;
@@ -281,7 +283,7 @@ bool Columns::code_corner(std::size_t number, Place truth, Place& place) {
   return true;
 }
 
-/// Codes a place without a prediction: x by its distance from the last one, y within the box.
+/// Codes a place without a prediction: x by its distance from the last place, y within the box.
 void Columns::code_free_place(std::size_t number, Place truth, Place& place) {
   const std::int64_t last_x = places_.back()[0];
   const std::int64_t left =
@@ -311,7 +313,7 @@ bool Columns::code_place(std::size_t number, Place truth) {
   return true;
 }
 
-/// Codes a height: one of those remembered, or a new one.
+/// Codes a height: one of the remembered heights, or a new one.
 std::int64_t Columns::code_height(std::int64_t truth, bool has_below, std::int64_t below,
                                   std::uint64_t floor, std::uint64_t floors) {
   auto rank = capped<8>(0);

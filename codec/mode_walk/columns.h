@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The vertices of a building as columns: the places (x, y) in sorted order, then the heights at
-// each. The order of vertices is not coded: the canonical form sorts them. For mode walk
-// (docs/format-walk.md, "Columns").
+// Codes the vertices of a solid as columns: the places (x, y) in sorted order, then the heights at
+// each place. The order of vertices is not coded, since the canonical form sorts them. For mode
+// walk (docs/format-walk.md, "Columns").
 #pragma once
 
 #include <vector>
@@ -15,10 +15,10 @@
 
 namespace watertight::codec::walk {
 
-/// Codes points, of which there is at least one and no two are equal, in lexicographic order.
-/// Reading: requires that `points` is empty, and fills it. Errors: not_encodable if the sides of
-/// their box are 2^30 or more; reading: malformed, limit_exceeded. Cost: linear in the points and
-/// in the columns of the page that are compared.
+/// Codes at least one point, in lexicographic order; no two points may be equal. When reading,
+/// `points` must be empty and is filled. Errors: not_encodable if a side of the points' box is 2^30
+/// or more; when reading: malformed, limit_exceeded. Cost: linear in the points and in the columns
+/// of the page that are compared.
 Status code_columns(EntropyStream& stream, ModelBank& models, const PageMemory& memory,
                     std::vector<GridPoint>& points, const Limits& limits);
 

@@ -15,8 +15,8 @@ struct Lists {
   std::vector<Index> items;
 };
 
-/// Vertex -> its faces: twice those of which it is the smallest, once those of which it is the
-/// middle one. So each edge of a face is counted at its smaller vertex.
+/// Lists the faces of each vertex: twice each face of which it is the smallest vertex, once each
+/// face of which it is the middle one. So each edge of a face is counted at its smaller vertex.
 Lists faces_by_smaller_vertex(const std::vector<Triangle>& faces, Index vertex_count) {
   Lists lists{std::vector<Index>(vertex_count + std::size_t{1}, 0), {}};
   for (const Triangle& face : faces) {
@@ -41,7 +41,7 @@ DelaunayEdges::DelaunayEdges(const delaunay::CanonicalDelaunay& delaunay, Index 
   const std::vector<Index>& first = lists.first;
   faces_ = std::move(lists.items);
 
-  // Vertices and faces are one more than edges and tetrahedra (Euler).
+  // By Euler's formula, vertices and faces are one more than edges and tetrahedra.
   const std::size_t edges = vertex_count + delaunay.faces.size() - delaunay.tetrahedra.size();
   first_edge_.reserve(first.size());
   greater_.reserve(edges);

@@ -21,22 +21,24 @@ using geometry::cross;
 using geometry::difference;
 using geometry::dot;
 
-// The questions asked with Exterior.
+// The contexts of family Exterior, one for each question.
 constexpr Context<3> kAllTriangles{0U};
 constexpr Context<3> kIsNotExteriorShell{1U};
 constexpr Context<3> kIsNotExteriorRing{2U};
 
 // Fixed by the format (docs/format-walk.md, "Facets of triangles").
-constexpr std::array<double, 7> kDistances2{0.36, 1.44, 6.25, 25, 100, 900, 10000};  // squared
+// in grid steps, squared
+constexpr std::array<double, 7> kDistances2{0.36, 1.44, 6.25, 25, 100, 900, 10000};
 constexpr std::array<double, 6> kCosines{0.9999999, 0.99999, 0.999, 0.99, 0.9, 0.0};
 constexpr std::uint32_t kOffsets = kDistances2.size() + 2;
 constexpr std::uint32_t kAngles = kCosines.size() + 1;
 constexpr std::uint32_t kDirections = 3;  // classes of the direction of a normal or an edge
 constexpr std::uint32_t kLengths = 16;
 constexpr std::uint32_t kKnown = 16;
-constexpr std::uint32_t kHistory = 4;           // flags that are remembered
-constexpr std::uint32_t kRememberedOffset = 3;  // offsets below it, whose flags are remembered
-// The classes that a flag adds to those of its two triangles.
+constexpr std::uint32_t kHistory = 4;           // the number of flags that are remembered
+constexpr std::uint32_t kRememberedOffset = 3;  // flags of offset classes below this one are
+                                                // remembered
+// The number that a flag adds to `known_` of its two triangles.
 constexpr std::uint8_t kInteriorEdge = 1;
 constexpr std::uint8_t kOtherEdge = 4;
 
@@ -45,7 +47,7 @@ Error not_encodable() {
           "mode walk cannot code the facets: their edges do not separate them"};
 }
 
-/// Whether three vectors lie in one plane, decided exactly. Requires whole coordinates below 2^31.
+/// True if three vectors lie in one plane, decided exactly. Requires whole coordinates below 2^31.
 bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
   const auto whole = [](double x) { return static_cast<Wide>(static_cast<std::int64_t>(x)); };
   return whole(w[0]) * (whole(u[1]) * whole(v[2]) - whole(u[2]) * whole(v[1])) +
@@ -54,17 +56,17 @@ bool is_flat(const Vector& u, const Vector& v, const Vector& w) {
          0;
 }
 
-/// How two triangles meet at an edge.
+/// The classes of two triangles that meet at an edge.
 struct Meeting {
   /// Distance of a triangle's corner from the plane of the other, in grid steps; 0: in the plane.
   Context<kOffsets> offset;
-  Context<kAngles> angle;       // between the normals
+  Context<kAngles> angle;       // the angle between the normals
   Context<kDirections> slope;   // the first triangle is horizontal, vertical, other
   Context<kDirections> course;  // the edge is vertical, horizontal, other
   Context<kLengths> length;     // the octave of the length of the edge
 };
 
-/// Along the z axis, in the xy plane, or neither.
+/// 0, 1 or 2: the vector is along the z axis, in the xy plane, or neither.
 Context<kDirections> direction_of(const Vector& v) {
   return Context<kDirections>(v[0] == 0 && v[1] == 0 ? 0U : v[2] == 0 ? 1U : 2U);
 }
@@ -150,12 +152,13 @@ class Facets {
   IntegerSolid& solid_;
   geometry::DisjointSets facets_;      // sets of triangles
   std::vector<Index> inner_twin_;      // half-edge -> its twin if inside a facet, else kNone
-  std::vector<std::uint8_t> known_;    // triangle -> sum over the flags of its edges so far
-  Answers<kHistory> history_;          // flags of flat edges
+  std::vector<std::uint8_t> known_;    // triangle -> the sum over the coded flags of its edges
+  Answers<kHistory> history_;          // the last flags of edges whose offset class is below
+                                       // kRememberedOffset
   std::vector<Index> facet_;           // triangle -> facet
   std::vector<Index> first_triangle_;  // facet -> its first triangle
   std::vector<FlagRing> rings_;
-  std::vector<Index> first_ring_;  // facet -> into rings_
+  std::vector<Index> first_ring_;  // facet -> index of its first ring in rings_
   std::vector<Index> shells_;      // components, the exterior one first
 };
 
@@ -201,7 +204,7 @@ void Facets::number_facets() {
   first_triangle_ = std::move(facets.first);
 }
 
-/// Finds all rings and sorts them by facet, those of one facet by size, the largest first.
+/// Finds all rings and sorts them by facet, then by size, the largest first.
 void Facets::find_rings() {
   for (geometry::FacetRing& ring : geometry::facet_rings(mesh_.triangles, inner_twin_)) {
     const double size = squared_diagonal(points_, ring.vertices);
@@ -215,8 +218,8 @@ void Facets::find_rings() {
   for (std::size_t f = 0; f < first_triangle_.size(); ++f) first_ring_[f + 1] += first_ring_[f];
 }
 
-/// Codes which of `count` alternatives matches: one decision for each until it is found. Writing:
-/// returns `count` if none does.
+/// Codes the index of the alternative that matches, of `count`: one decision for each alternative
+/// until one matches. When writing, returns `count` if none matches.
 template <class Matches>
 std::size_t Facets::code_choice(Context<3> question, std::size_t count, const Matches& matches) {
   std::size_t choice = 0;
@@ -231,8 +234,8 @@ std::size_t Facets::code_choice(Context<3> question, std::size_t count, const Ma
   return count - 1;
 }
 
-/// Puts the exterior ring of each facet first. False if a facet has no ring or, when writing, if
-/// its exterior ring is not among those found.
+/// Puts the exterior ring of each facet first. Returns false if a facet has no ring or, when
+/// writing, if its exterior ring is not among the rings found.
 bool Facets::order_rings() {
   for (std::size_t f = 0; f + 1 < first_ring_.size(); ++f) {
     const auto begin = rings_.begin() + first_ring_[f];
@@ -249,7 +252,7 @@ bool Facets::order_rings() {
   return true;
 }
 
-/// Lists the components, that of the exterior shell first. Writing: false if there is none.
+/// Lists the components, the exterior shell first. When writing, returns false if none is exterior.
 bool Facets::order_shells() {
   struct Sized {
     Index component;
@@ -275,7 +278,7 @@ bool Facets::order_shells() {
   return true;
 }
 
-/// Writing: true if the facets found are those of the solid, ring by ring.
+/// For writing: true if the facets found are those of the solid, ring by ring.
 bool Facets::matches_solid() const {
   if (mesh_.component_count() != solid_.shell_count()) return false;
   if (first_triangle_.size() != solid_.facet_count() || rings_.size() != solid_.ring_count()) {

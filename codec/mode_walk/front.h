@@ -20,11 +20,13 @@ class WalkFront {
         component_of_(vertex_count, kNone) {}
 
   std::vector<Triangle> triangles;
-  std::vector<Index> twin;  // half-edge 3 t + k: corner k of triangle t to the next; kNone if open
+  std::vector<Index> twin;  // half-edge -> twin, kNone if open; 3 t + k leaves corner k of triangle
+                            // t
 
-  /// From here on triangles belong to another component, which knows nothing of the ones before.
+  /// Starts a new component. Triangles are joined only to triangles of the same component.
   void start_component() { ++component_; }
-  /// Adds a triangle, whose half-edges must be unused, and joins them to open ones.
+  /// Adds a triangle and joins its half-edges to open ones. Requires that the half-edges are
+  /// unused.
   void add(const Triangle& triangle);
 
   Index from(Index half_edge) const { return geometry::start_of(triangles, half_edge); }
@@ -32,29 +34,30 @@ class WalkFront {
   Index corner(Index half_edge) const { return geometry::corner_of(triangles, half_edge); }
   bool is_open(Index half_edge) const { return twin[half_edge] == kNone; }
 
-  /// The half-edges of the component that leave `v`: this one first, then next_at().
+  /// The first half-edge of the present component that leaves `v`, or kNone; next_at() returns the
+  /// other ones.
   Index first_at(Index v) const { return is_used(v) ? head_[v] : kNone; }
   Index next_at(Index half_edge) const { return next_[half_edge]; }
-  /// The half-edge between two vertices in this direction, kNone if unused.
+  /// The half-edge of the present component from a to b, kNone if unused.
   Index find(Index a, Index b) const {
     Index h = first_at(a);
     while (h != kNone && to(h) != b) h = next_[h];
     return h;
   }
-  /// By a triangle of this component; by one of any.
+  /// is_used(): the present component has a triangle at `v`; is_known(): any component has one.
   bool is_used(Index v) const { return component_of_[v] == component_; }
   bool is_known(Index v) const { return component_of_[v] != kNone; }
-  /// Used, and all its edges are joined.
+  /// True if `v` is used and all half-edges of the present component at `v` have twins.
   bool is_closed(Index v) const { return is_used(v) && open_count_[v] == 0; }
-  /// Half-edges without twin, of all components.
+  /// The number of half-edges without twin, in all components.
   std::size_t open_edges() const { return open_edges_; }
 
  private:
-  Index component_ = kNone;  // start_component() makes the first one 0
-  std::vector<Index> next_;  // half-edge -> the one added before it at the same vertex
+  Index component_ = kNone;  // the present component; start_component() makes the first one 0
+  std::vector<Index> next_;  // half-edge -> the half-edge added before it at the same vertex
   std::vector<Index> head_;
   std::vector<Index> open_count_;
-  std::vector<Index> component_of_;  // vertex -> the last component to use it
+  std::vector<Index> component_of_;  // vertex -> the last component that used it
   std::size_t open_edges_ = 0;
 };
 

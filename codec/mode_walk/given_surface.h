@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The surface that a writer gives to the walk of mode walk: its triangles as half-edges, and for
-// each triangle whether the walk has reached it. The walk looks up in it what is true, for instance
-// which triangle is beyond a gate. A reader has no such surface. Private to the walk.
+// each triangle whether the walk has reached it. The walk looks up the true answers in this
+// surface, for instance which triangle is beyond a gate. A reader has no such surface. Private to
+// the walk.
 #pragma once
 
 #include <vector>
@@ -17,9 +18,9 @@ struct BoundaryMesh;
 /// The triangles that are to be coded. A triangle is unused until the walk reaches it.
 class GivenSurface {
  public:
-  /// Takes the triangles of `mesh`. True if each half-edge comes once and has a twin in its
-  /// component, and the triangles use each vertex below `vertex_count` and no other vertex.
-  /// Cost: O(n log n).
+  /// Takes the triangles of `mesh`. Returns true if each half-edge of a component comes once and
+  /// has a twin in the component, and the triangles use each vertex below `vertex_count` and no
+  /// other vertex. Cost: O(n log n).
   bool take(BoundaryMesh& mesh, Index vertex_count);
 
   /// True if the triangles at each vertex form one fan.
@@ -43,7 +44,7 @@ class GivenSurface {
   std::vector<Triangle> triangles_;
   std::vector<Index> twin_;
   std::vector<Index> first_;       // vertex -> index of its first element in half_edges_
-  std::vector<Index> half_edges_;  // sorted by start, then by end
+  std::vector<Index> half_edges_;  // all half-edges, sorted by start, then by end
   std::vector<bool> is_used_;      // triangle -> whether the walk has reached it
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Mode walk: columns, the boundary among the Delaunay faces of the vertices, the facets of its
-// triangles. Based on: Verbree & Si 2008, section 4.1, in spirit: vertices first, then their
+// Mode walk: codes the columns, then the triangles of the boundary among the Delaunay faces, then
+// the facets. Based on: Verbree & Si 2008, section 4.1, in spirit: vertices first, then their
 // Delaunay tetrahedralization determines most of the boundary.
 #include <algorithm>
 #include <cstddef>
@@ -18,8 +18,8 @@
 namespace watertight::codec::walk {
 namespace {
 
-/// More tetrahedra than solids have, so that hostile vertices cannot take much time. (Solids of the
-/// test data have up to 8.5 tetrahedra for each vertex.)
+/// The most tetrahedra for a number of points: more than solids have, so that hostile vertices
+/// cannot take much time. (Solids of the test data have up to 8.5 tetrahedra for each vertex.)
 std::uint64_t max_tetrahedra(std::size_t points) { return std::uint64_t{24} * points + 4096; }
 
 /// The vertices relative to the smallest corner of their box.
@@ -49,8 +49,8 @@ Result<Solid> solid_on(const std::vector<Point>& points, const IntegerSolid& sol
   return Solid::make(std::move(arrays), Lattice{}, 0, none);
 }
 
-/// Writing: triangles of all facets that follow the Delaunay faces, those of a shell together.
-/// facet_of[i] is the facet of triangle i.
+/// For writing: the triangles of all facets, along the Delaunay faces, shell by shell. facet_of[i]
+/// is the facet of triangle i.
 Result<BoundaryMesh> triangulate(const std::vector<Point>& points, const IntegerSolid& integer,
                                  const delaunay::CanonicalDelaunay& delaunay,
                                  std::vector<Index>& facet_of) {

@@ -21,18 +21,19 @@ constexpr std::array<double, 11> kBends{0.96592582628906828,  0.8660254037844386
                                         -0.25881904510252076, -0.5,
                                         -0.70710678118654752, -0.86602540378443865,
                                         -0.96592582628906828};
-/// cos(k pi / 12) again, for the spheres.
+/// The bounds of the angle between two spheres are the same cosines.
 constexpr auto& kAngles = kBends;
 
 // Fixed by the format (docs/format-walk.md, "Contexts of Candidate and Distant").
-constexpr double kFlat = 1e-18;  // squared distance in grid steps that counts as in the plane
-constexpr std::array<double, 4> kDistances2{1, 9, 100, 2500};  // squared, in grid steps
+constexpr double kFlat = 1e-18;  // the greatest squared distance from a plane, in grid steps, that
+                                 // counts as 0
+constexpr std::array<double, 4> kDistances2{1, 9, 100, 2500};  // squared distances, in grid steps
 constexpr int kLeastRadius = -2;         // log2 of the square at which the first class ends
 constexpr int kLeastParallelogram = -6;  // log2 of the square at which the first class ends
 constexpr double kGabriel2 = 1.69;       // square of the ratio of radii from which a side counts
 constexpr std::array<double, 4> kShares2{0.64, 0.36, 0.16, 0.04};  // squares of ratios of radii
 
-/// How many of the descending bounds lie above x.
+/// The number of descending bounds that lie above x.
 template <std::size_t size>
 std::uint32_t class_below(const std::array<double, size>& bounds, double x) {
   std::uint32_t result = 0;
@@ -143,7 +144,8 @@ FaceShape face_shape(std::span<const Point> points, const Triangle& face,
     shape.sphere = static_cast<std::uint8_t>(class_below(kAngles, cosine));
     shape.ratio = static_cast<std::uint8_t>(octave<kRatioClasses - 2>(most / least, 0).value);
   } else {
-    // On the hull: how much of the only sphere the face cuts off.
+    // A face of the hull has only one circumsphere. Its class is the squared ratio of the radius of
+    // the face to the radius of that sphere.
     const double share = most > 0 ? radius2 / most : 0;
     shape.sphere = static_cast<std::uint8_t>(kBendClasses + class_below(kShares2, share));
     shape.ratio = static_cast<std::uint8_t>(kRatioClasses - 2);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How well a triangle continues a surface, in a few classes: all that the walk knows of the
-// geometry. From IEEE + - * / and sqrt in a fixed order, compared with constants: the same on every
-// machine. Part of the format (docs/format-walk.md, "The walk").
+// Classes of how well a triangle continues a surface: all that the walk knows of the geometry. They
+// follow from IEEE + - * / and sqrt in a fixed order, compared with constants, so that every
+// machine finds the same classes. Part of the format (docs/format-walk.md, "The walk").
 #pragma once
 
 #include <array>
@@ -34,25 +34,26 @@ struct Gate {
   Gate(const Point& from, const Point& to, const Point& corner);
 };
 
-/// How the triangle (b, a, w) continues a gate.
+/// The classes of a triangle (b, a, w) beyond a gate.
 struct Continuation {
   Context<kBendClasses> bend;            // angle between the normals, in twelfths of a half turn
   Context<kSideClasses> side;            // w is below the gate's plane, in it, above it
-  Context<kDeviationClasses> deviation;  // distance of w from that plane in grid steps
-  Context<kRadiusClasses> radius;        // circumradius by the gate's length, steps of sqrt(2)
-  /// Class of |w - (a + b - o)| / |gate|, in octaves.
+  Context<kDeviationClasses> deviation;  // distance of w from the gate's plane, in grid steps
+  Context<kRadiusClasses> radius;  // circumradius divided by the gate's length, in steps of sqrt(2)
+  /// Class of |w - (a + b - o)| / |gate|, in steps of sqrt(2).
   Context<kParallelogramClasses> parallelogram;
 };
 Continuation continuation(const Gate& gate, const Point& w);
 
-/// How a face lies between the tetrahedra on its two sides.
+/// The classes of a face between the tetrahedra on its two sides.
 struct FaceShape {
   std::uint8_t sphere;   // angle between the circumspheres of its two tetrahedra
-  std::uint8_t ratio;    // ratio of the radii of these, in steps of sqrt(2)
-  std::uint8_t gabriel;  // how many of the radii exceed 1.3 times that of the face
+  std::uint8_t ratio;    // ratio of the radii of these circumspheres, in steps of sqrt(2)
+  std::uint8_t gabriel;  // number of these radii above 1.3 times the face's, or infinite
 };
-/// The shape of a triangle that is no face, which has classes of its own. `edges`: 1 if its edge at
-/// the start of the gate is a Delaunay edge, plus 2 if that at the end is one.
+/// The shape of a triangle that is no Delaunay face: classes that no face has. `edges`: 1 if the
+/// triangle's edge at the start of the gate is a Delaunay edge, plus 2 if its edge at the end is
+/// one.
 constexpr FaceShape no_face(std::uint32_t edges) {
   return {static_cast<std::uint8_t>(kSphereClasses - 4 + edges), kRatioClasses - 1,
           kGabrielClasses - 1};

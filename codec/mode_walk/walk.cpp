@@ -20,9 +20,9 @@ namespace {
 // Contexts (docs/format-walk.md, "The walk").
 /// The state of a candidate: unused, used, closing the left or the right edge or both, or closed.
 constexpr std::uint32_t kStates = 6;
-/// The faces of a candidate: one of several faces at the gate, the only face, no face.
+/// The origin of a candidate: one of several faces at the gate, the only face, no face.
 constexpr std::uint32_t kKinds = 3;
-/// Which edges beside the gate a candidate closes.
+/// The edges beside the gate that a candidate closes: none, left, right, both.
 constexpr std::uint32_t kCloses = 4;
 /// Classes of the number of candidates from faces.
 constexpr std::uint32_t kCounts = 7;
@@ -33,12 +33,13 @@ constexpr std::uint32_t kRanks = 4;
 // The contexts of the decisions of family Rare. Context 6 is not used.
 constexpr Context<7> kIsManifold{0U};
 constexpr Context<7> kIsMore{5U};
-/// Is the vertex in the distant list? By the length of the list.
+/// The context of the question whether the vertex is in the distant list, by the length of the
+/// list.
 Context<7> listed_among(std::size_t length) {
   return trailing<1>(leading<2>(capped<4>(length / 4)));
 }
 
-/// The class of a probability of 65536, two classes for each power of two. Above one half the
+/// The class of a probability in 1/65536, two classes for each power of two. Above one half the
 /// classes are those of its complement, from the other end.
 Context<kLikelihoods> likelihood(std::uint32_t probability) {
   const bool is_high = probability > 32768;
@@ -50,8 +51,8 @@ Context<kLikelihoods> likelihood(std::uint32_t probability) {
   return Context<kLikelihoods>(is_high ? kLikelihoods - 1 - octave_half : octave_half);
 }
 
-/// An edge with a candidate as probable as this is not scored again when a triangle is added beside
-/// it.
+/// An edge with a candidate of at least this probability, in 1/65536, is not scored again when a
+/// triangle is added beside it.
 constexpr std::uint32_t kCertain = 32768;
 
 /// The most steps that a walk may take, whatever its bytes are: a vertex of degree d takes about
@@ -145,7 +146,8 @@ class Walk {
   void score(std::vector<Candidate>& list) const;
 
   EntropyStream& stream_;
-  /// Takes the decisions from which the models only learn: they do not go into the stream.
+  /// A meter for the decisions from which the models only learn, and which do not go into the
+  /// stream.
   EntropyStream uncoded_ = EntropyStream::meter();
   ModelBank& models_;
   std::span<const Point> points_;
@@ -155,7 +157,8 @@ class Walk {
   WalkFront front_;
   std::vector<FaceShape> face_shapes_;
   bool is_manifold_ = true;
-  std::vector<Index> source_;  // writing: half-edge given for the first half-edge of each triangle
+  std::vector<Index> source_;  // when writing: triangle -> the given half-edge that is its first
+                               // one
 
   // The candidates of the present gate. A vertex is marked with the stamp when it is listed or
   // ruled out.
@@ -163,7 +166,8 @@ class Walk {
   std::vector<Candidate> distant_;
   std::vector<Index> mark_;
   Index stamp_ = 0;
-  // Vertices beyond open edges beside it are marked too, with the edges that a triangle closes.
+  // The vertices beyond open edges beside the gate are marked too, with the edges that the triangle
+  // with the vertex would close.
   std::vector<Index> closing_;
   std::vector<Index> closing_mark_;
   std::vector<std::uint8_t> closing_sides_;
@@ -182,8 +186,8 @@ const FaceShape& Walk::shape_of(Index face) {
 }
 
 /// Marks the vertices that cannot be beyond the gate, since the triangle would use a half-edge
-/// twice, and lists those beyond open edges. The triangle (b, a, w) needs the half-edges a -> w and
-/// w -> b.
+/// twice, and lists the vertices beyond open edges beside the gate. The triangle (b, a, w) needs
+/// the half-edges a -> w and w -> b.
 void Walk::mark_used(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -221,8 +225,8 @@ Context<kStates> Walk::state_of(Index w) const {
   return Context<kStates>(front_.is_used(w));
 }
 
-/// The vertex w as a candidate beyond a gate, the third corner of `face` or, if that is kNone, of
-/// no face there. `faces` counts the candidates from faces.
+/// Describes vertex w as a candidate beyond a gate. `face` is the Delaunay face at the gate whose
+/// third corner is w, or kNone. `faces` is the number of candidates from faces.
 Candidate Walk::describe(const Gate& gate, Index half_edge, Index w, Index face,
                          std::uint32_t faces) {
   const FaceShape shape =
@@ -257,7 +261,7 @@ void Walk::score(std::vector<Candidate>& list) const {
 }
 
 /// Lists the third corners of the Delaunay faces at the gate, then the vertices beyond open edges
-/// beside it.
+/// beside the gate.
 void Walk::list_candidates(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -290,7 +294,7 @@ void Walk::list_candidates(Index gate) {
   score<kCandidate>(candidates_);
 }
 
-/// Lists all other Delaunay neighbours of the ends of the gate. Requires list_candidates() before.
+/// Lists all other Delaunay neighbours of the ends of the gate. Call list_candidates() before.
 void Walk::list_distant(Index gate) {
   const Index a = front_.from(gate);
   const Index b = front_.to(gate);
@@ -331,8 +335,8 @@ void Walk::push(Index half_edge) {
   queue_.push({now, half_edge});
 }
 
-/// Puts the open edges at the corners of a new triangle into the queue, unless they are in it with
-/// a greater probability.
+/// Puts the open edges at the corners of a new triangle into the queue, unless the queue has them
+/// with a greater probability.
 void Walk::push_open(Index triangle) {
   pushed_.resize(front_.twin.size(), 0);
   for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
@@ -368,8 +372,8 @@ Index Walk::code_distant(Index gate, Index truth) {
   return distant_.back().vertex;
 }
 
-/// Codes whether the vertex is this candidate. Family Candidate, which ranked it, learns from the
-/// answer too.
+/// Codes whether the vertex beyond the gate is the candidate at `index`. Family Candidate, which
+/// ranked the candidates, learns from the answer too.
 bool Walk::code_candidate(std::size_t index, Index truth) {
   const Candidate& c = candidates_[index];
   const std::uint32_t next =
@@ -414,7 +418,7 @@ Status Walk::code_gate(Index gate) {
 }
 
 /// Lists the faces at a vertex in both directions: first those of the hull as seen from outside,
-/// then the same from inside, then all others.
+/// then the same faces from inside, then all other faces.
 void Walk::list_seeds(Index seed) {
   seeds_.clear();
   const auto list = [&](Index face) {
@@ -466,7 +470,7 @@ Status Walk::code_seed(Index seed) {
     add(seeds_[i].triangle, truth);
     return Done{};
   }
-  // None of these faces: any triangle.
+  // The first triangle is not in the list: the numbers of its vertices are coded.
   if (!is_reading()) truth = truth_->any_unused_at(seed);
   if (!is_reading() && truth == kNone) return not_encodable("a vertex without triangles");
   Triangle triangle{seed, 0, 0};
@@ -490,7 +494,9 @@ Status Walk::code_component(Index seed) {
     const Entry entry = queue_.top();
     queue_.pop();
     if (!front_.is_open(entry.half_edge)) continue;
-    if (entry.probability != pushed_[entry.half_edge]) continue;  // there is a more recent one
+    if (entry.probability != pushed_[entry.half_edge])
+      continue;  // the queue has a more recent
+                 // entry
     list_candidates(entry.half_edge);
     const std::uint32_t now = greatest_probability();
     if (now + 1024 < entry.probability && !queue_.empty() && now < queue_.top().probability) {

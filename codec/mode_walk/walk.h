@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The walk of mode walk: the connectivity of a triangulated boundary, given its vertices and their
-// canonical Delaunay tetrahedralization. From a first triangle on, each step names the triangle
-// beyond the open edge that is most certain, among the Delaunay faces around that edge before all
-// others. For mode walk (docs/format-walk.md, "The walk").
+// canonical Delaunay tetrahedralization. After a first triangle, each step codes the triangle
+// beyond the open edge where it is most certain: the Delaunay faces around that edge are asked
+// before all other triangles. For mode walk (docs/format-walk.md, "The walk").
 // Source: research of this project; the idea of a front over Delaunay faces is that of Lewiner et
 // al., "GEncode: geometry-driven compression for general meshes" (2006).
 #pragma once
@@ -26,17 +26,18 @@ struct BoundaryMesh {
   /// Component -> first triangle; one more entry at the end. Components are closed surfaces,
   /// connected through edges; several may share vertices and edges.
   std::vector<Index> component_first{0};
-  std::vector<Index> twin;  // half-edge -> the opposite one of the same component
-  /// Writing: the number that each triangle had in the list given. Reading: empty.
+  std::vector<Index> twin;  // half-edge -> its twin, in the same component
+  /// Triangle -> its index in the list that the caller gave; empty when reading.
   std::vector<Index> source;
 
   Index component_count() const { return static_cast<Index>(component_first.size() - 1); }
 };
 
 /// Codes the triangles of a boundary.
-/// Writing: `mesh.triangles` and `mesh.component_first` hold closed oriented surfaces that use each
-/// point; a component given may turn out to be several. Requires distinct points, whole numbers
-/// that differ by less than 2^30, and `delaunay` = canonical_delaunay(points), not empty.
+/// When writing, `mesh.triangles` and `mesh.component_first` hold closed oriented surfaces that use
+/// each point; a component given may turn out to be several. Requires distinct points whose
+/// coordinates are whole numbers that differ by less than 2^30, and `delaunay` =
+/// canonical_delaunay(points), not empty.
 /// On return, in either direction, `mesh` is complete and in the order of the walk.
 /// Errors: not_encodable (a surface that is not closed, has equal triangles, or edges that meet
 /// more than twice in one component; vertices of extreme degrees); reading: malformed.

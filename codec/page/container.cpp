@@ -21,7 +21,8 @@ constexpr std::uint8_t kMagic[2] = {'W', 'T'};
 constexpr std::uint8_t kPageFlag = 0x80;  // this bit of the version byte marks a page
 constexpr std::size_t kHeaderBytes = 4;
 
-// The most that a stream of so many bytes may decode to: docs/format.md, "Limits".
+// A stream of n bytes may decode to at most kFreeVertices + n * kVerticesPerByte vertices
+// (docs/format.md, "Limits").
 constexpr std::uint64_t kFreeVertices = 4096;
 constexpr std::uint64_t kVerticesPerByte = 64;
 
@@ -32,8 +33,8 @@ std::size_t size_of(const PlainSections& plain) {
                          [](std::size_t sum, const Bytes& part) { return sum + part.size(); });
 }
 
-/// The checksum of a page is that of its solids' checksums; of a blob, the lower three bytes of its
-/// solid's.
+/// The checksum of a page is the CRC-32C of the checksums of its solids; that of a blob is the
+/// lower three bytes of the checksum of its solid.
 std::uint32_t page_checksum(const PageContents& page, PageKind kind) {
   ByteWriter writer;
   std::uint32_t sum = 0;
@@ -79,7 +80,7 @@ Result<PlainSections> plain_sections(const geometry::CanonicalSolid& canonical, 
   return plain;
 }
 
-/// The shorter of modes raw and bitmap, with its sections.
+/// Chooses the shorter of modes raw and bitmap and makes the sections of that mode.
 Result<Mode> choose_plain(PageSolid& solid, const Plan& plan) {
   auto raw = plain_sections(*solid.canonical, Mode::raw, nullptr);
   if (!raw) return raw.error();
@@ -91,8 +92,8 @@ Result<Mode> choose_plain(PageSolid& solid, const Plan& plan) {
   return Mode::bitmap;
 }
 
-/// The plan with the mode that costs least, if it leaves the mode open. Makes the sections of modes
-/// raw and bitmap, unless they are there.
+/// Returns `plan`, with the mode that costs least if its mode is automatic. Makes the sections of
+/// modes raw and bitmap, unless `solid` has them.
 Result<Plan> complete(const SolidCoder& coder, PageSolid& solid, Plan plan,
                       const delaunay::Certificate* certificate) {
   if (plan.mode == Mode::automatic) {
@@ -111,7 +112,8 @@ Result<Plan> complete(const SolidCoder& coder, PageSolid& solid, Plan plan,
   return plan;
 }
 
-/// The header, what the decisions about each part took, the checksum.
+/// The sizes of the parts of the solid at index `number`. If the page has no other solid, they
+/// include the header, the frame and the checksum.
 std::vector<BlobInfo::Part> parts_of(const StoredPage& page, std::size_t number) {
   constexpr const char* kNames[kStreamParts] = {"frame",  "position",    "connectivity",
                                                 "facets", "coordinates", "order"};
@@ -138,7 +140,6 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
   const std::uint8_t first = reader.u8();
   const std::uint8_t second = reader.u8();
   const std::uint8_t version = reader.u8();
-  const std::uint8_t models = reader.u8();
   if (reader.failed()) return reader.error("header");
   if (first != kMagic[0] || second != kMagic[1]) {
     return Error{ErrorCode::malformed, "this is not a blob: it does not start with WT", 0};
@@ -153,6 +154,8 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
     return Error{ErrorCode::malformed,
                  kind == PageKind::page ? "a blob, not a page" : "a page, not a blob", 2};
   }
+  const std::uint8_t models = reader.u8();
+  if (reader.failed()) return reader.error("header");
   return models;
 }
 

@@ -11,7 +11,7 @@ namespace {
 __extension__ using Wide = __int128;
 
 constexpr std::int64_t kCoordinateLimit = std::int64_t{1} << 53;
-// Below 2^63 times 2^60: products and sums of scaled mantissas stay within 128 bits.
+// Mantissas are below 2^63: scaled by at most 2^60, their products and sums stay within 128 bits.
 constexpr Wide kScaleLimit = Wide{1} << 60;
 
 /// radix^exponent, or 0 where it would pass kScaleLimit.
@@ -44,7 +44,8 @@ Aligned align(const GridNumber& origin, const GridNumber& step, int radix) {
   return aligned;
 }
 
-/// Nothing if the mantissa would not fit.
+/// The number mantissa * radix^exponent with the smallest mantissa; nothing if that mantissa does
+/// not fit into 64 bits.
 std::optional<GridNumber> normalized(Wide mantissa, std::int32_t exponent, int radix) {
   if (mantissa == 0) return GridNumber{};
   while (mantissa % radix == 0) {
@@ -57,8 +58,8 @@ std::optional<GridNumber> normalized(Wide mantissa, std::int32_t exponent, int r
 
 int radix_of(LatticeKind kind) { return kind == LatticeKind::decimal ? 10 : 2; }
 
-/// Divides a lattice's origin by its step into whole steps (the origin of `result`) and a rest (its
-/// phase). False if the grid cannot hold them.
+/// Divides a lattice's origin on one axis by its step into whole steps (the origin of `result`) and
+/// a rest (the phase of `result`). Returns false if one of the two is out of range.
 bool split_origin(const Lattice& lattice, std::size_t axis, GriddedSolid& result) {
   const int radix = radix_of(lattice.kind);
   const Aligned aligned = align(lattice.origin[axis], lattice.step[axis], radix);
@@ -76,9 +77,9 @@ bool split_origin(const Lattice& lattice, std::size_t axis, GriddedSolid& result
   return true;
 }
 
-/// Makes grid points of the points of a lattice: adds the origin of `result`, which is the grid
-/// point of the point (0, 0, 0). False if a coordinate is not a whole number, or is 2^53 or more in
-/// magnitude.
+/// Makes a grid point of each point of a lattice by adding the origin of `result`, the grid point
+/// of lattice point (0, 0, 0). Returns false if a coordinate is not a whole number, or is 2^53 or
+/// more in magnitude.
 bool place_vertices(std::span<const Point> points, GriddedSolid& result) {
   result.solid.vertices.clear();
   result.solid.vertices.reserve(points.size());
@@ -113,7 +114,7 @@ std::optional<GriddedSolid> grid_solid(const Solid& canonical) {
     is_split = is_split && split_origin(lattice, axis, result);
   }
   if (!is_split || !place_vertices(arrays.vertices, result)) {
-    // The grid is too fine to count steps from its point near 0: they are counted from the origin
+    // The solid is too many steps away from the grid's phase near 0: the phase becomes the origin
     // of the solid's lattice.
     result.grid.phase = lattice.origin;
     result.origin = {};
@@ -143,7 +144,8 @@ Result<Lattice> lattice_at(const PageGrid& grid, const GridPoint& origin) {
         number = normalized(moved, aligned.exponent, radix);
       }
     } else if (origin[axis] == 0) {
-      number = grid.phase[axis];  // so far apart that they have no common unit of 128 bits
+      number = grid.phase[axis];  // phase and step are so far apart that 128 bits hold no common
+                                  // unit
     }
     if (!number) return Error{ErrorCode::malformed, "the origin of the lattice is out of range"};
     lattice.origin[axis] = *number;

@@ -14,7 +14,8 @@
 
 namespace watertight::codec {
 
-/// Lattice steps from the origin of the page. Magnitudes are below 2^53.
+/// A grid point: whole lattice steps from the phase of the page's grid, on each axis. Magnitudes
+/// are below 2^53.
 using GridPoint = std::array<std::int64_t, 3>;
 
 /// A solid whose vertices are grid points. Shell 0 is the exterior shell, and the first ring of a
@@ -37,9 +38,10 @@ struct IntegerSolid {
   }
 };
 
-/// The grid that the solids of a page share: their steps, and an origin below one step on each axis
-/// (0 unless the source's origin was no multiple of its step). Where coordinates from there would
-/// reach 2^53 the origin is that of the solid's lattice instead.
+/// The grid that the solids of a page share: a step and a phase for each axis. The phase is the
+/// rest of the lattice's origin divided by its step (0 if the origin is a multiple of the step).
+/// Where coordinates counted from that phase would reach 2^53, the phase is the origin of the
+/// solid's lattice.
 struct PageGrid {
   LatticeKind kind = LatticeKind::decimal;
   std::array<GridNumber, 3> step{};
@@ -47,32 +49,35 @@ struct PageGrid {
   friend auto operator<=>(const PageGrid&, const PageGrid&) = default;
 };
 
-/// A solid on the grid of its page. Its lattice has its origin at the grid point `origin`: the
-/// minimum of its feature's box.
+/// A solid on the grid of its page. `origin` is the grid point where the solid's lattice begins.
 struct GriddedSolid {
   PageGrid grid;
   GridPoint origin{};
   IntegerSolid solid;
 };
 
-/// The lattice with its origin at a point of the grid. Errors: malformed if it leaves its range.
+/// The lattice of `grid` whose origin is the grid point `origin`. Errors: malformed if a number of
+/// the lattice is out of range.
 Result<Lattice> lattice_at(const PageGrid& grid, const GridPoint& origin);
 
-/// Nothing if a coordinate is no integer of magnitude below 2^53 (LatticeKind::float64): such a
-/// solid is stored raw. Requires a canonical solid. Cost: linear.
+/// Puts a canonical solid on the grid of its lattice. Returns nothing if the lattice is of kind
+/// float64 or a coordinate is no integer of magnitude below 2^53: only modes raw and bitmap hold
+/// such a solid. Cost: linear.
 std::optional<GriddedSolid> grid_solid(const Solid& canonical);
 
-/// The inverse, in whatever order the arrays are. Requires indices in range.
+/// Returns the solid of `gridded`, with its arrays in the order of `gridded`. Requires indices in
+/// range.
 /// Errors: malformed if a coordinate or the lattice leaves its range; limit_exceeded.
 Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, const Limits& limits);
 
-/// Values that the earlier solids of a page leave for this one; empty in a blob of its own.
+/// The values that the solids of a page so far leave for the next one; empty at the start of a
+/// page.
 struct PageMemory {
   GridPoint last_position{};  // the smallest vertex of the solid before
   std::vector<std::array<std::int64_t, 2>>
       columns;  // (x, y) of all vertices so far, each once, sorted
   bool is_first() const { return columns.empty(); }
-  /// Cost: O(columns + n log n).
+  /// Adds the vertices of a coded solid. Cost: O(columns + n log n) for n vertices.
   void add(const IntegerSolid& solid);
 };
 

@@ -21,7 +21,7 @@ constexpr std::uint8_t kMagic[3] = {'W', 'T', 'M'};
 
 ModelBank neutral(ModelPart part) { return ModelBank(layout_of(part)); }
 
-/// Read once, when first used.
+/// The priors of a model set, read when first used; null if no set has this number.
 const Priors* priors_of(std::uint8_t number) {
   static const Priors zero = neutral_priors();
   static const Result<Priors> one = read_models(kModel1, 1);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The numbered, immutable sets of priors (docs/format.md, "Models"): what the banks of each part of
-// the format start from. Number 0 is the neutral set; every other one is a file of this folder,
-// built into the program. A released number never changes and stays decodable.
+// The numbered, immutable sets of priors (docs/format.md, "Models"), from which the banks of all
+// parts of the format start. Number 0 is the neutral set; every other set is a file of
+// codec/models, built into the program. A released number never changes and stays decodable.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ const ModelLayout& layout_of(ModelPart part);
 /// One bank for each part, copied from its prior when it is first asked for.
 class ModelSet {
  public:
-  /// Errors: unsupported if no set has this number.
+  /// Makes the set with this number. Errors: unsupported if there is none.
   static Result<ModelSet> make(std::uint8_t number);
-  /// A set of one's own, for training; `priors` must outlive it.
+  /// Makes a set of other priors, for training; `priors` must outlive it.
   explicit ModelSet(const std::array<ModelBank, kModelParts>& priors) : priors_(&priors) {}
   explicit ModelSet(std::array<ModelBank, kModelParts>&& priors) = delete;
 
@@ -39,13 +39,14 @@ class ModelSet {
   std::array<std::optional<ModelBank>, kModelParts> banks_;
 };
 
-/// All priors neutral.
+/// The neutral priors of all parts.
 std::array<ModelBank, kModelParts> neutral_priors();
 
-/// A model file: "WTM", the number, and each bank's state after its length (varint).
+/// Returns a model file: "WTM", the number of the set, then for each bank the length of its state
+/// (varint) and the state.
 Bytes write_models(const std::array<ModelBank, kModelParts>& banks, std::uint8_t number,
                    const std::array<PriorShape, kModelParts>& shapes);
-/// Errors: malformed.
+/// Reads the priors of a model file. Errors: malformed if the file is not one of this number.
 Result<std::array<ModelBank, kModelParts>> read_models(ByteView file, std::uint8_t number);
 
 }  // namespace watertight::codec

@@ -10,8 +10,8 @@
 
 namespace watertight::codec {
 
-/// CRC-32C over the canonical serialization of what a blob says: acceptance, SRID, lattice, the
-/// canonical solid, and the source order unless it is the identity.
+/// CRC-32C over the canonical serialization of the contents of a blob: acceptance, SRID, lattice,
+/// the canonical solid, and the source order unless it is the identity.
 std::uint32_t checksum_of(const Acceptance& acceptance, const Solid& canonical,
                           const geometry::SourceOrder& order);
 

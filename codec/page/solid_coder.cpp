@@ -15,7 +15,8 @@
 
 namespace watertight::codec {
 
-// The families and numbers, with the names, the order and the sizes of docs/format.md, "Frame".
+// The families and numbers of the frame, with the names, the order and the sizes of docs/format.md,
+// "Frame".
 enum FrameFamily : std::uint32_t {
   kImplied,
   kProof,
@@ -42,14 +43,14 @@ constexpr const NumberShape& shape_of(FrameNumber number) { return kFrameNumbers
 
 namespace {
 
-// The values coded under Mantissa and Exponent.
+// The contexts of numbers Mantissa and Exponent: a step or a phase is coded.
 constexpr Context<2> kOfStep{0U};
 constexpr Context<2> kOfPhase{1U};
-// The questions asked with Origin.
+// The contexts of family Origin: is the origin the smallest corner, or the last origin?
 constexpr Context<2> kIsCorner{0U};
 constexpr Context<2> kIsLastOrigin{1U};
 
-// The acceptance of a solid whose tolerances are not stated. Part of the format.
+// The tolerances of an acceptance whose tolerances the stream does not state. Part of the format.
 constexpr Tolerances kImpliedTolerances{0.01, 20.0, 0.0};
 
 constexpr int kModeBits = 3;
@@ -111,7 +112,7 @@ Status code_grid(EntropyStream& stream, ModelBank& models, PageGrid& grid) {
   return Done{};
 }
 
-/// Code the bytes of a section as they are.
+/// Codes the bytes of a section as they are.
 void code_section(EntropyStream& stream, ModelBank& models, Bytes& section) {
   const std::uint64_t size =
       models.code_number<kSection>(stream, {kNothingKnown}, section.size(), 40);
@@ -162,7 +163,7 @@ Result<bitmap::Composition> compose_plain(Mode mode, const PlainSections& plain,
   return bitmap::compose(parts, limits);
 }
 
-/// The canonical solid of arrays in any order; nothing that is not closed.
+/// Returns the canonical form of a solid. Errors: malformed if its boundary is not closed.
 Result<geometry::CanonicalSolid> canonical_of(Result<Solid> solid) {
   if (!solid) return solid.error();
   auto boundary = OrientedBoundary::make(std::move(solid).value());
@@ -202,7 +203,8 @@ ModeCoder coder_of(Mode mode) {
   }
 }
 
-/// Mode parallelogram holds no other facets.
+/// True if every facet is a triangle without interior rings. Mode parallelogram holds no other
+/// solids.
 bool is_all_triangles(const IntegerSolid& solid) {
   return solid.ring_vertices.size() == 3 * std::size_t{solid.facet_count()} &&
          solid.ring_count() == solid.facet_count();
@@ -253,7 +255,7 @@ Status code_frame(EntropyStream& stream, ModelBank& models, Frame& frame) {
 
 Mode SolidCoder::code_mode(Mode mode) {
   ModelBank& models = models_[ModelPart::frame];
-  std::uint32_t bits = 1;  // below a leading 1
+  std::uint32_t bits = 1;  // the bits of the mode so far, after a leading 1
   for (int bit = kModeBits - 1; bit >= 0; --bit) {
     const auto known = combine(last_mode_, Context<kModes>(bits));
     const bool one = ((static_cast<unsigned>(mode) >> bit) & 1U) != 0;
@@ -299,7 +301,8 @@ Status SolidCoder::code_plain(PageSolid& solid) {
 }
 
 /// Codes the origin of the solid's lattice: it is the smallest corner of the solid's box (case 0),
-/// the origin of the solid before (case 1), or any other grid point (case 2).
+/// the origin of the solid before (case 1), or any other grid point (case 2, the only one in modes
+/// raw and bitmap).
 void SolidCoder::code_origin(PageSolid& solid) {
   if (frame_.grid.kind == LatticeKind::float64) return;
   ModelBank& models = models_[ModelPart::frame];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The parts of a page around its solids (docs/format.md, "Frame" and "Solid"): the values that they
-// share, and for each solid its mode, the origin of its lattice, and its order. A blob is a page of
-// one solid. Each function writes, reads or measures.
+// Codes the parts of a page around its solids (docs/format.md, "Frame" and "Solid"): the values
+// that the solids share, and for each solid its mode, the origin of its lattice, and its source
+// order. A blob is a page of one solid. Each function writes, reads or measures.
 #pragma once
 
 #include <optional>
@@ -29,7 +29,7 @@ struct Frame {
 
 const ModelLayout& frame_layout();
 
-/// Errors, when reading: malformed.
+/// Codes the frame of a page. Errors, when reading: malformed.
 Status code_frame(EntropyStream& stream, ModelBank& models, Frame& frame);
 
 /// The flags of mode bitmap. All other bits are 0.
@@ -45,36 +45,37 @@ enum BitmapFlag : std::uint8_t {
 struct PlainSections {
   std::uint8_t flags = 0;  // BitmapFlag; 0 in mode raw
   std::vector<Bytes> sections;
-  bitmap::FaceCounts counts;  // the counts of mode bitmap
+  bitmap::FaceCounts counts;  // the counts of faces and Steiner vertices; 0 in mode raw
 };
 
 /// A solid as it stands in a page.
 struct PageSolid {
   Mode mode = Mode::raw;
-  std::optional<geometry::CanonicalSolid> canonical;  // nothing before it is read
-  bool keeps_order = false;  // the page has the source order; when read, another is the identity
-  /// Nothing where the coordinates are on no grid; when read, of modes for integers only.
+  std::optional<geometry::CanonicalSolid> canonical;  // nothing until the solid is read
+  bool keeps_order = false;  // true if the page has the source order of this solid
+  /// The solid on the page's grid; nothing if its coordinates are on no grid, or if the solid was
+  /// read in mode raw or bitmap.
   std::optional<IntegerSolid> integers;
-  GridPoint origin{};   // the grid point where its lattice begins
+  GridPoint origin{};   // the grid point where the solid's lattice begins
   PlainSections plain;  // empty but in modes raw and bitmap
 };
 
-/// How a solid is to be written.
+/// The mode and the choices with which a solid is to be written.
 struct Plan {
   Mode mode = Mode::automatic;
   std::uint32_t declined = 0;  // bit m is set if automatic mode must not take mode m
   WriterChoice choice = {};
 };
 
-/// Codes the solids of one page, one after the other. The limits are for all of them together.
+/// Codes the solids of one page, one after the other. The limits are for all its solids together.
 class SolidCoder {
  public:
   SolidCoder(EntropyStream& stream, ModelSet& models, const Frame& frame, const Limits& limits)
       : stream_(stream), models_(models), frame_(frame), limits_(limits) {}
 
-  /// Writing or measuring: requires a solid of this frame with all that its mode needs, which stays
-  /// as it is; errors: not_encodable (the coder is then useless). Reading: requires an empty solid;
-  /// errors: malformed; limit_exceeded.
+  /// Codes one solid. When writing or measuring, `solid` must have this coder's frame and all that
+  /// its mode needs, and stays unchanged; errors: not_encodable (the coder is then useless). When
+  /// reading, `solid` must be empty; errors: malformed; limit_exceeded.
   Status code(PageSolid& solid, const WriterChoice& choice = {});
 
   /// The cost of a solid in a mode for integers.
@@ -82,13 +83,14 @@ class SolidCoder {
     std::uint64_t cost = 0;  // the solid's own part of the stream, in 1/65536 bit
     WriterChoice choice;     // the choice that has this cost
   };
-  /// With `choice`, where it is made already. Nothing if the mode cannot hold the solid or is not
-  /// for integers.
+  /// Measures a solid in a mode. Makes the choices that `choice` leaves open. Returns nothing if
+  /// the mode cannot hold the solid or is not for integers.
   std::optional<Measure> measure(const PageSolid& solid, Mode mode,
                                  const WriterChoice& choice = {}) const;
 
-  /// `plan` with the mode for integers that costs least, of those that it does not decline, and
-  /// with the choices made for that; with Mode::automatic if none can hold the solid.
+  /// Returns `plan` with the mode for integers that costs least among those that the plan does not
+  /// decline, and with the choices made on the way; the mode is Mode::automatic if no such mode can
+  /// hold the solid.
   Plan cheapest(const PageSolid& solid, const Plan& plan = {}) const;
 
  private:
@@ -106,8 +108,8 @@ class SolidCoder {
   Limits limits_;
   PageMemory memory_;
   GridPoint last_origin_{};
-  Context<8> last_mode_{7U};         // no mode
-  Context<4> last_origin_case_{0U};  // 0: none; else 1 + the case of code_origin()
+  Context<8> last_mode_{7U};         // 7: no solid before
+  Context<4> last_origin_case_{0U};  // 0: no solid before; else 1 + the case of code_origin()
   Context<2> last_order_{0U};
 };
 

@@ -12,7 +12,8 @@
 
 namespace watertight::codec {
 
-// The families, with the names, the order and the sizes of docs/format.md, "Order".
+// The families of the source order, with the names, the order and the sizes of docs/format.md,
+// "Order".
 enum OrderFamily : std::uint32_t { kStraight, kCandidate, kScan, kStart };
 
 constexpr FamilyShape kOrderFamilies[] = {
@@ -31,13 +32,13 @@ enum Habit : std::uint32_t { kNextEdge, kLastEdge, kNeighbour, kSuccessor, kFirs
 constexpr Index kMostScanned = 64;
 constexpr Index kMostNeighbours = 12;
 
-// The things that are arranged, as the context of Straight.
+// The contexts of family Straight: the things that are arranged.
 constexpr Context<8> kShells{0U};
 constexpr Context<8> kRings{1U};
 constexpr Context<8> kVertices{2U};
 using HabitContext = Context<6>;
-using Facing = Context<5>;    // up, down, upright, slanting up, slanting down
-using Relation = Context<9>;  // how a corner of a ring lies to the facets before
+using Facing = Context<5>;    // of a facet: up, down, upright, slanting up, slanting down
+using Relation = Context<9>;  // the result of relation() for a corner
 
 std::vector<Index> inverse_of(const std::vector<Index>& order) {
   std::vector<Index> inverse(order.size());
@@ -45,7 +46,8 @@ std::vector<Index> inverse_of(const std::vector<Index>& order) {
   return inverse;
 }
 
-/// A set of elements that only loses elements. Finds the next one left in O(log n) amortized.
+/// A set of consecutive indices that only loses elements. Finds the next element left in O(log n)
+/// amortized.
 class Left {
  public:
   Left(Index begin, Index end)
@@ -81,7 +83,7 @@ class Left {
   Index left_ = 0;
 };
 
-/// 0, 1 or 2: the second number is less, equal or greater.
+/// 0, 1 or 2: `to` is less than, equal to or greater than `from`.
 Context<3> sign_of(double from, double to) {
   return Context<3>(to < from ? 0U : to > from ? 2U : 1U);
 }
@@ -147,8 +149,8 @@ class OrderCoder {
         });
   }
 
-  /// Finds the facing of each facet and its size, twice the projected area, by Newell's sums over
-  /// the exterior ring.
+  /// Finds the facing and the size of each facet by Newell's sums over its exterior ring. The size
+  /// is twice the sum of the areas of the ring projected along x, y and z.
   void measure_facets() {
     facing_.resize(solid_.facet_count());
     size_.resize(solid_.facet_count());
@@ -184,8 +186,8 @@ class OrderCoder {
     return source;
   }
 
-  /// Codes a permutation of 0 .. size-1 whose first `fixed` elements stay: as one decision if it is
-  /// the identity, else in plain bits.
+  /// Codes a permutation of 0 .. size-1 whose first `fixed` elements stay. One decision says
+  /// whether it is the identity; if it is not, plain bits follow.
   void code_arrangement(std::vector<Index>& sequence, Index fixed, Context<8> what) {
     if (sequence.size() < std::size_t{fixed} + 2) return;
     const bool is_straight =
@@ -313,7 +315,7 @@ class OrderCoder {
       return left.from(facets.begin);
     }
     if (scanned_.size() > kMostScanned) return any_facet(left, facets, wanted);
-    std::array<double, 5> largest{};  // facing -> size
+    std::array<double, 5> largest{};  // facing -> the size of the largest facet left
     for (const Index facet : scanned_) {
       largest[facing_[facet]] = std::max(largest[facing_[facet]], size_[facet]);
     }
@@ -358,9 +360,9 @@ class OrderCoder {
     }
   }
 
-  /// A class of the facets across the edges after and before a corner. Each counts 1 if it is the
-  /// facet of the ring that was coded last, else 2 if a ring of it was coded, else 0. It also
-  /// counts 0 if there is no such facet, or if it is the facet whose ring is being coded.
+  /// The class of a corner by the two facets across the edges after and before the corner. Each of
+  /// the two facets counts 1 if the last ring coded is a ring of this facet, else 2 if any coded
+  /// ring is, else 0. A facet that does not exist, or whose ring is being coded, counts 0.
   Relation relation(Index across_this, Index across_last) const {
     const auto of = [this](Index facet) {
       if (facet == kNone || facet == last_) return Context<3>(0U);
@@ -458,13 +460,13 @@ class OrderCoder {
   ModelBank& bank_;
   const Solid& solid_;
   geometry::SourceOrder& order_;
-  std::vector<Index> source_facet_;   // source facet -> canonical
-  std::vector<Index> source_ring_;    // source ring -> canonical
-  std::vector<Index> facet_of_ring_;  // canonical
-  std::vector<Index> across_;         // corner -> facet across its edge
+  std::vector<Index> source_facet_;   // source facet -> canonical facet
+  std::vector<Index> source_ring_;    // source ring -> canonical ring
+  std::vector<Index> facet_of_ring_;  // canonical ring -> canonical facet
+  std::vector<Index> across_;  // corner -> facet across the edge from this corner to the next
   std::vector<std::uint32_t> facing_;
   std::vector<double> size_;
-  std::vector<bool> is_seen_;  // vertices of rings so far
+  std::vector<bool> is_seen_;  // vertex -> whether a ring coded so far has this vertex
   std::vector<bool> is_placed_ = std::vector<bool>(solid_.facet_count(), false);
   std::vector<Index> number_;  // vertex -> index in first_use_
   std::vector<Index> first_use_;
@@ -473,7 +475,8 @@ class OrderCoder {
   Index last_ = kNone;
   Index before_last_ = kNone;
   Index reference_ = kNone;
-  Index reference_edge_ = 0;  // counted from the ring start of the reference
+  Index reference_edge_ = 0;  // the index of an edge of reference_, counted from the start of its
+                              // ring
   std::array<HabitContext, 2> habits_{HabitContext(kNoHabit), HabitContext(kNoHabit)};
   Relation last_relation_{0U};
 };

@@ -13,7 +13,7 @@
 
 namespace watertight::codec {
 
-/// The models of the order, for a bank that may live for a whole page.
+/// The layout of the models of the source order.
 const ModelLayout& order_layout();
 
 /// Writes or measures the order of a canonical solid, or reads it into `order`. Requires a bank of

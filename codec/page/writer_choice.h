@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The choices that modes have for a solid before it is written. Apart from modes.h, so that no mode
-// sees the types of another.
+// The choices that modes leave to the writer of a solid. This file is not part of modes.h, so that
+// no mode sees the types of another mode.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 namespace watertight::codec {
 
 struct WriterChoice {
-  /// For mode parallelogram; nothing: its code_solid() chooses by itself.
+  /// The options of mode parallelogram; nothing if its code_solid() is to choose them.
   std::optional<parallelogram::VertexOptions> vertex_options;
 };
 

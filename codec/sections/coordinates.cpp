@@ -36,12 +36,13 @@ Status check_count(std::uint64_t count, std::size_t remaining, const Limits& lim
   return Done{};
 }
 
-/// True unless the value is infinite, no number, or -0.
+/// True unless the value is infinite, not a number, or -0.
 bool is_coordinate(double value) {
   return std::isfinite(value) && !(value == 0 && std::signbit(value));
 }
 
-/// Integer coordinates stay in int64 between vertices, so that hostile differences cannot overflow.
+/// Reads integer coordinates. Keeps the last ones as int64, so that hostile differences cannot
+/// overflow.
 class IntegerReader {
  public:
   explicit IntegerReader(ByteReader& reader) : reader_(reader) {}

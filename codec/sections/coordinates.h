@@ -17,18 +17,19 @@ namespace watertight::codec {
 /// True if every coordinate is an integer of magnitude at most 2^53.
 bool are_integers(std::span<const Point> points);
 
-/// Requires strictly increasing points. Cost: linear.
+/// Writes a section of vertices. Requires strictly increasing points. Cost: linear.
 Bytes write_vertices(std::span<const Point> points);
 
-/// Guarantees strictly increasing, finite points without -0.
-/// Errors: malformed; limit_exceeded. Every vertex takes at least three bytes of the section.
+/// Reads a section of vertices. Guarantees strictly increasing, finite points without -0. Errors:
+/// malformed; limit_exceeded. Every vertex takes at least three bytes of the section.
 Result<std::vector<Point>> read_vertices(ByteView section, const Limits& limits);
 
-/// Steiner vertices: per point a flag byte (bit 0, 1, 2: the coordinate of that axis is an integer
-/// below 2^53 in magnitude, stored as such), then the coordinates. Requires increasing points.
+/// Writes a section of Steiner vertices: for each point a flag byte (bits 0, 1, 2: the coordinate
+/// of this axis is an integer of magnitude at most 2^53 and is stored as one), then the
+/// coordinates. Requires increasing points.
 Bytes write_steiner_vertices(std::span<const Point> points);
 
-/// Errors: as read_vertices.
+/// Reads a section of Steiner vertices. Errors: those of read_vertices().
 Result<std::vector<Point>> read_steiner_vertices(ByteView section, const Limits& limits);
 
 }  // namespace watertight::codec

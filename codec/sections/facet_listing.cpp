@@ -18,8 +18,8 @@ std::size_t ring_size(const SolidArrays& arrays, Index ring) {
   return arrays.ring_offsets[ring + 1] - arrays.ring_offsets[ring];
 }
 
-/// Writes one facet: the size of the exterior ring with a flag that there are interior ones, the
-/// number and sizes of those, then the vertices of all rings.
+/// Writes one facet: the size of the exterior ring with a flag for interior rings, the number and
+/// the sizes of the interior rings, then the vertices of all rings.
 void write_facet(ByteWriter& writer, const SolidArrays& arrays, Index facet) {
   const Index begin = arrays.facet_offsets[facet];
   const Index end = arrays.facet_offsets[facet + 1];

@@ -11,11 +11,12 @@
 
 namespace watertight::codec {
 
-/// Everything of `arrays` but its vertices. Cost: linear.
+/// Writes all of `arrays` except its vertices. Cost: linear.
 Bytes write_facet_listing(const SolidArrays& arrays);
 
-/// Ring, facet and shell arrays; no vertices. Indices are below `vertex_count`.
-/// Errors: malformed; limit_exceeded. Every ring vertex takes at least one byte of the section.
+/// Reads the arrays of rings, facets and shells; the result has no vertices. Its indices are below
+/// `vertex_count`. Errors: malformed; limit_exceeded. Every ring vertex takes at least one byte of
+/// the section.
 Result<SolidArrays> read_facet_listing(ByteView section, Index vertex_count, const Limits& limits);
 
 }  // namespace watertight::codec

@@ -9,8 +9,8 @@
 namespace watertight::delaunay {
 namespace {
 
-/// The same orientation with the smallest index first and the second smallest second: an even
-/// permutation, which exists and is unique.
+/// The tetrahedron with the same orientation, the smallest index first and the second smallest
+/// second: an even permutation, which exists and is unique.
 geometry::Tetrahedron canonical_tetrahedron(geometry::Tetrahedron t) {
   const auto smallest = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
   if (smallest != 0) {
@@ -51,8 +51,8 @@ CanonicalDelaunay list_canonically(std::vector<geometry::Tetrahedron> tetrahedra
   CanonicalDelaunay result;
   result.tetrahedra = std::move(tetrahedra);
   for (geometry::Tetrahedron& t : result.tetrahedra) t = canonical_tetrahedron(t);
-  // Three vertices identify a face, and the first three a tetrahedron: two tetrahedra with the same
-  // three would lie on the same side of a face.
+  // Three vertices identify a face, and the first three vertices a tetrahedron: two tetrahedra with
+  // the same three would lie on the same side of a face.
   sort_by_vertices(result.tetrahedra, vertex_count, [](const geometry::Tetrahedron& t) {
     return Triangle{t[0], t[1], t[2]};
   });

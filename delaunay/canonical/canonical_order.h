@@ -22,9 +22,10 @@ struct ListedFace {
 ListedFace face_opposite(const geometry::Tetrahedron& tetrahedron, std::size_t corner,
                          Index beyond);
 
-/// Lists positively oriented tetrahedra and all their faces, each once, canonically: whatever their
-/// order and from whichever of its vertices a tetrahedron starts. Vertices are below
-/// `vertex_count`. Cost: O(n log n), linear if no vertex is the smallest of very many.
+/// Lists positively oriented tetrahedra and all their faces, each once, in canonical order: the
+/// result does not depend on the order of the lists or on the vertex from which a tetrahedron
+/// starts. Vertices are below `vertex_count`. Cost: O(n log n), linear if no vertex is the smallest
+/// of very many.
 CanonicalDelaunay list_canonically(std::vector<geometry::Tetrahedron> tetrahedra,
                                    std::vector<ListedFace> faces, Index vertex_count);
 

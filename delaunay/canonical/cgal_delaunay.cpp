@@ -34,7 +34,7 @@ using CellBase = CGAL::Delaunay_triangulation_cell_base_3<Kernel>;
 using DataStructure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase>;
 using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, DataStructure>;
 
-/// A Hilbert curve through the points: neighbours in space are inserted after each other.
+/// The order of the points along a Hilbert curve: neighbours in space follow each other.
 std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& points) {
   using Map = CGAL::Pointer_property_map<Kernel::Point_3>::const_type;
   using Traits = CGAL::Spatial_sort_traits_adapter_3<Kernel, Map>;
@@ -68,7 +68,7 @@ Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
                    "two points of a Delaunay tetrahedralization are equal"};
     }
     hint->info() = static_cast<Index>(i);
-    // Infinite cells are counted too: they are at most about as many as the finite ones and 2 n.
+    // The count includes infinite cells: at most about as many as finite cells and 2 n.
     if (delaunay.tds().number_of_cells() / 2 > max_tetrahedra) {
       return Error{ErrorCode::limit_exceeded, "the Delaunay tetrahedralization has more than " +
                                                   std::to_string(max_tetrahedra) + " tetrahedra"};

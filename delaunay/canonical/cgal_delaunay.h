@@ -13,7 +13,7 @@
 
 namespace watertight::delaunay {
 
-/// As canonical_delaunay(), for any finite points.
+/// Does what canonical_delaunay() does, for any finite points.
 Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points,
                                         std::uint64_t max_tetrahedra = 64'000'000,
                                         const CancelPoll& is_cancelled = {});

@@ -28,18 +28,18 @@ namespace {
 
 /// Rings with more vertices are not given to the cubic dynamic programme.
 constexpr std::size_t kLargestRing = 60;
-/// Flips tried on a facet per vertex before the rest is left as it is.
+/// The most flips on a facet, for each of its vertices.
 constexpr std::size_t kFlipsPerVertex = 3;
 
 using Edge = std::pair<Index, Index>;
 
-/// Faces by edge and faces by vertices.
+/// Finds Delaunay faces by an edge, or by their vertices.
 class DelaunayFaces {
  public:
   DelaunayFaces(const CanonicalDelaunay& delaunay, std::size_t vertex_count)
       : faces_(delaunay.faces), vertex_count_(vertex_count) {}
 
-  /// Index of a face in the sorted list, or kNone.
+  /// The index of a face in the sorted list, or kNone.
   Index find(Triangle triangle) const {
     std::sort(triangle.begin(), triangle.end());
     const auto at = std::lower_bound(faces_.begin(), faces_.end(), triangle);
@@ -47,8 +47,8 @@ class DelaunayFaces {
     return static_cast<Index>(at - faces_.begin());
   }
 
-  /// (low, high, third) of the faces at an edge. The table is built on first use: solids made of
-  /// triangles never need it.
+  /// The faces at an edge, each as (lower end, higher end, third vertex). The table is built on
+  /// first use: solids made of triangles never need it.
   std::span<const Triangle> around(Index a, Index b) {
     if (by_edge_.empty()) build();
     const Triangle low{std::min(a, b), std::max(a, b), 0};
@@ -138,8 +138,8 @@ LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> c
   return local;
 }
 
-/// The Delaunay faces on the inner side of each edge, from the rings inward. Nothing if an edge has
-/// none, or has two (possible only in facets that are not exactly planar).
+/// Collects the Delaunay faces on the inner side of each edge, from the rings inward. Finds nothing
+/// if an edge has no such face, or has two (possible only in facets that are not exactly planar).
 class Walk {
  public:
   Walk(const LocalFacet& facet, DelaunayFaces& faces, const std::vector<Index>& local_of)
@@ -184,8 +184,9 @@ class Walk {
   std::set<Edge> open_;  // directed edges whose left side is not covered yet
 };
 
-/// Klincsek's dynamic programme over the triangulations of one ring: least number of triangles
-/// that are not Delaunay faces, ties by the lowest position of the third vertex.
+/// Finds, by Klincsek's dynamic programme, the triangulation of one ring with the fewest triangles
+/// that are not Delaunay faces; of equals, the one with the third vertices that come first in the
+/// ring.
 std::vector<Triangle> fewest_missing(const LocalFacet& facet, const DelaunayFaces& faces) {
   const std::vector<Index>& ring = facet.rings[0];
   const std::size_t n = ring.size();
@@ -227,7 +228,7 @@ class Flips {
  public:
   Flips(const LocalFacet& facet, const DelaunayFaces& faces)
       : facet_(facet), faces_(faces), triangles_(facet.canonical) {
-    // Numbering of triangles is the caller's; sort so that the flips come in a defined order.
+    // The numbering of the triangles is the caller's: sorting gives the flips a defined order.
     for (Triangle& t : triangles_)
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     std::sort(triangles_.begin(), triangles_.end());

@@ -17,36 +17,38 @@
 
 namespace watertight::delaunay {
 
-/// Triangles grouped by facet, with the facet's orientation; each starts with its smallest index,
-/// and those of one facet are sorted.
+/// Triangles grouped by facet, with the facet's orientation. Each triangle starts with its smallest
+/// index; the triangles of one facet are sorted.
 struct FollowingTriangles {
   std::vector<Triangle> triangles;
   std::vector<Index> facet_of;  // triangle -> facet
   std::vector<Index> first{0};  // facet -> first triangle; facet_count + 1 entries
-  /// Per facet: how many of its triangles are no faces of the Delaunay tetrahedralization.
+  /// Facet -> the number of its triangles that are no faces of the Delaunay tetrahedralization.
   std::vector<Index> missing;
-  /// Per triangle: its index in CanonicalDelaunay::faces, kNone if it is not there.
+  /// Triangle -> its index in CanonicalDelaunay::faces, or kNone.
   std::vector<Index> delaunay_face;
   /// The sum of `missing` over all facets.
   Index missing_total = 0;
 };
 
-/// Requires merged vertices, `canonical` = triangulate_facets(merged), or those divided at contacts
-/// (divide_at_contacts), rings that are divided as the triangles are (divided_solid), and
-/// `delaunay` = canonical_delaunay(merged.vertices()). A facet without canonical triangles gets
-/// none here. Guarantees: the triangles of a facet use exactly the vertices of `canonical` and
-/// cover, in the projection facet_projection(), the region between its rings exactly once. A facet
-/// that lies exactly in a plane and is a union of Delaunay faces is found with missing = 0, as is
-/// every other such facet of one ring with at most 60 vertices, where `missing` is the least
-/// possible. The same set for every numbering of vertices, facets and rings. Cost: O(n log n) for
-/// facets that are unions, O(k^3) for one ring of k <= 60 vertices, else the canonical triangles
-/// improved by at most 3 k edge flips. Source: research of this project; Verbree & Si 2008, section
-/// 5, leave the choice of the facets' triangulation open.
+/// Triangulates each facet along the Delaunay tetrahedralization. Requires merged vertices,
+/// `canonical` = triangulate_facets(merged), or those divided at contacts (divide_at_contacts),
+/// rings that are divided as the triangles are (divided_solid), and `delaunay` =
+/// canonical_delaunay(merged.vertices()). A facet without canonical triangles gets none here.
+/// Guarantees: the triangles of a facet use exactly the vertices of `canonical` and cover, in the
+/// projection facet_projection(), the region between its rings exactly once. A facet that lies
+/// exactly in a plane and is a union of Delaunay faces is found with missing = 0, as is every other
+/// such facet of one ring with at most 60 vertices, where `missing` is the least possible. The set
+/// of triangles is the same for every numbering of vertices, facets and rings. Cost: O(n log n) for
+/// facets that are unions of Delaunay faces, O(k^3) for one ring of k <= 60 vertices; all others
+/// take the canonical triangles, improved by at most 3 k edge flips. Source: research of this
+/// project; Verbree & Si 2008, section 5, leave the choice of the facets' triangulation open.
 FollowingTriangles follow_delaunay(const Solid& merged, const tessellate::FacetTriangles& canonical,
                                    const CanonicalDelaunay& delaunay);
 
-/// The same, asking every few thousand triangles whether to go on, and taking the triangles of
-/// facets that `is_kept` names (by facet; empty: none) as they are. Errors: cancelled.
+/// Does the same as the function above, but asks every few thousand triangles whether to go on, and
+/// keeps the canonical triangles of each facet for which `is_kept` is true (empty: of none).
+/// Errors: cancelled.
 Result<FollowingTriangles> follow_delaunay(const Solid& merged,
                                            const tessellate::FacetTriangles& canonical,
                                            const CanonicalDelaunay& delaunay,

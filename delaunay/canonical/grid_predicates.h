@@ -3,14 +3,15 @@
 // Exact signs for points whose coordinates are integers in [0, 2^30). Private to delaunay/: inlined
 // into the loops of small_delaunay.cpp, without any library.
 //
-// First in doubles. All differences of coordinates are exact. A value computed from exact numbers,
-// each of whose monomials passes through at most k roundings, is wrong by at most
-// k u / (1 - k u) times the sum of the monomials' magnitudes, u = 2^-53 (Higham, Accuracy and
-// Stability of Numerical Algorithms, 2002, lemma 3.1). With x, y, z the sides of the points' box,
-// V = x y z and L = x^2 + y^2 + z^2 that sum is at most 6 V for an orientation and 24 L V for a
+// Signs are computed in doubles first. All differences of coordinates are exact. A value computed
+// from exact numbers, each of whose monomials passes through at most k roundings, is wrong by at
+// most k u / (1 - k u) times the sum of the monomials' magnitudes, u = 2^-53 (Higham, Accuracy and
+// Stability of Numerical Algorithms, 2002, lemma 3.1). With x, y, z the sides of the points' box, V
+// = x y z and L = x^2 + y^2 + z^2 that sum is at most 6 V for an orientation and 24 L V for a
 // sphere; k is 5 and 11. If the sum itself is at most 2^53, no step rounds at all.
-// Otherwise in integers. A 2 x 2 minor is below 2^61, an orientation below 2^93, a squared distance
-// below 2^62 and so the determinant of a sphere below 2^157.
+// Signs that doubles do not decide are computed in integers. A 2 x 2 minor is below 2^61, an
+// orientation below 2^93, a squared distance below 2^62 and so the determinant of a sphere below
+// 2^157.
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ class GridPredicates {
  public:
   /// For points in the box from the origin to `extent`, whose coordinates are integers below 2^30.
   explicit GridPredicates(const Point& extent) {
-    constexpr double kUnit = 1.0 / 9007199254740992.0;  // u
+    constexpr double kUnit = 1.0 / 9007199254740992.0;  // the unit roundoff u
     constexpr double kExact = 9007199254740992.0;
     const double volume = extent.x * extent.y * extent.z;
     const double lift = extent.x * extent.x + extent.y * extent.y + extent.z * extent.z;
@@ -70,8 +71,9 @@ class GridPredicates {
     return sphere_error_ == 0 ? 0 : exact_side_of_sphere(a, b, c, d);
   }
 
-  /// True if p lies inside that sphere once ties are broken: as if each point were lifted above the
-  /// paraboloid, lexicographically greater ones infinitely farther. Requires five distinct points.
+  /// True if p lies inside the sphere of side_of_sphere() once ties are broken: as if each point
+  /// were lifted above the paraboloid, lexicographically greater ones infinitely farther. Requires
+  /// five distinct points.
   bool is_in_perturbed_sphere(const std::array<const Point*, 4>& t, const Point& p) const {
     const int side = side_of_sphere(t, p);
     return side != 0 ? side > 0 : is_in_lifted_sphere(t, p);
@@ -142,9 +144,10 @@ class GridPredicates {
     return sum.sign();
   }
 
-  /// Lifting one of five cospherical points moves p into the sphere if it is on p's side of the
-  /// other three, out of it if it is on the other side, and leaves it if the four are coplanar:
-  /// then the next decides, since the other four are not. Lifting p moves it out.
+  /// Decides for five cospherical points by lifting the greatest of them. If that is p, p moves out
+  /// of the sphere. Else p moves in if p and the lifted point are on the same side of the other
+  /// three points, and out if they are on different sides. If these four are coplanar, the next
+  /// greatest point decides.
   bool is_in_lifted_sphere(std::array<const Point*, 4> t, const Point& p) const {
     const Point* above = nullptr;
     for (int round = 0; round < 2; ++round) {

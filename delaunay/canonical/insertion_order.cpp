@@ -10,15 +10,15 @@
 namespace watertight::delaunay {
 namespace {
 
-/// Cells of the curve's grid along an axis, as a power of two: three axes and a round fit into the
-/// upper half of a key.
+/// The logarithm (base 2) of the most cells of the curve's grid along an axis: the bits of three
+/// axes and of a round fit into the upper half of a key.
 constexpr unsigned kMostBits = 9;
 constexpr unsigned kRoundBits = 5;
-/// Fewer points are one round.
+/// Point sets up to this size are inserted in one round.
 constexpr std::size_t kOneRound = 64;
 
-/// Number of a cell along a Hilbert curve through a grid of 2^bits cells per axis.
-/// Source: Skilling, "Programming the Hilbert curve" (2004).
+/// The number of a cell along a Hilbert curve through a grid of 2^bits cells per axis. Source:
+/// Skilling, "Programming the Hilbert curve" (2004).
 std::uint32_t hilbert_place(std::array<std::uint32_t, 3> cell, unsigned bits) {
   auto& [x, y, z] = cell;
   for (std::uint32_t bit = 1U << (bits - 1); bit > 1; bit >>= 1) {
@@ -46,7 +46,8 @@ std::uint32_t hilbert_place(std::array<std::uint32_t, 3> cell, unsigned bits) {
   return place;
 }
 
-/// 0 for seven points of eight, 1 for seven eighths of the rest, and so on: the last round is 0.
+/// The number of rounds after the round of a point: 0 for seven points of eight, 1 for seven
+/// eighths of the rest, and so on.
 std::uint64_t rounds_before_last(std::uint64_t index) {
   const std::uint64_t mixed = (index + 1) * 0x9E3779B97F4A7C15U;
   return static_cast<std::uint64_t>(std::countl_zero(mixed ^ (mixed << 32)) / 3);

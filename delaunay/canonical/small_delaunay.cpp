@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A tetrahedralization of the sphere: beside the tetrahedra it has an infinite cell for each face
-// of the hull, whose last vertex is the infinite one. A finite cell is positively oriented. An
-// infinite cell would be so if a point beyond its face replaced the infinite vertex.
+// The algorithm makes a tetrahedralization of the sphere: beside the tetrahedra there is an
+// infinite cell for each face of the hull, whose last vertex is the infinite one. A finite cell is
+// positively oriented. An infinite cell would be positively oriented if a point beyond its face
+// replaced the infinite vertex.
 //
 // Coplanar points need no rule of their own. A point in the plane of a hull face is in conflict
-// with the infinite cell there exactly if it is with the finite cell behind the face: both depend
-// on the face's (perturbed) circle only.
+// with the infinite cell there exactly if it is in conflict with the finite cell behind the face:
+// both depend on the face's (perturbed) circle only.
 #include "delaunay/canonical/small_delaunay.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ namespace watertight::delaunay {
 namespace {
 
 constexpr double kSide = 1 << 30;
-/// Sides of cells are numbered by an Index.
+/// The most cells: the four sides of each cell are numbered by an Index.
 constexpr std::size_t kMostCells = kNone / 4;
 constexpr double kLargestInteger = 9007199254740992.0;
 
@@ -37,17 +38,17 @@ Index cell_of(Side side) { return side >> 2; }
 std::size_t corner_of(Side side) { return side & 3; }
 Side side_of(Index cell, std::size_t corner) { return 4 * cell + static_cast<Index>(corner); }
 
-/// The other corners of a cell.
+/// Corner -> the three other corners of a cell.
 constexpr std::array<std::array<std::size_t, 3>, 4> kOthers{
     {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 
-/// Rims up to this many vertices, and so (Euler's formula) faces, are linked by a table.
+/// Rims up to this many vertices are linked by a table; kSmallRim is their number of faces (Euler).
 constexpr std::size_t kRimVertices = 64;
 constexpr std::size_t kSmallRim = 2 * (kRimVertices - 2);
 
 struct Cell {
   geometry::Tetrahedron vertices{kNone, kNone, kNone, kNone};
-  /// Across each face, the same face as the neighbour has it.
+  /// The neighbour's side across each side of this cell.
   std::array<Side, 4> neighbors{kNone, kNone, kNone, kNone};
 };
 
@@ -64,14 +65,14 @@ class SmallDelaunay {
     new_cell({infinite_, infinite_, infinite_, infinite_});
   }
 
-  /// Starts with four points of positive orientation.
+  /// Makes the first cell of four points of positive orientation, and its infinite neighbours.
   void start(const geometry::Tetrahedron& corners);
 
-  /// Returns false if the point equals one that is there. `steps` counts the work.
+  /// Inserts a point and adds the work to `steps`. Returns false if an earlier point is equal.
   bool insert(Index vertex, std::size_t& steps);
 
   std::size_t cell_count() const { return cells_.size() - free_.size() - 1; }
-  /// The result; gives up the cells.
+  /// Returns the result and frees the cells.
   CanonicalDelaunay list();
   const GridPredicates& signs() const { return signs_; }
   const Point& point(Index vertex) const { return points_[vertex]; }
@@ -82,7 +83,7 @@ class SmallDelaunay {
     return {&points_[cell.vertices[0]], &points_[cell.vertices[1]], &points_[cell.vertices[2]],
             &points_[cell.vertices[3]]};
   }
-  /// Orientation of a cell if the point took the place of a corner.
+  /// The orientation of the cell if the point took the place of the vertex at `corner`.
   int side(const Cell& cell, std::size_t corner, const Point& p) const {
     std::array<const Point*, 4> t{};
     for (std::size_t i = 0; i < 4; ++i) t[i] = i == corner ? &p : &points_[cell.vertices[i]];
@@ -100,20 +101,22 @@ class SmallDelaunay {
   Index infinite_;
   GridPredicates signs_;
   std::vector<Cell> cells_;
-  /// 2 r: in conflict with the point of round r; 2 r + 1: not. Others are from earlier rounds.
+  /// Cell -> 2 r if it is in conflict with the point of round r, 2 r + 1 if it is not; other marks
+  /// are from earlier rounds.
   std::vector<Index> marks_;
   std::vector<Index> free_;
   Index round_ = 0;
   Index last_ = 0;
   std::vector<Index> cavity_;
-  /// Sides of the cavity's cells towards cells outside it; then of the new cells.
+  /// The sides of the cavity's cells towards cells outside the cavity; later the same sides of the
+  /// new cells.
   std::vector<Side> rim_;
   /// vertex -> its row in the table of link_small_rim(); kNone outside that function.
   std::vector<Index> labels_;
 };
 
 void SmallDelaunay::start(const geometry::Tetrahedron& corners) {
-  // Cell i lacks the i-th of the four corners and the infinite vertex; each two are neighbours.
+  // Cell i lacks the i-th of the four corners and the infinite vertex; all cells are neighbours.
   const auto& [a, b, c, d] = corners;
   const std::array<std::array<std::size_t, 4>, 5> labels{
       {{3, 1, 2, 4}, {0, 3, 2, 4}, {0, 1, 3, 4}, {1, 0, 2, 4}, {0, 1, 2, 3}}};
@@ -144,8 +147,9 @@ Index SmallDelaunay::new_cell(const geometry::Tetrahedron& vertices) {
   return cell;
 }
 
-/// Walks through faces that the point lies beyond. Never in a circle: the cells are Delaunay.
-/// Returns a finite cell that contains the point, or an infinite one whose face it lies beyond.
+/// Walks through faces that the point lies beyond. The walk does not run in a circle, since the
+/// cells are Delaunay. Returns a finite cell that contains the point, or an infinite cell whose
+/// face the point lies beyond.
 Index SmallDelaunay::locate(const Point& p, std::size_t& steps) const {
   Index at = is_infinite(cells_[last_]) ? cell_of(cells_[last_].neighbors[3]) : last_;
   std::size_t entry = 4;
@@ -171,7 +175,7 @@ bool SmallDelaunay::is_in_conflict(Index cell, const Point& p) const {
   return signs_.is_in_perturbed_sphere(corners_of(cells_[cell]), p);
 }
 
-/// The cells in conflict with a point are connected.
+/// Finds all cells in conflict with a point from one of them: they are connected.
 void SmallDelaunay::find_conflicts(Index first, const Point& p) {
   ++round_;
   cavity_.clear();
@@ -193,7 +197,8 @@ void SmallDelaunay::find_conflicts(Index first, const Point& p) {
 }
 
 /// Replaces the cavity by a cell between the vertex and each face of its rim. The vertex takes the
-/// place of the corner inside, so infinite vertices stay last and orientations right.
+/// place of the corner inside the cavity, so that infinite vertices stay last and orientations stay
+/// right.
 void SmallDelaunay::fill_cavity(Index vertex) {
   for (Side& side : rim_) {
     const std::size_t corner = corner_of(side);
@@ -211,14 +216,14 @@ void SmallDelaunay::fill_cavity(Index vertex) {
     link_large_rim();
   }
   for (const Index cell : cavity_) {
-    cells_[cell].vertices[3] = infinite_;  // no finite cell any more
+    cells_[cell].vertices[3] = infinite_;  // marks the cell as not finite
     free_.push_back(cell);
   }
 }
 
-/// Two new cells are neighbours if their faces in the rim share an edge. A table with a row and a
-/// column for each vertex of the rim finds them. An empty entry stands for cell 0, which takes what
-/// is written there by mistake: cell 0 is never in use.
+/// Links the new cells: two of them are neighbours if their faces in the rim share an edge. A table
+/// with a row and a column for each vertex of the rim finds them. An empty entry stands for cell 0,
+/// which is never in use, so that writing to it does no harm.
 void SmallDelaunay::link_small_rim() {
   std::array<Side, kRimVertices * kRimVertices> table;
   Index labels = 0;
@@ -248,7 +253,7 @@ void SmallDelaunay::link_small_rim() {
   }
 }
 
-/// The same by sorting the edges.
+/// Links the new cells as link_small_rim() does, by sorting the edges of the rim.
 void SmallDelaunay::link_large_rim() {
   std::vector<std::pair<std::uint64_t, Side>> edges;
   edges.reserve(3 * rim_.size());
@@ -304,7 +309,8 @@ CanonicalDelaunay SmallDelaunay::list() {
       }
     }
   }
-  std::vector<Cell>().swap(cells_);  // before the sorting, which takes as much memory again
+  std::vector<Cell>().swap(cells_);  // frees the cells before the sorting, which takes as much
+                                     // memory
   return list_canonically(std::move(tetrahedra), std::move(faces), infinite_);
 }
 
@@ -330,7 +336,7 @@ bool is_collinear(const Point& a, const Point& b, const Point& c) {
          turn(b.z - a.z, b.x - a.x, c.z - a.z, c.x - a.x);
 }
 
-/// Moves four points that span a volume to the front of the order; false if there are none.
+/// Moves four points that span a volume to the front of the order. Returns false if there are none.
 bool move_simplex_to_front(const SmallDelaunay& delaunay, std::vector<Index>& order) {
   const auto point = [&](std::size_t place) -> const Point& {
     return delaunay.point(order[place]);
@@ -398,7 +404,7 @@ Result<CanonicalDelaunay> small_delaunay(std::span<const Point> points,
   for (std::size_t i = 4; i < order.size(); ++i) {
     std::size_t steps = 0;
     if (!delaunay.insert(order[i], steps)) return equal_points();
-    // Infinite cells are counted too: they are at most about as many as the finite ones and 2 n.
+    // The count includes infinite cells: at most about as many as finite cells and 2 n.
     if (delaunay.cell_count() / 2 > max_tetrahedra) return too_many(max_tetrahedra);
     if (cancellation.is_due_and_wanted(steps)) {
       return Error{ErrorCode::cancelled, "cancelled by the caller"};

@@ -11,9 +11,9 @@
 
 namespace watertight::delaunay {
 
-/// Sorts by key_of(record), a Triangle: by counting as to its first vertex, then the few records
-/// that share it. Requires first vertices below `vertex_count`. Records of equal keys come in any
-/// order.
+/// Sorts records by key_of(record), a Triangle: first by its first vertex, by counting, then the
+/// few records that share this vertex. Requires first vertices below `vertex_count`. Records of
+/// equal keys come in any order.
 template <class Record, class KeyOf>
 void sort_by_vertices(std::vector<Record>& records, std::size_t vertex_count, const KeyOf& key_of) {
   std::vector<std::size_t> ends(vertex_count + 1);

@@ -6,8 +6,8 @@
 namespace watertight::delaunay {
 namespace {
 
-/// CPU time of this thread in seconds; engines have no other. The clock of a process that has a
-/// CPU limit is brought up to date at ticks only, which is too coarse for short jobs.
+/// CPU time of this thread in seconds; engines have no other thread. The clock of a process that
+/// has a CPU limit is brought up to date at ticks only, which is too coarse for short jobs.
 double cpu_seconds() {
   timespec used{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// CGAL's conforming constrained Delaunay triangulation. The one translation unit that includes it:
-// a minute and 1.8 GB to compile.
+// Makes constrained Delaunay tetrahedralizations by CGAL. Only this translation unit includes
+// CGAL's function for it, which takes a minute and 1.8 GB to compile.
 // Based on: Si & Shewchuk, "Incrementally constructing and updating constrained Delaunay
 // tetrahedralizations with finite-precision coordinates" (2015), as CGAL 6.1 implements it.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -23,7 +23,7 @@ using EngineTriangulation = EngineResult::Triangulation;
 Point to_point(const Kernel::Point_3& p) { return {p.x(), p.y(), p.z()}; }
 
 /// Numbers the engine's vertices: the input's by their coordinates, which the engine does not
-/// change, the others after them in the order of their coordinates.
+/// change, the Steiner points after these in the order of their coordinates.
 class Numbering {
  public:
   Numbering(const EngineTriangulation& triangulation, const std::vector<Point>& vertices) {
@@ -53,7 +53,7 @@ class Numbering {
   Tetrahedralization result_;
 };
 
-/// `facet_of_constraint` maps the engine's constraint numbers to facets.
+/// `facet_of_constraint` maps the engine's constraint numbers to facets; null if they are equal.
 Tetrahedralization collect(const EngineResult& engine, const std::vector<Point>& vertices,
                            const std::vector<Index>* facet_of_constraint) {
   const EngineTriangulation& triangulation = engine.triangulation();

@@ -9,11 +9,11 @@
 
 namespace watertight::delaunay {
 
-/// Guarantees nothing: the ladder checks every answer with its certificate. May throw whatever the
-/// engine throws; the process is replaced then.
+/// Makes a constrained Delaunay tetrahedralization. Guarantees nothing: the ladder checks every
+/// answer by a certificate. May throw whatever the engine throws; the process is replaced then.
 CdtAnswer constrained_delaunay(const CdtJob& job);
 
-/// Bytes of a job to bytes of an answer, for serve_jobs().
+/// Makes the bytes of an answer from the bytes of a job, for serve_jobs().
 Bytes answer_job(ByteView request);
 
 }  // namespace watertight::delaunay

@@ -20,11 +20,12 @@ namespace watertight::delaunay {
 namespace {
 
 // p: constrain to the facets; c: keep the convex hull, the regions are flooded by the certificate;
-// Q: silence; T: how flat relative to the box counts as coplanar. The default of 1e-8 rejects thin
-// plates and boxes in degrees and metres; 1e-14 lets the exact arithmetic decide.
+// Q: no output; T: the deviation, relative to the box, up to which points count as coplanar. The
+// default of 1e-8 rejects thin plates and boxes in degrees and metres; 1e-14 lets the exact
+// arithmetic decide.
 constexpr const char* kSwitches = "pcQT1e-14";
 
-/// The members of tetgenio stay its own: its destructor frees them with delete[].
+/// Copies the complex into arrays of `input`, whose destructor frees them with delete[].
 void fill(tetgenio& input, const PiecewiseLinearComplex& complex) {
   input.firstnumber = 0;
   input.numberofpoints = static_cast<int>(complex.vertices.size());

@@ -12,7 +12,7 @@ const Json* list_of(const Json* appearance, std::string_view name) {
   return list != nullptr && list->is_array() ? list : nullptr;
 }
 
-// Makes indices that refer to a list refer to a collection. Looks each value up once.
+// Turns indices into a list into indices into `values`. Looks each value up once.
 class Renumbering {
  public:
   Renumbering(const Json* list, DistinctValues& values, std::string_view what)
@@ -35,7 +35,7 @@ class Renumbering {
   const Json* list_;
   DistinctValues& values_;
   std::string_view what_;
-  std::unordered_map<std::size_t, std::size_t> position_;  // index in the list -> in the collection
+  std::unordered_map<std::size_t, std::size_t> position_;  // index in values_, by index in the list
 };
 
 bool is_flat(const Json& array) {
@@ -45,7 +45,8 @@ bool is_flat(const Json& array) {
   return true;
 }
 
-// Calls `visit` with each array that holds no arrays. Iterative: a stack of arrays still to open.
+// Calls `visit` with each array that holds no arrays. A stack of the arrays still to open replaces
+// recursion.
 template <class Visit>
 Status for_each_flat_array(Json& nested, Visit visit) {
   std::vector<Json*> open{&nested};
@@ -92,7 +93,8 @@ Status AppearanceCollector::adopt(Json& geometry, const Json* source) {
     }
     return Done{};
   };
-  // A ring of a texture: the texture, then a texture vertex per vertex; [null] for none.
+  // The array of a ring has the index of a texture, then the index of a texture vertex for each
+  // vertex; [null] means no texture.
   const auto each_texture_ring = [&](Json& array) -> Status {
     for (std::size_t i = 0; i < array.size(); ++i) {
       auto status = i == 0 ? textures.apply(array[i]) : texture_vertices.apply(array[i]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Materials, textures and texture vertices of a CityJSON: moved from the document into a feature
-// that uses them, and from features into one document. Internal to formats/.
+// Moves materials, textures and texture vertices of CityJSON from a document into a feature that
+// uses them, and from features into one document. Internal to formats/.
 #pragma once
 
 #include <string>
@@ -15,21 +15,23 @@ namespace watertight::formats {
 /// A growing list of distinct JSON values.
 class DistinctValues {
  public:
-  /// The position of `value`, which is appended if it is new.
+  /// The index of `value`, which is appended if it is new.
   std::size_t position_of(const Json& value);
   Json take() { return Json(std::move(values_)); }
   bool is_empty() const { return values_.empty(); }
 
  private:
   Json::array_t values_;
-  std::unordered_map<std::string, std::size_t> position_;  // text -> index in values_
+  std::unordered_map<std::string, std::size_t> position_;  // the index in values_, by the text of
+                                                           // the value
 };
 
-/// Collects what geometries refer to and renumbers the references.
+/// Collects the materials, textures and texture vertices to which geometries refer, and renumbers
+/// the references.
 class AppearanceCollector {
  public:
-  /// Starts with all of `appearance`, in its order, so that references to it keep their numbers
-  /// (unless it holds a value twice). Null when there is none.
+  /// Takes over all values of `appearance` in their order, so that references to them keep their
+  /// numbers (unless a value occurs twice). `appearance` is null when the document has none.
   void include(const Json* appearance);
 
   /// Makes `geometry`, whose indices refer to `source`, refer to this collection.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Skeletons for solids in canonical form: whatever is listed by facet or ring follows them, and the
-// vertices of the document are numbered by the solids.
+// Skeletons for solids in canonical form: semantics, materials and textures follow the order of the
+// canonical facets and rings, and the vertices of the document get numbers in the order in which
+// the canonical solids use them.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -32,11 +33,12 @@ bool is_of_solids(const Json& geometry) {
   return boundaries != nullptr && boundaries->is_object();
 }
 
-/// Leaves the city objects with their types and families, and the solids.
+/// Removes everything from a city object but its type, its parents and children, and its solids.
 void keep_solids_only(Json& object) {
   keep_members(object, kObjectMembers);
   Json* type = find_member(object, "type");
-  if (string_member(object, "type").starts_with('+')) *type = "GenericCityObject";  // an extension
+  // a type of an extension
+  if (string_member(object, "type").starts_with('+')) *type = "GenericCityObject";
   Json* geometries = find_member(object, "geometry");
   if (geometries == nullptr || !geometries->is_array()) return;
   Json kept = Json::array();
@@ -48,7 +50,7 @@ void keep_solids_only(Json& object) {
   *geometries = std::move(kept);
 }
 
-/// Leaves the members of a header or document that say where the solids are.
+/// Removes the members of a header or document that do not say where the solids are.
 void keep_reference(Json& root) {
   keep_members(root, kRootMembers);
   Json* metadata = find_member(root, "metadata");
@@ -57,14 +59,15 @@ void keep_reference(Json& root) {
   }
 }
 
-/// A solid as it was submitted, and where its parts are in the canonical form.
+/// A solid as it was submitted, and the order of its parts in the canonical form.
 struct Arranged {
   const Solid* source = nullptr;
   geometry::SourceOrder order;
-  std::vector<Index> document_vertex;  // canonical vertex -> vertex of the new document
+  std::vector<Index> document_vertex;  // the vertex of the new document, by canonical vertex
 };
 
-/// Texture of a ring: [texture, texture vertex, texture vertex, ...], or [null].
+/// The texture of a ring, in canonical order: [texture, texture vertex, texture vertex, ...], or
+/// [null].
 Json arranged_ring(const Json& values, const Arranged& solid, Index ring) {
   const auto size = static_cast<Index>(solid.source->ring(solid.order.ring[ring]).size());
   if (!values.is_array() || values.size() != std::size_t{size} + 1) return values;
@@ -74,7 +77,8 @@ Json arranged_ring(const Json& values, const Arranged& solid, Index ring) {
   return out;
 }
 
-/// The values by ring of one facet; `first_ring` is the canonical facet's first ring.
+/// The values of the rings of one facet, in canonical order. `first_ring` is the first ring of the
+/// canonical facet.
 Json arranged_facet(const Json& values, const Arranged& solid, Index facet, Index first_ring) {
   const IndexRange rings = solid.source->rings_of(solid.order.facet[facet]);
   if (!values.is_array() || values.size() != rings.size()) return values;
@@ -86,7 +90,8 @@ Json arranged_facet(const Json& values, const Arranged& solid, Index facet, Inde
   return out;
 }
 
-/// Values by shell and facet of one solid. Lists of another shape stay as they are.
+/// The values of the facets of one solid by shell, in canonical order. Lists of another shape stay
+/// as they are.
 Json arranged_solid(const Json& values, const Arranged& solid, bool has_rings) {
   if (!values.is_array() || values.size() != solid.source->shell_count()) return values;
   Json out = Json::array();
@@ -275,9 +280,9 @@ class Canonicalizer {
 
   CityModel model_;
   const Feature& feature_;
-  std::vector<Index> number_of_;  // vertex of the document -> its new number
+  std::vector<Index> number_of_;  // the new number of each vertex of the document
   Index next_ = 0;
-  Index solid_vertices_ = 0;  // vertices that solids use
+  Index solid_vertices_ = 0;  // the number of vertices that solids use
   std::string kind_;
   Json others_;
   std::vector<Arranged> solids_;

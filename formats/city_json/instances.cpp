@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Instances of geometry templates: which template, and where its matrix and its vertex put it.
+// Reads instances of geometry templates: the template, the matrix and the vertex that place it.
 #include <algorithm>
 #include <utility>
 
@@ -32,7 +32,7 @@ Result<std::array<GridNumber, kMatrixSize>> read_matrix(const Json& geometry,
   return matrix;
 }
 
-// The vertex that the instance stands on, in the world.
+// The world coordinates of the vertex on which the instance stands.
 Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const InstanceRef& ref,
                                             const CityHeader& header, const std::string& pointer) {
   const auto tokens = model.boundary(ref.boundary);
@@ -47,7 +47,8 @@ Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const Instan
                                         header.transform.value_or(geometry::Transform{}))
                                   : geometry::lattice_of_decimals({&list.decimals[*vertex], 1});
   if (!points) return wrong(points.error().message, pointer);
-  // The one point is the origin of its lattice, unless it is beyond all decimal grids.
+  // The origin of a lattice with one point is that point, unless its coordinates are on no decimal
+  // grid.
   if (points->lattice.kind == LatticeKind::decimal) return points->lattice.origin;
   std::array<GridNumber, 3> anchor;
   for (int axis = 0; axis < 3; ++axis) {

@@ -10,7 +10,8 @@
 namespace watertight::formats {
 namespace {
 
-// The grid that holds all solids: the finest step, no translation.
+// The exponent of the finest step among all solids: its grid, without translation, holds all
+// solids.
 Result<std::int32_t> finest_exponent(const Document& document) {
   std::int32_t exponent = 0;
   bool is_first = true;
@@ -45,7 +46,7 @@ std::string header_text(std::int32_t exponent, std::uint32_t srid) {
   return text + R"("CityObjects":{},"vertices":[]})";
 }
 
-// A skeleton whose solids follow one another, each with vertices of its own.
+// A feature whose solids follow one another, each with vertices of its own.
 Feature generic_feature(const Feature& source, std::string id) {
   Feature feature;
   feature.id = std::move(id);

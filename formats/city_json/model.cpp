@@ -114,7 +114,8 @@ Index parent_of(const Json& object, const std::unordered_map<std::string_view, I
   return kNone;
 }
 
-// A child that the document does not hold may be a solid, and nobody would miss it.
+// Refuses a child that the document does not hold: the child may have a solid, which would be
+// missing without notice.
 Status check_children(const Json& object, std::string_view id,
                       const std::unordered_map<std::string_view, Index>& by_id) {
   const Json* children = find_member(object, "children");
@@ -131,7 +132,7 @@ Status check_children(const Json& object, std::string_view id,
   return Done{};
 }
 
-// Follows the parents up to the top-level object, each chain once.
+// Finds the top-level object of each object; follows each chain of parents once.
 Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
   index.root_of.assign(parent.size(), kNone);
   std::vector<Index> chain;
@@ -157,8 +158,8 @@ Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
   return Done{};
 }
 
-// Buildings, and the parts of which the parents, up to a Building, are parts. Requires parents
-// without cycles.
+// The Building of each object: of a Building itself, of a BuildingPart the one that is reached
+// through parents that are BuildingParts; kNone for others. Requires parents without cycles.
 std::vector<std::uint32_t> buildings_of(const std::vector<Index>& parent,
                                         const Json::object_t& objects) {
   std::vector<std::string> types;
@@ -166,7 +167,7 @@ std::vector<std::uint32_t> buildings_of(const std::vector<Index>& parent,
   std::vector<std::uint32_t> building(parent.size(), kNone);
   for (Index start = 0; start < parent.size(); ++start) {
     Index at = start;
-    std::size_t steps = 0;  // deeper nesting of parts is not looked into
+    std::size_t steps = 0;  // parts nested deeper than 16 levels get no Building
     while (at != kNone && types[at] == "BuildingPart" && ++steps <= 16) at = parent[at];
     if (at != kNone && types[at] == "Building") building[start] = at;
   }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// CityJSON and CityJSONSeq between text and features. Internal to formats/; the public face is
-// formats/city_json/city_json.h.
+// The parsed form of CityJSON and CityJSONSeq, between text and features. Internal to formats/; the
+// public interface is formats/city_json/city_json.h.
 //
 // Skeleton of a feature: its CityJSONFeature (or the whole CityJSON) as compact JSON in which
 //   - the boundaries of a Solid are {"solid": k} and those of a MultiSolid or CompositeSolid
 //     {"solids": [k, n]}: solid k, or solids k to k + n - 1, of the feature;
 //   - "vertices" is {"count": N, "kind": "integers" | "decimals", "solids": [runs...],
-//     "others": [x, y, z, x, ...]}: for each solid, which vertex of the document each of its
-//     vertices is, as runs [first, length, first, length, ...]; then the vertices that no solid
-//     uses, in their order.
+//     "others": [x, y, z, x, ...]}. "solids" has, for each solid, the vertices of the document that
+//     are its vertices, as runs [first, length, first, length, ...]; "others" has the coordinates
+//     of the vertices that no solid uses, in their order.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ namespace watertight::formats {
 
 /// A geometry of a city object whose boundaries were captured.
 struct GeometryRef {
-  std::uint32_t object = 0;    // position of the city object in the document
-  std::uint32_t geometry = 0;  // position in the object's geometry array
+  std::uint32_t object = 0;    // index of the city object in the document
+  std::uint32_t geometry = 0;  // index in the object's geometry array
   std::size_t boundary = 0;    // index into CityModel::boundary_begin
   std::string type;
   std::string lod;
@@ -41,26 +41,27 @@ struct GeometryRef {
 
 /// A geometry of a city object that is an instance of a geometry template.
 struct InstanceRef {
-  std::uint32_t object = 0;    // position of the city object in the document
-  std::uint32_t geometry = 0;  // position in the object's geometry array
-  std::size_t boundary = 0;    // index into CityModel::boundary_begin: its vertex
+  std::uint32_t object = 0;    // index of the city object in the document
+  std::uint32_t geometry = 0;  // index in the object's geometry array
+  std::size_t boundary = 0;    // index into CityModel::boundary_begin, for the instance's vertex
   std::uint64_t template_number = 0;
-  std::array<GridNumber, 16> matrix{};  // row by row
+  std::array<GridNumber, 16> matrix{};  // the transformation matrix, row by row
 };
 
 /// The references within a city model.
 struct ModelIndex {
   std::vector<std::string> ids;        // the ids of the city objects, in document order
-  std::vector<std::uint32_t> root_of;  // object -> its top-level object
-  /// Object -> the Building that it is or is a part of, by number; kNone for others and templates.
+  std::vector<std::uint32_t> root_of;  // the top-level object of each object
+  /// For each object, the number of the Building that it is or is a part of; kNone for others and
+  /// templates.
   std::vector<std::uint32_t> building_of;
   std::vector<GeometryRef> geometries;  // sorted by object, then by geometry
-  std::vector<InstanceRef> instances;   // sorted likewise; they are in `geometries` too
+  std::vector<InstanceRef> instances;   // sorted by object, then by geometry; also in `geometries`
   std::vector<std::string> notes;
-  bool are_templates = false;  // the "objects" are geometry templates without ids, one each
+  bool are_templates = false;  // each "object" is a geometry template without id
 };
 
-/// A solid with the vertex of the document that each of its vertices is.
+/// A solid and, for each of its vertices, the vertex of the document.
 struct CitySolid {
   SubmittedSolid submitted;
   std::vector<Index> vertex_of;
@@ -72,8 +73,9 @@ struct CitySolid {
 /// may refer to `template_count` templates. Errors: malformed with JSON Pointer.
 Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count);
 
-/// Reads a GeometryInstance, all but its object and geometry. Errors: malformed with JSON Pointer
-/// (a template that does not exist, no vertex, a matrix that is not valid).
+/// Reads a GeometryInstance, except for the members `object` and `geometry` of the result. Errors:
+/// malformed with JSON Pointer (a template that does not exist, no vertex, a matrix that is not
+/// valid).
 Result<InstanceRef> read_instance(const Json& geometry, const std::string& pointer,
                                   std::uint64_t template_count);
 
@@ -83,23 +85,24 @@ Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
                                                      const ModelIndex& index,
                                                      const CityHeader& header);
 
-/// One lattice for all solids whose objects have the same top-level object, or, for a
-/// CityJSONFeature, one for all. Solids come in document order.
+/// The solids of the model in document order. Solids whose objects have the same top-level object
+/// share one lattice, as do all solids of a CityJSONFeature.
 Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIndex& index,
                                            const CityHeader& header, const Limits& limits);
 
-/// Under a transform vertices are grid integers; 10.0 is one too. Errors: malformed.
+/// Turns the vertices into grid integers, which a transform requires; 10.0 is an integer too.
+/// Errors: malformed.
 Status require_integers(VertexList& list);
 
 /// The header that a document or first line states. Errors: malformed, unsupported.
 Result<CityHeader> city_header(const Json& root);
 
-/// One feature per top-level object. Takes the model apart.
+/// One feature per top-level object. Moves the parts out of the model.
 Result<std::vector<Feature>> split_city_model(CityModel model, const ModelIndex& index,
                                               std::vector<CitySolid> solids,
                                               const CityHeader& header);
 
-/// Appends a JSON value with the `boundaries` of its geometries replaced.
+/// Appends the text that stands for the `boundaries` of a geometry.
 using BoundaryPrinter = std::function<void(const Json& boundaries, std::string& out)>;
 void append_city_object(std::string& out, const Json& object, const BoundaryPrinter& print);
 void append_city_objects(std::string& out, const Json& objects, const BoundaryPrinter& print);
@@ -126,15 +129,14 @@ Status for_each_address_vertex(Json& object, Visit visit) {
   return Done{};
 }
 
-/// Appends nested arrays; `vertex_of(i)` is what index i becomes.
+/// Appends boundaries as nested arrays, with `vertex_of(i)` in place of index i.
 void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
                      const std::function<std::uint64_t(Index)>& vertex_of);
 
 /// Appends "[first,length,first,length]": each pair stands for `length` indices from `first` on.
 void append_vertex_runs(std::string& out, std::span<const Index> vertices);
-/// The inverse of append_vertex_runs(), for a solid that has `solid_vertex_count` vertices in a
-/// document that has `vertex_count`.
-/// Errors: malformed.
+/// The inverse of append_vertex_runs(), for a solid with `solid_vertex_count` vertices in a
+/// document with `vertex_count` vertices. Errors: malformed.
 Result<std::vector<Index>> read_vertex_runs(const Json& runs, std::size_t vertex_count,
                                             std::size_t solid_vertex_count);
 

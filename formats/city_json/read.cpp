@@ -29,7 +29,7 @@ Result<ReadModel> read_model(CityModel model, const CityHeader& header, const Li
   return ReadModel{std::move(model), std::move(*index), std::move(*solids), std::move(*instances)};
 }
 
-// boundary -> the part of the skeleton that stands for it; "" for boundaries without solids.
+// For each boundary, the part of the skeleton that stands for it; "" where that is not solids.
 std::vector<std::string> solid_references(const ReadModel& read) {
   std::vector<std::string> references(read.model.boundary_begin.size() - 1);
   for (const GeometryRef& ref : read.index.geometries) {
@@ -105,8 +105,9 @@ void share_out(std::vector<TemplateInstance> instances, const ModelIndex& index,
   }
 }
 
-// The first line of a CityJSONSeq that shares what `root` says; appearance moves to the features,
-// except what geometry templates refer to.
+// The first line of a CityJSONSeq for the document `root`. The line has the default themes; all
+// else of the appearance moves to the features, unless geometry templates, which may refer to it,
+// exist.
 std::string header_text(const Json& root) {
   std::string out = "{";
   for (const auto& [key, value] : root.get_ref<const Json::object_t&>()) {
@@ -136,8 +137,8 @@ std::string header_text(const Json& root) {
   return out + '}';
 }
 
-/// Notes how the feature's text differs from the one we would write. If the feature
-/// cannot be written, the layout keeps the whole text.
+/// Sets the feature's layout to the differences between its text and the text that would be written
+/// without one. If the feature cannot be written, the layout keeps the whole text.
 void keep_text(const CityHeader& header, std::string_view text, Feature& feature) {
   const auto plain = write_city_json_feature(header, feature);
   feature.layout = describe_layout(plain ? *plain : std::string(), text);

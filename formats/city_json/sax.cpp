@@ -32,8 +32,8 @@ struct Frame {
   std::string key;  // the key of the member that comes next
 };
 
-// The parser's messages quote the input: keep them short and printable.
-constexpr std::size_t kLongestMessage = 300;  // bytes of a syntax error
+// Messages of the parser quote the input; they are made short and printable.
+constexpr std::size_t kLongestMessage = 300;  // the most bytes of a parser's message
 
 std::string syntax_message(std::string_view what) {
   if (const auto end = what.find("] "); end != std::string_view::npos) what.remove_prefix(end + 2);
@@ -44,7 +44,8 @@ std::string syntax_message(std::string_view what) {
   return message;
 }
 
-// Events of nlohmann's SAX parser, which is iterative. A function that returns false ends it.
+// The events of nlohmann's SAX parser, which is iterative. A function that returns false ends the
+// parsing.
 class CitySax {
  public:
   CitySax(bool is_city, CityText kind, const Limits& limits)
@@ -104,7 +105,7 @@ class CitySax {
   bool parse_error(std::size_t position, const std::string&, const Json::exception& exception) {
     error_.code = ErrorCode::malformed;
     error_.message = syntax_message(exception.what());
-    // It quotes the token, which may be megabytes of digits.
+    // The message quotes the token, which may be megabytes of digits.
     if (error_.message.size() > kLongestMessage) {
       std::size_t end = kLongestMessage;
       while (end > 0 && (static_cast<unsigned char>(error_.message[end]) & 0xC0U) == 0x80U) --end;
@@ -128,7 +129,8 @@ class CitySax {
     for (const Frame& frame : frames_) {
       path += frame.is_array ? pointer_token(frame.values.size()) : pointer_token(frame.key);
     }
-    // counters_[0] is of the captured array itself: the position of what comes next in it.
+    // counters_[0] belongs to the captured array itself; a counter is the index of the next
+    // element.
     for (const std::size_t position : counters_) path += pointer_token(position);
     return path;
   }
@@ -198,7 +200,7 @@ class CitySax {
     const Role role = frames_.back().role;
     frames_.pop_back();
     if (role == Role::geometry) {
-      // A number in the source would be taken for a captured boundary.
+      // A number in the source would be mistaken for the index of a captured boundary.
       const Json* boundaries = find_member(value, "boundaries");
       const bool is_ours =
           kind_ == CityText::skeleton && boundaries != nullptr && boundaries->is_object();
@@ -337,12 +339,12 @@ class CitySax {
   Error error_;
   std::vector<Frame> frames_;
   Capture capture_ = Capture::none;
-  bool was_captured_ = false;          // boundaries, in the geometry that is open
-  std::vector<std::size_t> counters_;  // elements so far of each open captured array
+  bool was_captured_ = false;          // the open geometry has captured boundaries
+  std::vector<std::size_t> counters_;  // the number of elements so far, by open captured array
   std::size_t axis_ = 0;
   std::array<std::int64_t, 3> integer_{};
   std::array<GridNumber, 3> decimal_{};
-  bool is_rounded_ = false;  // a number of the vertex that is open
+  bool is_rounded_ = false;  // a number of the open vertex was rounded
 };
 
 Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, const Limits& limits) {
@@ -350,7 +352,7 @@ Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, cons
     return Error{ErrorCode::limit_exceeded, std::to_string(text.size()) + " bytes; the limit is " +
                                                 std::to_string(limits.bytes)};
   }
-  // The parser takes a NUL for the end of the text, and what follows would be lost.
+  // The parser takes a NUL for the end of the text and would lose the rest.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     return Error{ErrorCode::malformed, "a JSON text must not contain a NUL byte", nul, {}};
   }

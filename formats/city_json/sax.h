@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One pass over the text of a CityJSON, a CityJSONFeature or one of our skeletons. The `boundaries`
-// of geometries and the `vertices` go to flat arrays; everything else becomes a Json value.
-// Checks syntax, UTF-8, nesting and duplicate keys; knows nothing of what a solid is.
-// Internal to formats/.
+// Parses the text of a CityJSON, a CityJSONFeature or a skeleton in one pass. The `boundaries` of
+// geometries and the `vertices` go to flat arrays; everything else becomes a Json value. Checks
+// syntax, UTF-8, nesting and duplicate keys, but not whether boundaries make solids. Internal to
+// formats/.
 #pragma once
 
 #include <array>
@@ -20,12 +20,13 @@
 
 namespace watertight::formats {
 
-/// Nested arrays of vertex indices as a flat sequence: an index, or one of these two.
+/// A token of nested arrays of vertex indices in a flat sequence: a vertex index, kOpen for the
+/// start of an array or kClose for its end.
 using BoundaryToken = std::uint32_t;
 inline constexpr BoundaryToken kOpen = 0xFFFFFFFF;
 inline constexpr BoundaryToken kClose = 0xFFFFFFFE;
 
-/// The `vertices` of a city model: integers, or exact decimals as soon as one number is none.
+/// The `vertices` of a city model: integers, or exact decimals as soon as one number is no integer.
 struct VertexList {
   bool are_integers = true;
   bool is_present = false;
@@ -41,7 +42,8 @@ struct CityModel {
   Json root;
   VertexList vertices;
   std::vector<BoundaryToken> tokens;
-  std::vector<std::size_t> boundary_begin{0};  // boundary -> tokens; one more at the end
+  std::vector<std::size_t> boundary_begin{0};  // the start of each boundary in `tokens`, then their
+                                               // end
 
   std::span<const BoundaryToken> boundary(std::size_t index) const {
     return std::span<const BoundaryToken>(tokens).subspan(
@@ -49,12 +51,12 @@ struct CityModel {
   }
 };
 
-/// Documents come from outside; in a skeleton (formats/city_json/model.h) `vertices` and the
-/// boundaries of solids are objects, which stay Json values.
+/// Whether a text is a document from outside or a skeleton (formats/city_json/model.h), in which
+/// `vertices` and the boundaries of solids are objects, which stay Json values.
 enum class CityText : std::uint8_t { document, skeleton };
 
-/// Errors: malformed with byte offset (syntax, UTF-8) or JSON Pointer (content); limit_exceeded.
-/// Cost: linear.
+/// Parses a city model. Errors: malformed with byte offset (syntax, UTF-8) or JSON Pointer
+/// (content); limit_exceeded. Cost: linear.
 Result<CityModel> parse_city_model(std::string_view text, CityText kind, const Limits& limits);
 
 }  // namespace watertight::formats

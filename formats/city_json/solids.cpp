@@ -9,7 +9,8 @@
 namespace watertight::formats {
 namespace {
 
-// The pointer to the token at `position`, found again from the start: for errors only.
+// The JSON Pointer to the token at `position`, counted again from the start, as only errors need
+// it.
 std::string pointer_to(std::span<const BoundaryToken> tokens, std::size_t position) {
   std::vector<std::size_t> counters;
   for (std::size_t i = 0; i < position; ++i) {
@@ -25,7 +26,8 @@ std::string pointer_to(std::span<const BoundaryToken> tokens, std::size_t positi
   return pointer;
 }
 
-// Arrays of the solids of one geometry; ring vertices are still those of the document.
+// Cuts the boundaries of one geometry into the arrays of its solids, whose rings still have the
+// vertex numbers of the document.
 class SolidCutter {
  public:
   SolidCutter(std::span<const BoundaryToken> tokens, int levels_above)
@@ -236,8 +238,8 @@ class FeatureLattice {
   const CityModel& model_;
   const CityHeader& header_;
   const Limits& limits_;
-  std::vector<Index> slot_of_;     // document vertex -> point; kNone between features
-  std::vector<bool> was_rounded_;  // document vertex -> by reading its numbers
+  std::vector<Index> slot_of_;     // the point of each document vertex; kNone between features
+  std::vector<bool> was_rounded_;  // whether reading rounded a document vertex
 };
 
 }  // namespace
@@ -256,7 +258,7 @@ Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIn
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return root_of(a) < root_of(b); });
 
-  // Every entry is assigned below: each solid belongs to one top-level object.
+  // The loop assigns every entry, because each solid belongs to one top-level object.
   auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
   if (!nothing) return std::move(nothing).error();
   std::vector<CitySolid> solids(cut->size(), CitySolid{SubmittedSolid{*nothing, {}, {}}, {}, 0, 0});

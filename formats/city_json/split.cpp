@@ -28,8 +28,8 @@ class LocalVertices {
   }
 
  private:
-  std::vector<Index> local_of_;  // document vertex -> vertex of the feature
-  std::vector<Index> vertices_;  // vertex of the feature -> document vertex
+  std::vector<Index> local_of_;  // the feature's vertex, by document vertex
+  std::vector<Index> vertices_;  // the document's vertex, by vertex of the feature
 };
 
 class Splitter {
@@ -55,7 +55,7 @@ class Splitter {
   }
 
   Result<std::vector<Feature>> split() {
-    // Objects by top-level object; both in document order.
+    // The objects of each top-level object, in document order.
     std::vector<std::vector<Index>> members(index_.ids.size());
     for (Index object = 0; object < index_.ids.size(); ++object) {
       members[index_.root_of[object]].push_back(object);
@@ -110,7 +110,8 @@ class Splitter {
     return feature;
   }
 
-  // Makes everything in the object that refers to vertices or appearance refer to the feature's.
+  // Numbers the vertices that the object uses within the feature, and makes the object's addresses
+  // and appearance refer to the lists of the feature.
   Status localize(Index number, AppearanceCollector& appearance) {
     const std::string pointer = "/CityObjects" + pointer_token(index_.ids[number]);
     const Json* source = find_member(model_.root, "appearance");
@@ -180,10 +181,11 @@ class Splitter {
   std::vector<CitySolid> solids_;
   const CityHeader& header_;
   LocalVertices local_;
-  std::vector<std::size_t> first_solid_;       // boundary -> its first solid
-  std::vector<std::size_t> first_geometry_;    // object -> its first entry in index_.geometries
-  std::vector<bool> is_of_solids_;             // boundary
-  std::vector<std::vector<Index>> vertex_of_;  // of the feature's solids
+  std::vector<std::size_t> first_solid_;       // the first solid of each boundary
+  std::vector<std::size_t> first_geometry_;    // the first entry of each object in
+                                               // index_.geometries
+  std::vector<bool> is_of_solids_;             // whether a boundary is of solids
+  std::vector<std::vector<Index>> vertex_of_;  // the feature's vertices of each of its solids
 };
 
 }  // namespace

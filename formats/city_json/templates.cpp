@@ -14,7 +14,7 @@ Error wrong(std::string message, std::string pointer) {
   return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
 }
 
-// The templates' boundaries and vertices as a model of their own, so that solids are cut, and
+// Makes the templates' boundaries and vertices a model of their own, so that solids are cut, and
 // errors found, as in a document.
 class TemplateReader {
  public:
@@ -93,7 +93,7 @@ class TemplateReader {
     return Done{};
   }
 
-  // Nested arrays of indices as tokens. The nesting of the text was limited when it was parsed.
+  // Appends nested arrays of indices as tokens. The parser has limited the depth of the nesting.
   Status append_tokens(const Json& boundaries, const std::string& pointer) {
     struct Level {
       const Json* array;
@@ -133,7 +133,7 @@ Result<std::vector<SubmittedSolid>> read_geometry_templates(const CityHeader& he
                                                             const Limits& limits) {
   if (header.template_count == 0) return std::vector<SubmittedSolid>{};
   Limits unlimited = limits;
-  unlimited.bytes = ~0ULL;  // the header was read within the limit
+  unlimited.bytes = ~0ULL;  // the header was within the limit when it was read
   const auto root = parse_json(header.text, unlimited);
   if (!root) return root.error();
   const Json* section = find_member(*root, "geometry-templates");

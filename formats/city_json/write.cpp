@@ -24,15 +24,15 @@ std::optional<std::uint64_t> unsigned_of(const Json* value) {
 struct OpenFeature {
   CityModel model;
   const Feature* feature = nullptr;
-  std::vector<std::vector<Index>> vertex_of;  // solid -> vertices of the document
-  std::vector<std::string> vertices;          // "[x,y,z]"
+  std::vector<std::vector<Index>> vertex_of;  // the document's vertices of each solid
+  std::vector<std::string> vertices;          // the texts "[x,y,z]" of the vertices
 };
 
 std::string vertex_text(const std::array<std::string, 3>& axes) {
   return '[' + axes[0] + ',' + axes[1] + ',' + axes[2] + ']';
 }
 
-// The texts of the solid's vertices: grid integers, or decimals that look like decimals.
+// The texts of the solid's vertices: grid integers, or decimals with a point or an exponent.
 Result<std::vector<std::string>> solid_vertex_texts(
     const Solid& solid, const std::optional<geometry::Transform>& transform, bool are_integers) {
   std::vector<std::string> texts;
@@ -61,7 +61,7 @@ Result<std::vector<std::string>> solid_vertex_texts(
   return texts;
 }
 
-// "123e-3" of a skeleton as "0.123", "5" as "5.0".
+// The text of a skeleton's decimal for a document: "0.123" for "123e-3", "5.0" for "5".
 std::string plain_decimal(const Json& value) {
   std::string text = json_text(value);
   if (const auto exact = exact_number(text); exact) text = plain_text(exact->value);
@@ -119,7 +119,7 @@ Status place_vertices(OpenFeature& open, const CityHeader& header) {
   return place_others(*others, kind == "integers", open.vertices);
 }
 
-// The solids that a {"solid": k} or {"solids": [k, n]} names.
+// The solids to which {"solid": k} or {"solids": [k, n]} in a skeleton refers.
 struct SolidRange {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -226,7 +226,7 @@ void append_vertices(std::string& out, const std::vector<std::string>& vertices)
   }
 }
 
-// The skeleton's own document.
+// The text of a skeleton's own document, with the solids put back.
 std::string print_whole(const OpenFeature& open) {
   std::string out = "{";
   for (const auto& [key, value] : open.model.root.get_ref<const Json::object_t&>()) {

@@ -24,7 +24,7 @@ struct Draft {
   SolidSource source;
 };
 
-// "1 0 0 0 ...", row by row; the shift is that of the matrix alone.
+// Reads the matrix "1 0 0 0 ...", row by row. The placement's shift is that of the matrix alone.
 Result<geometry::Placement> read_placement(std::string_view text) {
   std::vector<GridNumber> numbers;
   for (std::size_t at = 0; at < text.size() && numbers.size() <= kMatrixSize;) {
@@ -45,7 +45,7 @@ class GmlReader {
 
   Result<Document> read() {
     document_.format = Format::gml;
-    // Geometries of one feature need not follow one another: features can hold collections.
+    // The geometries of one feature need not follow one another: features can hold collections.
     std::vector<std::vector<Index>> of_object(model_.objects.size());
     std::vector<std::vector<Index>> groups;
     for (Index i = 0; i < model_.geometries.size(); ++i) {
@@ -78,7 +78,8 @@ class GmlReader {
     return error;
   }
 
-  // Geometries of one top-level object, one geometry outside of objects, or one template.
+  // Adds the feature of a top-level object's geometries or of a geometry outside of objects, or the
+  // solids of a template.
   Status feature_of(const std::vector<Index>& geometries, const GmlGeometry& first) {
     drafts_.clear();
     positions_ = {};
@@ -110,7 +111,8 @@ class GmlReader {
 
   Status add_geometry(const GmlGeometry& geometry) {
     const GmlLink& link = model_.links[geometry.link];
-    // A template is judged where the implicit geometry that refers to it stands.
+    // An implicit geometry that only refers to a template adds no solids; add_instances() places
+    // it.
     if (geometry.is_template && link.node == kNone) return Done{};
     auto target = shapes_.resolve(link);
     if (!target) return in_object(std::move(target).error(), id_of(geometry, kNone));
@@ -127,8 +129,9 @@ class GmlReader {
     return status;
   }
 
-  // Implicit geometries may refer to templates that come later. Those that refer to no template of
-  // solids, or to nothing in the document, are left out.
+  // Implicit geometries may refer to templates that come later, so they are placed after all
+  // geometries. Those that refer to no template of solids, or to nothing in the document, are left
+  // out.
   Status add_instances() {
     for (const GmlGeometry& geometry : model_.geometries) {
       if (geometry.implicit == kNone) continue;
@@ -160,15 +163,15 @@ class GmlReader {
     return node == kNone ? "" : std::string(model_.name(model_.nodes[node].id));
   }
 
-  // Objects of one feature that have no gml:id, or the same, share one count, so that id and number
-  // name one geometry.
+  // The number of the next geometry of an object. Objects of one feature that have no gml:id, or
+  // the same, share one count, so that id and number name one geometry.
   std::uint32_t next_geometry(bool is_template, const std::string& object_id) {
     return is_template ? templates_++ : geometries_of_[object_id]++;
   }
 
-  // The solids of a geometry: itself, or those of a collection and of the collections in it. A
-  // CompositeSolid within another collection is a geometry of its own: its members must fit
-  // together, the collection's need not.
+  // Adds the solids of a geometry: a solid itself, or the solids of a collection and of the
+  // collections in it. A CompositeSolid within another collection is a geometry of its own: its
+  // members must fit together, the collection's need not.
   Status add_solids(Index root, bool is_template, SolidSource source) {
     const GmlKind kind = model_.nodes[root].kind;
     if (kind == GmlKind::solid) return add_solid(root, source);
@@ -188,7 +191,7 @@ class GmlReader {
   Status add_members(Index root, std::vector<Index>& composites, SolidSource& source) {
     struct Step {
       Index node;
-      Index link;  // the next to follow
+      Index link;  // the next link to follow
     };
     std::vector<Step> path;
     const auto open = [&](Index node) -> Status {
@@ -244,7 +247,7 @@ class GmlReader {
     return Done{};
   }
 
-  // The reference system of the drafts.
+  // The one reference system of all drafts.
   Result<Index> common_system() const {
     Index system = kNone;
     for (const Draft& draft : drafts_) {
@@ -258,7 +261,8 @@ class GmlReader {
     return system;
   }
 
-  // Latitude, longitude, height are left-handed axes: as x, y, z they would turn solids inside out.
+  // Swaps the first two axes of latitude, longitude, height: as x, y, z these left-handed axes
+  // would turn solids inside out.
   void put_longitude_first(Index system) {
     const double pole = shapes_.pole_of_first_axis(system);
     if (pole == 0) return;
@@ -346,8 +350,8 @@ class GmlReader {
   const GmlModel& model_;
   const Limits& limits_;
   GmlShapes shapes_;
-  std::map<std::string, std::uint32_t> geometries_of_;  // object id -> geometries of this feature
-  std::map<Index, IndexRange> templates_of_;            // node -> numbers of its templates
+  std::map<std::string, std::uint32_t> geometries_of_;  // number of geometries, by object id
+  std::map<Index, IndexRange> templates_of_;            // range of templates, by node
   std::uint32_t templates_ = 0;
   std::uint64_t passed_over_ = 0;
   std::set<std::string> unknown_systems_;

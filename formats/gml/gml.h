@@ -14,14 +14,14 @@
 
 namespace watertight::formats {
 
-/// A feature per top-level object that owns a solid, with the solids of its descendants.
+/// Reads a feature per top-level object that owns a solid, with the solids of its descendants.
 /// Errors: malformed, unsupported, limit_exceeded; with byte offset, line, and gml:id where there
 /// is one. Cost: n log n in the gml:ids, else linear; xlinks may not repeat more geometry than a
 /// document of this size could write out.
 Result<Document> read_gml(ByteView bytes, const Limits& limits);
 
-/// EPSG code of an srsName, 0 when there is none: "EPSG:25832", URNs and URLs of the OGC, of
-/// compound systems the first (horizontal) code, and the codes of the German survey
+/// The EPSG code of an srsName, 0 when there is none. Known are "EPSG:25832", URNs and URLs of the
+/// OGC (of a compound system the first, horizontal code), and the codes of the German survey
 /// ("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH").
 std::uint32_t srid_of_srs_name(std::string_view name);
 

@@ -12,7 +12,7 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-// Every solid and facet has a copy.
+// The most bytes of a gml:id, of which every solid and facet has a copy.
 constexpr std::size_t kLongestId = 1024;
 
 std::size_t count_words(std::string_view text) {
@@ -37,7 +37,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// Turns the elements of a document into a GmlModel. A frame per open element.
+// Turns the elements of a document into a GmlModel. Keeps a frame for each open element.
 class GmlBuilder : public XmlHandler {
  public:
   Status start(const XmlElement& element) override {
@@ -106,7 +106,7 @@ class GmlBuilder : public XmlHandler {
     element,     // outside of geometry
     geometry,    // a GmlNode
     ring_point,  // between a ring and its positions: pointProperty, Point
-    property,    // of a GmlNode
+    property,    // a property of a GmlNode
     matrix,      // transformationMatrix of an implicit geometry
     numbers      // pos, posList, coordinates
   };
@@ -120,10 +120,10 @@ class GmlBuilder : public XmlHandler {
     bool is_flat_envelope = false;  // the Envelope that holds here says srsDimension 2
     char lod = '\0';
     int dimension = 0;       // srsDimension, 0 when not stated; -1 when it is no number
-    Index node = kNone;      // geometry: itself; property, numbers, ring_point: the geometry's
-    Index implicit = kNone;  // GmlModel::implicits, in an implicit geometry
+    Index node = kNone;      // the innermost open geometry
+    Index implicit = kNone;  // index into GmlModel::implicits, in an implicit geometry
     Index system = kNone;
-    Index object_frame = kNone;  // index into frames_: the object of this element
+    Index object_frame = kNone;  // index into frames_ of the element's object
   };
 
   struct OpenObject {
@@ -131,8 +131,8 @@ class GmlBuilder : public XmlHandler {
     std::string type;
     bool is_feature = false;
     bool is_container = false;
-    Index number = kNone;   // in model_.objects
-    Index feature = kNone;  // top-level: its number in model_.objects; kNone until needed
+    Index number = kNone;   // index in model_.objects
+    Index feature = kNone;  // index of a top-level object in model_.objects; kNone until needed
   };
 
   // The attributes of the coordinates element that is being read.
@@ -167,13 +167,14 @@ class GmlBuilder : public XmlHandler {
     return {};
   }
 
-  // "" without a reference.
+  // The xlink:href of an element; "" without one.
   static std::string_view reference(const XmlElement& element) {
     return trimmed(element.attribute(kXlinkSpace, "href").value_or(""));
   }
 
   Index system_of(std::string_view name) {
-    // Documents name one or a few; neighbours name the same.
+    // Documents name one system or a few, and neighbours name the same, so only the last eight are
+    // searched.
     for (std::size_t i = model_.systems.size(); i-- > 0 && model_.systems.size() - i <= 8;) {
       if (model_.systems[i] == name) return static_cast<Index>(i);
     }
@@ -242,7 +243,7 @@ class GmlBuilder : public XmlHandler {
     return Done{};
   }
 
-  // The Envelope of an object holds for what follows in the object.
+  // Takes the reference system and the dimension of an Envelope for what follows in its object.
   void read_envelope(const XmlElement& element, const Frame& parent) {
     if (parent.object_frame == kNone) return;
     Frame& object = frames_[parent.object_frame];
@@ -264,13 +265,14 @@ class GmlBuilder : public XmlHandler {
     objects_.push_back(std::move(object));
   }
 
-  // The id of the Building that the open object is, or is a part (of parts) of.
+  // The id of the Building that an open object is or belongs to, also through parts of parts; "" if
+  // none.
   std::string building_of(std::size_t object) const {
     while (object > 0 && objects_[object].type == "BuildingPart") --object;
     return objects_[object].type == "Building" ? objects_[object].id : "";
   }
 
-  // The number of the innermost open object that can own geometry, kNone outside of such.
+  // The number of the innermost open object if that can own geometry, else kNone.
   Index owner() {
     if (objects_.empty() || objects_.back().is_container) return kNone;
     if (objects_.back().number != kNone) return objects_.back().number;
@@ -454,10 +456,10 @@ class GmlBuilder : public XmlHandler {
     add_defect(node, numbers_.place, ErrorCode::unsupported, std::move(message));
   }
 
-  // "1,5;2,5;3 4;5;6" with decimal "," and cs ";" becomes "1.5 2.5 3 4 5 6".
+  // Rewrites coordinates: "1,5;2,5;3 4;5;6" with decimal "," and cs ";" becomes "1.5 2.5 3 4 5 6".
   void end_coordinates(Index node) {
-    std::size_t count = 0;       // numbers of this position
-    std::size_t separators = 0;  // separators of this position
+    std::size_t count = 0;       // the numbers in the current position
+    std::size_t separators = 0;  // the separators in the current position
     bool is_in_number = false;
     const auto end_position = [&] {
       if (count + separators > 0 && (count != 3 || separators != 2)) {
@@ -493,8 +495,8 @@ class GmlBuilder : public XmlHandler {
     XmlPlace place;
   };
   Root root_;
-  bool is_of_ogc_ = false;     // an element that was not skipped is of OGC or has a gml:id
-  std::uint64_t skipped_ = 0;  // open elements of the part that is skipped
+  bool is_of_ogc_ = false;     // an element is in a namespace of OGC or has a gml:id
+  std::uint64_t skipped_ = 0;  // the number of open elements that are skipped
 };
 
 }  // namespace

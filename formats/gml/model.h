@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A GML document as its geometry elements, the links between them, and the objects that own them.
-// Coordinates stay text until a solid uses them: coordinates that no solid uses are not judged.
+// Coordinates stay text until a solid uses them: coordinates that no solid uses are not checked.
 // Internal to formats/.
 #pragma once
 
@@ -55,8 +55,8 @@ struct GmlNode {
   TextSpan name;                 // local name of the element
   TextSpan id;                   // gml:id
   TextSpan positions;            // ring: numbers between blanks, three per position
-  Index system = kNone;          // GmlModel::systems
-  Index defect = kNone;          // GmlModel::defects: why it cannot be used
+  Index system = kNone;          // index into GmlModel::systems
+  Index defect = kNone;          // index into GmlModel::defects: why the element cannot be used
   Index first_link = kNone;
   Index last_link = kNone;
   XmlPlace place;
@@ -66,7 +66,7 @@ struct GmlNode {
 struct GmlObject {
   std::string id;
   std::string type;
-  std::string building_id;  // as SolidSource::building_id
+  std::string building_id;  // the value of SolidSource::building_id
   Index feature = 0;
 };
 
@@ -75,20 +75,20 @@ struct GmlGeometry {
   Index link = kNone;
   Index object = kNone;  // kNone: a geometry outside of any object
   char lod = '\0';
-  bool is_template = false;  // of an implicit geometry: coordinates of its own
-  Index implicit = kNone;    // GmlModel::implicits, of a template
+  bool is_template = false;  // part of an implicit geometry, with coordinates of its own
+  Index implicit = kNone;    // index into GmlModel::implicits, for a template
 };
 
-/// An implicit geometry: a template in a place.
+/// An implicit geometry: a template and its placement.
 struct GmlImplicit {
-  TextSpan matrix;  // of GmlModel::names: the text of its transformationMatrix, empty without one
+  TextSpan matrix;  // part of GmlModel::names: text of the transformationMatrix, or empty
   XmlPlace place;
 };
 
 struct GmlModel {
   std::vector<GmlNode> nodes;
   std::vector<GmlLink> links;
-  std::vector<GmlGeometry> geometries;  // document order
+  std::vector<GmlGeometry> geometries;  // in document order
   std::vector<GmlImplicit> implicits;
   std::vector<GmlObject> objects;
   std::vector<Index> features;       // the top-level objects
@@ -105,7 +105,8 @@ struct GmlModel {
   }
 };
 
-/// Errors: those of read_xml(). Cost: linear; memory proportional to the document.
+/// Reads the elements of a GML document. Errors: those of read_xml(); malformed for XML that is not
+/// GML. Cost: linear; memory proportional to the document.
 Result<GmlModel> read_gml_model(ByteView bytes, const Limits& limits);
 
 }  // namespace watertight::formats

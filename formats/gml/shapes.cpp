@@ -17,7 +17,7 @@ bool is_surface(GmlKind kind) {
   return kind == GmlKind::polygon || kind == GmlKind::surfaces || kind == GmlKind::orientable;
 }
 
-// Takes the next word off the front; "" at the end.
+// Takes the next word off the front of the text; "" at its end.
 std::string_view take_word(std::string_view& text) {
   const std::size_t start = text.find_first_not_of(kBlanks);
   if (start == std::string_view::npos) return {};
@@ -124,7 +124,7 @@ Result<GmlSolid> GmlShapes::solid(Index node, GmlPositions& positions) {
       if (role == GmlRole::exterior && ++exteriors > 1) {
         return wrong(model_.links[link].place, title(node) + " has a second exterior");
       }
-      // The first shell of a Solid is its exterior; one that is missing is empty.
+      // The first shell of a Solid is its exterior; a missing exterior becomes an empty shell.
       if (role == GmlRole::interior && exteriors == 0 && ++exteriors > 0) solid.arrays.end_shell();
       auto status = shell(model_.links[link], solid, positions);
       if (!status) {
@@ -160,7 +160,7 @@ Status GmlShapes::shell(const GmlLink& link, GmlSolid& solid, GmlPositions& posi
   return status;
 }
 
-// Adds the facet of a polygon; of other surfaces the path goes on with the members.
+// Adds the facet of a polygon; puts other surfaces on the path, which goes on with their members.
 Status GmlShapes::surface(std::vector<Step>& path, Index node, bool is_reversed, GmlSolid& solid,
                           GmlPositions& positions) {
   if (auto status = check(node); !status) return status;
@@ -228,7 +228,7 @@ Status GmlShapes::ring(const GmlLink& link, bool is_reversed, GmlSolid& solid,
   for (std::size_t i = first; i < positions.values.size(); ++i) {
     vertices.push_back(static_cast<Index>(i - solid.first_position));
   }
-  // The first position stays the first.
+  // The first position of a reversed ring stays the first.
   if (is_reversed && vertices.size() > start) {
     std::reverse(vertices.begin() + static_cast<std::ptrdiff_t>(start) + 1, vertices.end());
   }

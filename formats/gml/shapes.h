@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// From the geometry elements of a GML document to the facets of its solids: references are
-// followed, orientations applied, positions read. Internal to formats/.
+// Turns the geometry elements of a GML document into the facets of its solids: follows references,
+// applies orientations, reads positions. Internal to formats/.
 #pragma once
 
 #include <array>
@@ -18,17 +17,18 @@
 
 namespace watertight::formats {
 
-/// A solid whose ring vertices are positions of their own, counted from `first_position`.
+/// A solid whose ring vertices are indices into GmlPositions::values, counted from
+/// `first_position`, each used once.
 struct GmlSolid {
   SolidArrays arrays;
   std::size_t first_position = 0;
   std::vector<Index> unclosed_rings;
-  std::vector<std::string> facet_ids;  // as SubmittedSolid::facet_ids
+  std::vector<std::string> facet_ids;  // the values of SubmittedSolid::facet_ids
   Index system = kNone;
   XmlPlace place;
 };
 
-/// Positions of all solids of a feature.
+/// The positions of all solids of a feature.
 struct GmlPositions {
   std::vector<std::array<GridNumber, 3>> values;
   std::vector<Index> rounded;
@@ -36,40 +36,42 @@ struct GmlPositions {
 
 class GmlShapes {
  public:
-  /// `model` must outlive this. `byte_count` of the document bounds what xlinks may repeat.
+  /// `model` must outlive this object. The document's `byte_count` limits how much xlinks may
+  /// repeat.
   GmlShapes(const GmlModel& model, std::uint64_t byte_count, const Limits& limits);
 
   /// The element that a link holds or refers to.
   /// Errors: malformed (no such gml:id, or several), unsupported (another document).
   Result<Index> resolve(const GmlLink& link);
 
-  /// Errors: the element cannot be used, with its place.
+  /// Fails, with the element's place, when the element cannot be used.
   Status check(Index node) const;
 
-  /// The shells of a Solid; its positions are appended.
+  /// Reads the shells of a Solid and appends its positions to `positions`.
   Result<GmlSolid> solid(Index node, GmlPositions& positions);
 
-  /// Counts work of which a document without references does less than it has bytes.
+  /// Counts steps of work. Errors: limit_exceeded after more steps than a document of this size
+  /// needs without references.
   Status spend(std::uint64_t steps, XmlPlace place);
 
-  /// Marks an element as being followed; false when it already is: it would contain itself.
+  /// Marks an element as being followed; false when it is already followed, and so contains itself.
   bool enter(Index node);
   void leave(Index node) { is_entered_[node] = false; }
 
-  /// EPSG code of a system; 0 for kNone.
+  /// The EPSG code of a system; 0 for kNone.
   std::uint32_t srid(Index system) const { return system == kNone ? 0 : srids_[system]; }
-  /// Where a system's positions have latitude first: the angle of the pole in its unit, else 0.
+  /// The latitude of the pole, in the system's unit, if positions have latitude first; else 0.
   double pole_of_first_axis(Index system) const { return system == kNone ? 0 : poles_[system]; }
-  /// The same code and order of axes; kNone is the same as any.
+  /// Whether two systems have the same code and order of axes; kNone is the same as any system.
   bool is_same_system(Index a, Index b) const;
 
-  /// "Solid 'id'", "Solid" without gml:id.
+  /// The name of an element in messages: "Solid 'id'", or "Solid" without gml:id.
   std::string title(Index node) const;
 
  private:
   struct Step {
     Index node;
-    Index link;  // the next to follow
+    Index link;  // the next link to follow
     bool is_reversed;
   };
 

@@ -23,8 +23,8 @@ constexpr std::array kAdvCodes{
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The last number of the first run of digits, dots, colons, slashes and hashes: what stands before
-// it is the version of the data set.
+// The last number of the leading run of digits, dots, colons, slashes and hashes; numbers before it
+// are the version of the data set.
 std::uint32_t last_number(std::string_view text) {
   text = text.substr(0, text.find_first_not_of("0123456789.:/#"));
   while (!text.empty() && !is_digit(text.back())) text.remove_suffix(1);

@@ -11,8 +11,8 @@
 namespace watertight::formats {
 namespace {
 
-// Between namespace and local name in what expat calls a name. Neither can hold it: expat refuses
-// a namespace with the separator.
+// The separator of namespace and local name in expat's names. Neither can hold it: expat refuses a
+// namespace with the separator.
 constexpr char kSeparator = '\n';
 
 struct ParserDeleter {
@@ -26,7 +26,7 @@ std::pair<std::string_view, std::string_view> split_name(std::string_view name) 
   return {name.substr(0, at), name.substr(at + 1)};
 }
 
-// Carries the events from expat to the handler and the first failure back.
+// Passes the events of expat to the handler, and keeps the first failure.
 class Events {
  public:
   Events(XML_Parser parser, XmlHandler& handler, std::uint32_t nesting)
@@ -37,7 +37,7 @@ class Events {
     XML_SetStartDoctypeDeclHandler(parser, on_doctype);
   }
 
-  // Rethrows what the handler threw: exceptions do not pass through C.
+  // The first failure. Rethrows what the handler threw, as exceptions must not pass through C.
   Status status() const {
     if (exception_) std::rethrow_exception(exception_);
     return error_ ? Status(*error_) : Status(Done{});
@@ -134,8 +134,8 @@ Status read_xml(ByteView bytes, XmlHandler& handler, const Limits& limits) {
   const ParserOwner parser(XML_ParserCreateNS(nullptr, kSeparator));
   if (!parser) return Error{ErrorCode::unavailable, "no memory for an XML parser"};
   Events events(parser.get(), handler, limits.nesting);
-  // As few pieces as an int can count: expat 2.5 starts a token that a piece cuts again from its
-  // beginning, which is quadratic for small pieces.
+  // The pieces are as large as an int can count: expat 2.5 reads a token that the end of a piece
+  // cuts again from its beginning, which takes quadratic time with small pieces.
   constexpr std::size_t kPiece = std::size_t{1} << 30;
   for (std::size_t at = 0;;) {
     const std::size_t size = std::min(kPiece, bytes.size() - at);

@@ -12,8 +12,8 @@
 namespace watertight::formats {
 namespace {
 
-// Appends the shells of a solid to the arrays, and the exact coordinates of its vertices.
-// Lists vertices whose digits are rounded.
+// Appends the shells of a solid to the arrays, the exact coordinates of its vertices to
+// `positions`, and the vertices whose digits are rounded to `rounded`.
 Status append_solid(const Solid& solid, SolidArrays& arrays,
                     std::vector<std::array<GridNumber, 3>>& positions,
                     std::vector<Index>& rounded) {
@@ -78,7 +78,7 @@ Result<SubmittedSolid> with_interior_shells(const SubmittedSolid& exterior,
   }
   auto points = geometry::lattice_of_decimals(positions);
   if (!points) return std::move(points).error();
-  // Vertices that no common grid of all shells holds; both lists are short or empty.
+  // The common lattice of all shells may round further vertices; both lists are short or empty.
   rounded.insert(rounded.end(), points->rounded.begin(), points->rounded.end());
   std::sort(rounded.begin(), rounded.end());
   rounded.erase(std::unique(rounded.begin(), rounded.end()), rounded.end());

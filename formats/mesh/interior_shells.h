@@ -12,11 +12,10 @@
 
 namespace watertight::formats {
 
-/// `exterior` with every shell of `interior` appended as interior shells, in order, on the common
-/// lattice of all. Keeps the source and the reference system of `exterior`. Facets stay oriented as
-/// they are; vertices of different solids stay different even if equal.
-/// Errors: limit_exceeded; malformed as lattice_of_decimals(). Cost: linear, some 100 ns per
-/// vertex.
+/// The solid `exterior` with every shell of `interior` appended as interior shells, in order, on
+/// one lattice for all shells. Keeps the source and the reference system of `exterior`. Facets stay
+/// oriented as they are; vertices of different solids stay different even if equal. Errors:
+/// limit_exceeded; those of lattice_of_decimals(). Cost: linear, some 100 ns per vertex.
 Result<SubmittedSolid> with_interior_shells(const SubmittedSolid& exterior,
                                             std::span<const SubmittedSolid> interior,
                                             const Limits& limits = {});

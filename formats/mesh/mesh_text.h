@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// OBJ, OFF, STL, PLY, POLY, WKT and EWKB between bytes and documents. Internal to formats/; the
-// public face is formats/document.h and formats/ewkb.h.
+// Readers of OBJ, OFF, STL, PLY, POLY, WKT and EWKB, and writers of OBJ and OFF. Internal to
+// formats/; the public interfaces are formats/document.h and formats/ewkb.h.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct DecimalVertices;
 
 Result<Document> read_obj(std::string_view text, const Limits& limits);
 Result<Document> read_off(std::string_view text, const Limits& limits);
-/// Text or binary; corners with equal coordinates become one vertex.
+/// Reads text or binary; corners with equal coordinates become one vertex.
 Result<Document> read_stl(ByteView bytes, const Limits& limits);
 bool is_binary_stl(ByteView bytes);
 Result<Document> read_ply(ByteView bytes, const Limits& limits);
@@ -27,7 +27,8 @@ Result<Document> read_poly(std::string_view text, const Limits& limits);
 Result<Document> read_wkt_document(std::string_view text, const Limits& limits);
 Result<Document> read_ewkb_document(ByteView bytes, const Limits& limits);
 
-/// Each solid is an object with the id of its source. Errors: unsupported for holes and cavities.
+/// Writes each solid as an object with the id of its source. Errors: unsupported for facets with
+/// holes and for cavities.
 Result<std::string> write_obj(std::span<const Feature> features);
 /// Errors: unsupported for anything but one solid without holes and cavities.
 Result<std::string> write_off(std::span<const Feature> features);
@@ -35,8 +36,8 @@ Result<std::string> write_off(std::span<const Feature> features);
 /// A line of a text file with the comment cut off.
 struct TextLine {
   std::string_view text;
-  std::size_t offset = 0;  // of the line in the file
-  std::size_t number = 0;  // from 1
+  std::size_t offset = 0;  // start of the line in the file, bytes
+  std::size_t number = 0;  // number of the line, from 1
 };
 
 /// The words of a line, separated by blanks.
@@ -46,12 +47,12 @@ void words_of(std::string_view line, std::vector<std::string_view>& words);
 class TextLines {
  public:
   explicit TextLines(std::string_view text) : text_(text) {}
-  /// False at the end.
+  /// Goes to the next line; false at the end of the text.
   bool next();
   const TextLine& line() const { return line_; }
-  /// At least one.
+  /// The words of the line, at least one.
   std::span<const std::string_view> words() const { return words_; }
-  /// malformed: the file ends before `what`.
+  /// The error malformed: the file ends before `what`.
   Error ended(const std::string& what) const;
 
  private:
@@ -64,10 +65,10 @@ class TextLines {
 /// The word as an unsigned integer, if it is one.
 std::optional<std::uint64_t> unsigned_word(std::string_view word);
 
-/// malformed, with "line 7: " and the byte where `word`, a part of `line`, starts.
+/// The error malformed, with "line 7: " and the byte where `word`, a part of `line`, starts.
 Error error_at(const TextLine& line, std::string_view word, std::string message);
 
-/// Three words as exact coordinates, appended with whether they were rounded.
+/// Appends three words as exact coordinates, and whether a coordinate was rounded.
 Status append_vertex(const TextLine& line, std::span<const std::string_view> words,
                      DecimalVertices& vertices);
 

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 40> kIgnored{
 
 struct ObjObject {
   std::string name;
-  SolidArrays arrays;  // ring vertices are those of the file
+  SolidArrays arrays;  // ring vertices are indices into the file's vertices
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -57,8 +57,8 @@ class ObjReader {
   }
 
  private:
-  // The next line; lines that end with a backslash are joined, at the same length, so that
-  // positions in the line are positions in the file.
+  // The next line. Lines that end with a backslash are joined, with blanks for the bytes between
+  // them, so that positions in the line are positions in the file.
   TextLine next_line(std::size_t& at, std::size_t& number) {
     TextLine line{{}, at, number + 1};
     joined_.clear();
@@ -103,7 +103,7 @@ class ObjReader {
     return error_at(line, keyword, "not a statement of an OBJ file");
   }
 
-  // The next object replaces an object without faces.
+  // Begins an object, which replaces the last one if that has no faces.
   void begin_object(std::string name) {
     ObjObject& last = objects_.back();
     if (!last.arrays.ring_vertices.empty()) {
@@ -114,7 +114,7 @@ class ObjReader {
     last.name = std::move(name);
   }
 
-  // x y z, optionally with a weight or a colour.
+  // Reads the coordinates x y z, optionally with a weight or a colour.
   Status vertex(const TextLine& line, std::span<const std::string_view> words) {
     if (vertices_.positions.size() >= kNone - 1) {
       return Error{ErrorCode::limit_exceeded, "more vertices than a 32-bit index can name"};
@@ -149,7 +149,8 @@ class ObjReader {
     return Done{};
   }
 
-  // "7", "7/1", "7//3", "7/1/3"; negative numbers count from the last vertex so far.
+  // Reads a vertex index "7", "7/1", "7//3" or "7/1/3"; negative numbers count from the last vertex
+  // so far.
   Status corner(const TextLine& line, std::string_view word, SolidArrays& arrays) {
     const std::string_view digits = word.substr(0, word.find('/'));
     std::int64_t index = 0;
@@ -189,7 +190,7 @@ class ObjReader {
     document.format = Format::obj;
     if (objects_.back().arrays.ring_vertices.empty()) {
       if (objects_.size() == 1) {
-        // One empty solid, so that there is something to report about.
+        // The document gets one empty solid, so that there is a feature to report about.
         document.notes.push_back("the file has no faces");
       } else {
         objects_.pop_back();
@@ -201,7 +202,7 @@ class ObjReader {
       auto solid = indexed_solid(std::move(object.arrays), vertices_,
                                  SolidSource{object.name, "Mesh", "", 0, 0, ""}, limits_);
       if (!solid) return std::move(solid).error();
-      if (objects_.size() > 1) solid->unused = {};  // the vertices are for all objects
+      if (objects_.size() > 1) solid->unused = {};  // the file's vertices are for all objects
       Feature feature;
       feature.id = object.name;
       feature.solids.push_back(std::move(*solid));
@@ -218,14 +219,14 @@ class ObjReader {
   DecimalVertices vertices_;
   std::vector<ObjObject> objects_;
   std::string joined_;
-  std::vector<std::string_view> words_;  // of the statement
-  std::size_t left_out_ = 0;             // objects without faces
+  std::vector<std::string_view> words_;  // the words of the statement
+  std::size_t left_out_ = 0;             // the number of objects without faces
   std::uint64_t last_missing_ = 0;       // the largest index beyond the vertices so far, from 1
   std::size_t missing_line_ = 0;
   std::size_t missing_offset_ = 0;
 };
 
-// An object's name ends with its line.
+// The name of an object, without control characters: the end of the line ends it.
 std::string object_name(const Feature& feature, const SubmittedSolid& solid) {
   std::string name = solid.source.object_id.empty() ? feature.id : solid.source.object_id;
   for (char& c : name) {
@@ -274,7 +275,7 @@ Result<std::string> write_obj(std::span<const Feature> features) {
   std::uint64_t first_vertex = 1;
   for (const Feature& feature : features) {
     for (const SubmittedSolid& solid : feature.solids) {
-      // Without its line, an object would be part of the one before it.
+      // Without its line "o", an object would be part of the one before it.
       const std::string name = object_name(feature, solid);
       if (!name.empty() || !out.empty()) out += "o " + name + '\n';
       auto status = append_obj(out, solid.solid, first_vertex);

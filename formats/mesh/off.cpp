@@ -28,7 +28,8 @@ class OffReader : private OneShellText {
   }
 
  private:
-  // "OFF" with prefixes for texture, colour and normal, then the counts, on the same line or not.
+  // Reads "OFF" with prefixes for texture, colour and normal, then the counts, on the same line or
+  // the next.
   Status head() {
     if (!lines_.next()) return lines_.ended("its first word");
     const std::string_view word = lines_.words().front();

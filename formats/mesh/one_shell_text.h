@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The common part of the readers of OFF and POLY: a text that states how many things follow, and
-// makes one shell. Internal to formats/.
+// The common part of the readers of OFF and POLY: texts that state how many elements follow, and
+// hold one shell. Internal to formats/.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ class OneShellText {
  protected:
   OneShellText(Format format, std::string_view text, const Limits& limits);
 
-  /// malformed, at this word of the line.
+  /// The error malformed, at word number `word` of the line.
   Error wrong(std::size_t word, std::string message) const;
-  /// The word of the line as a number of `what`, each of which takes at least a byte.
-  /// Errors: malformed; limit_exceeded above `most`.
+  /// Reads word number `word` of the line as the number of `what`, each of which takes at least a
+  /// byte. Errors: malformed; limit_exceeded above `most`.
   Result<std::uint64_t> count(std::size_t word, const std::string& what,
                               std::uint64_t most = ~0ULL) const;
   /// The document of all that was read.
@@ -30,10 +30,10 @@ class OneShellText {
   const Limits& limits_;
   DecimalVertices vertices_;
   SolidArrays arrays_;
-  Document document_;  // format and notes
+  Document document_;  // format and notes of the document
 
  private:
-  std::size_t size_;  // of the file
+  std::size_t size_;  // the size of the file in bytes
 };
 
 }  // namespace watertight::formats

@@ -2,7 +2,8 @@
 //
 // PLY as text and as binary of both byte orders. The elements "vertex" (x, y, z) and "face"
 // (vertex_indices or vertex_index) are read, everything else is skipped. A binary float or double
-// stands for the shortest decimal that reads back as it; numbers in text count as written.
+// stands for the shortest decimal that reads back as the same value; numbers in text count as
+// written.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -29,7 +30,7 @@ class TextValues {
     skip_blanks();
     return at_ == text_.size();
   }
-  /// The number of values that can still follow.
+  /// The largest number of values that can still follow.
   std::uint64_t most_left(PlyType) const { return (text_.size() - at_ + 1) / 2; }
 
   bool skip(PlyType) { return !next_word().empty(); }
@@ -311,7 +312,7 @@ class PlyReader {
     return Done{};
   }
 
-  // Vertices may come after the faces, but their number is known.
+  // Reads the ring of a face. The vertices may come after the faces, but their number is known.
   Status face(const PlyProperty& property) {
     const auto length = list_length(property);
     if (!length) return length.error();
@@ -330,7 +331,7 @@ class PlyReader {
     return Done{};
   }
 
-  // Beyond the limit the vertices are refused when they come.
+  // The number of vertices, at most the limit; more vertices are refused when they are read.
   std::uint64_t count_vertices() const {
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex") return std::min<std::uint64_t>(element.count, limits_.vertices);

@@ -16,21 +16,22 @@ namespace watertight::formats {
 
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// Bytes of a value.
+/// The number of bytes of a value.
 std::size_t size_of(PlyType type);
 bool is_integer(PlyType type);
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::float32;     // of the value, or of the items of a list
-  std::optional<PlyType> list_length;  // an integer type; nothing for a single value
+  PlyType type = PlyType::float32;     // type of the value, or of the items of a list
+  std::optional<PlyType> list_length;  // integer type of a list's length; nullopt for a single
+                                       // value
 };
 
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
-  std::uint64_t offset = 0;  // of the line that declares it
+  std::uint64_t offset = 0;  // start of the line that declares the element, bytes
 
   std::optional<std::size_t> property(std::string_view name) const;
 };
@@ -43,8 +44,8 @@ struct PlyHeader {
   std::size_t data_begin = 0;
 };
 
-/// Errors: malformed with byte offset; unsupported for versions other than 1.0. Cost: linear in the
-/// header.
+/// Reads the header of a PLY file. Errors: malformed with byte offset; unsupported for versions
+/// other than 1.0. Cost: linear in the header.
 Result<PlyHeader> read_ply_header(ByteView bytes);
 
 }  // namespace watertight::formats

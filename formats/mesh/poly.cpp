@@ -27,7 +27,7 @@ class PolyReader : private OneShellText {
   }
 
  private:
-  // "COUNT 3 ATTRIBUTES MARKERS", then "NUMBER X Y Z ..." for each node.
+  // Reads "COUNT 3 ATTRIBUTES MARKERS", then "NUMBER X Y Z ..." for each node.
   Status nodes() {
     if (!lines_.next()) return lines_.ended("the number of nodes");
     const auto node_count = count(0, "nodes", limits_.vertices);
@@ -63,7 +63,7 @@ class PolyReader : private OneShellText {
     return Done{};
   }
 
-  // "POLYGONS [HOLES [MARKER]]", then the polygons, then the hole points.
+  // Reads "POLYGONS [HOLES [MARKER]]", then the polygons, then the hole points.
   Status facet(std::uint64_t number) {
     if (!lines_.next()) return lines_.ended("facet " + std::to_string(number));
     const auto polygon_count = count(0, "polygons");
@@ -84,7 +84,7 @@ class PolyReader : private OneShellText {
     return Done{};
   }
 
-  // "CORNERS A B C ...", which may go on in the next lines.
+  // Reads "CORNERS A B C ...", which may go on in the next lines.
   Status polygon(std::uint64_t facet) {
     if (!lines_.next()) return lines_.ended("a polygon of facet " + std::to_string(facet));
     const auto corner_count = count(0, "corners");
@@ -109,14 +109,14 @@ class PolyReader : private OneShellText {
     return Done{};
   }
 
-  // "NUMBER X Y Z ..."
+  // Skips "NUMBER X Y Z ...".
   Status point(const std::string& what) {
     if (!lines_.next()) return lines_.ended("a " + what + " point");
     if (lines_.words().size() < 4) return wrong(0, "a " + what + " point needs three coordinates");
     return Done{};
   }
 
-  // The sections of hole and region points, which many files leave out.
+  // Skips a section of hole or region points, which many files leave out.
   Status points(const std::string& what) {
     if (!lines_.next()) return Done{};
     const auto point_count = count(0, what + " points");

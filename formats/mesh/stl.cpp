@@ -21,7 +21,7 @@
 namespace watertight::formats {
 namespace {
 
-constexpr std::size_t kHeader = 84;  // bytes: 80 of text and the number of triangles
+constexpr std::size_t kHeader = 84;  // bytes of the header: 80 of text and the number of triangles
 constexpr std::size_t kTriangle = 50;
 constexpr std::size_t kNormal = 12;
 
@@ -31,8 +31,8 @@ std::uint32_t word_at(ByteView bytes, std::size_t at) {
          static_cast<std::uint32_t>(bytes[at + 3]) << 24U;
 }
 
-// Ring vertices become indices of the first equal key. Sorting, unlike hashing, cannot be slowed
-// down by chosen coordinates.
+// Replaces each ring vertex by the first vertex with an equal key. Sorting, unlike hashing, cannot
+// be slowed down by chosen coordinates.
 template <class Key>
 void weld(const std::vector<Key>& keys, SolidArrays& arrays) {
   struct Corner {
@@ -59,7 +59,7 @@ void note_welding(Document& document) {
       "corners with exactly equal coordinates read as one vertex; normals and attributes ignored");
 }
 
-// Three floats as a key; -0 is 0.
+// The bits of three floats; -0 becomes 0.
 using FloatKey = std::array<std::uint32_t, 3>;
 
 Result<Document> read_binary_stl(ByteView bytes, const Limits& limits) {
@@ -152,7 +152,7 @@ class TextStlReader {
   }
 
  private:
-  // "" at the end.
+  // The next word; "" at the end of the text.
   std::string_view next_word() {
     while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
     const std::size_t begin = at_;
@@ -180,7 +180,7 @@ class TextStlReader {
     return Done{};
   }
 
-  // The rest of the line.
+  // Takes the rest of the line as a name.
   std::string name() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view rest = text_.substr(at_, end - at_);
@@ -270,12 +270,13 @@ class TextStlReader {
   const Limits& limits_;
   std::size_t at_ = 0;
   std::size_t left_out_ = 0;
-  SolidArrays arrays_;        // of the solid that is open
-  DecimalVertices vertices_;  // one for each corner
+  SolidArrays arrays_;        // the facets of the open solid
+  DecimalVertices vertices_;  // one vertex for each corner
   Document document_;
 };
 
-// Binary files may start with "solid" too, but no text has NUL bytes.
+// Whether the bytes are a text that starts with "solid". Binary files may start so too, but no text
+// has NUL bytes.
 bool is_text_stl(ByteView bytes) {
   std::string_view text = as_text(bytes);
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);

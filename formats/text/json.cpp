@@ -59,7 +59,7 @@ bool is_number_value(const Json& value) { return value.is_number() || value.is_b
 void append_json_string(std::string& out, std::string_view text) {
   static constexpr std::string_view kHex = "0123456789abcdef";
   out += '"';
-  std::size_t begin = 0;  // of the characters that are written as they are
+  std::size_t begin = 0;  // start of the characters that are written unchanged
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const auto byte = static_cast<unsigned char>(c);
@@ -135,7 +135,8 @@ std::string string_member(const Json& object, std::string_view key) {
 }
 
 Json make_object(std::vector<std::string>&& keys, std::vector<Json>&& values) {
-  // ordered_map's vector copies its elements when it grows (their keys are const): reserve.
+  // The vector of an ordered_map copies its elements, whose keys are const, when it grows; reserved
+  // room avoids that.
   Json object = Json::object();
   auto& members = object.get_ref<Json::object_t&>();
   members.reserve(keys.size());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// JSON values for the readers and writers of this folder: member order is kept, and a number whose
-// text is not what we would print is kept as its text, so that printing returns the same numbers.
-// Internal to formats/.
+// JSON values for the readers and writers of this folder. Member order is kept, and a number that
+// would be printed with another text is kept as its text, so that printing returns the same
+// numbers. Internal to formats/.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,14 +18,14 @@ namespace watertight::formats {
 /// A JSON value. A value of kind `binary` (which JSON text cannot hold) is the text of a number.
 using Json = nlohmann::ordered_json;
 
-/// The number `text`, whose nearest double is `value`: a double if printing gives `text` again,
-/// else its text.
+/// The JSON value of the number `text`, whose nearest double is `value`: a double if printing gives
+/// `text` again, else the text.
 Json number_value(double value, std::string_view text);
 
 /// True for integers, doubles and numbers kept as text.
 bool is_number_value(const Json& value);
 
-/// Appends the compact JSON text. Recursive: the depth is that of the reader's nesting limit.
+/// Appends the compact JSON text. Recursive; the reader's nesting limit bounds the depth.
 void append_json(std::string& out, const Json& value);
 std::string json_text(const Json& value);
 
@@ -39,7 +39,7 @@ Json* find_member(Json& object, std::string_view key);
 /// The member's text if it is a string, else "".
 std::string string_member(const Json& object, std::string_view key);
 
-/// An object of these members, in this order. The keys must differ. Cost: linear.
+/// An object of the members `keys` and `values`, in this order. The keys must differ. Cost: linear.
 Json make_object(std::vector<std::string>&& keys, std::vector<Json>&& values);
 
 /// Appends a member whose key the object does not have yet.
@@ -49,7 +49,8 @@ void append_member(Json& object, std::string key, Json value);
 std::string pointer_token(std::string_view key);
 std::string pointer_token(std::size_t index);
 
-/// Errors: malformed with byte offset; limit_exceeded beyond limits.nesting and limits.bytes.
+/// Parses a JSON text. Errors: malformed with byte offset; limit_exceeded beyond limits.nesting and
+/// limits.bytes.
 Result<Json> parse_json(std::string_view text, const Limits& limits);
 
 }  // namespace watertight::formats

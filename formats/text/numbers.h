@@ -19,18 +19,18 @@ struct ExactNumber {
   bool is_rounded = false;  // more than 18 significant digits: the value of the nearest double
 };
 
-/// Errors: malformed (not a number), limit_exceeded (beyond the range of doubles).
+/// Reads a number. Errors: malformed (not a number), limit_exceeded (beyond the range of doubles).
 Result<ExactNumber> exact_number(std::string_view text);
 
-/// Numbers of a transformationMatrix.
+/// The count of numbers in a transformationMatrix.
 inline constexpr std::size_t kMatrixSize = 16;
 
-/// The placement of a 4 x 4 matrix, rows one after the other, at `anchor` (world). Errors:
-/// malformed (not 16 numbers, a last row other than 0 0 0 1).
+/// The placement of a 4 x 4 matrix, rows one after the other, at `anchor` (world coordinates).
+/// Errors: malformed (not 16 numbers, a last row other than 0 0 0 1).
 Result<geometry::Placement> placement_of_matrix(std::span<const GridNumber> matrix,
                                                 const std::array<GridNumber, 3>& anchor);
 
-/// A number with its digits, without exponent where that is short: "-0.125".
+/// The digits of a number, without exponent where that is short: "-0.125".
 std::string plain_text(const GridNumber& number);
 
 /// The EPSG code in "https://www.opengis.net/def/crs/EPSG/0/7415", "urn:ogc:def:crs:EPSG::7415",

@@ -13,12 +13,12 @@
 
 namespace watertight::formats {
 
-/// One Zstandard frame. Errors: limit_exceeded when there is no memory for it. Cost: linear.
+/// Compresses a text into one Zstandard frame. Errors: limit_exceeded without memory. Cost: linear.
 Result<PackedText> pack_text(std::string_view text);
 
-/// The text of one frame that takes all of the bytes. Memory grows with what comes out, never with
-/// what the frame says of itself; a frame that needs a window of more than 128 MiB is refused.
-/// Errors: malformed; limit_exceeded as soon as more than `most_bytes` come out.
+/// The text of a frame that fills all of `packed`. Memory grows with the output, never with a size
+/// that the frame states; a frame that needs a window of more than 128 MiB is refused. Errors:
+/// malformed; limit_exceeded as soon as the output exceeds `most_bytes`.
 Result<std::string> unpack_text(ByteView packed, std::uint64_t most_bytes);
 
 }  // namespace watertight::formats

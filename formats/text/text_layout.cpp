@@ -14,14 +14,14 @@ namespace {
 
 enum class Kind : std::uint8_t { tokens = 0, whole_text = 1 };
 
-/// Before the first token also a byte order mark, for which all of these bytes stand.
+/// The bytes between tokens: white space, those of a byte order mark, and the record separator.
 constexpr std::string_view kBlanks = " \t\r\n\xEF\xBB\xBF\x1E";
 constexpr std::string_view kMarks = "{}[]:,";
 constexpr std::string_view kLineFeed = "\n";
 
 bool is_one_of(char c, std::string_view set) { return set.find(c) != std::string_view::npos; }
 
-/// One token and what stands before it; an empty token at the end of the text.
+/// One token and the bytes before it; the token is empty at the end of the text.
 struct Token {
   std::string_view gap;
   std::string_view text;
@@ -60,7 +60,7 @@ bool is_number(std::string_view token) {
   return !token.empty() && (token[0] == '-' || (token[0] >= '0' && token[0] <= '9'));
 }
 
-/// Digits after the point.
+/// The number of digits after the point.
 std::size_t decimals_of(std::string_view number) {
   const std::size_t point = number.find('.');
   return point == std::string_view::npos ? 0 : number.size() - point - 1;
@@ -74,7 +74,7 @@ std::string with_decimals(std::string_view number, std::size_t decimals) {
   return text.append(decimals - present, '0');
 }
 
-/// How a writer escapes what it need not.
+/// The characters that a writer escapes though JSON does not ask for it.
 struct Escapes {
   bool non_ascii = false;
   bool slashes = false;
@@ -86,8 +86,8 @@ void append_escape(std::string& out, std::uint32_t unit) {
   for (int shift = 12; shift >= 0; shift -= 4) out += kHex[(unit >> shift) & 15U];
 }
 
-/// The character that starts at `at`, which moves to its last byte. Requires UTF-8; the number for
-/// other bytes is arbitrary.
+/// The code point of the character that starts at `at`, which moves to the character's last byte.
+/// Requires UTF-8; the number for other bytes is arbitrary.
 std::uint32_t code_point(std::string_view text, std::size_t& at) {
   const auto first = static_cast<unsigned char>(text[at]);
   const std::size_t more = first >= 0xF0 ? 3 : first >= 0xE0 ? 2 : 1;
@@ -116,13 +116,13 @@ std::string with_escapes(std::string_view token, Escapes escapes) {
   return out;
 }
 
-/// Predicts the next gap and the next spelling. Describing and applying a layout teach it the same
-/// way.
+/// Predicts the next gap and the next spelling. describe_layout() and apply_layout() teach it in
+/// the same way.
 class Predictor {
  public:
   Predictor() : gaps_(kKinds * kKinds * (kDepths + 1)) {}
 
-  /// Moves to the gap before `token`; gap() is its likely text.
+  /// Moves to the gap before `token`; gap() is then its likely text.
   void move_to(std::string_view token) {
     const std::size_t kind = kind_of(token);
     if (kind == kind_of("}") || kind == kind_of("]")) depth_ = depth_ > 0 ? depth_ - 1 : 0;
@@ -147,7 +147,7 @@ class Predictor {
     }
     return std::string(token);
   }
-  /// `text` stands for our `token` and was not predicted.
+  /// Learns that `text`, which was not predicted, stands for `token` of the plain text.
   void learn_spelling(std::string_view token, std::string_view text) {
     if (is_number(token)) {
       if (text.starts_with(token)) decimals_[place()] = decimals_of(text);
@@ -188,7 +188,7 @@ class Predictor {
 
 bool is_mark(std::string_view token) { return !token.empty() && is_one_of(token[0], kMarks); }
 
-/// Gap and spelling exceptions; false when the texts have other tokens.
+/// Writes the exceptions in gaps and spellings; false when the texts have other tokens.
 bool describe_tokens(std::string_view plain, std::string_view text, ExceptionWriter& gaps,
                      ExceptionWriter& spellings) {
   Tokens plain_tokens(plain);
@@ -275,7 +275,7 @@ bool ExceptionReader::next(std::string_view& text) {
   }
   const std::uint64_t size = reader_.varint();
   if (size > reader_.remaining()) {
-    reader_.take(reader_.remaining() + 1);  // fails
+    reader_.take(reader_.remaining() + 1);  // makes the reader fail
     return false;
   }
   text = as_text(reader_.take(static_cast<std::size_t>(size)));

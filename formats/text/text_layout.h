@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How a text of a JSON value differs from the text that we would print for the same value: white
-// space, spellings of numbers and escapes of strings. With it the very bytes of a document come
-// back. Internal to formats/.
+// The differences between a text of a JSON value and the text that Watertight prints for the value:
+// white space, spellings of numbers and escapes of strings. With them the very bytes of a document
+// come back. Internal to formats/.
 //
 // Both texts have the same tokens in the same order. The white space before a token is predicted to
 // be the same as before the last token at the same depth between the same kinds of neighbours. The
-// spelling of a token is predicted from the last token that was spelled in another way than ours. A
-// layout holds only the exceptions from the predictions. So it takes a few bytes if the text has a
-// regular style, and it is exact for every text.
+// spelling of a token is predicted from the last token that was not spelled as predicted. A layout
+// holds only the exceptions from the predictions. So it takes a few bytes if the text has a regular
+// style, and it is exact for every text.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,9 @@ namespace watertight::formats {
 /// the same tokens it holds all of `text`. Cost: linear.
 Bytes describe_layout(std::string_view plain, std::string_view text);
 
-/// The text that was given to describe_layout(plain, text), if `layout` is what that returned.
-/// Errors: malformed if the layout does not fit `plain`, or if the result does not have the size
-/// and hash of that text; limit_exceeded if it is longer than `most_bytes`.
+/// The text that was given to describe_layout(plain, text), if `layout` is its result. Errors:
+/// malformed if the layout does not fit `plain`, or if the text does not have the size and hash
+/// that the layout states; limit_exceeded if it is longer than `most_bytes`.
 Result<std::string> apply_layout(std::string_view plain, ByteView layout, std::uint64_t most_bytes);
 
 /// True if the layout holds the whole text, so that apply_layout() does not read `plain`.
@@ -49,7 +49,8 @@ class ExceptionWriter {
 class ExceptionReader {
  public:
   explicit ExceptionReader(ByteView bytes) : reader_(bytes) { start_run(); }
-  /// False when the next text is as expected; else `text`, which views the bytes, becomes it.
+  /// False when the next text is as expected; else sets `text` to the next text, a view of the
+  /// bytes.
   bool next(std::string_view& text);
   /// True if all bytes were read and none was malformed.
   bool is_finished() const { return is_last_run_ && !reader_.failed(); }

@@ -67,7 +67,7 @@ class WktReader {
     return true;
   }
 
-  // The next letters in upper case.
+  // The next letters of the text, in upper case.
   std::string word() {
     skip_space();
     std::string letters;
@@ -112,7 +112,7 @@ class WktReader {
     return Done{};
   }
 
-  // "(" element {"," element} ")"
+  // Reads "(" element {"," element} ")".
   template <class Element>
   Status list(Element element) {
     if (!take('(')) return wrong("'(' expected");

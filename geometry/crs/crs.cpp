@@ -66,10 +66,11 @@ double length_of(CrsUnit unit) {
   return 1.0;
 }
 
-/// 400 grads or 360 degrees.
+/// A full turn in the unit of an angle: 400 grads or 360 degrees.
 double full_turn_of(CrsUnit angle) { return angle == CrsUnit::grad ? 400.0 : 360.0; }
 
-/// Codes first .. last, inclusive, of geographic systems whose first axis is longitude.
+/// Runs {first, last}, inclusive, of the EPSG codes of geographic systems whose first axis is
+/// longitude.
 constexpr std::array<std::array<std::uint32_t, 2>, 6> kLongitudeFirst{
     {{7034, 7042}, {7084, 7088}, {7133, 7133}, {8901, 8902}, {9778, 9779}, {9783, 9784}}};
 
@@ -85,10 +86,10 @@ struct DegreeLengths {
 };
 
 DegreeLengths degree_lengths(double latitude_degrees) {
-  constexpr double kSemiMajorAxis = 6378137.0;               // metres
+  constexpr double kSemiMajorAxis = 6378137.0;               // of WGS 84, in metres
   constexpr double kEccentricitySquared = 6.69437999014e-3;  // of WGS 84
-  constexpr double kRadians = 0.017453292519943295;          // per degree
-  constexpr double kNearPole = 89.9;  // beyond, a degree of longitude says nothing
+  constexpr double kRadians = 0.017453292519943295;          // radians per degree
+  constexpr double kNearPole = 89.9;  // degrees; beyond, a degree of longitude has hardly a length
   const double latitude = std::clamp(latitude_degrees, -kNearPole, kNearPole) * kRadians;
   const double sine = std::sin(latitude);
   const double w = 1 - kEccentricitySquared * sine * sine;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Metres per unit of a coordinate reference system's axes, for tolerances and measures only, which
-// systems are geographic, and which put latitude first.
+// Facts about coordinate reference systems: the metres per unit of their axes (for tolerances and
+// measures only), which systems are geographic, and which put latitude first.
 #pragma once
 
 #include <array>
@@ -15,15 +15,15 @@ namespace watertight::geometry {
 
 struct AxisUnits {
   std::array<double, 3> metres_per_unit{1, 1, 1};
-  std::string note;  // non-empty when something was assumed, e.g. "no CRS stated: metres assumed"
+  std::string note;  // the assumptions, e.g. "no CRS stated: metres assumed"; "" if there are none
 };
 
 /// Units of the axes of EPSG code `srid` at the centre of a box (world coordinates), from a table
 /// of all codes of the EPSG data set (crs_table.cpp). Unknown and unstated systems count as metres,
-/// with a note. Geographic systems: metres per degree on the WGS 84 ellipsoid at the centre; x is
-/// longitude, as in most files whatever the authority's order, unless y is beyond 90 degrees and x
-/// is not. A geographic code over coordinates that cannot be degrees (|value| above 360) counts as
-/// metres, with a note. Cost: logarithmic.
+/// with a note. For a geographic system the units are metres per degree (or grad) on the WGS 84
+/// ellipsoid at the centre; x is longitude, as in most files whatever the authority's order, unless
+/// y is beyond 90 degrees and x is not. A geographic code with coordinates that cannot be angles
+/// (beyond a full turn) counts as metres, with a note. Cost: logarithmic.
 AxisUnits axis_units(std::uint32_t srid, const std::array<double, 3>& centre);
 
 /// The largest coordinate of a geographic system that can be an angle: a full turn, 360 (degrees)

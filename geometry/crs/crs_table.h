@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The unit of every EPSG code as a table of runs. Private to geometry/: see crs.h.
+// A table of the units of all EPSG codes, by runs of codes with one unit. Private to geometry/: see
+// crs.h.
 #pragma once
 
 #include <cstdint>
@@ -33,14 +34,14 @@ enum class CrsUnit : std::uint8_t {
   benoit_chain
 };
 
-/// EPSG codes first .. last, inclusive.
+/// The EPSG codes first .. last, inclusive, and their unit.
 struct CrsRun {
   std::uint32_t first;
   std::uint32_t last;
   CrsUnit unit;
 };
 
-/// Sorted, without overlap.
+/// The runs of all EPSG codes, sorted by code, without overlap.
 std::span<const CrsRun> crs_runs();
 
 }  // namespace watertight::geometry

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Boxes of triangles in single precision, rounded so that triangles that meet have boxes that
-// overlap. The box partition splits and compares them. Private to geometry/.
+// overlap. The box partition divides and compares these boxes. Private to geometry/.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct BoxMember {
   Index triangle;
 };
 
-/// Below `value` by at most two units in the last place of a float. Requires |value| < 2^120.
+/// A float below `value`, by at most two units in the last place. Requires |value| < 2^120.
 inline float rounded_down(double value) {
   const auto nearest = static_cast<float>(value);
   return nearest - std::abs(nearest) * kFloatStep - std::numeric_limits<float>::min();
@@ -44,8 +44,9 @@ bool do_overlap(const BoxMember<D>& a, const BoxMember<D>& b) {
   return result;
 }
 
-/// Half-open bounds in D directions. Parts of one partition do not overlap and leave no gap, so
-/// that every point, the low corner of a pair's overlap among them, lies in exactly one.
+/// The half-open bounds of a part in D directions. The parts of a partition do not overlap and
+/// leave no gap, so every point lies in exactly one part, also the low corner of the overlap of two
+/// boxes.
 template <std::size_t D>
 struct PartBounds {
   std::array<float, D> low;
@@ -57,7 +58,8 @@ struct PartBounds {
     bounds.high.fill(std::numeric_limits<float>::infinity());
     return bounds;
   }
-  /// True if the low corner of the overlap of two boxes lies here. A may have more directions.
+  /// True if the low corner of the overlap of two boxes lies within the bounds. The boxes may have
+  /// more directions than the bounds.
   template <std::size_t A>
   bool owns(const BoxMember<A>& a, const BoxMember<A>& b) const {
     static_assert(A >= D);

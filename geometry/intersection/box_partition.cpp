@@ -14,8 +14,8 @@
 namespace watertight::geometry {
 namespace {
 
-/// Space is divided into pieces of at most so many triangles where that is possible; pieces are
-/// what threads share. The pieces do not depend on the number of threads.
+/// The largest number of triangles in a piece of space, where a division is possible. The threads
+/// share the pieces, which do not depend on the number of threads.
 constexpr std::size_t kPieceSize = 16'384;
 constexpr std::size_t kTrianglesPerChunk = 8'192;
 
@@ -61,13 +61,14 @@ class Search {
   std::span<const Point> points_;
   std::span<const Triangle> triangles_;
   SearchContext context_;
-  std::vector<BoxMember<3>> boxes_;  // by triangle
+  std::vector<BoxMember<3>> boxes_;  // the box of each triangle
   std::vector<Piece> pieces_;
-  std::vector<std::vector<IntersectingPair>> found_;  // by piece
+  std::vector<std::vector<IntersectingPair>> found_;  // the pairs of each piece
   std::mutex mutex_;
-  std::vector<bool> is_finished_;  // by piece; these three under the mutex
-  std::size_t finished_ = 0;       // so many first pieces are finished
-  std::uint64_t found_in_finished_ = 0;
+  // mutex_ guards is_finished_, finished_ and found_in_finished_.
+  std::vector<bool> is_finished_;  // piece -> whether the search of it is finished
+  std::size_t finished_ = 0;       // the number of finished pieces before the first unfinished one
+  std::uint64_t found_in_finished_ = 0;  // the number of pairs found in the first finished_ pieces
 };
 
 /// Calls work(chunk, begin, end) for consecutive ranges of triangles.
@@ -80,7 +81,9 @@ void Search::for_each_chunk(
   });
 }
 
-/// Boxes of all triangles in units of the largest extent, relative to the corner of all.
+/// Computes the boxes of all triangles, relative to the low corner of their common box and in units
+/// of the largest extent of the common box. Makes one piece of all triangles that are not
+/// degenerate.
 void Search::measure_boxes() {
   std::vector<Box> chunk_boxes(triangles_.size() / kTrianglesPerChunk + 1);
   for_each_chunk([&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -94,7 +97,7 @@ void Search::measure_boxes() {
     all.include(box.min);
     all.include(box.max);
   }
-  double extent = 0;  // halves: the difference of two doubles can be beyond them
+  double extent = 0;  // half the largest extent: the difference of two doubles can overflow
   for (int axis = 0; axis < 3; ++axis) {
     extent = std::max(extent, 0.5 * all.max[axis] - 0.5 * all.min[axis]);
   }
@@ -111,7 +114,8 @@ void Search::measure_boxes() {
       member.triangle = static_cast<Index>(i);
       for (int axis = 0; axis < 3; ++axis) {
         const auto at = static_cast<std::size_t>(axis);
-        // This is monotone in the coordinate, so boxes that overlap before overlap afterwards.
+        // The formula is monotone in the coordinate, so boxes that overlap in doubles also overlap
+        // in floats.
         member.low[at] = rounded_down((0.5 * box.min[axis] - 0.5 * all.min[axis]) * scale);
         member.high[at] = rounded_up((0.5 * box.max[axis] - 0.5 * all.min[axis]) * scale);
       }
@@ -137,7 +141,7 @@ void Search::divide_into_pieces() {
   pieces_ = std::move(small);
 }
 
-/// Replaces the last piece, whose number is given, by its slabs.
+/// Replaces the last piece, whose number is given, by its slabs. False if no division saves work.
 bool Search::divide(std::size_t number) {
   SlabDivider<3> divider;
   const PartMembers<3> members{pieces_[number].members, {}, true};
@@ -171,8 +175,8 @@ void Search::search_pieces() {
   for_each_piece(pieces_.size(), threads_, work, [&] { context_.ask(); });
 }
 
-/// Ends the search when the first pieces, without a gap, have enough pairs: what the others would
-/// find is not needed.
+/// Notes that a piece is finished. Ends the search when the finished pieces before the first
+/// unfinished one have enough pairs: the pairs of other pieces are not needed.
 void Search::note_finished(std::size_t number) {
   const std::lock_guard lock(mutex_);
   is_finished_[number] = true;

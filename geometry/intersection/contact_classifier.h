@@ -6,8 +6,9 @@
 // Based on: P. Guigue and O. Devillers, Fast and Robust Triangle-Triangle Overlap Test Using
 // Orientation Predicates, Journal of Graphics Tools 8(1), 2003; E. Verbree and H. Si, Validation
 // and Storage of Polyhedra through Constrained Delaunay Tetrahedralization, 2008, section 3.2.
-// Departures: names every kind of contact, knows vertices by index, and never calls a predicate
-// with a repeated vertex (an exact zero misses the filter and costs a hundred times more).
+// Departures: the classifier names every kind of contact, knows vertices by index, and never calls
+// a predicate with a repeated vertex (for an exact zero the predicate's filter fails, which costs a
+// hundred times more).
 #pragma once
 
 #include <algorithm>
@@ -29,7 +30,7 @@ class ContactClassifier {
   explicit ContactClassifier(std::span<const Point> points) : points_(points.data()) {}
 
   ContactClass classify(const Triangle& first, const Triangle& second) const {
-    // Common vertices come first in both, in the same order.
+    // The common vertices are moved to the front of both triangles, in the same order.
     Triangle a = first;
     Triangle b = second;
     std::size_t common = 0;
@@ -60,13 +61,13 @@ class ContactClassifier {
   int orient3d(Index a, Index b, Index c, Index d) const {
     return Predicates::orient3d(points_[a], points_[b], points_[c], points_[d]);
   }
-  /// Zero without a call when a vertex repeats.
+  /// The orient2d of three vertices; zero, without a call of the predicate, if two are the same.
   int orient2d(Index a, Index b, Index c, int axis) const {
     if (a == b || b == c || c == a) return 0;
     return Predicates::orient2d(points_[a], points_[b], points_[c], axis);
   }
 
-  /// a = (p, q, x), b = (p, q, y).
+  /// The contact of a = (p, q, x) and b = (p, q, y), which have the edge pq in common.
   ContactClass with_common_edge(const Triangle& a, const Triangle& b) const {
     if (orient3d(a[0], a[1], a[2], b[2]) != 0) return ContactClass::shared_edge;
     const int axis = projection(a);
@@ -76,9 +77,10 @@ class ContactClassifier {
     return overlap(a, b);
   }
 
-  /// a = (p, a1, a2), b = (p, b1, b2). Outside the common plane, each triangle meets the plane of
-  /// the other along a ray from p (or in p alone). With p as the origin, s_i = det(a1, a2, b_i)
-  /// and t_i = det(b1, b2, a_i), the line of both planes has the direction
+  /// The contact of a = (p, a1, a2) and b = (p, b1, b2), which have the vertex p in common. Unless
+  /// the triangles are in one plane, each meets the plane of the other along a ray from p (or in p
+  /// alone). With p as the origin, s_i = det(a1, a2, b_i) and t_i = det(b1, b2, a_i), the line in
+  /// which the planes meet has the direction
   ///   N = (a1 x a2) x (b1 x b2) = s2 b1 - s1 b2 = t1 a2 - t2 a1,
   /// so the ray of b points along sign(s2 - s1) N and the ray of a along sign(t1 - t2) N.
   ContactClass with_common_vertex(const Triangle& a, const Triangle& b) const {
@@ -103,7 +105,7 @@ class ContactClassifier {
     return on_common_line(a, of_a, b, of_b);
   }
 
-  /// Signs of the vertices of `triangle` to the plane of `plane`.
+  /// The signs of the sides of the plane of `plane` on which the vertices of `triangle` lie.
   Signs sides(const Triangle& plane, const Triangle& triangle) const {
     return {orient3d(plane[0], plane[1], plane[2], triangle[0]),
             orient3d(plane[0], plane[1], plane[2], triangle[1]),
@@ -114,8 +116,8 @@ class ContactClassifier {
     return signs[0] != 0 && signs[0] == signs[1] && signs[1] == signs[2];
   }
 
-  /// Puts first the vertex whose two edges reach the other plane: the one whose sign differs from
-  /// both others, the positive one if all three differ.
+  /// Moves to the front the vertex whose two edges reach the plane of the other triangle: the
+  /// vertex whose sign differs from the two other signs, or the positive one if all three differ.
   static void isolate(Triangle& triangle, Signs& signs) {
     std::size_t alone = 0;
     if (signs[0] == signs[1]) {
@@ -129,15 +131,16 @@ class ContactClassifier {
     std::swap(signs[0], signs[alone]);
   }
 
-  /// The planes meet in a line. Edges a0a1 and a0a2 reach it at p1, p2 and edges b0b1, b0b2 at q1,
-  /// q2; with the line suitably directed, sign(q_l - p_j) = orient3d(a0, a_j, b0, b_l).
+  /// The contact of two triangles whose planes meet in a line. The edges a0a1 and a0a2 reach the
+  /// line at p1 and p2, the edges b0b1 and b0b2 at q1 and q2; with the line suitably directed,
+  /// sign(q_l - p_j) = orient3d(a0, a_j, b0, b_l).
   ContactClass on_common_line(const Triangle& a, const Signs& of_a, const Triangle& b,
                               const Signs& of_b) const {
     std::array<std::array<int, 2>, 2> order{};
     bool has_positive = false;
     bool has_negative = false;
-    std::size_t meeting_a = 0;  // a_j and b_l with p_j == q_l
-    std::size_t meeting_b = 0;
+    std::size_t meeting_a = 0;  // the index j of a pair with p_j == q_l, or 0
+    std::size_t meeting_b = 0;  // the index l of that pair, or 0
     for (std::size_t j = 0; j < 2; ++j) {
       for (std::size_t l = 0; l < 2; ++l) {
         order[j][l] = orient3d(a[0], a[j + 1], b[0], b[l + 1]);
@@ -153,7 +156,8 @@ class ContactClassifier {
       if (meeting_a == 0) return ContactClass::disjoint;
       return at_point(of_a[0] == 0 || of_a[meeting_a] == 0, of_b[0] == 0 || of_b[meeting_b] == 0);
     }
-    // The intervals overlap. One can be a single point: an isolated vertex in the other plane.
+    // The intervals p1p2 and q1q2 overlap. An interval is a single point if the first vertex of its
+    // triangle lies in the plane of the other triangle.
     const bool is_a_along_edge = of_a[1] == 0 && of_a[2] == 0;
     const bool is_b_along_edge = of_b[1] == 0 && of_b[2] == 0;
     if (of_a[0] == 0) {
@@ -175,7 +179,7 @@ class ContactClassifier {
     return is_edge_of_a || is_edge_of_b ? ContactClass::edge_face : ContactClass::crossing;
   }
 
-  /// An axis along which the triangle does not degenerate.
+  /// An axis along which the projection of the triangle is not degenerate.
   int projection(const Triangle& t) const {
     for (const int axis : {2, 1}) {
       if (orient2d(t[0], t[1], t[2], axis) != 0) return axis;
@@ -183,7 +187,7 @@ class ContactClassifier {
     return 0;
   }
 
-  /// Two triangles with a common area.
+  /// The contact of two triangles with a common area.
   ContactClass overlap(const Triangle& a, const Triangle& b) const {
     std::array<Point, 3> of_a{points_[a[0]], points_[a[1]], points_[a[2]]};
     std::array<Point, 3> of_b{points_[b[0]], points_[b[1]], points_[b[2]]};
@@ -192,8 +196,9 @@ class ContactClassifier {
     return of_a == of_b ? ContactClass::duplicate : ContactClass::coplanar_overlap;
   }
 
-  /// Triangles in one plane, at most one vertex in common. Their insides are disjoint exactly if
-  /// the line of an edge separates them, and then they meet on that line only.
+  /// The contact of two triangles in one plane with at most one common vertex. Their insides are
+  /// disjoint exactly if the line of an edge separates them; the triangles then meet on that line
+  /// only.
   ContactClass coplanar(const Triangle& a, const Triangle& b) const {
     const int axis = projection(a);
     if (const auto contact = across_an_edge(a, b, axis)) return *contact;
@@ -201,7 +206,7 @@ class ContactClassifier {
     return overlap(a, b);
   }
 
-  /// The contact if the line of an edge of `a` separates the triangles.
+  /// The contact if the line of an edge of `a` separates the triangles; else nothing.
   std::optional<ContactClass> across_an_edge(const Triangle& a, const Triangle& b, int axis) const {
     const int inside = orient2d(a[0], a[1], a[2], axis);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -223,8 +228,8 @@ class ContactClassifier {
     return std::nullopt;
   }
 
-  /// Common part of the edge (from, to) and the edge or vertex (first, last) on its line. Along a
-  /// line the lexicographic order of points is their order.
+  /// The contact of the edge (from, to) with the edge or vertex (first, last) on its line. Points
+  /// of a line follow each other in lexicographic order.
   ContactClass on_edge_line(Index from, Index to, Index first, Index last,
                             bool have_common_vertex) const {
     const auto [a_min, a_max] = std::minmax(points_[from], points_[to]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The pairs of boxes that overlap among few or many boxes, four at a time. Private to geometry/.
+// Finds the pairs of overlapping boxes in a part that is not divided any more: compares a box with
+// four others at a time. Private to geometry/.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 
 namespace watertight::geometry {
 
-/// Bounds of boxes, one array for each direction and side, padded to whole blocks of four with
-/// boxes that overlap nothing.
+/// The bounds of boxes, in one array for each direction and side. The arrays are padded to whole
+/// blocks of four with boxes that overlap nothing.
 template <std::size_t D>
 class BoxColumns {
  public:
@@ -56,7 +57,8 @@ class BoxColumns {
   using Floats [[gnu::vector_size(16)]] = float;
   using Mask [[gnu::vector_size(16)]] = std::int32_t;
 
-  /// One bit for each of two lanes that are all ones or all zeros, in whichever order bytes lie.
+  /// One bit for each of two lanes of a mask, whose bits are all ones or all zeros. The order of
+  /// bytes on the machine does not matter.
   static unsigned lane_bits(std::uint64_t half) {
     std::array<std::uint32_t, 2> lanes{};
     std::memcpy(lanes.data(), &half, sizeof(half));

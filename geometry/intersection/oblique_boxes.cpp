@@ -9,11 +9,11 @@
 namespace watertight::geometry {
 namespace {
 
-/// More than the rounding errors of all doubles here, which are 1 at most: unit vectors and
-/// scaled coordinates along axes take some ten operations of 2^-53 each.
+/// More than the rounding error of every double in this file. Unit vectors and scaled coordinates
+/// along axes are about 1 at most and take some ten operations with an error of 2^-53 each.
 constexpr double kMargin = 1e-14;
 
-/// Differences of halves: never beyond the doubles.
+/// (p - q) / 2, which cannot overflow.
 Vector3 half_difference(const Point& p, const Point& q) {
   return {0.5 * p.x - 0.5 * q.x, 0.5 * p.y - 0.5 * q.y, 0.5 * p.z - 0.5 * q.z};
 }
@@ -22,7 +22,8 @@ double largest_component(const Vector3& v) {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
 
-/// Nothing for vectors without a direction, and for those whose direction doubles cannot hold.
+/// The unit vector in the direction of v. Nothing if v is zero, or so short that doubles do not
+/// hold its direction.
 std::optional<Vector3> unit(Vector3 v) {
   constexpr double kSmallest = 1e-290;
   const double largest = largest_component(v);
@@ -46,8 +47,8 @@ void set_bounds(BoxMember<6>& box, std::size_t axis, double low, double high) {
   box.high[axis] = rounded_up(high + kMargin);
 }
 
-/// The dominant direction of a sum of v v^T, by power iteration; any unit vector will do, so it
-/// need not converge.
+/// The dominant direction of a matrix that is a sum of v v^T, by power iteration. The result is a
+/// unit vector even if the iteration does not converge; any unit vector is correct.
 Vector3 dominant(const std::array<Vector3, 3>& matrix) {
   std::size_t longest = 0;
   for (std::size_t i = 1; i < 3; ++i) {
@@ -103,9 +104,10 @@ bool DirectionBounds::include(std::span<const Vector3> corners) {
   return corners.size() > 1;
 }
 
-/// A component is largest at an end of the arc unless it grows from both ends inward.
+/// Extends the bounds to the arc between two unit vectors. A component is largest at an end of the
+/// arc unless it grows from both ends inward.
 void DirectionBounds::include_arc(const Vector3& a, const Vector3& b) {
-  constexpr double kLevel = 1e-13;  // more than rounding errors
+  constexpr double kLevel = 1e-13;  // a bound of the rounding errors
   const double cosine = dot(a, b);
   // The arc is at most 1 - sqrt(1 - c^2 / 4) away from its chord, of length c.
   const double lost = std::min(1.0, squared_distance(a, b) / 4);
@@ -120,14 +122,16 @@ void DirectionBounds::include_arc(const Vector3& a, const Vector3& b) {
   }
 }
 
-/// Between three directions a component is larger than on the arcs only around its own axis.
+/// Extends the bounds to the directions inside three arcs. A component is larger there than on the
+/// arcs only if its own axis is inside.
 void DirectionBounds::include_inside(const Vector3& a, const Vector3& b, const Vector3& c) {
   constexpr double kFlat = 1e-10;
   const std::array<Vector3, 3> normals{cross(a, b), cross(b, c), cross(c, a)};
   const double volume = dot(normals[0], c);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (std::abs(volume) < kFlat) {
-      // No wider than 1e-5: an axis inside is so close to an arc that 1 - 1e-10 is exceeded there.
+      // The space between the arcs is no wider than 1e-5. An axis in it is so close to an arc that
+      // the component exceeds 1 - 1e-10 on that arc.
       constexpr double kNearly = 0.999;
       if (high[axis] > kNearly) high[axis] = 1;
       if (low[axis] < -kNearly) low[axis] = -1;
@@ -155,7 +159,8 @@ BoxMember<6> seen_from(Index apex, std::span<const Point> points, const Triangle
   for (const Index vertex : triangle) {
     if (vertex == apex) continue;
     const auto direction = unit(half_difference(points[vertex], points[apex]));
-    // Another vertex at the apex, or too close for doubles: the triangles can meet there.
+    // A vertex without a direction is at the apex or too close to it for doubles: any triangle at
+    // the apex can meet this one there.
     is_anywhere = is_anywhere || !direction;
     if (direction) directions[count++] = *direction;
   }
@@ -195,7 +200,7 @@ ObliqueAxes::ObliqueAxes(std::span<const Point> points, std::span<const Triangle
   scale_ = farthest > kSmallest ? 1 / farthest : 0;
   axes_[0] = dominant(edges);
   const Vector3 normal = dominant(normals);
-  std::size_t smallest = 0;  // the axis of space that is farthest from the first one
+  std::size_t smallest = 0;  // the axis of space that makes the largest angle with axes_[0]
   for (std::size_t i = 1; i < 3; ++i) {
     if (std::abs(axes_[0][i]) < std::abs(axes_[0][smallest])) smallest = i;
   }
@@ -211,7 +216,7 @@ BoxMember<6> ObliqueAxes::box(std::span<const Point> points, const Triangle& tri
   std::array<Vector3, 3> corners{};
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = half_difference(points[triangle[i]], centre_);
-    for (double& component : corners[i]) component *= scale_;  // at most 1
+    for (double& component : corners[i]) component *= scale_;  // now at most 1
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::array<double, 3> heights{dot(axes_[axis], corners[0]), dot(axes_[axis], corners[1]),

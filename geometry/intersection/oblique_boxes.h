@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Boxes with three directions more, for triangles whose axis-parallel boxes all overlap: the
-// directions in which they are seen from a common vertex, or their extents along axes that follow
-// them. Private to geometry/.
+// Axis-parallel boxes of triangles with three more pairs of bounds, for triangles whose
+// axis-parallel boxes all overlap: bounds of the directions in which a triangle is seen from a
+// common vertex, or bounds along axes that follow the triangles. Private to geometry/.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 namespace watertight::geometry {
 
 /// Adds to a triangle's box the bounds of the directions, as unit vectors, from the vertex `apex`
-/// to its points. A triangle with this vertex and another one, with or without it, that have more
-/// than the vertex in common have boxes that overlap.
+/// to its points. If a triangle with this vertex and any other triangle have more than the vertex
+/// in common, their boxes overlap.
 BoxMember<6> seen_from(Index apex, std::span<const Point> points, const Triangle& triangle,
                        const BoxMember<3>& box);
 
 /// Three axes at right angles: the first along the triangles' long edges, the second along their
-/// normals as far as those agree.
+/// normals as far as the normals agree.
 class ObliqueAxes {
  public:
   ObliqueAxes(std::span<const Point> points, std::span<const Triangle> triangles,

@@ -9,9 +9,10 @@
 namespace watertight::geometry {
 namespace {
 
-/// Parts with more pairs, of 256 triangles, are looked at in other directions.
+/// The number of pairs of 256 triangles. Parts with more pairs are divided along other directions.
 constexpr double kManyPairs = 0.5 * 256 * 256;
-/// A vertex common to this share of a part's triangles is dealt with by itself.
+/// A vertex of at least one in kHubShare triangles of a part is a hub: its triangles are compared
+/// by their directions from the vertex.
 constexpr std::size_t kHubShare = 8;
 constexpr std::uint64_t kAskInterval = std::uint64_t{1} << 16U;
 
@@ -80,8 +81,8 @@ void PairSearch::resolve(Stalled stalled) {
   resolve_along_axes(stalled);
 }
 
-/// If many of the triangles have one vertex, finds their pairs by the directions from it, and then
-/// those of the rest.
+/// If many of the triangles have one vertex, finds the pairs of these triangles by the directions
+/// from that vertex, then the pairs of the other triangles. Else returns false.
 bool PairSearch::resolve_hub(Stalled& stalled) {
   const auto [hub, count] = busiest_vertex(context_.triangles, stalled.first);
   if (count * kHubShare < stalled.first.size()) return false;
@@ -105,7 +106,7 @@ bool PairSearch::resolve_hub(Stalled& stalled) {
   return true;
 }
 
-/// Looks for pairs along axes that follow the triangles.
+/// Finds the pairs of a part by a division along axes that follow its triangles.
 void PairSearch::resolve_along_axes(const Stalled& stalled) {
   std::vector<Index> all = stalled.first;
   all.insert(all.end(), stalled.second.begin(), stalled.second.end());
@@ -121,9 +122,9 @@ void PairSearch::resolve_along_axes(const Stalled& stalled) {
   divide_directions(boxes(stalled.first), boxes(stalled.second), stalled);
 }
 
-/// Divides the members by direction and compares the pairs of each part. A part that still has many
-/// pairs, but at most half of those of the whole, is put off: it is divided later along axes of its
-/// own.
+/// Divides the members along all six directions of their boxes and compares the pairs of each part.
+/// A part that still has many pairs, but at most half of the pairs of the whole, is put off: it is
+/// divided later along axes of its own.
 void PairSearch::divide_directions(const std::vector<BoxMember<6>>& first,
                                    const std::vector<BoxMember<6>>& second,
                                    const Stalled& stalled) {
@@ -163,7 +164,7 @@ bool PairSearch::compare(const PartMembers<D>& members, const PartBounds<D>& bou
     const std::size_t begin = members.is_within ? i + 1 : 0;
     columns.for_overlapping(member, begin, [&](std::size_t j) {
       const BoxMember<D>& partner = partners[j];
-      // In three directions `bounds` and `outer` are the same.
+      // If D is 3, `bounds` and `outer` are equal.
       if (!bounds.owns(member, partner) || (D > 3 && !outer.owns(member, partner))) return;
       if (context_.are_of_one_group(member.triangle, partner.triangle)) return;
       const ContactClass contact = context_.tester.contact(first_planes_[i], partner_planes[j]);

@@ -21,11 +21,11 @@ namespace watertight::geometry {
 struct SearchContext {
   std::span<const Point> points;
   std::span<const Triangle> triangles;
-  std::span<const BoxMember<3>> boxes;  // by triangle
+  std::span<const BoxMember<3>> boxes;  // the box of each triangle
   PairTester tester;
-  std::span<const Index> group_of;  // by triangle, or empty
+  std::span<const Index> group_of;  // a copy of IntersectionOptions::group_of
   std::uint64_t limit = 0;
-  CancelPoll cancel;  // asked by the caller's thread only
+  CancelPoll cancel;  // a function that only the caller's thread calls
   std::atomic<bool> is_ended = false;
   std::atomic<bool> is_cancelled = false;
 
@@ -44,13 +44,14 @@ class PairSearch {
  public:
   PairSearch(SearchContext& context, bool is_caller) : context_(context), is_caller_(is_caller) {}
 
-  /// The pairs of the members whose overlap begins within the bounds, sorted; all of them, or at
-  /// least `limit`, unless the search is ended from elsewhere.
+  /// The intersecting pairs of the members, sorted, as far as the low corner of the overlap of
+  /// their boxes lies within the bounds: all such pairs, or at least `limit` of them, unless
+  /// another thread ends the search.
   std::vector<IntersectingPair> run(std::span<const BoxMember<3>> members,
                                     const PartBounds<3>& bounds);
 
  private:
-  /// Triangles that no division of space takes apart.
+  /// The triangles of a part that no division of space separates.
   struct Stalled {
     std::vector<Index> first;
     std::vector<Index> second;
@@ -78,8 +79,8 @@ class PairSearch {
   std::vector<PlaneTriangle> first_planes_;
   std::vector<PlaneTriangle> second_planes_;
   std::vector<IntersectingPair> pairs_;
-  std::uint64_t most_pairs_ = 0;  // before equal ones are looked for
-  std::uint64_t comparisons_ = 0;
+  std::uint64_t most_pairs_ = 0;   // at this number of pairs, repeated pairs are removed
+  std::uint64_t comparisons_ = 0;  // the number of comparisons since the last check for the end
 };
 
 }  // namespace watertight::geometry

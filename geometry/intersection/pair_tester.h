@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The contact of two triangles, for many pairs of few triangles: their planes are computed once, in
-// doubles with an error bound, and decide most pairs. Corners that are small integers, as those of
-// a lattice are, make the planes exact: they decide the neighbours in a planar facet too. All other
-// pairs are classified exactly. Private to geometry/ (it includes CGAL).
+// The contact of two triangles, for many pairs of few triangles. The plane of each triangle is
+// computed once, in doubles with an error bound, and the planes decide most pairs. Where corners
+// are small integers, as on a lattice, the planes are exact and also decide neighbours in a planar
+// facet. All other pairs are classified exactly. Private to geometry/ (it includes CGAL).
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct PlaneTriangle {
   std::array<Point, 3> corner;
   Point normal;
   double error = 0;
-  bool is_small = false;  // integers near the part's origin: the normal is exact
+  bool is_small = false;  // the corners are integers near the origin: the normal is exact
 };
 
 class PairTester {
@@ -31,7 +31,7 @@ class PairTester {
   PairTester(std::span<const Point> points, std::span<const Triangle> triangles)
       : points_(points), triangles_(triangles), classifier_(points) {}
 
-  /// The point from which corners of all compared triangles are measured: a corner of this one.
+  /// A corner of the triangle. Triangles that are compared measure their corners from one origin.
   const Point& origin(Index triangle) const { return points_[triangles_[triangle][0]]; }
 
   PlaneTriangle plane_triangle(Index triangle, const Point& origin) const {
@@ -61,7 +61,7 @@ class PairTester {
     return true;
   }
 
-  /// The contact of a and b; one class that is no intersection stands for all that are none.
+  /// The contact of a and b if it is an intersection; else any class that is no intersection.
   ContactClass contact(const PlaneTriangle& a, const PlaneTriangle& b) const {
     std::size_t common = 0;
     // The sums of the indices of the common vertices in a and in b. Not used if all three are
@@ -82,8 +82,8 @@ class PairTester {
       case 1:
         return with_common_vertex(a, in_a, b, in_b);
       case 2:
-        // The three indices of the corners of a triangle add up to 3: the third corner has the
-        // rest.
+        // The indices of the three corners of a triangle add up to 3, so the index of the corner
+        // opposite the common edge is 3 less the sum.
         return with_common_edge(a, 3 - in_a, b, 3 - in_b);
       default:
         return ContactClass::duplicate;
@@ -99,16 +99,16 @@ class PairTester {
   static constexpr std::array<std::size_t, 3> kNext{1, 2, 0};
 
   static bool is_near(const Point& x, const Point& origin) {
-    constexpr double kNear = 524288.0;  // 2^19: differences are below 2^20
+    constexpr double kNear = 524288.0;  // 2^19, so that differences of two corners are below 2^20
     for (int axis = 0; axis < 3; ++axis) {
       if (!InlinePredicates::has_short_difference(x[axis], origin[axis], kNear)) return false;
     }
     return true;
   }
 
-  /// orient3d of a and a corner of b, or kUnknown.
+  /// The sign of orient3d of the corners of a and one corner of b, or kUnknown.
   static int side(const PlaneTriangle& a, const PlaneTriangle& b, std::size_t corner) {
-    constexpr double kLargest = 1e300;  // nothing has overflowed
+    constexpr double kLargest = 1e300;  // a bound of numbers that have not overflowed
     const Point d = InlinePredicates::difference(b.corner[corner], a.corner[0]);
     const double value = a.normal.x * d.x + a.normal.y * d.y + a.normal.z * d.z;
     const double largest = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
@@ -119,7 +119,8 @@ class PairTester {
     return a.is_small && b.is_small ? exact_side(a.normal, d) : kUnknown;
   }
 
-  /// Three products of a number below 2^41 and one below 2^20.
+  /// The sign of normal . d, in 64-bit integers: components of the normal are below 2^41, those of
+  /// d below 2^20.
   static int exact_side(const Point& normal, const Point& d) {
     const auto whole = [](double number) { return static_cast<std::int64_t>(number); };
     return InlinePredicates::sign_of(whole(normal.x) * whole(d.x) + whole(normal.y) * whole(d.y) +
@@ -139,7 +140,8 @@ class PairTester {
 
   static bool is_beside(int sign) { return sign == 1 || sign == -1; }
 
-  /// As ContactClassifier decides it (see there).
+  /// The contact of triangles with one common vertex, by the signs s1, s2, t1 and t2 that
+  /// ContactClassifier::with_common_vertex() explains.
   ContactClass with_common_vertex(const PlaneTriangle& a, std::size_t in_a, const PlaneTriangle& b,
                                   std::size_t in_b) const {
     const int s1 = side(a, b, kNext[in_b]);
@@ -167,8 +169,8 @@ class PairTester {
     return turn < 0 ? ContactClass::shared_edge : exact(a, b);
   }
 
-  /// The plane of a triangle with an exact normal, seen along its largest component, in which the
-  /// triangle turns left. All is exact: integers below 2^20 are multiplied once.
+  /// The projection of a triangle with an exact normal along the largest component of the normal,
+  /// such that the triangle turns left. The products of integers below 2^20 are exact.
   struct Flat {
     explicit Flat(const PlaneTriangle& a) {
       const Point size{std::abs(a.normal.x), std::abs(a.normal.y), std::abs(a.normal.z)};
@@ -182,7 +184,7 @@ class PairTester {
       return (b[first] - a[first]) * (c[second] - a[second]) -
              (b[second] - a[second]) * (c[first] - a[first]);
     }
-    /// Negative if b and c, both on a line through a, are on different sides of it.
+    /// Negative if b and c, on a line through a, are on different sides of a.
     double along(const Point& a, const Point& b, const Point& c) const {
       return (b[first] - a[first]) * (c[first] - a[first]) +
              (b[second] - a[second]) * (c[second] - a[second]);
@@ -191,8 +193,8 @@ class PairTester {
     int second;
   };
 
-  /// Whether the line of an edge of a from the common vertex keeps the triangles of one plane apart
-  /// but for that vertex.
+  /// True if the line of an edge of a at the common vertex separates two triangles of one plane, so
+  /// that only the common vertex remains.
   static bool is_apart_at(const PlaneTriangle& a, std::size_t in_a, const PlaneTriangle& b,
                           std::size_t in_b) {
     const Flat flat(a);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Divides boxes into parts small enough to compare pair by pair: space is cut into slabs along the
-// direction in which the boxes are smallest beside the whole, again and again; a box goes into
-// every part that it reaches. Private to geometry/.
+// Divides boxes into parts small enough to compare pair by pair. Space is cut into slabs, again and
+// again, along the direction in which the boxes are smallest relative to the part; a box goes into
+// every slab that it reaches. Private to geometry/.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace watertight::geometry {
 
-/// The members of one part. Its pairs are all within `first`, when `is_within`, or else each has
-/// one member of `first` and one of `second`.
+/// The members of one part. If `is_within`, a pair has two members of `first`; else a pair has one
+/// member of `first` and one of `second`.
 template <std::size_t D>
 struct PartMembers {
   std::span<const BoxMember<D>> first;
@@ -31,7 +31,7 @@ struct PartMembers {
 };
 
 /// Parallel planes across one direction: slab s holds the values v with planes[s] <= v < planes[s +
-/// 1]; the first and the last slab also hold all values outside.
+/// 1]; the first and the last slab also hold all values beyond the outer planes.
 struct Slabs {
   static constexpr std::size_t kMost = 16;
   std::size_t axis = 0;
@@ -44,14 +44,15 @@ struct Slabs {
     const float place = (value - start) * per_length;
     std::size_t slab =
         place > 0 ? std::min(static_cast<std::size_t>(place), count - 1) : std::size_t{0};
-    // The multiplication is a guess; the planes decide.
+    // The slab found by multiplication is a guess; the planes decide.
     while (slab > 0 && value < planes[slab]) --slab;
     while (slab + 1 < count && value >= planes[slab + 1]) ++slab;
     return slab;
   }
 };
 
-/// The members of a part after a division into slabs, slab by slab, and where each slab begins.
+/// For each slab, the number of members of PartMembers::first and PartMembers::second that reach
+/// it.
 struct SlabCounts {
   std::array<std::size_t, Slabs::kMost> first{};
   std::array<std::size_t, Slabs::kMost> second{};
@@ -62,8 +63,9 @@ class SlabDivider {
  public:
   /// Parts with fewer pairs are not divided.
   static constexpr double kFewPairs = 0.5 * 72 * 72;
-  /// A division is worth its copies if it leaves at most this share of the pairs. It also bounds
-  /// the work: the pairs of all undivided parts together never exceed those of the root.
+  /// A division is worth its copies of members if it leaves at most this share of the pairs. The
+  /// limit also bounds the work: all undivided parts together never have more pairs than the
+  /// undivided whole.
   static constexpr double kLargestShareOfPairs = 0.8;
 
   /// Finds slabs that save work. False if there are none.
@@ -116,7 +118,7 @@ class SlabDivider {
     return members.is_within ? 0.5 * a * a : a * b;
   }
 
-  /// How many boxes fit beside each other along an axis.
+  /// The number of boxes of the mean length that fit beside each other along an axis.
   float layers(std::size_t axis) const {
     return (last_[axis] - first_[axis]) / (extent_[axis] + 1e-30F);
   }
@@ -232,8 +234,8 @@ class SlabDivider {
 };
 
 /// Divides members until no division saves work, and gives each part to `visit(members, bounds)`,
-/// which returns false to end. Depth first, from the last slab to the first: the order depends on
-/// the members only.
+/// which returns false to end the division. Parts are visited depth first, from the last slab to
+/// the first: the order depends on the members only.
 template <std::size_t D, class Visit>
 class SlabPartition {
  public:
@@ -260,7 +262,8 @@ class SlabPartition {
  private:
   struct Part {
     PartBounds<D> bounds;
-    /// The first members have the indices from `begin` to `middle`, the second those up to `end`.
+    /// PartMembers::first has the indices from `begin` to `middle`, PartMembers::second the indices
+    /// from `middle` to `end`.
     std::size_t begin = 0;
     std::size_t middle = 0;
     std::size_t end = 0;
@@ -272,7 +275,7 @@ class SlabPartition {
             all.subspan(part.middle, part.end - part.middle), is_within_};
   }
 
-  /// Replaces a part, whose members are the last, by its slabs.
+  /// Replaces a part, whose members are at the end of members_, by its slabs.
   void divide(const Part& part) {
     divided_.assign(members_.begin() + static_cast<std::ptrdiff_t>(part.begin), members_.end());
     members_.resize(part.begin);

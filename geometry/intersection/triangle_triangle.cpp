@@ -43,7 +43,7 @@ std::vector<Vector> clipped(const std::vector<Vector>& polygon, const Vector& or
   return result;
 }
 
-/// Corners of the common part of two triangles, without repetition.
+/// The corners of the common part of two triangles, without repetition.
 std::vector<Vector> common_corners(const std::array<Vector, 3>& a, const std::array<Vector, 3>& b) {
   const Vector normal = cross(b[1] - b[0], b[2] - b[0]);
   const Vector opposite{Rational(-normal[0]), Rational(-normal[1]), Rational(-normal[2])};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Decimals of any length, for the files of this folder. Numbers of lattices and doubles are
-// decimals of finite length: 2^-k = 5^k / 10^k.
+// Decimals of any length, for the files of this folder. Steps and origins of lattices and doubles
+// are decimals of finite length: 2^-k = 5^k / 10^k.
 #pragma once
 
 #include <gmpxx.h>
@@ -14,13 +14,14 @@ namespace watertight::geometry {
 
 using BigInteger = mpz_class;
 
-/// mantissa * 10^exponent with an integer of any length.
+/// The decimal mantissa * 10^exponent; the mantissa is an integer of any length.
 struct BigDecimal {
   BigInteger mantissa = 0;
   std::int64_t exponent = 0;
 };
 
-/// Requires 64-bit long, as on every platform of this program.
+/// The value as an integer of any length. Requires a `long` of 64 bits, as every platform of this
+/// program has it.
 inline BigInteger big(std::int64_t value) { return BigInteger(static_cast<long>(value)); }
 
 /// base^exponent. Requires an exponent that is not negative.
@@ -29,10 +30,10 @@ BigInteger big_power(unsigned base, std::int64_t exponent);
 /// mantissa * 2^exponent.
 BigDecimal from_binary(std::int64_t mantissa, std::int64_t exponent);
 
-/// A step or origin of a lattice of that kind.
+/// A step or origin of a lattice of the given kind, as a decimal.
 BigDecimal from_grid(const GridNumber& number, LatticeKind kind);
 
-/// Requires a finite value.
+/// The exact decimal of a double. Requires a finite value.
 BigDecimal from_double(double value);
 
 BigDecimal big_product(const BigDecimal& a, const BigDecimal& b);

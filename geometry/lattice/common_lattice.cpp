@@ -15,7 +15,7 @@ constexpr double kEnd = 9007199254740992.0;  // 2^53
 
 __extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
 
-/// The mantissa of a number whose exponent is lowered to `exponent`.
+/// The mantissa of a number whose exponent is lowered to `exponent`; nothing if 64 bits overflow.
 std::optional<std::int64_t> mantissa_at(const GridNumber& number, std::int32_t exponent,
                                         std::int64_t radix) {
   std::int64_t mantissa = number.mantissa;

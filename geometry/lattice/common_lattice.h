@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Solids of different lattices on one grid, exactly. For comparisons of several solids.
+// One exact grid for solids of different lattices, so that several solids can be compared.
 #pragma once
 
 #include <array>
@@ -14,12 +14,13 @@ namespace watertight::geometry {
 /// The coarsest grid of integers that holds the points of several lattices of one kind.
 class CommonLattice {
  public:
-  /// Nothing when the lattices are of different kinds, or their steps and origins have no common
-  /// divisor within 18 digits. Requires sane lattices. Cost: linear.
+  /// The common grid; nothing when the lattices are of different kinds, or when their steps and
+  /// origins have no common divisor within 18 digits. Requires sane lattices. Cost: linear.
   static std::optional<CommonLattice> of(std::span<const Lattice> lattices);
 
   const Lattice& lattice() const { return lattice_; }
-  /// A point of one of the lattices on this one; nothing if a coordinate is 2^53 or beyond.
+  /// A point of `from`, one of the lattices, in coordinates of the common grid; nothing if one of
+  /// these coordinates is not below 2^53 in magnitude.
   std::optional<Point> moved(const Point& p, const Lattice& from) const;
 
  private:

@@ -24,7 +24,7 @@ Error not_a_number(std::string_view text) {
   return {ErrorCode::malformed, std::move(message)};
 }
 
-/// Walks a decimal literal: sign, digits with at most one point, exponent.
+/// Reads a decimal literal: sign, digits with at most one point, exponent.
 class DecimalReader {
  public:
   explicit DecimalReader(std::string_view text) : text_(text) {}
@@ -52,11 +52,12 @@ class DecimalReader {
     }
   }
 
-  /// Digits are taken when a later non-zero digit needs them: trailing zeros cost nothing.
+  /// Reads the digits and the point; false if there is no digit. A zero enters the mantissa only
+  /// when another digit than zero follows, so trailing zeros do not count as significant digits.
   bool read_digits() {
     bool has_digit = false;
     bool after_point = false;
-    std::int64_t zeros = 0;  // pending zeros after the mantissa
+    std::int64_t zeros = 0;  // the number of zeros since the last digit that is not zero
     int digits = 0;
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
@@ -93,7 +94,7 @@ class DecimalReader {
       ++at_;
     }
     if (at_ == text_.size()) return false;
-    constexpr std::int64_t kCap = std::int64_t{1} << 40;  // far beyond any length of text
+    constexpr std::int64_t kCap = std::int64_t{1} << 40;  // far beyond the length of any text
     std::int64_t value = 0;
     for (; at_ < text_.size() && is_digit(text_[at_]); ++at_) {
       value = std::min(value * 10 + (text_[at_] - '0'), kCap);
@@ -168,7 +169,8 @@ std::string digits_of(Wide value) {
 }
 
 double nearest_double(const WideNumber& decimal) {
-  // Below 2^53 and 10^22 both operands are exact, so one operation rounds once.
+  // A mantissa up to 2^53 and a power of ten up to 10^22 are exact doubles, so their product or
+  // quotient is rounded only once.
   constexpr Wide kExact = Wide{1} << 53U;
   constexpr int kExactPower = 22;
   if (decimal.mantissa == 0) return 0.0;

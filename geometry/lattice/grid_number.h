@@ -15,11 +15,13 @@ namespace watertight::geometry {
 __extension__ typedef __int128 Wide;
 __extension__ typedef unsigned __int128 UnsignedWide;
 
-/// Decimal and binary exponents of finite doubles, their products with lattice coordinates and
-/// sums lie well within; beyond, a grid number is hostile.
+/// The largest magnitude of a grid number's exponent. Finite doubles, their products with lattice
+/// coordinates and the sums of such products have far smaller exponents, decimal or binary; only
+/// hostile input has larger ones.
 inline constexpr std::int32_t kLargestExponent = 1200;
 
-/// An integer times a power of the radix.
+/// The number mantissa * radix^exponent; the functions that take it also take the radix, or state
+/// it.
 struct WideNumber {
   Wide mantissa = 0;
   std::int32_t exponent = 0;
@@ -28,7 +30,7 @@ struct WideNumber {
 /// 10^exponent for 0 <= exponent <= 38.
 UnsignedWide power_of_ten(int exponent);
 
-/// value * radix^count, or nothing if it does not fit.
+/// value * radix^count, or nothing if the product does not fit 128 bits.
 std::optional<Wide> scaled_up(Wide value, std::int32_t radix, std::int64_t count);
 
 /// a + b in radix 2 or 10, exactly, or nothing if the common form does not fit 128 bits.
@@ -37,15 +39,16 @@ std::optional<WideNumber> wide_sum(WideNumber a, WideNumber b, std::int32_t radi
 /// The normalized grid number, or nothing if its mantissa does not fit 64 bits.
 std::optional<GridNumber> normalized(WideNumber number, std::int32_t radix);
 
-/// Where a grid starts in the world.
+/// The world coordinate at which a grid starts on one axis.
 struct GridOrigin {
   GridNumber number;
-  bool is_rounded = false;  // rounded to 18 digits: the exact number has more
+  bool is_rounded = false;  // true if `number` is rounded to 18 digits
 };
 
-/// scale * integer + translate, of decimals; with more digits than a grid number has, the nearest
-/// decimal of 18 digits. Nothing where that lies half a scale away or more, so that it could be
-/// taken for another integer. Requires a positive scale and exponents within kLargestExponent.
+/// The decimal scale * integer + translate, or the decimal of 18 digits nearest to it if a grid
+/// number does not hold all its digits. Nothing if the rounded decimal is half a scale or more from
+/// the exact one, so that it could stand for another integer. Requires a positive scale and
+/// exponents within kLargestExponent.
 std::optional<GridOrigin> grid_origin(const GridNumber& scale, std::int64_t integer,
                                       const GridNumber& translate);
 
@@ -55,7 +58,7 @@ double nearest_double(const WideNumber& decimal);
 /// digits * 10^exponent without exponent, e.g. ("-84616468", -3) gives "-84616.468".
 std::string plain_decimal(std::string digits, std::int64_t exponent);
 
-/// The digits of a 128-bit integer.
+/// The decimal digits of a 128-bit integer, with a minus sign if it is negative.
 std::string digits_of(Wide value);
 
 }  // namespace watertight::geometry

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Normal forms: from integers under a transform, exact decimals or doubles to lattice points.
-// World coordinates and the way back are in lattice_world.cpp.
+// Computes normal forms: the lattice points of integers under a transform, of exact decimals or of
+// doubles. lattice_world.cpp goes from lattice points back to numbers of the source.
 #include "geometry/lattice/lattice.h"
 
 #include <algorithm>
@@ -16,22 +16,23 @@ namespace {
 
 constexpr std::int32_t kDecimal = 10;
 constexpr std::int32_t kBinary = 2;
-/// Coordinates that doubles hold exactly.
+/// Doubles hold all integers below this value exactly.
 constexpr UnsignedWide kCoordinateEnd = UnsignedWide{1} << 53U;
-/// Mode walk of the codec takes relative coordinates below this (docs/format-walk.md).
+/// Mode walk of the codec takes relative coordinates below this value (docs/format-walk.md).
 constexpr UnsignedWide kCompactEnd = UnsignedWide{1} << 30U;
 
-/// One axis of a point set: values are origin + offset * radix^exponent, exactly.
+/// The coordinates of points on one axis: each is origin + offset * radix^exponent, exactly.
 struct AxisValues {
   std::vector<UnsignedWide> offsets;  // the smallest is 0
   std::int32_t exponent = 0;
   GridNumber origin;
   UnsignedWide largest = 0;
-  UnsignedWide unit = 1;  // divides all offsets; a grid number holds it
+  UnsignedWide unit = 1;  // a common divisor of the offsets that fits the mantissa of a grid number
   bool is_origin_rounded = false;
 };
 
-/// A step for each axis: offsets are multiples of divisor, or must be multiplied by factor.
+/// The grid of one axis: the coordinate of an offset is offset / divisor * factor. The divisor
+/// divides all offsets, and it or the factor is 1.
 struct AxisGrid {
   GridNumber step{1, 0};
   UnsignedWide divisor = 1;
@@ -40,7 +41,7 @@ struct AxisGrid {
 
 using Axes = std::array<AxisValues, 3>;
 using Grids = std::array<AxisGrid, 3>;
-constexpr AxisGrid kNoGrid{{1, 0}, 1, 0};  // a factor of 0 never fits
+constexpr AxisGrid kNoGrid{{1, 0}, 1, 0};  // the factor 0 means that no grid fits
 constexpr Grids kNoGrids{kNoGrid, kNoGrid, kNoGrid};
 
 UnsignedWide power(std::int32_t radix, std::int32_t exponent) {
@@ -80,7 +81,7 @@ UnsignedWide common_divisor(const AxisValues& axis) {
   return divisor;
 }
 
-/// Largest coordinate of an axis on a grid, or kCoordinateEnd if not below it.
+/// The largest coordinate of an axis on a grid, but kCoordinateEnd at most.
 UnsignedWide largest_coordinate(const AxisValues& axis, const AxisGrid& grid) {
   const UnsignedWide reduced = axis.largest / grid.divisor;
   if (grid.factor == 0 || reduced >= kCoordinateEnd) return kCoordinateEnd;
@@ -110,7 +111,7 @@ Grids common_power_grid(const Axes& axes, std::int32_t radix) {
     grids[axis].step = {1, exponent.value_or(0)};
     if (axes[axis].largest == 0) continue;
     const std::int32_t raise = axes[axis].exponent - *exponent;
-    // A factor beyond 128 bits is 0 and never fits.
+    // power() is 0 beyond 128 bits, and fits() then finds that no coordinate fits.
     if (raise >= 0) {
       grids[axis].factor = power(radix, raise);
     } else {
@@ -120,7 +121,7 @@ Grids common_power_grid(const Axes& axes, std::int32_t radix) {
   return grids;
 }
 
-/// The largest power of the radix for each axis by itself.
+/// A step for each axis: the largest power of the radix that divides the offsets of this axis.
 Grids own_power_grid(const Axes& axes, std::int32_t radix) {
   Grids grids;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -149,8 +150,8 @@ Grids own_divisor_grid(const Axes& axes) {
   return grids;
 }
 
-/// One step for the three axes: the greatest common divisor of all offsets. Only for axes on one
-/// exponent, as a transform with equal scales gives them; else nothing fits.
+/// One step for the three axes: the greatest common divisor of all offsets. kNoGrids if the axes
+/// have different exponents; under a transform with equal scales they have one.
 Grids common_divisor_grid(const Axes& axes) {
   Grids grids = own_divisor_grid(axes);
   std::optional<std::int32_t> exponent;
@@ -208,8 +209,9 @@ std::optional<LatticePoints> on_binary_grid(const Axes& axes) {
   return std::nullopt;
 }
 
-/// Offsets of grid numbers from the smallest. Nothing if they do not fit 128 bits; such values
-/// spread over more than 10^19 (2^64) steps of any grid, so no grid holds them.
+/// The offsets of the points' coordinates on one axis from the smallest coordinate. Nothing if the
+/// offsets do not fit 128 bits: the coordinates then spread over far more than 2^53 steps of any
+/// grid.
 std::optional<AxisValues> axis_values(std::span<const std::array<GridNumber, 3>> points,
                                       std::size_t axis, std::int32_t radix) {
   AxisValues values;
@@ -222,7 +224,7 @@ std::optional<AxisValues> axis_values(std::span<const std::array<GridNumber, 3>>
   values.exponent = exponent.value_or(0);
   std::vector<Wide> aligned;
   aligned.reserve(points.size());
-  constexpr Wide kBound = Wide{1} << 125U;  // differences of two stay within 128 bits
+  constexpr Wide kBound = Wide{1} << 125U;  // then differences of two numbers fit 128 bits
   for (const auto& point : points) {
     const GridNumber& number = point[axis];
     const auto raised =
@@ -252,7 +254,7 @@ std::optional<Axes> axes_of(std::span<const std::array<GridNumber, 3>> points, s
   return axes;
 }
 
-/// value = mantissa * 2^exponent with an odd mantissa.
+/// The value as mantissa * 2^exponent with an odd mantissa; zero is {0, 0}.
 GridNumber binary_number(double value) {
   if (value == 0) return {};
   int exponent = 0;
@@ -270,8 +272,8 @@ GridNumber renormalized(const GridNumber& number) {
   return normalized({number.mantissa, number.exponent}, kDecimal).value_or(GridNumber{});
 }
 
-/// One axis of integers under a transform. |scale * (integer - smallest)| < 10^19 * 2^64 < 2^128.
-/// Nothing if there is no grid_origin().
+/// One axis of integers under a transform. An offset is the scale's mantissa times a difference of
+/// integers, below 10^19 * 2^64 < 2^128. Nothing if grid_origin() gives nothing.
 std::optional<AxisValues> transformed_values(std::span<const std::array<std::int64_t, 3>> vertices,
                                              std::size_t axis, const GridNumber& scale,
                                              const GridNumber& translate) {
@@ -308,7 +310,7 @@ Status check_transform(const Transform& transform) {
   return Done{};
 }
 
-/// Measures and boxes are doubles: a solid beyond the range of doubles has none.
+/// Fails if a world coordinate is beyond the range of doubles: measures and boxes are doubles.
 Status check_world(const LatticePoints& points) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto less = [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; };
@@ -324,8 +326,8 @@ Status check_world(const LatticePoints& points) {
   return Done{};
 }
 
-/// The transformed integers as nearest doubles: for origins that a decimal of 18 digits cannot
-/// distinguish from their neighbours.
+/// The lattice of the doubles nearest to the transformed integers. For origins that a decimal of 18
+/// digits cannot distinguish from the points next to them.
 Result<LatticePoints> rounded_transform(std::span<const std::array<std::int64_t, 3>> vertices,
                                         const Transform& transform) {
   std::vector<std::array<double, 3>> doubles(vertices.size());

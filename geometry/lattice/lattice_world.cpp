@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // From lattice coordinates to world coordinates, to the source's digits and to a transform's
-// integers. 128-bit integers decide nearly always; integers of any length do where they overflow.
+// integers. The arithmetic is in 128 bits; where it overflows, in integers of any length.
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -29,7 +29,7 @@ double big_nearest_double(const BigDecimal& decimal) {
   return decimal.mantissa < 0 ? -infinity : infinity;
 }
 
-/// origin + step * coordinate, exactly.
+/// The world coordinate, origin + step * coordinate, exactly.
 BigDecimal exact_world(const Lattice& lattice, double coordinate, std::size_t axis) {
   return big_sum(from_grid(lattice.origin[axis], lattice.kind),
                  big_product(from_grid(lattice.step[axis], lattice.kind), from_double(coordinate)));
@@ -39,12 +39,12 @@ bool is_small_integer(double coordinate) {
   return std::abs(coordinate) <= kExactEnd && coordinate == std::trunc(coordinate);
 }
 
-/// origin + step * coordinate in 128 bits, if the coordinate is an integer and nothing overflows.
+/// The exact world coordinate in 128 bits, if the coordinate is an integer and nothing overflows.
 std::optional<WideNumber> wide_world(const Lattice& lattice, double coordinate, std::size_t axis) {
   if (!is_small_integer(coordinate)) return std::nullopt;
   const GridNumber& step = lattice.step[axis];
   const GridNumber& origin = lattice.origin[axis];
-  // |step| < 2^63 and |coordinate| <= 2^53.
+  // The product fits: the step's mantissa is below 2^63, the coordinate 2^53 at most.
   const Wide moved = Wide{step.mantissa} * static_cast<std::int64_t>(coordinate);
   return wide_sum({moved, step.exponent}, {origin.mantissa, origin.exponent},
                   lattice.kind == LatticeKind::binary ? 2 : 10);
@@ -61,13 +61,13 @@ bool is_sane(const GridNumber& number) {
          number.mantissa != std::numeric_limits<std::int64_t>::min();
 }
 
-/// scale * integer + translate.
+/// The exact decimal scale * integer + translate.
 BigDecimal place_of(const GridNumber& scale, std::int64_t integer, const GridNumber& translate) {
   return big_sum(big_product(from_grid(scale, LatticeKind::decimal), {big(integer), 0}),
                  from_grid(translate, LatticeKind::decimal));
 }
 
-/// The nearest decimal of 18 digits, halves away from zero.
+/// The nearest decimal of 18 digits; halves are rounded away from zero.
 GridNumber rounded_to_digits(const BigDecimal& exact) {
   constexpr std::size_t kDigits = 18;
   const BigInteger magnitude = abs(exact.mantissa);
@@ -80,7 +80,7 @@ GridNumber rounded_to_digits(const BigDecimal& exact) {
   return normalized(number, 10).value_or(GridNumber{});
 }
 
-/// (world - translate) / scale, rounded to an integer, if that fits 64 bits.
+/// The integer nearest to (world - translate) / scale; nothing if 64 bits do not hold it.
 std::optional<std::int64_t> nearest_integer_under(const GridNumber& world, const GridNumber& scale,
                                                   const GridNumber& translate) {
   const BigDecimal moved = big_sum(from_grid(world, LatticeKind::decimal),
@@ -96,7 +96,7 @@ std::optional<std::int64_t> nearest_integer_under(const GridNumber& world, const
   return quotient.get_si();
 }
 
-/// (world - translate) / scale if that is an integer of 64 bits.
+/// The number (world - translate) / scale if it is an integer of 64 bits; else nothing.
 std::optional<std::int64_t> integer_under(const BigDecimal& world, const GridNumber& scale,
                                           const GridNumber& translate) {
   const BigDecimal moved = big_sum(world, {big(-translate.mantissa), translate.exponent});
@@ -114,7 +114,8 @@ std::optional<std::int64_t> integer_under(const BigDecimal& world, const GridNum
   return quotient.get_si();
 }
 
-/// The same in 128 bits; nothing when it overflows (the slow path then decides) or is no integer.
+/// As integer_under(), but in 128 bits: also nothing when these overflow. integer_under() must
+/// decide then.
 std::optional<std::int64_t> quick_integer_under(const WideNumber& world, const GridNumber& scale,
                                                 const GridNumber& translate) {
   const auto moved = wide_sum(world, WideNumber{-translate.mantissa, translate.exponent}, 10);
@@ -131,7 +132,7 @@ std::optional<std::int64_t> quick_integer_under(const WideNumber& world, const G
   return static_cast<std::int64_t>(quotient);
 }
 
-/// One axis of integers_under().
+/// The integers of a transform at the coordinates of a lattice, on one axis.
 class AxisIntegers {
  public:
   AxisIntegers(const Lattice& lattice, std::size_t axis, const Transform& transform)
@@ -145,7 +146,7 @@ class AxisIntegers {
     if (origin && origin->is_rounded && origin->number == lattice.origin[axis]) first_ = integer;
   }
 
-  /// Nothing if the point is not on the transform's grid.
+  /// The integer at a coordinate; nothing if the coordinate is not on the transform's grid.
   std::optional<std::int64_t> of(double coordinate) const {
     if (!std::isfinite(coordinate)) return std::nullopt;
     if (lattice_.kind != LatticeKind::decimal) return of_shortest(coordinate);
@@ -157,7 +158,8 @@ class AxisIntegers {
   }
 
  private:
-  /// A coordinate of a binary or float64 lattice stands for its shortest decimal.
+  /// The integer at a coordinate of a binary or float64 lattice, which stands for the shortest
+  /// decimal of its world coordinate.
   std::optional<std::int64_t> of_shortest(double coordinate) const {
     const double world = lattice_.world(coordinate, static_cast<int>(axis_));
     if (!std::isfinite(world)) return std::nullopt;
@@ -165,7 +167,8 @@ class AxisIntegers {
                          translate_);
   }
 
-  /// The distances of points from a rounded origin are exact.
+  /// The integer at a coordinate of a lattice with a rounded origin. The distance from the origin
+  /// is exact.
   std::optional<std::int64_t> from_first(double coordinate) const {
     const BigDecimal distance =
         big_product(from_grid(lattice_.step[axis_], LatticeKind::decimal), from_double(coordinate));

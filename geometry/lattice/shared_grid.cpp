@@ -11,13 +11,13 @@
 namespace watertight::geometry {
 namespace {
 
-/// Coordinates on the grid differ by less than 2^52: one bit is left for the rounding of its
-/// origin.
+/// Coordinates on the grid differ by less than 2^kSpanBits: of the 53 bits of a double, one is left
+/// for the rounding of the grid's origin.
 constexpr unsigned kSpanBits = 52;
 constexpr double kCoordinateEnd = 9007199254740992.0;  // 2^53
 constexpr std::size_t kOriginDigits = 18;
 
-/// coordinate = integer * 2^exponent with an odd integer; zero is {0, 0}.
+/// The number integer * 2^exponent with an odd integer; zero is {0, 0}.
 struct BinaryNumber {
   std::int64_t integer = 0;
   int exponent = 0;
@@ -31,14 +31,16 @@ BinaryNumber binary(double coordinate) {
   return {whole / (std::int64_t{1} << zeros), exponent - 53 + zeros};
 }
 
-/// One axis of the world: a coordinate there is (row * p + shift) * 10^exponent, where p are the
-/// coordinates of a vertex on its lattice, divided by 2^binary_exponent: integers.
+/// The map from a solid's lattice to one axis of the world. The world coordinate of a vertex is
+/// (row * p + shift) * 10^exponent, where the three integers p are the vertex's lattice coordinates
+/// divided by 2^binary_exponent.
 struct WorldAxis {
   std::array<BigInteger, 3> row;
   BigInteger shift;
   std::int64_t exponent = 0;
   int binary_exponent = 0;
 
+  /// The world coordinate of a vertex in units of 10^exponent.
   BigInteger at(const Point& p) const {
     BigInteger sum = shift;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -87,7 +89,8 @@ WorldAxis world_axis(const StandingSolid& standing, std::size_t axis, int binary
   return result;
 }
 
-/// The values of a solid along an axis of the world, times 10^-exponent.
+/// The least and the largest world coordinate of a solid on one axis, in units of 10^exponent of
+/// the WorldAxis.
 struct Range {
   BigInteger low;
   BigInteger high;
@@ -112,9 +115,9 @@ BigInteger floor_quotient(const BigInteger& a, const BigInteger& b) {
 /// One axis of the grid: coordinates are multiples of 10^exponent from the origin.
 struct WorldGrid {
   std::int64_t exponent = 0;
-  BigInteger origin;  // times 10^exponent
+  BigInteger origin;  // the origin in units of 10^exponent
 
-  /// The coordinate on the grid of value * 10^from. It is rounded to the nearest if the value is
+  /// The coordinate on the grid of the number value * 10^from, rounded to the nearest if 10^from is
   /// finer than the grid.
   double coordinate(const BigInteger& value, std::int64_t from) const {
     if (from >= exponent) {
@@ -143,7 +146,7 @@ WorldGrid grid_of(const std::vector<WorldAxis>& axes, const std::vector<Range>& 
   WorldGrid grid{exponent + dropped, floor_quotient(low, big_power(10, dropped))};
   const BigInteger magnitude = abs(grid.origin);
   const std::size_t digits = magnitude.get_str().size();
-  if (digits > kOriginDigits) {  // a lattice's origin has no more digits
+  if (digits > kOriginDigits) {  // a lattice's origin has at most kOriginDigits digits
     const BigInteger unit = big_power(10, static_cast<std::int64_t>(digits - kOriginDigits));
     grid.origin = floor_quotient(grid.origin, unit) * unit;
   }
@@ -178,7 +181,7 @@ std::optional<Point> inside_doubles(const std::array<double, 3>& p) {
 }  // namespace
 
 struct SharedGrid::World {
-  std::vector<std::array<WorldAxis, 3>> axes;  // of each solid
+  std::vector<std::array<WorldAxis, 3>> axes;  // the map of each solid to each axis of the world
   std::array<WorldGrid, 3> grid;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Solids and instances of geometry templates, where they stand, on one grid. For comparisons of
-// several solids.
+// One grid for solids and for instances of geometry templates as they stand in the world, so that
+// several solids can be compared.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace watertight::geometry {
 
-/// A solid, or the solid of a geometry template and where an instance puts it. Kept by the caller.
+/// A solid, or the solid of a geometry template with the placement of an instance (null for a solid
+/// that is no instance). The caller keeps both alive.
 struct StandingSolid {
   const Solid* solid = nullptr;
   const Placement* placement = nullptr;
@@ -24,26 +25,29 @@ struct StandingSolid {
 /// One grid for several solids.
 class SharedGrid {
  public:
-  /// For solids without placements, or that share one placement: the grid of their lattices, in
-  /// the world or in the template, exactly. Nothing for others, and when their lattices have no
-  /// CommonLattice. Cost: linear in the solids.
+  /// The CommonLattice of the solids, without rounding: in the world for solids without
+  /// placements, in the coordinates of the template for solids that have one placement. Nothing for
+  /// solids with different placements or without a CommonLattice. Cost: linear in the solids.
   static std::optional<SharedGrid> of_one_placement(std::vector<StandingSolid> solids);
 
-  /// The solids where they stand, by exact decimals, on the coarsest grid of powers of ten that
-  /// holds them; where that has 2^52 steps or more along an axis, vertices are rounded to the
-  /// finest grid with fewer. Nothing when the origin is 2^53 steps from all vertices or more, or
-  /// is no grid number. Requires solids with vertices. Cost: linear in the vertices.
+  /// The coarsest grid of powers of ten that holds the exact decimal world coordinates of all
+  /// vertices. Where the vertices spread over 2^52 steps or more along an axis, they are rounded to
+  /// the finest grid on which they do not. Nothing when a vertex is 2^53 steps or more from the
+  /// origin, or the origin is no grid number. Requires solids with vertices. Cost: linear in the
+  /// vertices.
   static std::optional<SharedGrid> in_world(std::vector<StandingSolid> solids);
 
   const Lattice& lattice() const { return lattice_; }
-  /// From a template's coordinates to the world; null if the grid is in the world.
+  /// The placement of the template in whose coordinates the grid is; null if the grid is in the
+  /// world.
   const Placement* placement() const { return placement_; }
   /// The world coordinates of a point of the grid, rounded to doubles.
   std::array<double, 3> world(const Point& p) const;
 
   std::size_t size() const { return solids_.size(); }
   Box box(std::size_t solid) const { return boxes_[solid]; }
-  /// The vertices of a solid; nothing if one is 2^53 steps away or more. Cost: linear.
+  /// The vertices of a solid on the grid; nothing if one is 2^53 steps or more from the origin.
+  /// Cost: linear.
   std::optional<std::vector<Point>> vertices(std::size_t solid) const;
   /// True if facets that turn outward in the template turn inward on the grid.
   bool is_turned_over(std::size_t solid) const;
@@ -58,8 +62,8 @@ class SharedGrid {
 
   std::vector<StandingSolid> solids_;
   Lattice lattice_;
-  std::optional<CommonLattice> common_;  // of one placement
-  std::shared_ptr<const World> world_;   // of other grids: from each solid to the grid
+  std::optional<CommonLattice> common_;  // the lattice that of_one_placement() sets
+  std::shared_ptr<const World> world_;   // the maps from solids to the grid that in_world() sets
   const Placement* placement_ = nullptr;
   std::vector<Box> boxes_;
   std::vector<std::array<bool, 3>> rounded_axes_;

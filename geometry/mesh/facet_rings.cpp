@@ -38,7 +38,8 @@ class RingWalk {
     return boundary;
   }
 
-  /// Splits a boundary at vertices that come twice: a loop that closes on the stack is a ring.
+  /// Splits a boundary at vertices that it visits twice. The vertices go to a stack; when a vertex
+  /// is on the stack already, the vertices from there to the top are a ring.
   void split(Index triangle, std::vector<Index> boundary) {
     std::vector<Index> sorted = boundary;
     std::sort(sorted.begin(), sorted.end());

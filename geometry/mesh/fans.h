@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The fans of a surface without boundary: facets or triangles around a vertex, each reached from
-// the one before across an edge. A vertex where the surface touches itself has several.
+// the one before across an edge. A vertex where the surface touches itself has several fans.
 #pragma once
 
 #include <span>
@@ -12,12 +12,13 @@
 namespace watertight::geometry {
 
 struct Fans {
-  std::vector<Index> fan_of;  // half-edge -> the fan of the corner at which it begins
+  std::vector<Index> fan_of;  // half-edge -> the fan of the corner at which the half-edge begins
   std::vector<Index> first;   // fan -> its smallest half-edge; increasing
   std::vector<Index> size;    // fan -> the number of its half-edges
 };
 
-/// `twin` pairs all half-edges; `previous(h)` is the half-edge before h in its ring. Cost: linear.
+/// Numbers the fans of a surface by their smallest half-edges. `twin` has the twin of each
+/// half-edge; `previous(h)` is the half-edge before h in its ring. Cost: linear.
 template <class Previous>
 Fans number_fans(std::span<const Index> twin, const Previous& previous) {
   Fans fans;

@@ -9,17 +9,17 @@
 
 namespace watertight::geometry {
 
-/// The half-edge of the same triangle that begins where this one ends.
+/// The half-edge of the same triangle that begins where `half_edge` ends.
 constexpr Index next_half_edge(Index half_edge) {
   return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
 }
 
-/// The half-edge of the same triangle that ends where this one begins.
+/// The half-edge of the same triangle that ends where `half_edge` begins.
 constexpr Index previous_half_edge(Index half_edge) {
   return half_edge % 3 == 0 ? half_edge + 2 : half_edge - 1;
 }
 
-/// The half-edge `corners` farther in the same triangle.
+/// The half-edge of the same triangle that begins `corners` corners after `half_edge` does.
 constexpr Index turned_half_edge(Index half_edge, Index corners) {
   return half_edge / 3 * 3 + (half_edge % 3 + corners) % 3;
 }

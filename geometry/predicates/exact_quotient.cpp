@@ -10,8 +10,8 @@ double nearest_quotient(mpz_class numerator, const mpz_class& denominator, std::
   if (numerator == 0) return 0.0;
   const bool is_negative = numerator < 0;
   if (is_negative) numerator = -numerator;
-  // The numerator or the divisor is shifted so that the quotient has 65 or 66 bits. A
-  // double takes the first of these; one more bit says whether anything but zeros follows.
+  // The numerator or the divisor is shifted so that the quotient has 65 or 66 bits. A double holds
+  // the first 53 bits; the other bits and the remainder decide how these are rounded.
   const auto bits = [](const mpz_class& n) {
     return static_cast<std::int64_t>(mpz_sizeinbase(n.get_mpz_t(), 2));
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Integers and quotients of any length, rounded once to a double. Private to geometry/.
+// Quotients of integers of any length, rounded once to a double. Private to geometry/.
 #pragma once
 
 #include <gmpxx.h>
@@ -9,8 +9,8 @@
 
 namespace watertight::geometry {
 
-/// numerator / denominator * 2^exponent as the nearest double (ties to even), infinity beyond the
-/// range. Requires denominator > 0 and |exponent| below 2^40.
+/// The double nearest to numerator / denominator * 2^exponent (ties to even), infinity beyond the
+/// range of doubles. Requires denominator > 0 and |exponent| below 2^40.
 double nearest_quotient(mpz_class numerator, const mpz_class& denominator, std::int64_t exponent);
 
 }  // namespace watertight::geometry

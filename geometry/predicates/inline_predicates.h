@@ -4,9 +4,9 @@
 // geometry/ (it includes CGAL).
 //
 // Based on: J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
-// Predicates, 1997 (the first stage). Departures: what the filter leaves open is decided in 128-bit
-// integers where the coordinates allow it, as those of nearly every lattice do, and by CGAL where
-// not. So an exact zero, the everyday case of planar facets, costs nanoseconds.
+// Predicates, 1997 (the first stage). Departures: calls that the filter does not decide are decided
+// in 128-bit integers where the coordinates allow it, as on nearly every lattice, and else by CGAL.
+// So an exact zero, the everyday case of planar facets, costs nanoseconds.
 #pragma once
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -54,8 +54,9 @@ struct InlinePredicates {
     return exact_orient2d({a[first], a[second]}, {b[first], b[second]}, {c[first], c[second]});
   }
 
-  /// Bound of the error relative to the sum of the terms' sizes. A term passes through at most 8
-  /// roundings of 2^-53, the sum of sizes through a few more: twice as many are allowed.
+  /// A bound of the rounding error, relative to the sum of the magnitudes of the terms. A term
+  /// passes through at most 8 roundings of 2^-53, the sum of the magnitudes through a few more; the
+  /// bound allows for 16.
   static constexpr double kRelativeError = 16.0 / 9007199254740992.0;
   /// More than a product can lose by underflow (2^-1075).
   static constexpr double kUnderflow = 1e-200;
@@ -69,7 +70,7 @@ struct InlinePredicates {
     return value > 0 ? 1 : value < 0 ? -1 : 0;
   }
 
-  /// True if both are integers whose difference is exact and shorter than `longest`.
+  /// True if p and q are integers whose difference is exact and below `longest` in magnitude.
   static bool has_short_difference(double p, double q, double longest = kLongest) {
     constexpr double kEnd = 4503599627370496.0;  // 2^52
     return std::abs(p) < kEnd && std::abs(q) < kEnd && std::abs(p - q) < longest &&
@@ -83,7 +84,7 @@ struct InlinePredicates {
   /// The sign of `value` if rounding cannot have changed it, else 0. `factor` is the size of the
   /// numbers by which products of differences are multiplied.
   static int certain_sign(double value, double size, double factor) {
-    constexpr double kLargest = 1e300;  // nothing has overflowed
+    constexpr double kLargest = 1e300;  // a bound of numbers that have not overflowed
     const double error = kRelativeError * size + kUnderflow * factor + kUnderflow;
     if (!(size < kLargest)) return 0;
     return value > error ? 1 : value < -error ? -1 : 0;
@@ -112,7 +113,8 @@ struct InlinePredicates {
         largest = std::max(largest, std::abs(value));
       }
     }
-    // Six terms, below 2^60 each from differences below 2^20, and below 2^120 in any case.
+    // The determinant has six terms, products of three differences: each term is below 2^60 if the
+    // differences are below 2^20, and below 2^120 in any case.
     constexpr std::int64_t kSmall = std::int64_t{1} << 20U;
     return largest < kSmall ? determinant_sign<std::int64_t>(rows) : determinant_sign<Wide>(rows);
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Based on: H. Edelsbrunner and E. P. Muecke, Simulation of Simplicity, ACM Transactions on
-// Graphics 9(1), 1990. Departures: the point alone is moved, first along x, then less along y.
+// Graphics 9(1), 1990. Departures: only the point is moved (not the vertices), by an infinitely
+// small step along x and one infinitely smaller than that along y.
 #include "geometry/predicates/point_in_solid.h"
 
 #include <gmpxx.h>
@@ -32,24 +33,25 @@ Vector vector_of(const TrianglePoint& point) {
   return sum;
 }
 
-/// Sign of the turn a, b, p in the plane of two axes.
+/// The sign of the turn a, b, p in the plane of the axes u and v.
 int turn(const Vector& a, const Vector& b, const Vector& p, std::size_t u, std::size_t v) {
   return sgn(Rational((b[u] - a[u]) * (p[v] - a[v]) - (b[v] - a[v]) * (p[u] - a[u])));
 }
 
-/// The same in plan for the point moved along x and, less, along y: 0 only for a vertical ab.
+/// The sign of the turn a, b, p in plan (axes x and y) after p is moved along x and, far less,
+/// along y: 0 only if ab is vertical.
 int moved_turn(const Vector& a, const Vector& b, const Vector& p) {
   if (const int sign = turn(a, b, p, 0, 1)) return sign;
   const int along_x = cmp(a[1], b[1]);
   return along_x != 0 ? along_x : cmp(b[0], a[0]);
 }
 
-/// Sign of det(b - a, c - a, p - a).
+/// The sign of det(b - a, c - a, p - a).
 int height(const Vector& a, const Vector& b, const Vector& c, const Vector& p) {
   return sgn(dot(p - a, cross(b - a, c - a)));
 }
 
-/// Requires p in the plane of abc.
+/// True if p is in the closed triangle abc. Requires p in the plane of abc.
 bool is_in_triangle(const Vector& a, const Vector& b, const Vector& c, const Vector& p) {
   for (std::size_t u = 0; u < 3; ++u) {
     const std::size_t v = (u + 1) % 3;
@@ -61,6 +63,7 @@ bool is_in_triangle(const Vector& a, const Vector& b, const Vector& c, const Vec
   return false;
 }
 
+/// True if the box of the triangle abc alone shows that the ray from p upward misses it.
 bool is_missed(const Point& a, const Point& b, const Point& c, const Vector& p) {
   for (const int axis : {0, 1}) {
     const Rational& at = p[static_cast<std::size_t>(axis)];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points inside a triangle, and whether such a point lies inside a closed surface, exactly. For
-// comparisons of several solids: where a triangle whose corners all touch another solid lies.
+// Makes points inside a triangle, and decides exactly whether such a point lies inside a closed
+// surface. Comparisons of several solids need this for a triangle whose corners all touch another
+// solid.
 #pragma once
 
 #include <array>
@@ -21,20 +22,22 @@ struct TrianglePoint {
   int exponent = 2;
 };
 
-/// Points inside the triangle of which no three are on one line for one exponent, so that a segment
-/// in its plane meets at most two of the `count` points of that exponent: the points (i, i^2) of a
-/// parabola. Requires 1 <= number <= triangle_points(exponent).
+/// Point `number` of those that an exponent gives inside a triangle: the points (i, i^2) of a
+/// parabola. No three points of one exponent are on one line, so a segment in the plane of the
+/// triangle meets at most two of them. Requires 1 <= number <= triangle_points(exponent).
 TrianglePoint triangle_point(const std::array<Point, 3>& corners, int exponent,
                              std::uint64_t number);
+/// The number of points that triangle_point() gives for an exponent.
 std::uint64_t triangle_points(int exponent);
 
-/// The point as doubles if they hold it exactly and a quick test shows this (integers that are not
-/// too large, as on nearly every lattice).
+/// The point as doubles if these hold it exactly and a quick test shows this: the corners are
+/// integers that are not too large, as on nearly every lattice. Else nothing.
 std::optional<Point> exact_doubles(const TrianglePoint& point);
 
-/// +1 if the point is inside the closed surface, 0 if it is on it, -1 outside. In rationals: for
-/// points that are no doubles. Requires every edge of the surface to be met an even number of
-/// times. Cost: linear; a microsecond and more for each triangle above or below the point.
+/// +1 if the point is inside the closed surface, 0 if on the surface, -1 if outside. Computed in
+/// rational numbers, for points that doubles do not hold. Requires that every edge of the surface
+/// belongs to an even number of triangles. Cost: linear; a microsecond and more for each triangle
+/// above or below the point.
 int locate_exactly(const TrianglePoint& point, std::span<const Point> vertices,
                    std::span<const Triangle> triangles);
 

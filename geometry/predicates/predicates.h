@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The exact decisions of this program. Each is correct for any finite doubles: a filter in doubles
-// decides most calls, 128-bit integers those with small integers, CGAL the rest. An exact zero is
-// right but misses the filter, so callers leave out calls with a repeated point.
+// The exact decisions of this program, correct for any finite doubles. A filter in doubles decides
+// most calls, 128-bit integers decide calls with small integers, CGAL decides the others. The
+// filter cannot decide an exact zero, so callers avoid calls with a repeated point.
 #pragma once
 
 #include "geometry/point.h"
 
 namespace watertight::geometry {
 
-/// Sign of det(b-a, c-a, d-a), six times the signed volume of tetrahedron abcd: +1 when a, b, c
+/// The sign of det(b-a, c-a, d-a), six times the signed volume of tetrahedron abcd: +1 when a, b, c
 /// turn counter-clockwise as seen from d, -1 when clockwise, 0 when the points are coplanar. For an
 /// outward oriented facet (a, b, c) a point inside the solid beside it gives -1.
 int orient3d(const Point& a, const Point& b, const Point& c, const Point& d);
 
-/// Sign of the turn a, b, c in the plane left when `axis` (0 x, 1 y, 2 z) is dropped; the kept
-/// axes are (y, z), (z, x), (x, y), so that dropping keeps right-handedness. +1 is a left turn.
+/// The sign of the turn a, b, c in the plane of two axes when `axis` (0 x, 1 y, 2 z) is dropped.
+/// The two axes are (y, z), (z, x) or (x, y), so that the plane keeps right-handedness. +1 is a
+/// left turn.
 int orient2d(const Point& a, const Point& b, const Point& c, int axis);
 
 /// True if the three points lie on one line, exactly.

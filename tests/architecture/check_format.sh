@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Fails, naming the files, if clang-format would change a C++ or JavaScript file of the repository. (The
-# one C file, which sees PostgreSQL's headers, follows PostgreSQL's style.)
+# Fails, naming the files, if clang-format would change a C++ or JavaScript file of the repository.
+# (The one C file, which includes PostgreSQL's headers, follows PostgreSQL's style.)
 #   check_format.sh         checks
 #   check_format.sh --fix   formats in place
 set -euo pipefail

@@ -28,7 +28,8 @@ TOO_HEAVY = ("CGAL/", "boost/", "tetgen.h")
 
 
 def closure(root, name, cache):
-    """The file and every header of ours it includes, and the foreign headers they name."""
+    """The file, every header of the repository that it includes, and the foreign headers that these
+    files name."""
     ours, foreign, stack = set(), set(), [name]
     while stack:
         current = stack.pop()

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-# Runs in the page after its own script; leaves what it saw in the title.
+# The script that runs in the page after the page's own; it leaves its observations in the title.
 PROBE = """<script>
 window.addEventListener('load', function () {
   var seen = {}, search = document.getElementById('search'), code = document.getElementById('code');

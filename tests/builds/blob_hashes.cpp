@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A hash of every blob of a fixed set: generated solids in every mode with every set of priors,
-// alone and in pages, and what the golden files decode to and encode to again.
+// Prints a hash of every blob of a fixed set: generated solids in every mode with every set of
+// priors, alone and in pages, and the golden files, decoded and encoded again.
 #include <cinttypes>
 #include <cstdio>
 
@@ -43,7 +43,8 @@ void print_modes(const std::string& name, const OrientedBoundary& boundary) {
   }
 }
 
-/// A page of all the solids that may stand beside the first and that the mode can hold.
+/// Prints the hash of a page of all solids that may stand beside the first and that the mode can
+/// hold.
 void print_page(const std::string& name, const std::vector<generated::NamedBoundary>& solids,
                 const EncodeOptions& options) {
   const OrientedBoundary* first = &solids.front().boundary;

@@ -17,9 +17,11 @@ if ! command -v clang++ >/dev/null 2>&1; then
   exit 77
 fi
 mkdir -p "$work_directory"
-export ASAN_OPTIONS=detect_leaks=0 # seconds at exit; the tests of that build look for leaks
+# looking for leaks takes seconds at the exit; the tests of that build do it
+export ASAN_OPTIONS=detect_leaks=0
 
-# print_fingerprint NAME BUILD_DIRECTORY DOCUMENT...: into WORK_DIRECTORY/NAME.txt
+# print_fingerprint NAME BUILD_DIRECTORY DOCUMENT...: writes the fingerprint to
+# WORK_DIRECTORY/NAME.txt
 print_fingerprint() {
   name=$1
   program=$2/bin/build_fingerprint
@@ -31,7 +33,7 @@ print_fingerprint() {
   fi
 }
 
-# build NAME BUILD_DIRECTORY CMAKE_OPTION...
+# build NAME BUILD_DIRECTORY CMAKE_OPTION...: configures and builds the program
 build() {
   name=$1
   directory=$2
@@ -51,7 +53,8 @@ build gxx-Os "$work_directory/gxx-Os" -DCMAKE_BUILD_TYPE=MinSizeRel
 build gxx-LTO "$work_directory/gxx-LTO" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON
 build clang-O3 "$work_directory/clang-O3" -DCMAKE_BUILD_TYPE=Release -DWATERTIGHT_SERVER=OFF \
   -DWATERTIGHT_ENGINES=OFF -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
-for engine in watertight-worker watertight-tetgen; do # black boxes, the same for all builds
+# the engines are not compared: all builds use those of the release build
+for engine in watertight-worker watertight-tetgen; do
   ln -sf "$release/bin/$engine" "$work_directory/clang-O3/bin/"
 done
 build gxx-checked "$source_directory/build/checked" --preset checked

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Fails unless both programs end well and print the same.
+# Fails unless the two programs exit with status 0 and print the same text.
 foreach(program IN ITEMS OPTIMIZED PLAIN)
   execute_process(COMMAND "${${program}}" OUTPUT_VARIABLE ${program}_OUTPUT RESULT_VARIABLE status)
   if(NOT status EQUAL 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The whole path: documents read, validated and encoded.
+// The part of the fingerprint that covers the whole path: documents read, validated and encoded.
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
@@ -39,7 +39,7 @@ Result<Document> read(const char* file) {
   return format ? read_document(bytes, *format) : format.error();
 }
 
-/// A document that cannot be read has one line: the reason.
+/// Prints one line for each solid of the document, or the reason why the document cannot be read.
 void print_document(const char* file, delaunay::EngineWorkers& workers) {
   const std::string name = std::filesystem::path(file).filename().string();
   auto document = read(file);
@@ -48,7 +48,7 @@ void print_document(const char* file, delaunay::EngineWorkers& workers) {
     return;
   }
   CertifyOptions options;
-  // Slow builds must not run into limits of time that others do not meet.
+  // The limits of time are so long that slow builds do not run into them either.
   options.ladder.seconds_per_rung = 600;
   options.ladder.seconds_in_all = 6000;
   for (Feature& feature : document->features) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Starts a server, beside the parts that talk to the database, and lets clients come and go.
+// Starts a server and lets clients come and go; the program also holds the code that talks to the
+// database.
 #include <cstdio>
 #include <string>
-#include <utility>  // used by Asio, which does not include it
+#include <utility>  // Asio uses this header without including it
 
 #include <boost/asio.hpp>
 
@@ -19,7 +20,7 @@ using server::Lane;
 using server::Request;
 using server::Response;
 
-/// The first line of the answer to GET /, "" if none came.
+/// The first line of the answer to GET /, "" if no answer came.
 std::string status_line(std::uint16_t port) {
   boost::asio::io_context context;
   boost::asio::ip::tcp::socket socket(context);
@@ -40,7 +41,7 @@ bool fail(const std::string& message) {
 }  // namespace
 
 bool serve_leaving_clients() {
-  // So that the linker takes the database's connections into this program.
+  // This call makes the linker take the database's connections into the program.
   if (store::connection_option("host", "h") != "host='h'")
     return fail("no libpq options");
   server::ServerOptions options;

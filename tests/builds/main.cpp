@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // build_fingerprint [DOCUMENT...]: prints hashes of blobs, reports and verdicts. Two builds of the
-// program agree if the lines agree. Exit status: 0, or 1 if a part does not work. A
-// file that cannot be read ends it by an exception.
+// program agree if their lines agree. Exit status: 0, or 1 if a part does not work. A file that
+// cannot be read ends the program by an exception.
 #include "tests/builds/fingerprint.h"
 
 int main(int count, char** arguments) {

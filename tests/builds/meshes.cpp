@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Size and checksum of 200 meshes in mode parallelogram, whose predictions depend on every rounding,
-// after decoding them.
+// Prints the size of 200 meshes in mode parallelogram, whose predictions depend on every rounding,
+// and a checksum of the decoded meshes.
 #include <array>
 #include <cstdio>
 
@@ -15,7 +15,8 @@
 namespace watertight::builds {
 namespace {
 
-/// A closed block under a surface of random heights over a grid of n x n squares, in triangles.
+/// A closed block of triangles: random heights over a grid of n x n squares above, a flat grid
+/// below.
 OrientedBoundary block(test::Random& random) {
   const auto n = static_cast<Index>(4 + random.below(12));
   const auto step = static_cast<double>(1 + random.below(5));

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# The decoder on its own: it refers to no files, memory maps, threads, clocks, sockets, processes or
-# environment, does not contain the tetrahedralization of CGAL (of which exact numbers remain), and decodes the golden blobs.
+# Checks the decoder on its own: it refers to no files, memory maps, threads, clocks, sockets,
+# processes or environment, does not contain CGAL's tetrahedralization (CGAL's exact numbers
+# remain), and decodes the golden blobs.
 # usage: portable.sh PORTABLE_DECODER GOLDEN_BLOBS
 set -eu
 
@@ -27,7 +28,7 @@ if nm -C "$decoder" | grep -E 'CGAL::Triangulation_3|Delaunay_triangulation_3' |
   exit 1
 fi
 
-# Languages' own libraries, and GMP, which does without an operating system too.
+# Only the standard libraries of C and C++ are allowed, and GMP, which needs no operating system.
 if readelf -d "$decoder" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
   grep -vE '^(libgmp|libstdc\+\+|libm|libgcc_s|libc|ld-linux[a-z0-9_-]*)\.so'; then
   echo "the decoder needs another library"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// portable_decoder <BLOB: decodes standard input and prints what it is. The decoder alone, as a
-// build without an operating system would have it: see portable.sh.
+// portable_decoder <BLOB: decodes standard input and prints a summary. The program is the decoder
+// alone, as a build without an operating system would have it: see portable.sh.
 #include <cinttypes>
 #include <cstdio>
 #include <vector>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// In the place of delaunay/canonical_delaunay.cpp where CGAL is not to be linked: whole coordinates
-// in a box below 2^30, which is what our own Delaunay tetrahedralization takes. Only mode bitmap
-// knows others. A linker that finds this definition first leaves cgal_delaunay.cpp out.
+// Replaces delaunay/canonical_delaunay.cpp where CGAL is not to be linked: takes whole coordinates
+// in a box below 2^30 only, as our own Delaunay tetrahedralization does. Only mode bitmap meets
+// other coordinates. A linker that finds this definition first leaves cgal_delaunay.cpp out.
 #include "delaunay/canonical/small_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
 

@@ -9,14 +9,14 @@ RANGE = 2**54
 
 
 class AxisPlaces:
-    """Every number, equal steps rounded down, or a list."""
+    """The values on an axis: every number, equal steps rounded down, or a list."""
 
     def __init__(self):
         self.kind, self.step, self.shift, self.offset, self.values = EVERY, 1, 0, 0, []
 
     @staticmethod
     def read(m, before, limits):
-        """The values of one axis, after an axis of the kind before."""
+        """Reads the values of one axis; `before` is the kind of the axis before."""
         places = AxisPlaces()
         if m.decide("Places", 2 * before):
             if m.decide("Places", 2 * before + 1):
@@ -28,7 +28,7 @@ class AxisPlaces:
         return places
 
     def read_steps(self, m):
-        """Shift, step and offset."""
+        """Reads shift, step and offset."""
         self.shift = m.plain(6)
         if self.shift > 40:
             raise Malformed("a shift")
@@ -41,7 +41,7 @@ class AxisPlaces:
             self.offset = m.plain(self.shift)
 
     def read_list(self, m, limits):
-        """From 0 downward, then upward."""
+        """Reads a list of values: from 0 downward, then upward."""
         halves = []
         for sign in (-1, 1):
             count = m.number("Place", 1, 0, bits=32)
@@ -59,7 +59,7 @@ class AxisPlaces:
         self.values = halves[0][::-1] + [0] + halves[1]
 
     def value(self, place):
-        """The value of a place."""
+        """The value at a place."""
         if self.kind == LISTED:
             if not 0 <= place < len(self.values):
                 raise Malformed("no such place")
@@ -70,7 +70,7 @@ class AxisPlaces:
         return value
 
     def place(self, value):
-        """The place of a value that has one."""
+        """The place of a value that is on the axis."""
         if self.kind == EVERY:
             return value
         if self.kind == LISTED:
@@ -78,7 +78,7 @@ class AxisPlaces:
         return -((self.offset - (value << self.shift)) // self.step)
 
     def position(self, coordinate):
-        """Where a coordinate lies among the places."""
+        """The place of a coordinate, a fraction between two places."""
         if self.kind == EVERY:
             return coordinate
         if self.kind == STEPPED:
@@ -94,7 +94,7 @@ class AxisPlaces:
         return place + (coordinate - low) / (high - low)
 
     def spread(self, coordinate, distance):
-        """How many places a distance takes."""
+        """The number of places within a distance of a coordinate."""
         if self.kind == EVERY:
             return distance
         if self.kind == STEPPED:

@@ -9,27 +9,27 @@ BENDS = [(62000, 2), (50000, 1), (40000, 0), (20000, 0), (4000, 2), (1000, 4)]
 
 
 class Model:
-    """A probability and a count."""
+    """A probability of 65536 and the number of observations."""
 
     def __init__(self, p=32768, c=0):
         self.p, self.c = p, c
 
     def learn(self, bit):
-        """Moves towards the bit."""
+        """Moves the probability towards the bit."""
         r = 655360 // (10 * self.c + 16)
         self.p += (65536 - self.p) * r // 65536 if bit else -(self.p * r // 65536)
         self.p, self.c = clamp(self.p, 32, 65504), min(self.c + 1, 30)
 
 
 class Bits:
-    """Bits that are plain or coded."""
+    """Reads bits that are plain or entropy coded."""
 
     def __init__(self, data, coded):
         self.data, self.at = data, 0
         self.stream = Stream(data) if coded else None
 
     def read(self, model):
-        """The next bit."""
+        """Reads the next bit."""
         if self.stream is None:
             bit = self.data[self.at // 8] >> (self.at % 8) & 1
             self.at += 1
@@ -39,14 +39,14 @@ class Bits:
         return bit
 
     def unary(self, model):
-        """That many ones, then a zero."""
+        """Reads a number: that many ones, then a zero."""
         n = 0
         while self.read(model):
             n += 1
         return n
 
     def finish(self):
-        """Requires the ending."""
+        """Requires that the bits end here as a writer ends them."""
         if self.stream:
             self.stream.finish()
         elif len(self.data) != (self.at + 7) // 8 or (
@@ -55,12 +55,13 @@ class Bits:
 
 
 def edges_of(face):
-    """The three edges of an increasing triple."""
+    """The three edges of a face whose vertices increase."""
     return (face[0], face[1]), (face[0], face[2]), (face[1], face[2])
 
 
 def first_model(number):
-    """Where a model of the bitmap starts; the number is hull, open (2 bits), alone, blocked, forced."""
+    """The initial model of a context of the bitmap; the number holds hull, open (2 bits), alone,
+    blocked, forced."""
     hull, open_edges = number & 1, number >> 1 & 3
     alone, blocked, forced = number >> 3 & 1, number >> 4 & 1, number >> 5
     bad = alone or blocked
@@ -70,7 +71,7 @@ def first_model(number):
 
 
 def read_bitmap(bits, tetrahedra):
-    """The boundary faces among the Delaunay faces."""
+    """Reads which Delaunay faces belong to the boundary, and returns them."""
     count, marked, left = {}, {}, {}
     for tetrahedron in tetrahedra:
         for face in itertools.combinations(tetrahedron, 3):
@@ -95,7 +96,7 @@ def read_bitmap(bits, tetrahedra):
 
 
 def bend(points, exact, a, b, p, q):
-    """The class of a joint."""
+    """The class of a joint: how far its two triangles are from one plane."""
     def cross(u, v):
         return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
 
@@ -116,7 +117,7 @@ def bend(points, exact, a, b, p, q):
 
 
 class Facets:
-    """The facets of the boundary faces."""
+    """Reads the facets that the boundary faces form."""
 
     def __init__(self, bits, points, steiner_from, triangles):
         self.bits, self.steiner_from = bits, steiner_from
@@ -134,7 +135,7 @@ class Facets:
                 self.inner.add((a, b))
 
     def parts(self, edges):
-        """The triangles connected through some joints: the smallest of each part, by triangle."""
+        """For each triangle, the smallest one connected to it through the given joints."""
         part = [None] * len(self.triangles)
         for first in range(len(part)):
             stack = [first] if part[first] is None else []
@@ -148,7 +149,7 @@ class Facets:
         return part
 
     def read(self):
-        """The shells, the exterior one first."""
+        """Reads the shells, the exterior one first."""
         component, facet = self.parts(self.joints), self.parts(self.inner)
         firsts, turn = sorted(set(component)), Model()
         self.turned = [None] * len(self.triangles)
@@ -169,17 +170,17 @@ class Facets:
         return [shells[first] for first in order]
 
     def corners(self, t):
-        """A triangle's corners in its direction."""
+        """The corners of a triangle in its direction."""
         a, b, c = self.triangles[t]
         return (a, c, b) if self.turned[t] else (a, b, c)
 
     def directed(self, t):
-        """A triangle's edges in its direction."""
+        """The edges of a triangle in its direction."""
         a, b, c = self.corners(t)
         return (a, b), (b, c), (c, a)
 
     def orient(self, first, turned):
-        """Turns a component as its smallest triangle."""
+        """Turns every triangle of a component so that it agrees with the smallest one."""
         self.turned[first], stack = turned, [first]
         while stack:
             t = stack.pop()
@@ -194,7 +195,7 @@ class Facets:
                         raise Malformed("a component that cannot be oriented")
 
     def next(self, t, a, b):
-        """The boundary edge of a facet after a -> b."""
+        """The edge that follows a -> b on the boundary of a facet."""
         while True:
             c = self.follower[t, a, b]
             edge = min(b, c), max(b, c)

@@ -18,7 +18,7 @@ class Columns:
         self.was_known = 0
 
     def read(self):
-        """The vertices."""
+        """Reads and returns the vertices."""
         self.read_box()
         for i in range(1, self.count):
             place = self.known_place() or self.corner(i) or self.free(i)
@@ -31,7 +31,7 @@ class Columns:
         return points
 
     def top_bits(self, k, n):
-        """A number of n bits."""
+        """Reads a number of n bits, the first three with models."""
         node = 1
         for _ in range(min(n, 3)):
             node = 2 * node + self.m.decide("TopBits", 8 * k + node, 8 * (31 * k + n) + node)
@@ -39,11 +39,11 @@ class Columns:
         return (node - (1 << min(n, 3))) << rest | (self.m.plain(rest) if rest else 0)
 
     def size(self, kind, before, bits):
-        """A length of the box or a number of columns."""
+        """Reads a length of the box or the number of columns."""
         return self.m.number("Size", kind, 31 * kind + before, bits=bits)
 
     def read_box(self):
-        """The first point, the box and the number of columns."""
+        """Reads the first point, the box and the number of columns."""
         f = int(not self.known)
         first = [self.last_position[a] + self.m.signed("Position", 2 * a + f, bits=54)
                  for a in range(3)]
@@ -64,7 +64,7 @@ class Columns:
         self.first_z = first[2]
 
     def known_place(self):
-        """A column that the page has."""
+        """Reads a column that the page has already, if the next one is such a column."""
         after = [c for c in self.known if c > self.columns[-1]][:4096]
         listed = [c for c in after if self.low[0] <= c[0] < self.end[0]
                   and self.low[1] <= c[1] < self.end[1]][:64]
@@ -77,7 +77,7 @@ class Columns:
         return listed[self.m.number("Rank", c, bits=6)]
 
     def corner(self, i):
-        """A place near the fourth corner of a parallelogram."""
+        """Reads a column near the fourth corner of a parallelogram, if the next one is."""
         last, listed = range(max(0, i - 5), i), []
         for c in last:
             for a in last:
@@ -100,14 +100,14 @@ class Columns:
         return x + dx, y + dy
 
     def free(self, i):
-        """Any place."""
+        """Reads a column that may be anywhere."""
         x = self.columns[-1][0]
         share = max(self.end[0] - x, 1) // (self.count - i)
         x += self.m.number("Gap", min(share.bit_length(), 30), bits=30)
         return x, self.low[1] + self.top_bits(1, self.lengths[1])
 
     def read_heights(self, done):
-        """The heights of the next column, ascending."""
+        """Reads the heights of the next column, ascending."""
         count = self.m.number("Floors", min(len(self.before), 5), bits=40) + 1
         self.limits.vertices(done + count)
         floors = []
@@ -123,7 +123,7 @@ class Columns:
         return floors
 
     def read_height(self, below, i, count):
-        """A height that was used before, or a new one."""
+        """Reads a height that was used before, or a new one."""
         r, f, g = 0, min(i, 2), min(count, 4) - 1
         for place, (z, uses) in enumerate(self.heights):
             if below is not None and z <= below:

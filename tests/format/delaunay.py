@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Delaunay tetrahedralization with the tie rule of docs/format.md, found face by face."""
+"""The Delaunay tetrahedralization with the rule for ties of docs/format-delaunay.md, found face by face."""
 import itertools
 from fractions import Fraction
 
@@ -7,7 +7,7 @@ from entropy import Malformed
 
 
 def det3(a, b, c):
-    """The determinant of three rows."""
+    """The determinant of a matrix of three rows."""
     return (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
             + a[2] * (b[0] * c[1] - b[1] * c[0]))
 
@@ -18,12 +18,12 @@ def minus(a, b):
 
 
 def orient(a, b, c, d):
-    """Positive for a tetrahedron of positive orientation."""
+    """A value that is positive for a tetrahedron of positive orientation."""
     return det3(minus(b, a), minus(c, a), minus(d, a))
 
 
 def sphere(corners, p):
-    """Positive for p inside the sphere through the corners."""
+    """A value that is positive for p inside the sphere through the corners."""
     rows = [minus(q, p) for q in corners]
     total = 0
     for i, row in enumerate(rows):
@@ -33,7 +33,7 @@ def sphere(corners, p):
 
 
 def conflicts(corners, p):
-    """The tie rule."""
+    """Whether p is inside the sphere through the corners, with the rule for ties."""
     side = sphere(corners, p)
     if side:
         return side > 0
@@ -53,7 +53,8 @@ def whole(points):
 
 
 def positive(points, chosen):
-    """The corners of a tetrahedron in an order of positive orientation, or none if it is flat."""
+    """The corners of a tetrahedron in an order of positive orientation, or none if the tetrahedron
+    is flat."""
     corners = [points[i] for i in chosen]
     turn = orient(*corners)
     if turn < 0:
@@ -62,7 +63,7 @@ def positive(points, chosen):
 
 
 def first_tetrahedron(points):
-    """One tetrahedron at the first point, by trying all, with near points first."""
+    """A tetrahedron at the first point, found by trying all, near points first."""
     near = sorted(range(1, len(points)), key=lambda i: sum(c * c for c in minus(points[i],
                                                                                 points[0])))
     for last in range(2, len(near)):
@@ -76,7 +77,7 @@ def first_tetrahedron(points):
 
 
 def apex_beyond(points, face, inside):
-    """The fourth corner on the other side of a face, or none on the hull."""
+    """The fourth corner of the tetrahedron on the other side of a face, or none on the hull."""
     a, b, c = (points[i] for i in face)
     if orient(a, b, c, points[inside]) > 0:
         a, b = b, a
@@ -89,7 +90,7 @@ def apex_beyond(points, face, inside):
 
 
 def delaunay(points, most_per_point):
-    """The tetrahedra, each found across a face of another."""
+    """The tetrahedra, each of them found across a face of another."""
     most = most_per_point * len(points) + 4096
     points = whole(points)
     found = {first_tetrahedron(points)}

@@ -3,47 +3,48 @@
 
 
 class Malformed(Exception):
-    """A blob that no encoder writes."""
+    """The error for a blob that no encoder writes."""
 
 
 class Unsupported(Exception):
-    """Another version, model set or mode."""
+    """The error for an unknown version, model set or mode."""
 
 
 class LimitExceeded(Exception):
-    """More of something than the stream may bring, or than the caller allows."""
+    """The error for more of something than the length of the stream or the caller allows."""
 
 
 class Limits:
-    """What a stream of so many bytes may bring, by "Limits"; no caller sets others here."""
+    """The largest numbers that a stream of a given length allows, by "Limits"; no caller sets
+    others here."""
 
     def __init__(self, size):
         most = 4096 + 64 * size
         self.left = {"vertices": most, "facets": 2 * most, "rings": 2 * most, "shells": most}
 
     def check(self, what, count):
-        """Requires as many of the solid at hand to be within what is left."""
+        """Requires that a number of the present solid is within the rest of its limit."""
         if count > self.left[what]:
             raise LimitExceeded(f"{count} {what}, {self.left[what]} are left")
 
     def vertices(self, count):
-        """Vertices of the solid at hand."""
+        """Checks the number of vertices of the present solid."""
         self.check("vertices", count)
 
     def facets(self, count):
-        """Its facets."""
+        """Checks the number of facets of the present solid."""
         self.check("facets", count)
 
     def rings(self, count):
-        """Its rings."""
+        """Checks the number of rings of the present solid."""
         self.check("rings", count)
 
     def shells(self, count):
-        """Its shells."""
+        """Checks the number of shells of the present solid."""
         self.check("shells", count)
 
     def take(self, vertices, shells):
-        """These are no longer left for the solids that follow."""
+        """Subtracts a finished solid from the limits, for the solids that follow."""
         facets = [facet for shell in shells for facet in shell]
         self.left["vertices"] -= len(vertices)
         self.left["facets"] -= len(facets)
@@ -60,7 +61,7 @@ def crc32c(data):
 
 
 def crc_table():
-    """The remainders of the 256 bytes."""
+    """The CRC remainder of each of the 256 values of a byte."""
     table = []
     for byte in range(256):
         for _ in range(8):
@@ -78,13 +79,13 @@ SQUASH_POINTS = [int(word) for word in """
 
 
 def squash(x):
-    """The probability, of 65536, at x in the logistic domain."""
+    """The probability, in 1/65536, at x in the logistic domain."""
     i, r = (x + 2048) >> 6, (x + 2048) & 63
     return (SQUASH_POINTS[i] * (64 - r) + SQUASH_POINTS[i + 1] * r) >> 6
 
 
 def stretch_table():
-    """The inverse of squash for 4096 probabilities."""
+    """The inverse of squash at 4096 probabilities."""
     table, x = [], -2047
     for k in range(4096):
         while x < 2047 and squash(x) < 16 * k + 8:
@@ -97,17 +98,17 @@ STRETCH = stretch_table()
 
 
 def clamp(value, low, high):
-    """The value, moved into low..high."""
+    """The value, limited to low..high."""
     return max(low, min(high, value))
 
 
 def cap(x, m):
-    """The class of x among 0..m - 1."""
+    """x limited to the classes 0..m - 1."""
     return min(max(x, 0), m - 1)
 
 
 class Stream:
-    """Reads decisions from bytes."""
+    """Reads decisions from the bytes of a stream."""
 
     def __init__(self, data):
         self.data, self.at, self.low, self.high, self.code = data, 0, 0, 0xFFFFFFFF, 0
@@ -116,14 +117,14 @@ class Stream:
             self.shift()
 
     def shift(self):
-        """Takes one byte more into the window: zeros past the end, at most four."""
+        """Takes one more byte into the window; after the end of the data at most four zeros."""
         if self.at >= len(self.data) + 4:
             raise Malformed("truncated stream")
         byte = self.data[self.at] if self.at < len(self.data) else 0
         self.code, self.at = (self.code << 8 | byte) & 0xFFFFFFFF, self.at + 1
 
     def bit(self, p):
-        """One decision that is 1 with the probability p / 65536."""
+        """Reads one decision that is 1 with the probability p / 65536."""
         split = self.low + ((self.high - self.low) * p >> 16)
         bit = int(self.code <= split)
         self.bits.append((bit, p))
@@ -138,20 +139,20 @@ class Stream:
         return bit
 
     def note(self, what, value):
-        """Keeps what the decisions since the last note have said."""
+        """Adds an item to the trace, with the decisions since the last one."""
         self.trace.append((what, value, self.bits))
         self.bits = []
         return value
 
     def plain(self, bits):
-        """A number of that many plain bits, high ones first."""
+        """Reads a number of that many plain bits, high bits first."""
         value = 0
         for _ in range(bits):
             value = 2 * value + self.bit(32768)
         return value
 
     def uniform(self, n):
-        """A number below n, all equally likely."""
+        """Reads a number below n; all are equally likely."""
         if n < 1:
             raise Malformed("a choice among nothing")
         width = n.bit_length() - 1
@@ -160,7 +161,7 @@ class Stream:
         return value if value < short else 2 * value + self.plain(1) - short
 
     def finish(self):
-        """Requires that the stream ends as a writer ends it."""
+        """Requires that the stream ends here as a writer ends it."""
         done = self.at - 4
         for size in range(5):
             unit = 1 << (32 - 8 * size)
@@ -173,7 +174,7 @@ class Stream:
 
 
 class Family:
-    """Decisions that share tables of counters and sets of weights."""
+    """A family: decisions that share tables of counters and sets of weights."""
 
     def __init__(self, inputs, selectors=1, agile=False):
         self.agile = agile
@@ -184,7 +185,8 @@ class Family:
         self.seen = [0] * selectors
 
     def mixed(self, contexts, selector):
-        """The counters' inputs and the probability, of 65536, that they give together."""
+        """The inputs from the counters, and the probability, in 1/65536, that they give
+        together."""
         if len(contexts) != len(self.counts) or min(contexts) < 0:
             raise IndexError("contexts")
         inputs = []
@@ -197,7 +199,7 @@ class Family:
         return inputs, clamp(squash(x), 32, 65504)
 
     def learn(self, contexts, selector, inputs, p, bit):
-        """Moves weights and counters towards the bit."""
+        """Moves the weights and counters towards the bit."""
         error = (65536 if bit else 0) - p
         rate = (10 + 1600 // (16 + self.seen[selector])) * (2 if self.agile else 1)
         self.seen[selector] = min(self.seen[selector] + 1, 1000)
@@ -210,7 +212,7 @@ class Family:
             counts[context] = min(n + 1, 250)
 
     def read(self, stream, contexts, selector=0):
-        """The next decision."""
+        """Reads the next decision."""
         inputs, p = self.mixed(contexts, selector)
         bit = stream.bit(p)
         self.learn(contexts, selector, inputs, p, bit)
@@ -218,7 +220,7 @@ class Family:
 
 
 class Number:
-    """The three families of a number."""
+    """A number: the three families for length, bits and sign."""
 
     def __init__(self, inputs, selectors=1, agile=False):
         self.length = Family([48 * size for size in inputs], selectors, agile)
@@ -227,7 +229,7 @@ class Number:
         self.families = [self.length, self.mantissa, self.sign]
 
     def read(self, stream, contexts, selector=0, bits=62):
-        """The next number of at most that many bits."""
+        """Reads the next number, which has at most that many bits."""
         length = 0
         while not self.length.read(stream, [48 * c + min(length, 47) for c in contexts], selector):
             length += 1
@@ -244,13 +246,13 @@ class Number:
         return value << rest | stream.plain(rest)
 
     def read_signed(self, stream, contexts, selector=0, bits=62):
-        """The next number with a sign."""
+        """Reads the next number with a sign."""
         value = self.read(stream, contexts, selector, bits)
         return -value if value and self.sign.read(stream, contexts, selector) else value
 
 
 def varint(data, at):
-    """The LEB128 number at a place of bytes, and the place after it."""
+    """The LEB128 number at a position of the data, and the position after it."""
     value, shift = 0, 0
     while True:
         if at >= len(data):
@@ -280,7 +282,7 @@ def bank_bytes(data, number):
 
 
 class Bank:
-    """Families and numbers by their names, in the order of the format."""
+    """The families and numbers of a part of the format, by name, in the order of the format."""
 
     def __init__(self, families, numbers, agile=False):
         self.named = {name: Family(*shape, agile=agile) for name, shape in families.items()}
@@ -290,7 +292,7 @@ class Bank:
             self.families += model.families if isinstance(model, Number) else [model]
 
     def load(self, state):
-        """Starts from a prior, the saved state of a bank."""
+        """Starts from a prior, which is the saved state of a bank."""
         at, unobserved = 0, 0
         for chances, counts in ((chances, counts) for family in self.families
                                 for chances, counts in zip(family.chances, family.counts)):
@@ -321,36 +323,36 @@ class Bank:
 
 
 class Models:
-    """Bound to a stream: what a mode reads."""
+    """A bank bound to a stream: the decisions and numbers that a mode reads."""
 
     def __init__(self, stream, bank):
         self.stream, self.bank = stream, bank.named
 
     def decide(self, name, *contexts, selector=0):
-        """A decision of a family."""
+        """Reads a decision of a family."""
         bit = self.bank[name].read(self.stream, contexts, selector)
         return self.stream.note(self.label("decision", name, contexts, selector), bit)
 
     def number(self, name, *contexts, selector=0, bits=62):
-        """A number."""
+        """Reads a number."""
         value = self.bank[name].read(self.stream, contexts, selector, bits)
         return self.stream.note(self.label("number", name, contexts, selector), value)
 
     def signed(self, name, *contexts, selector=0, bits=62):
-        """A signed number."""
+        """Reads a number with a sign."""
         value = self.bank[name].read_signed(self.stream, contexts, selector, bits)
         return self.stream.note(self.label("signed", name, contexts, selector), value)
 
     def uniform(self, n):
-        """A number below n."""
+        """Reads a number below n, all equally likely."""
         return self.stream.note(f"uniform below {n}", self.stream.uniform(n))
 
     def plain(self, bits):
-        """Plain bits."""
+        """Reads a number of that many plain bits."""
         return self.stream.note(f"{bits} plain bits", self.stream.plain(bits))
 
     @staticmethod
     def label(kind, name, contexts, selector):
-        """As the texts write it."""
+        """The name of an item, as the specification writes it."""
         return f"{kind} {name}{{{', '.join(map(str, contexts))}}}" + (f"/{selector}" if selector
                                                                       else "")

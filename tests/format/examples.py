@@ -21,20 +21,21 @@ from sections import Section
 
 TRACED = ["box-neutral.blob", "box-walk-neutral.blob", "schoenhardt-parallelogram-neutral.blob",
           "houses-neutral.page"]
-EXAMPLES = {"box-neutral.blob": 44, "houses-neutral.page": 24}  # items shown of each
-SECTIONS = "box-bitmap.blob"  # its sections are shown
+# the number of items shown of each file
+EXAMPLES = {"box-neutral.blob": 44, "houses-neutral.page": 24}
+SECTIONS = "box-bitmap.blob"  # the file whose sections are shown
 BYTES_IN_ROW = 8
 
 
 def read(models, path):
-    """The page of a file, with its trace."""
+    """The page in a file, with its trace."""
     page = Page(models, path.read_bytes(), PAGE if path.suffix == ".page" else BLOB)
     page.read()
     return page
 
 
 def decisions(bits):
-    """The decisions of one item: bits that share a p together."""
+    """The decisions of one item as text: consecutive bits that have one p are joined."""
     parts = []
     for p, group in itertools.groupby(bits, key=lambda bit: bit[1]):
         parts.append(" ".join(str(bit) for bit, _ in group) + f" @ {p}")
@@ -42,7 +43,7 @@ def decisions(bits):
 
 
 def trace_of(page):
-    """All items, one a line."""
+    """The text of a trace, one item on each line."""
     lines = ["item,value,decisions"]
     for what, value, bits in page.stream.trace:
         lines.append(f'"{what}",{value},"{decisions(bits)}"')
@@ -50,12 +51,12 @@ def trace_of(page):
 
 
 def hex_row(data):
-    """Bytes in hex."""
+    """The bytes in hexadecimal."""
     return " ".join(f"{byte:02x}" for byte in data)
 
 
 def example_of(path, page, items):
-    """The block of the document: the bytes, then the first items and the last ones."""
+    """The block of the document for one file: its bytes, then the first items and the last ones."""
     data = path.read_bytes()
     tail = len(page.stored)
     stream = data[4:-tail]
@@ -79,7 +80,7 @@ def example_of(path, page, items):
 
 
 def sections_of(page):
-    """The block of the document: the sections of a blob in mode bitmap, integers, and no more."""
+    """The block of the document that shows the sections of a blob in mode bitmap, in integers."""
     vertices, bitmap, facets = page.sections
     head = f"vertices, {len(vertices.data)} bytes: integers, {vertices.data[1]} vertices"
     rows = [(vertices.data[:2], head)]
@@ -97,7 +98,7 @@ def sections_of(page):
 
 
 def model_table(models):
-    """The files of priors."""
+    """The table of the files of priors."""
     lines = ["| set | file | bytes | CRC-32C |", "|---|---|---|---|"]
     for path in sorted(models.glob("model-*.bin")):
         data = path.read_bytes()
@@ -114,7 +115,7 @@ def with_example(text, name, block):
 
 
 def main(arguments):
-    """Writes or checks."""
+    """Writes the examples and traces, or checks them."""
     models, goldens, documents = (pathlib.Path(name) for name in arguments[:3])
     document, plain = documents / "format.md", documents / "format-plain.md"
     text = document.read_text(encoding="utf-8")

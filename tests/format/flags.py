@@ -10,7 +10,7 @@ FAMILIES = {"Interior": ([16128, 162, 126, 567, 432, 288], 9), "Exterior": ([3],
 
 
 class Flags:
-    """Reads which edges lie inside facets, then rings and shells."""
+    """Reads which edges lie inside facets, then the rings and shells."""
 
     def __init__(self, models, walk):
         self.m, self.w, self.points = models, walk, walk.faces.points
@@ -19,7 +19,7 @@ class Flags:
         self.known, self.history = [0] * len(walk.triangles), 0
 
     def read(self):
-        """The shells, the exterior one first."""
+        """Reads the shells and returns them, the exterior one first."""
         if not self.m.decide("Exterior", 0):
             for h, twin in enumerate(self.w.twin):
                 if twin < h:
@@ -43,7 +43,7 @@ class Flags:
         return [shells[i][1] for i in self.choose(order, 1)]
 
     def read_flag(self, h, twin):
-        """Whether the edge of two half-edges lies inside a facet."""
+        """Reads whether an edge, given by its two half-edges, lies inside a facet."""
         w, at = self.w, self.points
         t, u = h // 3, twin // 3
         a, b = at[w.tail(twin)], at[w.head(twin)]
@@ -81,7 +81,8 @@ class Flags:
             self.part = [new if part == old else part for part in self.part]
 
     def rings_from(self, start, done):
-        """The closed walk along a facet's boundary, split where it meets itself."""
+        """The rings of a closed walk along the boundary of a facet, split where the walk meets
+        itself."""
         w, h, stack, rings = self.w, start, [], []
         while True:
             done.add(h)
@@ -103,17 +104,17 @@ class Flags:
         return h - 2 if h % 3 == 2 else h + 1
 
     def size(self, vertices):
-        """The squared diagonal of a box."""
+        """The squared diagonal of the box of the vertices."""
         x, y, z = (max(self.points[v][i] for v in vertices) - min(self.points[v][i] for v in vertices)
                    for i in range(3))
         return x * x + y * y + z * z
 
     def exterior_first(self, rings, context):
-        """The rings, greatest first, with the exterior one chosen."""
+        """The rings, the greatest first, then the chosen exterior ring moved to the front."""
         return self.choose(sorted(rings, key=lambda ring: -self.size(ring)), context)
 
     def choose(self, listed, context):
-        """The list with the chosen one first."""
+        """Reads which element is chosen, and returns the list with it first."""
         for i in range(len(listed) - 1):
             if not self.m.decide("Exterior", context):
                 return [listed[i]] + listed[:i] + listed[i + 1:]

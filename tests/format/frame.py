@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the solids of a page share, from docs/format.md, "Frame"."""
+"""The values that the solids of a page share, from docs/format.md, "Frame"."""
 import math
 import struct
 
@@ -11,7 +11,7 @@ LARGEST_EXPONENT, LARGEST_POWER = 1200, 2**60
 
 
 def frame_bank():
-    """The bank of the frame."""
+    """The bank of the frame's families and numbers."""
     return Bank({"implied": ([1],), "proof": ([1],), "kind": ([3],), "one step": ([1],),
                  "phase": ([1],), "mode": ([64],), "origin": ([8],), "order": ([2],)},
                 {"rule set": ([1],), "SRID": ([1],), "mantissa": ([2],), "exponent": ([2],),
@@ -19,7 +19,7 @@ def frame_bank():
 
 
 class Frame:
-    """Tolerances, proof, rule set, reference system and grid."""
+    """Reads tolerances, proof, rule set, reference system and grid."""
 
     def __init__(self, m):
         self.tolerances = IMPLIED_TOLERANCES
@@ -49,12 +49,12 @@ class Frame:
 
     @staticmethod
     def read_value(m, context):
-        """A mantissa and an exponent."""
+        """Reads a mantissa and an exponent."""
         mantissa = m.signed("mantissa", context, bits=63)
         return mantissa, m.signed("exponent", context, bits=20)
 
     def lattice_origin(self, g):
-        """The origin of the lattice that begins at a grid point, per axis."""
+        """The origin of the lattice that begins at grid point g, on each axis."""
         if self.kind == FLOAT64:
             return [(0, 0)] * 3
         for mantissa, exponent in self.steps:
@@ -63,7 +63,7 @@ class Frame:
         return [self.value(step, phase, c) for step, phase, c in zip(self.steps, self.phases, g)]
 
     def value(self, step, phase, g):
-        """phase + g * step in its simplest form."""
+        """The number phase + g * step in its simplest form."""
         exponent = min(step[1], phase[1]) if phase[0] else step[1]
         apart = [step[1] - exponent, phase[1] - exponent if phase[0] else 0]
         if max(apart) > 60 or self.base ** max(apart) > LARGEST_POWER:

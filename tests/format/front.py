@@ -6,7 +6,8 @@ from vectors import HALF_TURN, angle_between, minus
 
 
 class Gate:
-    """A half-edge start -> end of a known triangle whose opposite is missing; its corner is at end."""
+    """A half-edge start -> end of a known triangle whose twin is missing; the corner of the gate is
+    at end."""
 
     def __init__(self, triangle, k, number, side):
         self.start, self.end, self.apex = triangle[k], triangle[(k + 1) % 3], triangle[(k + 2) % 3]
@@ -17,7 +18,7 @@ class Gate:
 
 
 class Front:
-    """Loops of gates around the triangles known so far."""
+    """The loops of gates around the triangles known so far."""
 
     def __init__(self, places):
         self.places = places
@@ -25,7 +26,7 @@ class Front:
         self.gates, self.waiting, self.turns, self.open = [], [], 0, 0
 
     def angle(self, at, start, end):
-        """The angle at a vertex between two others."""
+        """The angle at a vertex between two other vertices."""
         p = self.places
         return angle_between(minus(p[start], p[at]), minus(p[end], p[at]))
 
@@ -35,7 +36,7 @@ class Front:
         return None if other is None else self.triangles[other // 3][(other % 3 + 2) % 3]
 
     def add_triangle(self, triangle):
-        """Its first half-edge."""
+        """Adds a triangle and returns its first half-edge."""
         self.triangles.append(triangle)
         for v in triangle:
             self.degree[v] = self.degree.get(v, 0) + 1
@@ -43,29 +44,29 @@ class Front:
         return 3 * len(self.triangles) - 3
 
     def add_gate(self, side):
-        """A gate at a half-edge."""
+        """Adds a gate at a half-edge."""
         gate = Gate(self.triangles[side // 3], side % 3, len(self.gates), side)
         self.gates.append(gate)
         self.open += 1
         return gate
 
     def pair(self, side, other):
-        """Two half-edges of one edge."""
+        """Makes two half-edges of one edge twins."""
         self.beyond_side[side], self.beyond_side[other] = other, side
 
     def drop(self, gate):
-        """A gate that has its triangle."""
+        """Removes a gate whose triangle is known now."""
         gate.is_open = False
         self.open -= 1
 
     def change(self, gate, room):
-        """A corner changes: it waits anew."""
+        """Gives a corner another room, and adds it to the waiting ones again."""
         gate.room, gate.is_refused, gate.turn = room, False, self.turns
         heapq.heappush(self.waiting, (room, self.turns, gate.number))
         self.turns += 1
 
     def next_corner(self):
-        """The corner with the least room, the one that changed first among equals."""
+        """The corner with the least room; among equals the one that changed first."""
         while self.waiting:
             _, turn, number = self.waiting[0]
             gate = self.gates[number]
@@ -75,7 +76,7 @@ class Front:
         return None
 
     def add_seed(self, triangle):
-        """A first triangle."""
+        """Adds the first triangle of a component."""
         side = self.add_triangle(triangle)
         first, second, third = (self.add_gate(side + k) for k in range(3))
         for gate, after in ((first, second), (second, third), (third, first)):
@@ -86,7 +87,7 @@ class Front:
         self.change(third, 2 * HALF_TURN - self.angle(t[0], t[1], t[2]))
 
     def extend(self, gate, w):
-        """A triangle (v, u, w) beyond the gate u -> v: its gates u -> w and w -> v."""
+        """Adds a triangle (v, u, w) beyond the gate u -> v, with the gates u -> w and w -> v."""
         u, v = gate.start, gate.end
         side = self.add_triangle((v, u, w))
         self.pair(gate.side, side)
@@ -94,7 +95,7 @@ class Front:
         return self.add_gate(side + 1), self.add_gate(side + 2)
 
     def add_tip(self, gate, w):
-        """A triangle with a new vertex."""
+        """Adds a triangle with a new vertex."""
         u, v = gate.start, gate.end
         rise, fall = self.extend(gate, w)
         link(gate.previous, rise)
@@ -105,7 +106,7 @@ class Front:
         self.change(fall, gate.room - self.angle(v, u, w))
 
     def close(self, gate):
-        """A triangle that fills the corner of a gate."""
+        """Adds a triangle that fills the corner of a gate."""
         after = gate.next
         u, v, w = gate.start, gate.end, after.end
         side = self.add_triangle((v, u, w))
@@ -124,7 +125,7 @@ class Front:
         self.change(across, after.room - self.angle(w, u, v))
 
     def join(self, gate, other):
-        """A triangle whose tip is the corner of another gate."""
+        """Adds a triangle whose third vertex is at the corner of another gate."""
         u, v, w, after = gate.start, gate.end, other.end, other.next
         rise, fall = self.extend(gate, w)
         link(gate.previous, rise)
@@ -138,5 +139,5 @@ class Front:
 
 
 def link(gate, after):
-    """Two gates follow each other."""
+    """Makes two gates follow each other."""
     gate.next, after.previous = after, gate

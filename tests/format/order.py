@@ -4,18 +4,18 @@ from entropy import Bank, Malformed
 
 
 def order_bank():
-    """The bank of the order."""
+    """The bank of the source order."""
     return Bank({"straight": ([8],), "candidate": ([216, 150, 576], 6), "scan": ([50, 80, 64],),
                  "start": ([720, 120, 135, 648, 256, 144], 5)}, {})
 
 
 def sign(u, v):
-    """0, 1, 2 for v below, at, above u."""
+    """The class of v: 0 below, 1 at, 2 above u."""
     return 0 if v < u else 2 if v > u else 1
 
 
 class Order:
-    """Reads how the source arranged a canonical solid."""
+    """Reads the order in which the source had a canonical solid."""
 
     def __init__(self, models, solid):
         self.m, self.solid = models, solid
@@ -39,7 +39,7 @@ class Order:
         self.seen_facets = set()
 
     def look(self, ring):
-        """Facing and size of a facet."""
+        """The facing and the size of a facet."""
         points = [tuple(map(float, self.solid.vertices[v])) for v in ring]
         o, n = points[0], [0.0, 0.0, 0.0]
         for p, q in zip(points, points[1:] + points[:1]):
@@ -53,12 +53,12 @@ class Order:
         return 3 if n[2] > 0 else 4, h + t
 
     def across(self, ring, i):
-        """The facet across the corner at a place of a ring."""
+        """The facet beyond the edge that starts at a position of a ring."""
         a, b = ring[i % len(ring)], ring[(i + 1) % len(ring)]
         return self.facet_of_edge.get((b, a))
 
     def arrangement(self, m, fixed, context):
-        """The members in their order in the source."""
+        """Reads the order in which the source had m members."""
         result = list(range(m))
         if m < fixed + 2 or self.m.decide("straight", context):
             return result
@@ -68,7 +68,7 @@ class Order:
         return result
 
     def read(self):
-        """The five lists that the checksum takes."""
+        """Reads the source order; returns the five lists over which the checksum runs."""
         self.shells = self.arrangement(len(self.solid.shells), 1, 0)
         for shell in self.shells:
             self.read_shell(shell)
@@ -90,7 +90,7 @@ class Order:
         return result
 
     def read_shell(self, shell):
-        """The facets of a shell, with their rings."""
+        """Reads the facets of a shell, with their rings."""
         begin = self.first_facet[shell]
         self.left = set(range(begin, begin + len(self.solid.shells[shell])))
         self.count, self.begin = len(self.left), begin
@@ -107,13 +107,13 @@ class Order:
             self.read_rings(facet)
 
     def source_ring(self, facet):
-        """The exterior ring from its source start."""
+        """The exterior ring of a facet, from its start in the source."""
         first = self.first_ring[facet]
         ring, start = self.solid.rings[first], self.starts[first]
         return ring[start:] + ring[:start]
 
     def candidates(self):
-        """Facets that may be next: number, habit, reference."""
+        """The facets that may be next: number, habit, reference."""
         listed = []
         if self.reference:
             facet, k = self.reference
@@ -134,7 +134,7 @@ class Order:
         return result
 
     def read_facet(self):
-        """The next of several facets."""
+        """Reads the next of several facets."""
         denied = set()
         a = 0 if self.last is None else self.facing[self.last]
         if self.last is not None:
@@ -169,13 +169,13 @@ class Order:
         return rest[-1]
 
     def read_rings(self, facet):
-        """The rings of a facet and where they start."""
+        """Reads the order of the rings of a facet and their starts."""
         for ring in self.arrangement(len(self.solid.facets[facet]), 1, 1):
             self.rings.append(self.first_ring[facet] + ring)
             self.read_start(facet, self.first_ring[facet] + ring)
 
     def read_start(self, facet, number):
-        """Where a ring starts."""
+        """Reads the start of a ring."""
         ring, points = self.solid.rings[number], self.solid.vertices
         size, chosen = len(ring), len(ring) - 1
         lowest = min(points[v][2] for v in ring)

@@ -28,7 +28,7 @@ BANKS = {"frame": frame_bank, "order": order_bank, "polygon": polygon_bank, "wal
 
 
 class ModelSet:
-    """The banks of a set of priors, each bound to the stream when it is first used."""
+    """The banks of a set of priors, each bound to the stream when a part first uses it."""
 
     def __init__(self, folder, number, stream):
         self.stream, self.states, self.bound = stream, {}, {}
@@ -48,7 +48,7 @@ class ModelSet:
 
 
 class Page:
-    """Reads the solids of a page, or the one of a blob."""
+    """Reads the solids of a page, or the one solid of a blob."""
 
     def __init__(self, models, data, kind):
         if len(data) < 4 or data[:2] != b"WT":
@@ -66,7 +66,7 @@ class Page:
         self.names, self.solids, self.checksums, self.sections = [], [], [], []
 
     def read(self):
-        """All solids; checks ending and checksum."""
+        """Reads all solids; checks the end of the stream and the checksum."""
         count = self.models["frame"].uniform(256) + 1 if self.kind == PAGE else 1
         self.frame = Frame(self.models["frame"])
         for _ in range(count):
@@ -78,7 +78,7 @@ class Page:
             raise Malformed("checksum")
 
     def read_solid(self):
-        """One solid."""
+        """Reads one solid."""
         m, node, before = self.models["frame"], 1, self.mode
         for _ in range(3):
             node = 2 * node + m.decide("mode", 8 * before + node)
@@ -114,7 +114,7 @@ class Page:
             self.columns = sorted(set(self.columns) | {p[:2] for p in points})
 
     def read_origin(self, points, on_grid):
-        """The lattice origin, a grid point."""
+        """Reads the origin of a solid, as a grid point."""
         m = self.models["frame"]
         if self.frame.kind == FLOAT64:
             return 0, 0, 0
@@ -132,19 +132,19 @@ class Page:
         return origin
 
     def read_section(self):
-        """The bytes of a section."""
+        """Reads the bytes of a section."""
         size = self.models["frame"].number("section", 0, bits=40)
         self.sections.append(Section(bytes(self.models["frame"].plain(8) for _ in range(size))))
         return self.sections[-1]
 
     def read_raw(self):
-        """Mode raw."""
+        """Reads a solid in mode raw."""
         points, facets = self.read_section(), self.read_section()
         points = points.vertices(self.limits)
         return points, facets.facets(len(points), self.limits), True
 
     def read_bitmap(self):
-        """Mode bitmap."""
+        """Reads a solid in mode bitmap."""
         flags = self.models["frame"].plain(8)
         if flags & ~0x7C or flags & 0x60 == 0x60:
             raise Malformed("flags")
@@ -166,7 +166,7 @@ class Page:
         return points, facets.read(), False
 
     def read_walk(self):
-        """Mode walk: columns, triangles, facets."""
+        """Reads a solid in mode walk: columns, triangles, facets."""
         m = self.models["walk"]
         points = Columns(m, self.last_position, self.columns, self.limits).read()
         walk = Walk(m, points)
@@ -176,14 +176,14 @@ class Page:
         return points, Flags(m, walk).read(), False
 
     def read_parallelogram(self):
-        """Mode parallelogram: vertices joined where they are at one place."""
+        """Reads a solid in mode parallelogram; vertices at one position become one vertex."""
         triangles = Triangles(self.models["parallelogram"], self.last_position, not self.columns,
                               self.limits)
         points, shells = triangles.read()
         return points, shells, False
 
     def read_polygon(self):
-        """Mode polygon: fans, joined where they are copies."""
+        """Reads a solid in mode polygon; a vertex that is a copy is joined to the earlier one."""
         surface = Surface(self.models["polygon"], self.limits)
         surface.read()
         positions = Positions(surface, self.last_position, self.columns)
@@ -206,7 +206,7 @@ class Page:
 
 
 def read_page(models, data, kind):
-    """A blob or page, read and checked; what runs out of its lists is malformed."""
+    """Reads and checks a blob or page; an index outside of a list means malformed data."""
     try:
         page = Page(models, data, kind)
         page.read()
@@ -217,7 +217,7 @@ def read_page(models, data, kind):
 
 
 def read_page_file(models, data):
-    """The pages of a page file, and the page and place of each solid."""
+    """The pages of a page file, and for each solid its page and its index there."""
     if len(data) < 17 or data[:4] != FILE_MAGIC or data[-4:] != FILE_MAGIC:
         raise Malformed("magic of a page file")
     if data[4] != 1:

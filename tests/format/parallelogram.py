@@ -22,7 +22,7 @@ NUMBERS = {"Origin": ([2, 64],), "Seed": ([3, 64],),
 
 
 def quotient(a, b):
-    """a / b as IEEE 754 has it."""
+    """The quotient a / b, by IEEE 754 also for b = 0."""
     return a / b if b else math.copysign(math.inf, a) if a else math.nan
 
 
@@ -32,7 +32,7 @@ def parallelogram_bank():
 
 
 class Vertices:
-    """Reads the places of vertices, relative to the first one."""
+    """Reads the positions of vertices, as places on the axes."""
 
     def __init__(self, models, last_position, is_first, limits):
         self.m, self.limits = models, limits
@@ -45,7 +45,7 @@ class Vertices:
         self.has_guesses = models.decide("HasGuesses", 0)
 
     def add(self, cell, miss):
-        """A vertex more."""
+        """Appends a vertex with the miss of its prediction."""
         if max(map(abs, cell)) >= 2**54:
             raise Malformed("a coordinate out of range")
         self.limits.vertices(len(self.cells) + 1)
@@ -56,7 +56,7 @@ class Vertices:
         self.guesses.append(0)
 
     def read_cell(self, near, name, context):
-        """A place by its difference from another one."""
+        """Reads a position by its difference from another one."""
         before, cell = 0, []
         for k in range(3):
             offset = self.m.signed(name, context, before, bits=54)
@@ -65,7 +65,7 @@ class Vertices:
         return cell
 
     def read_seed(self, number):
-        """A vertex of a first triangle."""
+        """Reads a vertex of a first triangle."""
         if self.cells:
             self.add(self.read_cell(self.cells[-1], "Seed", number), 0.0)
         else:
@@ -80,7 +80,7 @@ class Vertices:
             self.misses[-3:] = [miss] * 3
 
     def read_tip(self, gate):
-        """The vertex beyond a gate, for which the prediction was made."""
+        """Reads the vertex beyond a gate, for which the prediction was made."""
         tip, misses = self.prediction, self.misses
         axes = sorted(range(3), key=lambda k: abs(tip.normal[k]))
         expected = 0.5 * (misses[gate.start] + misses[gate.end])
@@ -125,7 +125,7 @@ class Vertices:
             self.repeats[-1][axes[rank]] = repeated
 
     def read_guess(self, gate, scale):
-        """Which of the guesses the residuals are from."""
+        """Reads which guess the residuals belong to."""
         tip, before = self.prediction, self.guesses
         x, p = gate.next.end, gate.previous.start
         pairs = [self.last_guesses, 6 * before[gate.start] + before[gate.end],
@@ -147,7 +147,7 @@ class Vertices:
         return guess
 
     def read_repeat(self, gate, rank, k, cell):
-        """Whether a coordinate is that of a vertex nearby."""
+        """Reads whether a coordinate equals that of a vertex beside the gate."""
         u, v, o, x, p = (self.cells[w][k] for w in (gate.start, gate.end, gate.apex, gate.next.end,
                                                    gate.previous.start))
         mask = self.repeats[gate.start][k] + 2 * self.repeats[gate.end][k]
@@ -182,7 +182,7 @@ class Triangles:
         self.closings = self.news = 0
 
     def read(self):
-        """Vertices and shells of triangles."""
+        """Reads the surface; returns vertices and shells of triangles."""
         starts, component = [], 0
         while True:
             if component == 0 or self.m.decide("NewShell", 0):
@@ -201,7 +201,7 @@ class Triangles:
         return points, [triangles[begin:end] for begin, end in zip(bounds, bounds[1:])]
 
     def component(self):
-        """One connected surface."""
+        """Reads one component."""
         for number in range(3):
             self.vertices.read_seed(number)
         n = len(self.vertices.cells)
@@ -220,7 +220,7 @@ class Triangles:
             raise Malformed("a surface that is not closed")
 
     def close(self, gate):
-        """Whether a triangle fills a corner."""
+        """Reads whether a triangle fills the corner of a gate."""
         before = gate.previous
         selector = 2 if gate.next.next is before else 1 if before.is_refused else 0
         closes = self.m.decide("Close", *self.corner(gate), selector=selector)
@@ -234,7 +234,7 @@ class Triangles:
         return closes
 
     def corner(self, gate):
-        """The contexts of the triangle that would fill a corner."""
+        """The contexts of the triangle that would fill the corner of a gate."""
         at, front, prediction = self.vertices.places, self.front, self.vertices.prediction
         after, before, room = gate.next, gate.previous, gate.room
         u, v, w = at[gate.start], at[gate.end], at[after.end]
@@ -292,7 +292,7 @@ class Triangles:
                 self.closings)
 
     def extend(self, gate):
-        """A triangle with a new vertex, or one of the front elsewhere."""
+        """Reads the triangle beyond a gate: with a new vertex, or with one of the front."""
         front, vertices = self.front, self.vertices
         is_new = self.m.decide("New", bucket(gate.room * 4, 32), bucket(gate.previous.room * 4, 32),
                                self.news, (self.news & 7) * 64 + (self.closings & 63))
@@ -308,7 +308,7 @@ class Triangles:
         front.add_tip(gate, w)
 
     def join(self, gate):
-        """Which corner of the front."""
+        """Reads the corner of the front at which the triangle ends."""
         predicted, at = self.vertices.prediction.guesses[0], self.vertices.places
         listed = set()
         last, ahead = gate.previous.previous.previous, gate.next.next

@@ -10,12 +10,12 @@ LEVEL, STEEP, STANDING = 1, 2, 3
 
 
 def rounded(value):
-    """The nearest whole number, halves up."""
+    """The nearest whole number; halves are rounded up."""
     return math.floor(value + 0.5) if abs(value) < 2.0**62 else 0
 
 
 def length(value):
-    """The bit length of the magnitude."""
+    """The bit length of the magnitude of a number."""
     return abs(value).bit_length()
 
 
@@ -31,7 +31,7 @@ def cross(a, b):
 
 
 def square(v):
-    """The squared length, in doubles."""
+    """The squared length of a vector, in doubles."""
     total = float(v[0]) * v[0]
     for x in v[1:]:
         total = total + float(x) * x
@@ -49,12 +49,12 @@ def dot2(a, b):
 
 
 def minus(a, b):
-    """The difference, taken as integers."""
+    """The difference of two points, computed in integers."""
     return tuple(x - y for x, y in zip(a, b))
 
 
 class Turn:
-    """A turn of the plane's whole numbers that brings a direction near to the x axis."""
+    """A turn of the whole numbers of the plane that brings a direction near to the x axis."""
 
     def __init__(self, d):
         x, y = float(d[0]), float(d[1])
@@ -67,7 +67,7 @@ class Turn:
         self.b, self.c = y / (norm + x), -y / norm
 
     def forward(self, x, y):
-        """Turns an offset."""
+        """The offset after the turn."""
         for _ in range(self.quarters):
             x, y = y, -x
         x += rounded(self.b * y)
@@ -75,7 +75,7 @@ class Turn:
         return x + rounded(self.b * y), y
 
     def inverse(self, x, y):
-        """Turns it back."""
+        """The offset before the turn, from the offset after it."""
         x -= rounded(self.b * y)
         y -= rounded(self.c * x)
         x -= rounded(self.b * y)
@@ -85,13 +85,13 @@ class Turn:
 
 
 class Plane:
-    """Three vertices of a facet, far from one line."""
+    """The plane of a facet through three of its vertices that are far from one line."""
 
     def __init__(self):
         self.points, self.normal, self.origin = [], None, None
 
     def add(self, q):
-        """A vertex more."""
+        """Takes one more vertex of the facet into account."""
         if len(self.points) < 2:
             self.points.append(q)
             self.origin = self.points[0]
@@ -113,11 +113,11 @@ class Plane:
             self.take([q, p[1], p[2]], k, p[1])
 
     def take(self, points, normal, origin):
-        """Replaces the plane."""
+        """Replaces the plane by the given one."""
         self.points, self.normal, self.origin = points, normal, origin
 
     def kind(self):
-        """0 none, 1 level, 2 steep, 3 wall."""
+        """The kind of the plane: 0 none, 1 level, 2 steep, 3 wall."""
         n = self.normal
         if n is None:
             return 0
@@ -126,32 +126,32 @@ class Plane:
         return STANDING if n[2] * n[2] < 0.0004 * square(n) else STEEP
 
     def height(self, column):
-        """The height at a column."""
+        """The height of the plane at a column."""
         x, y = (float(c) for c in minus(column, self.origin[:2]))
         n = self.normal
         z = self.origin[2] - rounded((x * n[0] + y * n[1]) / n[2])
         return z if abs(z) < 2**53 else self.origin[2]
 
     def reach(self, column):
-        """How uncertain that is."""
+        """The distance by which the plane is continued to a column, in a measure of uncertainty."""
         x, y = (float(c) for c in minus(column, self.origin[:2]))
         return 16 * (x * x + y * y) / abs(self.normal[2])
 
 
 class LongEdges:
-    """The directions that come back."""
+    """The list of directions of edges that may come back."""
 
     def __init__(self):
         self.list = []
 
     @staticmethod
     def along(e, v):
-        """Whether e runs along v."""
+        """Whether e is nearly parallel to v."""
         d = det2(e, v)
         return d * d <= square(v) * max(0.000009 * square(e), 4.0)
 
     def take(self, e):
-        """Learns an edge."""
+        """Learns the direction of an edge."""
         if e == (0, 0):
             return
         for i, v in enumerate(self.list):
@@ -164,7 +164,8 @@ class LongEdges:
         self.list.append(e)
 
     def follow(self, d):
-        """The direction that d means, and whether the list knows it."""
+        """The direction of the list that d stands for, and whether the list has it; else d
+        itself."""
         if d == (0, 0):
             return (self.list[0], True) if self.list else (d, False)
         found, longest = None, square(d)
@@ -196,7 +197,7 @@ class Positions:
         self.heights, self.edges = [], LongEdges()
 
     def read(self):
-        """All positions; a vertex that is a copy is joined to another."""
+        """Reads all positions; a vertex that is a copy is joined to an earlier one."""
         copies = self.m.decide("HasCopies", 0)
         for v in range(len(self.place)):
             self.look_around(v)
@@ -209,7 +210,7 @@ class Positions:
             self.remember(v)
 
     def look_around(self, v):
-        """The neighbours and corners of a vertex."""
+        """Finds the neighbours and corners of a vertex."""
         w = self.w
         self.v, h = v, w.created_in[v]
         self.first = int(w.facet_of[h] == 0)
@@ -225,13 +226,13 @@ class Positions:
         self.corners = self.fan[:12]
 
     def known_pair(self, near, far):
-        """Both neighbours, each if known, the further only if the nearer is."""
+        """The two neighbours, each if known; the farther one only if the nearer one is known."""
         if near >= self.v:
             return None, None
         return near, far if far < self.v else None
 
     def read_place(self, v):
-        """The position of one vertex."""
+        """Reads the position of one vertex."""
         below = self.read_upright()
         self.upright = below is not None
         if self.upright:
@@ -249,7 +250,7 @@ class Positions:
             self.learn_edge()
 
     def remember(self, v):
-        """What later vertices see of this one."""
+        """Keeps the values of this vertex that later vertices use."""
         place, w = self.place[v], self.w
         if place[2] in self.heights:
             self.heights.remove(place[2])
@@ -264,7 +265,7 @@ class Positions:
                 self.vertex_upright[v] += 1
 
     def read_upright(self):
-        """The neighbour in whose column the vertex is, if any."""
+        """Reads the neighbour in whose column the vertex is, if there is one."""
         w, n = self.w, self.n
         known = [h for h in self.corners if w.end(h) < self.v]
         m = len(known)
@@ -282,14 +283,14 @@ class Positions:
         return None
 
     def predict(self):
-        """Frame, base, direction and whether it is steady."""
+        """The frame, the base and the direction of a prediction, and whether it is steady."""
         frame, base, d, steady = self.predict_any()
         if max(abs(c) for c in base) >= 2**53:
             base = self.place[0][:2]
         return frame, base, d, steady
 
     def predict_any(self):
-        """The same, wherever the base is."""
+        """The prediction as `predict` returns it, with a base that may be out of range."""
         if self.v == 0:
             return START, self.last_position[:2], (0, 0), False
         walls = []
@@ -323,7 +324,7 @@ class Positions:
         return frame, a, d, steady
 
     def predict_by_walls(self, walls):
-        """From one wall or two."""
+        """The prediction from one wall or two."""
         first = walls[0]
         n, origin, at = first.normal[:2], first.origin[:2], self.place
         d = (-n[1], n[0])
@@ -344,7 +345,7 @@ class Positions:
         return WALL, (origin[0] + rounded(d[0] * s), origin[1] + rounded(d[1] * s)), d, False
 
     def read_column(self):
-        """x and y of a vertex."""
+        """Reads x and y of a vertex."""
         frame, base, d, steady = self.predict()
         turn = Turn(d)
         if self.columns:
@@ -374,7 +375,7 @@ class Positions:
         return base[0] + x, base[1] + y
 
     def read_known_column(self, frame, base, turn):
-        """A column of the page, if it is one."""
+        """Reads a column of the page, if the vertex is in one."""
         at = bisect.bisect_left(self.columns, tuple(base))
         around, most = (2048, 2048) if frame == START else (64, 16)
         k = 4 if frame == CORNER else 1
@@ -396,7 +397,7 @@ class Positions:
         return ranked[rank][1]
 
     def learn_edge(self):
-        """Adds the edge from before, as far back as it is straight."""
+        """Learns the edge from the vertex before, as far back as it is straight."""
         w, at = self.w, self.place
         e = minus(at[self.v][:2], at[self.before][:2])
         h = w.previous(w.created_in[self.v])
@@ -413,7 +414,7 @@ class Positions:
         self.edges.take(e)
 
     def read_height(self, below):
-        """z of a vertex."""
+        """Reads z of a vertex."""
         u, v, at = int(self.upright), self.v, self.place
         if v == 0:
             family = "FirstOffset" if self.columns else "FirstPosition"
@@ -441,7 +442,7 @@ class Positions:
                                  selector=u, bits=55)
 
     def height_candidates(self, below):
-        """Heights that the vertex may share, each with its source."""
+        """The heights that the vertex may share, each with its source."""
         at, result = self.place, []
         listed = [(w, 0) for w in [self.before] if w is not None]
         listed += [(w, 1) for w in [self.after] if w is not None]
@@ -455,7 +456,7 @@ class Positions:
         return result
 
     def height_base(self, below):
-        """What the height is counted from, and its class."""
+        """The height from which that of the vertex is counted, and its class."""
         for f, u in enumerate((self.before, self.after)):
             if u is not None and (below is None or self.place[u][:2] != self.column):
                 return self.place[u][2], f

@@ -20,7 +20,7 @@ def polygon_bank():
 
 
 class Chain:
-    """Facets known around a vertex that follow each other."""
+    """Known facets around a vertex that follow each other."""
 
     def __init__(self, into, out):
         self.into, self.out = into, out
@@ -53,7 +53,7 @@ class Surface:
         return self.origin[self.next(h)]
 
     def read(self):
-        """All shells."""
+        """Reads all shells."""
         shell = 0
         while True:
             self.limits.shells(shell + 1)
@@ -69,7 +69,7 @@ class Surface:
             shell += 1
 
     def component(self):
-        """One connected surface."""
+        """Reads one component."""
         self.turn = len(self.origin)
         self.facet(None, 0)
         while self.turn < len(self.origin):
@@ -79,7 +79,7 @@ class Surface:
             self.turn += 1
 
     def facet(self, gate, level):
-        """One facet with all its rings."""
+        """Reads one facet with all its rings."""
         self.gate = gate
         facet = len(self.facet_level)
         self.limits.facets(facet + 1)
@@ -95,7 +95,7 @@ class Surface:
         self.facet_exterior.append(self.m.uniform(r) if r > 1 else 0)
 
     def new_vertex(self, level, n):
-        """A vertex and its degree."""
+        """Reads the degree of a new vertex and returns the vertex."""
         self.limits.vertices(len(self.degree) + 1)
         d, last = 2, self.last_degree
         while True:
@@ -116,7 +116,7 @@ class Surface:
 
 
 class Ring:
-    """One ring while it is read: vertices, and the known twin of the edge from each to the next."""
+    """A ring while it is read: its vertices, and for each edge the twin, if known."""
 
     def __init__(self, walk, facet, number):
         self.w, self.m, self.facet, self.number = walk, walk.m, facet, number
@@ -126,7 +126,7 @@ class Ring:
         self.backward = 0
 
     def read(self):
-        """The whole ring."""
+        """Reads the whole ring."""
         self.w.limits.rings(len(self.w.ring_begin) + 1)
         self.begin()
         if not self.closed:
@@ -136,7 +136,7 @@ class Ring:
         self.append()
 
     def begin(self):
-        """By a gate, at a new vertex or at a known one."""
+        """Reads the start of the ring: at a gate, at a new vertex or at a known one."""
         w = self.w
         if self.number == 0 and w.gate is not None:
             return self.begin_at_gate(w.gate)
@@ -157,13 +157,14 @@ class Ring:
         return None
 
     def add_new(self):
-        """A new vertex at the end."""
+        """Appends a new vertex to the ring."""
         v = self.w.new_vertex(self.level, self.size)
         self.new.append(v)
         self.vertices.append(v)
 
     def begin_at_gate(self, gate):
-        """The edge along a gate, and what follows from it at both ends."""
+        """Begins with the edge along a gate, and adds the edges that follow from it at both
+        ends."""
         w = self.w
         self.gate_size = w.ring_end[w.ring_of[gate]] - w.ring_begin[w.ring_of[gate]]
         self.vertices, self.twins = [w.end(gate), w.origin[gate]], [gate]
@@ -186,13 +187,13 @@ class Ring:
                 self.add(w.end(out), front=True)
 
     def add(self, vertex, front=False):
-        """A known vertex at one of the ends."""
+        """Adds a known vertex at one of the two ends."""
         if vertex in self.vertices:
             raise Malformed("a vertex twice in a ring")
         self.vertices.insert(0 if front else len(self.vertices), vertex)
 
     def follow(self, chain):
-        """The edge along the chain's `in`, backward."""
+        """Adds the edge along the half-edge `in` of the chain, backward."""
         vertex = self.w.origin[chain.into]
         self.twins.append(chain.into)
         if vertex == self.vertices[0]:
@@ -201,7 +202,7 @@ class Ring:
             self.add(vertex)
 
     def own(self):
-        """The chain by which the ring came to its end, if along a known edge."""
+        """The chain along which the ring came to its end, if its last edge has a known twin."""
         if self.twins and self.twins[-1] is not None:
             for chain in self.w.chains[self.vertices[-1]]:
                 if chain.out == self.twins[-1]:
@@ -210,7 +211,7 @@ class Ring:
         return None
 
     def loop(self):
-        """The entries of the front from the end, and whether it reaches the start."""
+        """The vertices of the front from the end of the ring, and whether they reach its start."""
         w, end = self.w, self.vertices[-1]
         if not w.chains[end]:
             return [], False
@@ -228,7 +229,7 @@ class Ring:
         return entries, False
 
     def read_size(self):
-        """The number of vertices."""
+        """Reads the number of vertices of the ring."""
         run = len(self.vertices)
         least, d = max(run, 3), self.w.last_degree
         p = 3 if self.number else self.level
@@ -245,7 +246,7 @@ class Ring:
         return least + 24 + self.m.number("Long", 0, bits=28)
 
     def step(self):
-        """One edge from the end."""
+        """Reads one edge from the end of the ring."""
         w, n = self.w, self.size
         e, own = self.vertices[-1], self.own()
         chains = w.chains[e]
@@ -271,7 +272,7 @@ class Ring:
             self.new_edge(count)
 
     def new_edge(self, count):
-        """An edge without a known twin to a vertex other than the start."""
+        """Reads an edge without a known twin that leads to a vertex other than the start."""
         w, n, level = self.w, self.size, self.level
         entries, reaches = self.loop()
         l = 2 * cap(len(entries), 6) + int(reaches)
@@ -291,7 +292,7 @@ class Ring:
             self.add(self.m.uniform(len(w.degree)))
 
     def append(self):
-        """Ends the ring: half-edges, twins, chains."""
+        """Ends the ring: adds its half-edges, twins and chains to the surface."""
         w, n, first = self.w, len(self.vertices), len(self.w.origin)
         ring = len(w.ring_begin)
         w.ring_begin.append(first)
@@ -312,7 +313,7 @@ class Ring:
             self.corner(v, first + (i - 1) % n, first + i)
 
     def corner(self, v, into, out):
-        """The facet's corner at v, between its half-edges into and out of v."""
+        """Adds the corner of the facet at v, between its half-edges into and out of v."""
         w = self.w
         chains = w.chains[v]
         before = next((c for c in chains if w.twin[into] == c.out), None)

@@ -24,7 +24,7 @@ LEAST_GOLDENS = 51
 
 
 def as_json(page):
-    """What a page holds, in canonical form."""
+    """The content of a page as JSON values, its solids in canonical form."""
     frame = page.frame
     return {"tolerances": frame.tolerances, "proof": ["tetrahedralization", "boundary"][frame.proof],
             "rule_set": frame.rule_set, "srid": frame.srid,
@@ -36,14 +36,14 @@ def as_json(page):
 
 
 def pages_of(models, data, kind):
-    """The pages in bytes of a kind."""
+    """The pages in data of the given kind."""
     if kind == PAGE_FILE:
         return read_page_file(models, data)[0]
     return [read_page(models, data, kind)]
 
 
 def kind_of(data):
-    """What bytes seem to be."""
+    """The kind that the first bytes of the data indicate."""
     if data[:4] == FILE_MAGIC:
         return PAGE_FILE
     return PAGE if data[2:3] == bytes([PAGE]) else BLOB
@@ -62,7 +62,8 @@ def main(arguments):
 
 
 def check(models, folder):
-    """Reads the golden files, and refuses as stated those that are none."""
+    """Reads the golden files of a folder, and checks that malformed data is refused with the stated
+    errors."""
     wrong, found = 0, 0
     for path in sorted(path for path in folder.iterdir() if path.suffix in KINDS):
         found += 1
@@ -80,7 +81,7 @@ def check(models, folder):
 
 
 def check_refused(models, path):
-    """Bytes that no encoder writes, each with its error."""
+    """Checks that data which no encoder writes is refused with its error."""
     wrong = 0
     with path.open(newline="", encoding="ascii") as file:
         for row in csv.DictReader(file):

@@ -20,29 +20,29 @@ class Section:
         self.data, self.at = data, 0
 
     def byte(self):
-        """The next byte."""
+        """Reads the next byte."""
         self.at += 1
         return self.data[self.at - 1]
 
     def varint(self):
-        """An unsigned number."""
+        """Reads an unsigned number."""
         value, self.at = varint(self.data, self.at)
         return value
 
     def count(self, least_bytes):
-        """A count of things that take at least so many bytes each."""
+        """Reads the number of elements that take at least so many bytes each."""
         value = self.varint()
         if value * least_bytes > len(self.data) - self.at:
             raise Malformed("a section that is too short for its count")
         return value
 
     def zigzag(self):
-        """A signed number."""
+        """Reads a signed number."""
         value = self.varint()
         return -(value + 1) // 2 if value & 1 else value // 2
 
     def double(self):
-        """A coordinate that is no integer."""
+        """Reads a coordinate that is not an integer."""
         value = struct.unpack_from("<d", self.data, self.at)[0]
         self.at += 8
         if not math.isfinite(value) or (value == 0 and math.copysign(1, value) < 0):
@@ -50,7 +50,7 @@ class Section:
         return value
 
     def finish(self, points=()):
-        """Requires the end, and ascending points."""
+        """Requires that the section ends here, and that the points ascend."""
         if self.at != len(self.data):
             raise Malformed("a section that is longer than its contents")
         if any(p >= q for p, q in zip(points, points[1:])):
@@ -58,7 +58,7 @@ class Section:
         return points
 
     def vertices(self, limits):
-        """The section of vertices."""
+        """Reads the section of vertices."""
         kind, count = self.byte(), self.varint()
         limits.vertices(count)
         if kind > 1 or 3 * count > len(self.data) - self.at:
@@ -78,7 +78,7 @@ class Section:
         return self.finish(result)
 
     def steiner(self):
-        """The section of Steiner vertices."""
+        """Reads the section of Steiner vertices."""
         result = []
         for _ in range(self.count(3)):
             whole, point = self.byte(), []
@@ -94,7 +94,7 @@ class Section:
         return self.finish(result)
 
     def unrecovered(self, nodes):
-        """The section of unrecovered faces."""
+        """Reads the section of unrecovered faces."""
         result, a = [], 0
         for _ in range(self.count(3)):
             a += self.varint()
@@ -107,7 +107,7 @@ class Section:
         return self.finish(result)
 
     def facets(self, vertices, limits):
-        """The section of listed facets."""
+        """Reads the section of listed facets."""
         shells, facets = [], 0
         count = self.count(1)
         limits.shells(count)
@@ -121,7 +121,7 @@ class Section:
         return shells
 
     def facet(self, vertices):
-        """One listed facet."""
+        """Reads one listed facet."""
         head = self.varint()
         sizes = [head // 2]
         if head & 1:

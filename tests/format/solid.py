@@ -7,7 +7,7 @@ from entropy import Malformed, crc32c
 
 
 def is_matched(rings):
-    """True if each directed edge is met by its reverse exactly as often."""
+    """Whether each directed edge is met by its reverse exactly as often as it occurs."""
     balance = {}
     for ring in rings:
         for a, b in zip(ring, ring[1:] + ring[:1]):
@@ -17,7 +17,8 @@ def is_matched(rings):
 
 
 class Solid:
-    """Vertices on the lattice; shells of facets of rings of vertex numbers, exterior ones first."""
+    """A solid: vertices on the lattice; shells of facets of rings of vertex numbers, the exterior
+    shell and rings first."""
 
     def __init__(self, vertices, shells, limits):
         limits.vertices(len(vertices))
@@ -37,7 +38,7 @@ class Solid:
 
     @staticmethod
     def canonical_shell(shell, number):
-        """The shell in canonical form."""
+        """A shell in canonical form."""
         facets = []
         for facet in shell:
             rings = []
@@ -49,8 +50,8 @@ class Solid:
         return sorted(facets)
 
     def check_closed(self):
-        """Requires that each directed edge is met by its reverse exactly as often, as the rings are
-        or with split edges."""
+        """Requires that each directed edge is met by its reverse exactly as often as it occurs, in
+        the rings as given or in the divided rings."""
         if not self.shells or not all(self.shells) or not all(self.facets):
             raise Malformed("a shell or facet of nothing")
         if any(len(ring) < 3 or len(set(ring)) < len(ring) for ring in self.rings):
@@ -59,7 +60,7 @@ class Solid:
             raise Malformed("a boundary that is not closed")
 
     def divided_rings(self):
-        """The rings with the vertices of other rings of their facet that split their edges."""
+        """The rings, each with the vertices of other rings of its facet that split its edges."""
         for facet in self.facets:
             for ring in facet:
                 others = {v for other in facet for v in other} - set(ring)
@@ -70,7 +71,7 @@ class Solid:
                 yield divided
 
     def is_between(self, a, b, v):
-        """True if vertex v lies exactly inside the edge from a to b."""
+        """Whether vertex v lies exactly inside the edge from a to b."""
         a, b, v = ([Fraction(c) for c in self.vertices[i]] for i in (a, b, v))
         along, offset = ([q - p for p, q in zip(a, end)] for end in (b, v))
         return (all(min(p, q) <= c <= max(p, q) for p, q, c in zip(a, b, v))
@@ -78,7 +79,7 @@ class Solid:
                         for i, j in ((0, 1), (1, 2), (2, 0))))
 
     def checksum(self, frame, origin, arrangement=None):
-        """The CRC-32C of the canonical serialization."""
+        """The CRC-32C of the solid in canonical form, serialized."""
         data = struct.pack("<3dBHIB", *frame.tolerances, frame.proof, frame.rule_set, frame.srid,
                            frame.kind)
         for mantissa, exponent in frame.steps + origin:

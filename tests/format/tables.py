@@ -17,7 +17,7 @@ from parallelogram import parallelogram_bank
 from polygon_surface import polygon_bank
 from walk import walk_bank
 
-# The banks of a document, by the part of the document that describes them.
+# The banks that each document describes, each with the heading of its part.
 BANKS = {"format.md": [("## Frame", frame_bank), ("## Order", order_bank)],
          "format-walk.md": [("# Mode walk", walk_bank)],
          "format-polygon.md": [("# Mode polygon", polygon_bank)],
@@ -28,7 +28,7 @@ CLASSES = re.compile(r" \[(\d+)\]$")
 
 
 def cells_of(line):
-    """The cells of a row."""
+    """The cells of a table row."""
     return [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line.strip())[1:-1]]
 
 
@@ -45,7 +45,7 @@ def split_list(text):
 
 
 class Tables:
-    """The tables of one part of a document."""
+    """The tables in one part of a document."""
 
     def __init__(self, lines):
         self.classes, self.models, self.errors = {}, {}, []
@@ -61,13 +61,13 @@ class Tables:
                 self.row(header, cells_of(line))
 
     def define(self, cell):
-        """Numbers of classes that a cell states: "a, b [4]"."""
+        """Notes the numbers of classes that a cell states: "a, b [4]"."""
         found = CLASSES.search(cell)
         for name in cell[:found.start()].split(", ") if found else []:
             self.classes[re.sub(r"\(.*", "", name)] = int(found.group(1))
 
     def row(self, header, cells):
-        """A row of definitions or of families."""
+        """Reads a row of definitions or of families."""
         if header[0].startswith(DEFINES):
             self.define(cells[0])
         for i, name in enumerate(header):
@@ -76,7 +76,7 @@ class Tables:
                 self.family(header[i:end + 1], cells[i:end + 1])
 
     def family(self, header, cells):
-        """A row of families: an input of those named in this row, or before."""
+        """Reads a row of families: an input of those named in this row, or in a row before."""
         if cells[0]:
             found = MODEL.findall(cells[0])
             if not self.last or not self.last[-1].endswith(","):
@@ -99,14 +99,14 @@ class Tables:
             self.check(self.last[-1], cells[contexts[0]], size)
 
     def count(self, text):
-        """The number of classes of an element, or nothing."""
+        """The number of classes of an element, or none."""
         found = CLASSES.search(text) or re.match(r"(?:cap|bucket|log)\(.*, (\d+)\)$", text)
         if found:
             return int(found.group(1))
         return self.classes.get(re.sub(r"\(.*", "", text))
 
     def check(self, name, context, size):
-        """Whether the classes of a context make the size."""
+        """Checks that the classes of a context make the size of its input."""
         listed = context.startswith("(") and context.endswith(")")
         counts = [self.count(part) for part in (split_list(context) if listed else [context])]
         if None in counts:
@@ -122,7 +122,7 @@ class Tables:
 
 
 def compare(tables, bank):
-    """What the tables say otherwise than the bank."""
+    """The differences between the tables and the bank, as messages."""
     errors, kinds = list(tables.errors), {"F": 0, "N": 0}
     for name, model in bank.named.items():
         kind = "N" if hasattr(model, "length") else "F"
@@ -136,7 +136,7 @@ def compare(tables, bank):
 
 
 def main(arguments):
-    """Compares all documents."""
+    """Compares the tables of all documents."""
     errors, checked = [], 0
     for document, banks in BANKS.items():
         text = (pathlib.Path(arguments[0]) / document).read_text(encoding="utf-8")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mode parallelogram, where a tip is expected, from docs/format-parallelogram.md, "Prediction"."""
+"""Mode parallelogram, the prediction of a tip, from docs/format-parallelogram.md, "Prediction"."""
 import math
 
 from vectors import cosine_bucket, cross, dot, minus, plus, size, times, unit
@@ -8,12 +8,12 @@ MEMORY = 0.995
 
 
 def tamed(x):
-    """Clamped to +-9e15, the range of coordinates; NaN becomes -9e15."""
+    """x limited to +-9e15, the range of coordinates; NaN becomes -9e15."""
     return min(x, 9e15) if x > -9e15 else -9e15
 
 
 class LeastSquares:
-    """Coefficients that follow samples."""
+    """A linear prediction whose coefficients learn from samples."""
 
     def __init__(self, first, confidence):
         n = len(first)
@@ -22,14 +22,14 @@ class LeastSquares:
         self.y = [confidence * c for c in first]
 
     def predict(self, features):
-        """The sum of coefficients and features."""
+        """The sum of the features times their coefficients."""
         total = 0.0
         for c, f in zip(self.coefficients, features):
             total += c * f
         return total
 
     def learn(self, features, target, weight):
-        """One sample."""
+        """Adds one sample."""
         for i, f in enumerate(features):
             weighted = weight * f
             for j in range(i + 1):
@@ -37,7 +37,7 @@ class LeastSquares:
             self.y[i] += weighted * target
 
     def solve(self):
-        """The coefficients anew; then the past counts less."""
+        """Computes the coefficients again; then reduces the weight of the past."""
         n = len(self.y)
         lower = [[0.0] * n for _ in range(n)]
         for i in range(n):
@@ -70,19 +70,19 @@ class LeastSquares:
 
 
 def span(room):
-    """How far a corner is open."""
+    """The class of how far a corner of a gate is open."""
     return 0 if room < 1.7 else 1 if room < 2.7 else 2 if room < 3.8 else 3
 
 
 class Prediction:
-    """What is expected at a gate, and what is learnt from the tip that came."""
+    """Predicts the tip of a gate, and learns from the true one."""
 
     def __init__(self):
         self.predictors = [LeastSquares([1.0] + [0.0] * 8, 3.0) for _ in range(16)]
         self.shift_predictors = [LeastSquares([0.5], 4.0) for _ in range(64)]
 
     def predict(self, front, gate):
-        """Guesses, normal, size and spans at a gate."""
+        """Computes guesses, normal, size and spans at a gate."""
         at, after, before = front.places, gate.next, gate.previous
         u, v, o = at[gate.start], at[gate.end], at[gate.apex]
         middle, along = times(plus(u, v), 0.5), minus(v, u)
@@ -122,7 +122,7 @@ class Prediction:
         self.guesses = [tuple(map(tamed, guess)) for guess in guesses]
 
     def shift_along(self, axis, slope):
-        """The shift along the last axis."""
+        """The predicted shift of the tip along the last axis."""
         self.shift = self.predicted_shift = 0.0
         if self.normal[axis] == 0:
             return 0.0
@@ -131,13 +131,13 @@ class Prediction:
         return self.predicted_shift
 
     def learn_shift(self, missed, expected):
-        """What the shift should have been."""
+        """Learns the shift that would have been right."""
         rest = missed - self.predicted_shift
         weight = 1 / (rest * rest + expected * expected + 1)
         self.shift_predictors[self.bends].learn([self.shift], missed, weight)
 
     def learn(self, place, expected):
-        """The tip that came."""
+        """Learns from the true tip."""
         missed = size(minus(place, self.guesses[0]))
         weight = 1 / (missed * missed + expected * expected + 1)
         predictor = self.predictors[self.spans]

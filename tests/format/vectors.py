@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vectors of doubles, from docs/format.md, "Conventions", and their classes in the modes' texts."""
+"""Vectors of doubles, from docs/format.md, "Conventions", and the classes of quantities in the
+texts of the modes."""
 import math
 
 HALF_TURN = 3.141592653589793
@@ -16,33 +17,33 @@ def plus(p, q):
 
 
 def times(p, s):
-    """A point scaled."""
+    """A vector multiplied by a number."""
     return p[0] * s, p[1] * s, p[2] * s
 
 
 def cross(u, v):
-    """The cross product."""
+    """The cross product of two vectors."""
     return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
 
 
 def dot(u, v):
-    """The scalar product."""
+    """The scalar product of two vectors."""
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 def size(u):
-    """The length."""
+    """The length of a vector."""
     return math.sqrt(dot(u, u))
 
 
 def unit(u):
-    """A vector divided by its length, or 0."""
+    """A vector divided by its length, or 0 for length 0."""
     length = size(u)
     return times(u, 1 / length) if length > 0 else (0.0, 0.0, 0.0)
 
 
 def angle_between(a, b):
-    """About the angle between two vectors."""
+    """An approximation of the angle between two vectors."""
     along, across = dot(a, b), size(cross(a, b))
     least = abs(along)
     if not least + across > 0:
@@ -56,7 +57,7 @@ def angle_between(a, b):
 
 
 def bucket(x, n):
-    """The floor, limited to 0..n - 1."""
+    """The floor of x, limited to 0..n - 1."""
     if not x > 0:
         return 0
     return n - 1 if x >= n else int(x)

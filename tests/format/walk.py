@@ -24,7 +24,7 @@ def walk_bank():
 
 
 def below(x, bounds):
-    """How many of the first bounds x does not reach."""
+    """The number of bounds at the start of the list that x is below."""
     return next((k for k, bound in enumerate(bounds) if x >= bound), len(bounds))
 
 
@@ -36,7 +36,8 @@ def octave(x, zero, classes):
 
 
 def circumsphere(b, c, d):
-    """Centre and squared radius of the sphere through 0, b, c, d; none without volume."""
+    """Centre and squared radius of the sphere through 0, b, c, d; none if the four points are in
+    one plane."""
     cd, db, bc = cross(c, d), cross(d, b), cross(b, c)
     volume = 2 * dot(b, cd)
     if volume == 0:
@@ -76,13 +77,13 @@ class Faces:
         self.shapes = {}
 
     def shape(self, face):
-        """Sphere, ratio and gabriel of a face."""
+        """Sphere, ratio and gabriel of a face, computed once."""
         if face not in self.shapes:
             self.shapes[face] = self.find_shape(face)
         return self.shapes[face]
 
     def find_shape(self, face):
-        """From the spheres on both sides."""
+        """Computes sphere, ratio and gabriel of a face from the spheres on its two sides."""
         at = self.points
         b, c = minus(at[face[1]], at[face[0]]), minus(at[face[2]], at[face[0]])
         bc, normal = minus(at[face[2]], at[face[1]]), cross(b, c)
@@ -103,7 +104,7 @@ class Faces:
 
 
 class Gate:
-    """An open half-edge a -> b with the triangle (a, b, o)."""
+    """An open half-edge a -> b of the known triangle (a, b, o)."""
 
     def __init__(self, points, a, b, o):
         self.points, self.a, self.b, self.o = points, points[a], points[b], points[o]
@@ -112,7 +113,7 @@ class Gate:
         self.length2, self.normal2 = dot(self.e, self.e), dot(self.normal, self.normal)
 
     def continuation(self, w):
-        """Bend, side, deviation, radius, parallelogram of a vertex."""
+        """Bend, side, deviation, radius and parallelogram of a vertex beyond the gate."""
         from_a, from_b = minus(self.points[w], self.a), minus(self.points[w], self.b)
         normal = cross(from_b, self.e)
         normal2 = dot(normal, normal)
@@ -131,13 +132,13 @@ class Gate:
 
 
 class Candidate:
-    """A vertex that may close a gate's triangle."""
+    """A vertex that may be the third corner of the triangle beyond a gate."""
 
     def __init__(self, vertex, selector, contexts):
         self.vertex, self.selector, self.contexts, self.probability = vertex, selector, contexts, 0
 
     def key(self):
-        """The most probable first, then the least vertex."""
+        """The key of a sort: the most probable candidate first, among equals the least vertex."""
         return -self.probability, self.vertex
 
 
@@ -156,7 +157,7 @@ class Walk:
         self.steps_left = 256 * self.n + 2**20
 
     def read(self):
-        """All components."""
+        """Reads all components."""
         self.manifold = self.m.decide("Rare", 0)
         while True:
             if not all(self.in_any):
@@ -170,23 +171,23 @@ class Walk:
         self.component_first.append(len(self.triangles))
 
     def tail(self, h):
-        """Where a half-edge begins."""
+        """The vertex where a half-edge begins."""
         return self.triangles[h // 3][h % 3]
 
     def head(self, h):
-        """Where it ends."""
+        """The vertex where a half-edge ends."""
         return self.triangles[h // 3][(h + 1 - h // 3 * 3) % 3]
 
     def previous(self, h):
-        """The half-edge before it in its triangle."""
+        """The half-edge before h in its triangle."""
         return h + 2 if h % 3 == 0 else h - 1
 
     def is_open(self, h):
-        """Whether no triangle is beyond."""
+        """Whether no triangle is known beyond a half-edge."""
         return self.twin[h] is None
 
     def component(self, seed):
-        """One component."""
+        """Reads one component."""
         self.leaving = [[] for _ in range(self.n)]
         self.by_ends, self.put, self.queue, self.open = {}, {}, [], 0
         self.read_seed(seed)
@@ -208,7 +209,7 @@ class Walk:
                 raise Malformed("too many triangles")
 
     def add(self, triangle):
-        """A triangle more, and what it puts into the queue."""
+        """Adds a triangle, and puts the half-edges that it changes into the queue."""
         t = len(self.triangles)
         self.triangles.append(triangle)
         for k in range(3):
@@ -245,11 +246,11 @@ class Walk:
             heapq.heappush(self.queue, (-now, h))
 
     def greatest(self):
-        """The probability of the first candidate."""
+        """The probability of the most probable candidate, 0 without candidates."""
         return max((c.probability for c in self.candidates), default=0)
 
     def is_possible(self, w):
-        """Whether the gate's triangle may end at w."""
+        """Whether the triangle beyond the gate may end at w."""
         return (w not in self.ends and (self.a, w) not in self.by_ends
                 and (w, self.b) not in self.by_ends
                 and not (self.manifold and self.is_closed(w)))
@@ -260,7 +261,7 @@ class Walk:
             self.is_open(h) or self.is_open(self.previous(h)) for h in self.leaving[v])
 
     def state(self, w):
-        """What w is to the front."""
+        """The class of a vertex w at the front: unused, used, closing, or closed."""
         left = self.by_ends.get((w, self.a))
         right = self.by_ends.get((self.b, w))
         closing = int(left is not None and self.is_open(left))
@@ -272,7 +273,7 @@ class Walk:
         return int(bool(self.leaving[w]))
 
     def describe(self, w, face, count):
-        """The contexts of a candidate."""
+        """A candidate with its contexts."""
         if face:
             sphere, ratio, gabriel = self.faces.shape(face)
         else:
@@ -294,12 +295,12 @@ class Walk:
             ((12 * radius + bend) * 4 + closes) * 4 + gabriel])
 
     def score(self, family, listed):
-        """Gives each candidate its probability."""
+        """Computes the probability of each candidate."""
         for c in listed:
             c.probability = self.m.bank[family].mixed(c.contexts, c.selector)[1]
 
     def list_candidates(self, h):
-        """The vertices of the faces at a gate, then those that close."""
+        """Lists the candidates of a gate: the vertices of its faces, then those that close."""
         a, b, o = self.tail(h), self.head(h), self.tail(self.previous(h))
         self.a, self.b, self.ends = a, b, (a, b, o)
         self.gate = Gate(self.faces.points, a, b, o)
@@ -319,7 +320,7 @@ class Walk:
         self.score("Candidate", self.candidates)
 
     def read_gate(self, h):
-        """The triangle beyond a gate, whose candidates are listed."""
+        """Reads the triangle beyond a gate whose candidates are listed."""
         self.candidates.sort(key=Candidate.key)
         for i, c in enumerate(self.candidates):
             following = self.candidates[i + 1].probability if i + 1 < len(self.candidates) else 0
@@ -335,7 +336,7 @@ class Walk:
         return self.add((self.b, self.a, self.read_distant()))
 
     def read_distant(self):
-        """Any other vertex."""
+        """Reads a distant candidate."""
         self.steps_left -= len(self.faces.neighbours[self.a]) + len(self.faces.neighbours[self.b])
         near = self.faces.neighbours[self.a] | self.faces.neighbours[self.b]
         distant = [self.describe(w, None, 0) for w in near - self.listed if self.is_possible(w)]
@@ -352,7 +353,7 @@ class Walk:
         return w
 
     def read_seed(self, s):
-        """The first triangle of a component."""
+        """Reads the first triangle of a component."""
         outward, inward, inner = [], [], []
         for face in sorted(face for face in self.faces.apexes if s in face):
             i, j, k = face

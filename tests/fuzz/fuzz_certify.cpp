@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the validator and the codec behind it: small solids on a coarse grid, full
-// of coincidences. Input: scale (1 byte), number of vertices (1), their coordinates (3 each), then
-// 0 for the end of a facet, 255 for the end of a shell, else a ring: its size and its vertices. The
-// report must agree with itself and with that of the other proof, and what is valid must come back
-// equal from its blob.
+// libFuzzer harness of the validator and the codec behind it: small solids on a coarse grid, with
+// many coincidences. Input: scale (1 byte), number of vertices (1), their coordinates (3 each),
+// then bytes: 0 ends a facet, 255 ends a shell, any other begins a ring and gives its size, before
+// its vertices. The report must be consistent and must not contradict that of the other proof, and
+// a valid solid must come back equal from its blob.
 #include <algorithm>
 #include <array>
 
@@ -20,7 +20,7 @@ using namespace watertight;
 
 constexpr std::size_t kMaxVertices = 24;
 constexpr std::size_t kMaxCorners = 160;
-constexpr std::uint8_t kFloats = 4;  // bit of the scale: coordinates on no common grid
+constexpr std::uint8_t kFloats = 4;  // the bit of the scale for coordinates on no common grid
 constexpr std::array<double, 4> kScales{1, 3, 1048577, 562949953421311};
 
 Result<Solid> solid_of(ByteReader reader) {

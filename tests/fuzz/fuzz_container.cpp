@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the reader of Watertight files. The input is taken as a file, with its last
-// four bytes replaced by the right checksum; and as the one part of one (two bytes of the length of
-// its texts, the texts, page file and blobs), whose texts are compressed here so that what is
-// behind them is reached. The documents or an Error must come out, and a document must be written
-// or refused with an Error.
+// libFuzzer harness of the reader of Watertight files. The input is read twice: as a file, with its
+// last four bytes replaced by the right checksum; and as the only part of a file (the length of the
+// texts in two bytes, the texts, the page file and the blobs). The harness compresses the texts of
+// that part itself, so that the parser of the bytes after them is reached. The reader must return
+// the documents or an Error, and a document must be written or refused with an Error.
 #include <algorithm>
 
 #include "base/checksum.h"
@@ -24,7 +24,7 @@ Bytes with_checksum(ByteView bytes) {
   return std::move(writer).bytes();
 }
 
-/// A whole file of these texts, pages and blobs, but for the checksum.
+/// A whole file of the given texts, pages and blobs, without the checksum.
 Bytes around(ByteView data) {
   ByteReader reader(data);
   const std::size_t size = reader.u16();
@@ -37,7 +37,7 @@ Bytes around(ByteView data) {
   writer.varint(packed->bytes.size());
   writer.append(packed->bytes);
   writer.append(reader.take(reader.remaining()));
-  writer.u8(0);  // no more parts
+  writer.u8(0);  // the mark after the last part
   writer.u32(0);
   return std::move(writer).bytes();
 }

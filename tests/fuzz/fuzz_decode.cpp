@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the blob decoder. What decodes must be a boundary that encodes again.
+// libFuzzer harness of the blob decoder. A blob that decodes must give a boundary that can be
+// encoded again.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

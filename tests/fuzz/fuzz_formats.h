@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The promise of every reader on any bytes: an Error that says something, or a document that can be
-// written and then reads as the same solids.
+// Checks of the promise that every reader makes for any bytes: an Error with a message, or a
+// document that can be written and then gives the same solids when read.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,8 @@ inline void require_same_solids(const Document& a, const Document& b) {
   }
 }
 
-/// Reads, writes in the same format, reads again. Writing may be refused only as unsupported.
+/// Reads a document, writes it in the same format, and reads the result. The writer may refuse a
+/// document only as unsupported.
 inline void check_reader(ByteView bytes, Format format, bool is_split) {
   formats::ReadOptions options;
   options.limits = small_limits();
@@ -50,15 +51,15 @@ inline void check_reader(ByteView bytes, Format format, bool is_split) {
     require(written.error().code == ErrorCode::unsupported);
     return;
   }
-  options.limits.bytes = 1U << 26U;  // decimals of large exponents print long
+  options.limits.bytes = 1U << 26U;  // numbers with large exponents are printed with many digits
   options.limits.vertices = 1'000'000;
   const auto again = formats::read_document(*written, format, options);
   require(again.has_value());
   require_same_solids(*document, *again);
 }
 
-/// For formats that are read only: reading is deterministic, the document says what it is, and what
-/// WKT can hold of it comes back from there.
+/// Checks a format that is read only: two readings give the same document, the document states its
+/// format, and solids that WKT can hold come back from WKT.
 inline void check_read_only(ByteView bytes, Format format) {
   formats::ReadOptions options;
   options.limits = small_limits();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the GML reader. What it reads can be written as other formats, and those
-// texts are read again.
+// libFuzzer harness of the GML reader. A document that it reads must be writable in other formats,
+// and the written texts must be readable.
 #include <algorithm>
 
 #include "fuzz_formats.h"
@@ -23,7 +23,7 @@ void check_written(const Document& document, Format format) {
     return;
   }
   formats::ReadOptions options;
-  options.limits.bytes = 1U << 26U;  // decimals of large exponents print long
+  options.limits.bytes = 1U << 26U;  // numbers with large exponents are printed with many digits
   const auto again = formats::read_document(*written, format, options);
   require(again || document.features.empty());
 }

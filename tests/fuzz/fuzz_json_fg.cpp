@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the reader of this format: an Error that says something, or a document whose
-// solids another format can take and give back.
+// libFuzzer harness of the JSON-FG reader: it must return an Error with a message, or a document
+// whose solids another format can take and give back.
 #include "fuzz_formats.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

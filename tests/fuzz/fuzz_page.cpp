@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of pages and of what lies behind the checksum: what decodes, or would with the
-// right checksum and an end in time, must be boundaries that come back in the mode they had.
+// libFuzzer harness of the page decoder, with and without its check of checksum and end. Solids
+// that decode, or would decode with a right checksum and a right end, must be boundaries that come
+// back in the same mode.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -21,7 +22,7 @@ void check(const Decoded& decoded) {
   if (!codec::encode_boundary(*boundary, acceptance, {.mode = Mode::raw})) std::abort();
   const auto again = codec::encode_boundary(*boundary, acceptance, {.mode = decoded.info.mode});
   if (again) return;
-  // A mode may decline what it has read; it may not write what it cannot read.
+  // A mode may decline a solid that it has read; it must not write a blob that it cannot read.
   if (again.error().message.find("decode") != std::string::npos) std::abort();
 }
 

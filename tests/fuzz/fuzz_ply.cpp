@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the reader of this format: an Error that says something, or a document whose
+// libFuzzer harness of the PLY reader: it must return an Error with a message, or a document whose
 // solids another format can take and give back.
 #include "fuzz_formats.h"
 

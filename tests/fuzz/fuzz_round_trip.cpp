@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the round trip. The bytes are the choices of a generator: they fill a small
-// grid with cells, move its corners, merge coplanar facets or split them, and choose a lattice.
-// Every solid made so must come back in every mode that takes it.
+// libFuzzer harness of the codec's round trip. The bytes are the choices of a generator, which
+// fills cells of a small grid, moves corners of the grid, merges or splits coplanar facets, and
+// chooses a lattice. Every generated solid must come back in every mode that takes it.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -53,7 +53,7 @@ Lattice chosen_lattice(Choices& choices) {
   return lattice;
 }
 
-/// The surface of cells of a grid, whose corners may lie anywhere.
+/// The surface of the chosen cells of a grid whose corners may lie anywhere.
 SolidArrays chosen_cells(Choices& choices) {
   constexpr std::uint32_t kMost = 4;
   const std::array<std::uint32_t, 3> size{1 + choices.below(kMost), 1 + choices.below(kMost),

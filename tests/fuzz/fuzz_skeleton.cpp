@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of writing a feature whose skeleton came from outside (a damaged store): an
-// Error or a text, for a fixed pair of solids.
+// libFuzzer harness of the writing of a feature whose skeleton came from outside (a damaged store):
+// the writer must return an Error or a text, for a fixed pair of solids.
 #include <algorithm>
 #include <string>
 
@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const auto feature = formats::read_city_json_feature(*header, kFeature);
   fuzz::require(feature.has_value());
   Feature changed = *feature;
-  // A skeleton, then perhaps a line feed and a layout.
+  // The input is a skeleton, perhaps followed by a line feed and a layout.
   const std::uint8_t* end = std::find(data, data + size, '\n');
   changed.skeleton.assign(data, end);
   if (end != data + size) changed.layout.assign(end + 1, data + size);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Main function of a fuzzing harness in builds without libFuzzer: runs it once on each named file
-// and on each file below a named folder. A broken promise aborts, and so does a file that cannot be
-// read; no input at all is a failure.
+// Main function of a fuzzing harness in builds without libFuzzer: runs the harness once on each
+// named file and on each file below a named folder. A violated requirement aborts the program, and
+// so does an unreadable file; without any input the exit status is 1.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +32,8 @@ std::vector<fs::path> files_of(const fs::path& path) {
 void replay(const fs::path& path) {
   const watertight::Bytes bytes = watertight::test::read_bytes(path);
   std::printf("%s: %zu bytes\n", path.c_str(), bytes.size());
-  std::fflush(stdout);  // the last line names the input that aborted
+  // So that the last printed line names the input at which the program aborted.
+  std::fflush(stdout);
   LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
 }
 

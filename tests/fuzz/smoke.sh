@@ -25,7 +25,7 @@ for name in "${names[@]}"; do
   corpus=$build/corpora/$name
   mkdir -p "$corpus"
   while read -r seed; do
-    folder=${seed%/*}  # goldens of several versions have the same names
+    folder=${seed%/*} # golden files of several versions have the same names
     cp "$seed" "$corpus/seed-${folder##*/}-${seed##*/}"
   done <"$build/tests/fuzz/$name.seeds"
   options=(-max_total_time="$seconds" -max_len=32768 -timeout=600 -rss_limit_mb=2048

@@ -33,7 +33,7 @@ std::vector<Index> reversed(std::vector<Index> ring) {
   return ring;
 }
 
-/// The eight vertices of a box: bit 0 x, bit 1 y, bit 2 z.
+/// The eight vertices of a box; bits 0, 1 and 2 of the index choose the greater x, y and z.
 std::array<Index, 8> add_corners(SolidArrays& arrays, Point min, Point max) {
   std::array<Index, 8> corner{};
   for (std::size_t i = 0; i < 8; ++i) {
@@ -54,8 +54,8 @@ void add_box_facets(SolidArrays& arrays, const std::array<Index, 8>& c, Turn tur
   }
 }
 
-/// The square walls between two rings of equal size, the upper one given second; the rings turn
-/// counter-clockwise seen from above. Inward walls belong to a hole.
+/// Appends the walls, four vertices each, between a lower and an upper ring of equal size; the
+/// rings turn counter-clockwise seen from above. Walls turned inward belong to a hole.
 void add_walls(SolidArrays& arrays, const std::vector<Index>& low, const std::vector<Index>& high,
                Turn turn) {
   for (std::size_t i = 0; i < low.size(); ++i) {
@@ -215,8 +215,8 @@ OrientedBoundary block_with_touching_hole() {
 }
 
 OrientedBoundary torus(Index n, Index m) {
-  // Integer circles: points of a diamond-like walk around a square would do, but a table of a
-  // regular 16-gon of radius 1000 keeps the surface convex in both directions.
+  // A table of a regular 16-gon of radius 1000 keeps the coordinates integers and the circles
+  // convex.
   constexpr std::array<std::array<int, 2>, 16> circle{{{1000, 0},
                                                        {924, 383},
                                                        {707, 707},
@@ -241,7 +241,7 @@ OrientedBoundary torus(Index n, Index m) {
       const auto& around = circle[i * step_n];
       const auto& across = circle[j * step_m];
       const double radius = 4000.0 + across[0];
-      // Rounded to the grid by truncation of an exact quotient: integers on every machine.
+      // The division of integers rounds down to the grid, so every machine gets the same integers.
       const auto x = static_cast<double>(static_cast<std::int64_t>(radius) * around[0] / 1000);
       const auto y = static_cast<double>(static_cast<std::int64_t>(radius) * around[1] / 1000);
       add_vertex(arrays, x + 5000, y + 5000, across[1] + 1000.0);
@@ -284,8 +284,8 @@ OrientedBoundary grid_cube(Index n) {
 }
 
 OrientedBoundary schoenhardt() {
-  // A triangular prism, the upper triangle turned by 30 degrees, walls folded inward along the long
-  // diagonals.
+  // A triangular prism whose upper triangle is turned by 30 degrees; its walls fold inward along
+  // the long diagonals.
   SolidArrays arrays;
   arrays.vertices = {{20000, 10000, 0},    {5000, 18660, 0},    {5000, 1340, 0},
                      {18660, 15000, 9000}, {1340, 15000, 9000}, {10000, 0, 9000}};
@@ -317,7 +317,7 @@ delaunay::Certificate schoenhardt_certificate() {
 OrientedBoundary random_prism(Random& random, Index sides) {
   SolidArrays arrays;
   // A zigzag polygon: x rises along the lower side and falls along the upper one, which is longer,
-  // so that the two ends cross nothing.
+  // so that the edges at both ends cross no others.
   std::vector<Point> outline;
   std::uint64_t x = 0;
   for (Index i = 0; i < sides; ++i) {

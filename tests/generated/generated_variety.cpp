@@ -40,12 +40,12 @@ void add_walls(SolidArrays& arrays, const Ring& low, const Ring& high) {
   }
 }
 
-/// Corners of a convex polygon around a point, on the diamond-like ring of a square.
+/// Appends the corners of a convex polygon around a point: the sides of a square, bent outward.
 Ring add_polygon(SolidArrays& arrays, std::int64_t x, std::int64_t y, std::int64_t z, Index sides,
                  std::int64_t radius) {
   Ring ring;
   for (Index i = 0; i < sides; ++i) {
-    // Along the sides of a square, bent outward so that no three corners are on one line.
+    // The corner lies on a side of a square, bent outward so that no three corners are on one line.
     const std::int64_t place = std::int64_t{4} * radius * i / sides;
     const std::int64_t side = place / radius;
     const std::int64_t along = 2 * (place % radius) - radius;
@@ -58,7 +58,7 @@ Ring add_polygon(SolidArrays& arrays, std::int64_t x, std::int64_t y, std::int64
   return ring;
 }
 
-/// Houses in a row: one polygon for all fronts, stepped, with vertices on its edges.
+/// Houses in a row: one stepped polygon for all fronts, with vertices on its edges.
 Shape row_of_houses(Random& random, Index size) {
   SolidArrays arrays;
   const Index houses = std::max<Index>(size / 4, 1);
@@ -105,8 +105,8 @@ Shape row_of_houses(Random& random, Index size) {
   return {"row-of-houses", std::move(arrays)};
 }
 
-/// The surface of random cells of a grid: genus, cavities, edges and vertices that shells share,
-/// cospherical everywhere.
+/// The surface of random cells of a grid: with handles, cavities, and edges and vertices that
+/// shells share; many of its vertices are cospherical.
 Shape voxels(Random& random, Index size) {
   const auto side = static_cast<Index>(2 + std::sqrt(static_cast<double>(size)) / 3);
   const Index nx = 1 + static_cast<Index>(random.below(side));
@@ -124,7 +124,8 @@ Shape voxels(Random& random, Index size) {
     return found->second;
   };
   const auto has = [&](std::array<Index, 3> c) {
-    if (c[0] >= nx || c[1] >= ny || c[2] >= nz) return false;  // Index wraps below 0
+    // An Index below 0 wraps around to a large one.
+    if (c[0] >= nx || c[1] >= ny || c[2] >= nz) return false;
     return bool{is_full[(std::size_t{c[0]} * ny + c[1]) * nz + c[2]]};
   };
   for (Index cell = 0; cell < is_full.size(); ++cell) {
@@ -154,7 +155,8 @@ Shape voxels(Random& random, Index size) {
   return {"voxels", std::move(arrays)};
 }
 
-/// A plate with polygons cut out of it, some through and some as pits; boxes inside as cavities.
+/// A plate with polygons cut out of it, some through it and some as pits, and with boxes as
+/// cavities.
 Shape plate(Random& random, Index size) {
   SolidArrays arrays;
   const Index cells = std::max<Index>(size / 12, 1);
@@ -200,7 +202,7 @@ Shape plate(Random& random, Index size) {
   return {"plate", std::move(arrays)};
 }
 
-/// A cone over a polygon, or two of them: vertices of as many edges as there are sides.
+/// A cone over a polygon, or two cones: a tip has as many edges as the polygon has sides.
 Shape fan(Random& random, Index size) {
   SolidArrays arrays;
   const Index sides = std::max<Index>(size, 4) - 1;
@@ -218,7 +220,7 @@ Shape fan(Random& random, Index size) {
   return {"fan", std::move(arrays)};
 }
 
-/// Two polygons on the same vertices, one seen from each side: nothing between.
+/// Two polygons on the same vertices, one seen from each side, with nothing between them.
 Shape two_sided(Random& random, Index size) {
   SolidArrays arrays;
   const Ring ring = add_polygon(arrays, 7, 9, between(random, -5, 5), std::max<Index>(size, 3),
@@ -229,8 +231,8 @@ Shape two_sided(Random& random, Index size) {
   return {"two-sided", std::move(arrays)};
 }
 
-/// Boxes each of which touches the one before: at an edge, at a vertex or along a part of a facet;
-/// each a shell, or all in one.
+/// Boxes each of which touches the one before: at an edge, at a vertex or along a part of a facet.
+/// Either each box is a shell, or all of them form one shell.
 Shape chain_of_boxes(Random& random, Index size) {
   SolidArrays arrays;
   std::map<std::array<std::int64_t, 3>, Index> number;
@@ -265,7 +267,7 @@ Shape chain_of_boxes(Random& random, Index size) {
   return {"chain-of-boxes", std::move(arrays)};
 }
 
-/// A tube of rings of points around a closed path of the grid: genus 1, any size.
+/// A tube of rings of points around a closed path on the grid: genus 1, any size.
 Shape tube(Random& random, Index size) {
   SolidArrays arrays;
   const auto around = static_cast<Index>(3 + random.below(6));
@@ -337,7 +339,7 @@ Shape random_shape(Random& random, Index size) {
   }
 }
 
-/// Copies arrays facet by facet; `make` appends what comes in the place of each.
+/// Copies arrays facet by facet; `make` appends the replacement of each facet.
 template <class Make>
 SolidArrays with_facets(const SolidArrays& old, SolidArrays arrays, const Make& make) {
   for (std::size_t shell = 0; shell + 1 < old.shell_offsets.size(); ++shell) {
@@ -354,7 +356,7 @@ SolidArrays with_facets(const SolidArrays& old, SolidArrays arrays, const Make& 
   return arrays;
 }
 
-/// Some facets as triangles at their first vertex or at a new one above their middle.
+/// Cuts some facets into triangles at their first vertex or at a new vertex above their middle.
 void cut_facets(Random& random, Shape& shape) {
   const std::uint64_t share = 20 + random.below(81);
   const bool is_raised = random.below(2) == 0;
@@ -387,7 +389,8 @@ void cut_facets(Random& random, Shape& shape) {
   shape.name += is_raised ? "-raised" : "-cut";
 }
 
-/// New vertices in the middle of some edges. Doubles all coordinates to stay whole.
+/// Splits some edges at new vertices in their middle. Doubles all coordinates, so that they stay
+/// whole.
 void split_edges(Random& random, Shape& shape) {
   const std::uint64_t share = 5 + random.below(96);
   std::map<std::pair<Index, Index>, Index> middle;
@@ -419,7 +422,7 @@ void split_edges(Random& random, Shape& shape) {
   shape.name += "-split";
 }
 
-/// Points that have nothing to do with the surface through them.
+/// Moves vertices to random points, without regard to the surface.
 void scramble(Random& random, Shape& shape) {
   const std::int64_t reach = std::int64_t{4} << random.below(40);
   const std::uint64_t flat_axis = random.below(6);
@@ -432,7 +435,7 @@ void scramble(Random& random, Shape& shape) {
   shape.name += "-scrambled";
 }
 
-/// Larger, turned and moved, at most to magnitudes below 2^52.
+/// Scales, turns and moves the points, to magnitudes below 2^52 at most.
 void place(Random& random, std::vector<Point>& points) {
   double largest = 1;
   for (const Point& p : points) {
@@ -501,7 +504,8 @@ std::optional<OrientedBoundary> boundary_if_sound(SolidArrays arrays, const Latt
   return std::move(boundary).value();
 }
 
-/// Shapes that the changes have spoilt (two vertices at one place) are drawn again.
+/// A random boundary on the lattice. A shape in which two vertices have come to one position is
+/// replaced by another random one.
 NamedBoundary on_lattice(Random& random, Index size, const Lattice& lattice, std::uint32_t srid) {
   for (int attempt = 0; attempt < 20; ++attempt) {
     Shape shape = random_shape(random, size);
@@ -533,7 +537,7 @@ std::vector<NamedBoundary> random_page(Random& random, Index count, Index size) 
   std::vector<NamedBoundary> solids;
   for (Index i = 0; i < count; ++i) {
     if (i > 0 && random.below(3) == 0) {
-      // A neighbour: an earlier one beside itself, on some of its columns.
+      // A neighbour: an earlier solid moved beside itself, so that the two share columns.
       NamedBoundary copy = solids[random.below(solids.size())];
       const Solid& solid = copy.boundary.solid();
       SolidArrays arrays = solid.arrays();

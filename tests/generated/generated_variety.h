@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Closed boundaries at random, of any size, on any lattice: buildings, voxels, plates with holes,
-// fans, flat and scrambled ones. Not all are valid solids; the codec must bring back every one.
+// Random closed boundaries of any size, on any lattice: buildings, voxels, plates with holes, fans,
+// flat and scrambled surfaces. Not all are valid solids; the codec must bring back every one.
 #pragma once
 
 #include "tests/generated/generated_solids.h"
 
 namespace watertight::generated {
 
-/// About `size` vertices, at least 4. The same for the same state of `random`.
+/// A random boundary of about `size` vertices, at least 4. Equal states of `random` give equal
+/// boundaries.
 NamedBoundary random_solid(Random& random, Index size);
 
-/// `count` solids that may stand in one page, with shared columns and some of them twice.
+/// `count` boundaries that may stand in one page, with shared columns; some boundaries occur twice.
 std::vector<NamedBoundary> random_page(Random& random, Index count, Index size);
 
-/// Mostly the tolerances that a blob does not state.
+/// Random tolerances and proof; mostly the tolerances that a blob does not state.
 Acceptance random_acceptance(Random& random);
 
-/// From 4 to `largest` vertices; small ones are by far the most frequent.
+/// A number of vertices from 4 to `largest`; small numbers are by far the most frequent.
 Index random_size(Random& random, Index largest);
 
 }  // namespace watertight::generated

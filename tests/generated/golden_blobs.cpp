@@ -11,7 +11,7 @@
 namespace watertight::generated {
 namespace {
 
-/// A tower with a pointed roof: a vertex with sixteen facets around it.
+/// A tower with a pointed roof: its tip is a vertex with sixteen facets around it.
 OrientedBoundary spire() {
   constexpr Index kSides = 16;
   constexpr int kX[kSides] = {50, 46, 35, 19, 0, -19, -35, -46, -50, -46, -35, -19, 0, 19, 35, 46};
@@ -48,7 +48,7 @@ void add_tetrahedron(SolidArrays& arrays, Point corner, double size, Turn turn) 
   arrays.end_shell();
 }
 
-/// Triangles in three shells.
+/// Three tetrahedra: an exterior shell with two cavities.
 OrientedBoundary tetrahedron_with_cavities() {
   SolidArrays arrays;
   add_tetrahedron(arrays, {0, 0, 0}, 100, Turn::outward);
@@ -57,7 +57,7 @@ OrientedBoundary tetrahedron_with_cavities() {
   return boundary_of(std::move(arrays));
 }
 
-/// A torus of 8 x 8, uneven, on every fourth or fifth step of its grid: 37 / 8, rounded down.
+/// An uneven torus of 8 x 8 vertices whose coordinates are multiples of 37 / 8, rounded down.
 OrientedBoundary torus_on_coarse_steps() {
   const OrientedBoundary smooth = torus(8, 8);
   Random random(9);
@@ -79,7 +79,7 @@ OrientedBoundary torus_on_coarse_steps() {
   return boundary_of(std::move(arrays));
 }
 
-/// A box whose lattice begins at a place that is no multiple of any unit of its steps.
+/// A box whose lattice has an origin that is no multiple of its step.
 OrientedBoundary box_with_far_origin() {
   Lattice lattice;
   lattice.step.fill(GridNumber{1, 0});
@@ -89,14 +89,14 @@ OrientedBoundary box_with_far_origin() {
   return boundary_of(std::move(arrays), lattice, 7415);
 }
 
-/// A solid of generated_variety.h with 4 to some 60 vertices.
+/// A solid of generated_variety.h with about 4 to 60 vertices.
 OrientedBoundary varied(std::uint64_t seed) {
   Random random(seed);
   const Index size = 4 + static_cast<Index>(random.below(40));
   return random_solid(random, size).boundary;
 }
 
-/// Solids in mode raw or bitmap.
+/// The golden solids in modes raw and bitmap.
 std::vector<Golden> plain_goldens() {
   Random random(1);
   const Acceptance stated{{0.001, 5, 0.0005}, Proof::boundary, 1};
@@ -136,7 +136,7 @@ std::vector<Golden> goldens() {
   add("torus", torus(9, 5));
   add("terrain", random_terrain(random, 5));
   add("spire", spire());
-  // These run the lines of the decoder that the others do not run.
+  // These solids use lines of the decoder that the other golden solids do not use.
   const auto add_one = [&](const std::string& name, const OrientedBoundary& boundary, Mode mode) {
     all.push_back({name + "-" + std::string(codec::to_string(mode)), boundary, {}, mode});
   };
@@ -152,7 +152,7 @@ std::vector<Golden> goldens() {
     add_one("varied-" + std::to_string(seed), varied(seed), Mode::walk);
   }
   add_one("saw", saw(kSawTeeth, Back::left), Mode::polygon);
-  // Traced in docs/format.md: with the neutral set of priors they never change.
+  // docs/format.md shows traces of these blobs: with the neutral set of priors they never change.
   const auto add_neutral = [&](const char* name, const OrientedBoundary& boundary, Mode mode) {
     all.push_back({name, boundary, {}, mode});
     all.back().models = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The solids and options behind tests/golden/blobs: one file each, <version>/<name>.blob.
+// The solids and options of the files in tests/golden/blobs: one file each, <version>/<name>.blob.
 #pragma once
 
 #include <optional>
@@ -17,11 +17,11 @@ struct Golden {
   Acceptance acceptance;
   Mode mode = Mode::bitmap;
   bool keep_order = true;
-  bool with_steiner = false;  // with schoenhardt_certificate()
+  bool with_steiner = false;  // the tetrahedralization is schoenhardt_certificate()
   std::uint8_t models = codec::kModelNumber;
 };
 
-/// Some solids, each in every mode that can hold it.
+/// The golden solids: some solids, each in every mode that can hold it.
 std::vector<Golden> goldens();
 Result<Bytes> encode_golden(const Golden& golden);
 

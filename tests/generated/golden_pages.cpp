@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kFilePageSolids = 3;
 
-/// A house of a row: walls shared with its neighbours, a ridge across the row.
+/// A house of a row: it shares walls with its neighbours, and its ridge runs across the row.
 OrientedBoundary house(double x, double eaves, double ridge) {
   constexpr double kWidth = 6000;
   constexpr double kDepth = 9000;
@@ -61,7 +61,7 @@ std::vector<OrientedBoundary> row() {
   return houses;
 }
 
-/// On two grids in turn, and of floating point numbers.
+/// Solids on two grids in turn, and solids of floating point numbers.
 std::vector<OrientedBoundary> interleaved() {
   Lattice fine;
   fine.step.fill(GridNumber{1, -3});
@@ -98,7 +98,7 @@ Result<Bytes> page_file(const GoldenPage& golden) {
   return appended(std::move(file), *rest);
 }
 
-/// Writes streams that no encoder writes, by the numbers that docs/format.md gives families.
+/// Writes streams that no encoder writes; addresses families by their numbers in docs/format.md.
 class Forger {
  public:
   Forger() : models_(codec::neutral_priors()) {}
@@ -144,7 +144,7 @@ class Forger {
     for (std::uint32_t axis = 0; axis < 3; ++axis) difference(4, axis, 0);
     return *this;
   }
-  /// Mode walk up to its number of columns.
+  /// Writes a solid in mode walk up to its number of columns.
   Forger& columns(std::uint64_t count) {
     codec::ModelBank& bank = models_[3];
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -156,7 +156,7 @@ class Forger {
     bank.code_number(stream_, 1, 0, std::array{3U, 93U}, count - 1, 40);
     return *this;
   }
-  /// A blob with a checksum of 0.
+  /// The stream as a blob with a checksum of 0.
   Bytes blob() {
     ByteWriter writer;
     writer.append(as_bytes("WT"));
@@ -177,7 +177,7 @@ Bytes with(Bytes bytes, std::size_t place, std::uint8_t value) {
   return bytes;
 }
 
-/// Bytes that are nearly the golden box with neutral priors.
+/// Appends changed copies of the golden box with neutral priors.
 void refuse_damaged(std::vector<Refused>& all) {
   const Bytes box =
       codec::encode_boundary(generated::box(), {}, {.mode = Mode::polygon, .models = 0}).value();
@@ -230,7 +230,7 @@ void refuse_frames(std::vector<Refused>& all) {
       std::move(Forger().frame().mode(2).columns(std::uint64_t{1} << 39)));
 }
 
-/// A box in mode raw whose facets were changed.
+/// A blob of the box in mode raw with the given section of facets.
 Bytes raw_box(const Bytes& facets, bool with_order = false) {
   const geometry::CanonicalSolid box = geometry::canonical_form(generated::box());
   Forger forger;
@@ -266,7 +266,7 @@ void refuse_solids(std::vector<Refused>& all) {
   add("raw vertices beyond the limit", ErrorCode::limit_exceeded, beyond.blob());
 }
 
-/// A page file around a page, with the right checksum of any index.
+/// A page file with one page and any index; the checksum of the index is right.
 Bytes forged_file(const Bytes& page, const std::vector<std::uint64_t>& index) {
   ByteWriter numbers;
   for (const std::uint64_t number : index) numbers.varint(number);

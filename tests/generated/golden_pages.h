@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The solids behind the golden pages and page files of tests/golden/blobs/version-1, and bytes that
+// The solids of the golden pages and page files in tests/golden/blobs/version-1, and bytes that
 // every decoder refuses.
 #pragma once
 
@@ -12,9 +12,9 @@
 namespace watertight::generated {
 
 struct GoldenPage {
-  std::string file;  // name.page, or name.wtpf for a page file of pages of three solids
+  std::string file;  // name.page, or name.wtpf for a page file whose pages have three solids
   std::vector<OrientedBoundary> solids;
-  std::vector<Mode> modes;  // in turn
+  std::vector<Mode> modes;  // the modes of the solids, used in turn
   std::uint8_t models = codec::kModelNumber;
 };
 
@@ -23,14 +23,14 @@ Result<Bytes> encode_golden_page(const GoldenPage& golden);
 
 struct Refused {
   std::string name;
-  std::string kind;  // blob, page or wtpf
+  std::string kind;  // one of blob, page, wtpf
   ErrorCode error;
   Bytes bytes;
 };
 
-/// With the neutral set of priors: the same for ever.
+/// Bytes that every decoder refuses. They use the neutral set of priors, so they never change.
 std::vector<Refused> refused();
-/// As a table: name, kind, error, bytes in hex.
+/// The refused bytes as a table: name, kind, error, bytes in hexadecimal.
 std::string refused_csv();
 
 }  // namespace watertight::generated

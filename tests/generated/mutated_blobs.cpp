@@ -18,7 +18,8 @@ using Offset = std::ptrdiff_t;
 constexpr std::array kModes{Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon,
                             Mode::parallelogram};
 
-/// Adaptive models come to expect what is always the same: cheap decisions without end.
+/// Replaces the end of a blob by many equal or random bytes. Adaptive models come to expect one
+/// answer, so that a decoder reads cheap decisions without end.
 void replace_tail(Bytes& blob, Random& random) {
   blob.resize(random.below(blob.size()) + 1);
   const std::uint64_t size = 1 + random.below(std::uint64_t{16} << random.below(10));
@@ -57,7 +58,7 @@ void change(Bytes& blob, const std::vector<Bytes>& blobs, Random& random) {
       break;
     }
     case 4: {
-      // The same stretch of another blob.
+      // Copies the bytes at the same offsets of another blob.
       const Bytes& other = blobs[random.below(blobs.size())];
       for (Offset i = at; i < at + length && i < static_cast<Offset>(other.size()); ++i) {
         blob[static_cast<std::size_t>(i)] = other[static_cast<std::size_t>(i)];

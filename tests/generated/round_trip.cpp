@@ -35,8 +35,8 @@ void RoundTrips::fail(const std::string& name, Mode mode, const std::string& wha
   failures_.push_back(std::move(failure));
 }
 
-/// True if there are bytes to look at. A mode may decline a solid; it may not write one that it
-/// cannot read, which encode() finds out for itself and reports as not encodable too.
+/// Counts a result, and returns true if it has bytes. A mode may decline a solid, but must not
+/// write one that it cannot read; encode() finds such a solid and reports it as not encodable too.
 bool RoundTrips::note(const std::string& name, const Result<Bytes>& bytes,
                       const EncodeOptions& options) {
   std::string what(codec::to_string(options.mode));

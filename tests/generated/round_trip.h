@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The properties that a mode must keep of every solid. For the unit test's slice, bench/codec and
-// the fuzzing harness.
+// Checks the properties that each mode must have for every solid. Used by the unit tests,
+// bench/codec and the fuzzing harness.
 #pragma once
 
 #include <map>
@@ -15,17 +15,19 @@ namespace watertight::generated {
 
 class RoundTrips {
  public:
-  /// A solid or a page made from `seed`; returns how many solids. Every 16th seed makes a page;
-  /// of the others every 8th is tried in all modes, the rest in automatic mode or one other.
+  /// Checks a solid or a page made from `seed`; returns the number of solids. Every 16th seed makes
+  /// a page; every 8th of the others is checked in all modes, the rest in automatic mode or in one
+  /// other.
   std::uint64_t check_generated(std::uint64_t seed, Index largest);
 
-  /// In every mode with and without order, and that the order leaves no trace in the latter.
+  /// Checks a solid in every mode with and without source order, and that a blob without it does
+  /// not depend on the order.
   void check_all_modes(const std::string& name, const OrientedBoundary& boundary,
                        const Acceptance& acceptance);
 
-  /// How often what happened: encoded in a mode, or why not.
+  /// For each outcome, how often it happened: encoded in a mode, or the reason for a refusal.
   const std::map<std::string, std::uint64_t>& counts() const { return counts_; }
-  /// Solids that did not come back, whatever encode() said about them.
+  /// The solids that did not come back, whatever encode() reported about them.
   const std::vector<std::string>& failures() const { return failures_; }
 
  private:

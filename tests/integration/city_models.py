@@ -15,25 +15,26 @@ getcontext().prec = 60
 
 
 def parse(text):
-    """JSON with every number kept as the decimal that was written."""
+    """The parsed JSON text, with every number as the decimal that was written."""
     return json.loads(text, parse_float=Decimal, parse_int=Decimal)
 
 
 def world(vertices, transform):
-    """Exact world coordinates of integer vertices."""
+    """The exact world coordinates of integer vertices."""
     scale, translate = transform["scale"], transform["translate"]
     return [tuple((v[k] * scale[k] + translate[k]).normalize() for k in range(3)) for v in vertices]
 
 
 def resolve(boundaries, points):
-    """Nested boundaries with each vertex index replaced by its point."""
+    """The nested boundaries, with each vertex index replaced by its point."""
     if isinstance(boundaries, list):
         return [resolve(part, points) for part in boundaries]
     return points[int(boundaries)]
 
 
 def resolved_objects(document, header):
-    """City objects of a feature (or document), independent of how its vertices are numbered."""
+    """The city objects of a feature (or document), which do not depend on the numbers of its
+    vertices."""
     transform = document.get("transform") or header["transform"]
     points = world(document["vertices"], transform)
     objects = {}
@@ -46,7 +47,7 @@ def resolved_objects(document, header):
 
 
 def difference(expected, actual, path=""):
-    """The first place where two JSON values differ, or None. Numbers compare by value."""
+    """The first place where two JSON values differ, or None. Numbers are compared by value."""
     if isinstance(expected, dict) and isinstance(actual, dict):
         for key in sorted(set(expected) | set(actual)):
             if key not in expected or key not in actual:
@@ -69,7 +70,8 @@ def difference(expected, actual, path=""):
 
 
 def solids_of(document, header):
-    """(object, geometry index, ordinal) -> shells as sets of rings of doubles, for every solid."""
+    """For each (object, geometry index, ordinal) of a solid, its shells as sets of rings of
+    doubles."""
     solids = {}
     for name, value in resolved_objects(document, header).items():
         for index, geometry in enumerate(value["geometry"]):
@@ -86,7 +88,7 @@ def solids_of(document, header):
 
 
 def canonical(facets):
-    """Facets as a sorted list of rings that start at their smallest vertex."""
+    """The facets as a sorted list of rings that start at their smallest vertex."""
     result = []
     for rings in facets:
         turned = []
@@ -99,7 +101,7 @@ def canonical(facets):
 
 
 def read_ewkb(data):
-    """(facets, srid) of a POLYHEDRALSURFACE Z in (E)WKB."""
+    """Returns (facets, srid) of a POLYHEDRALSURFACE Z in (E)WKB."""
     position = 0
 
     def take(form):

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A collection out of a private PostgreSQL as one file: export.sh PROGRAM SOURCE
-# The command line and the service give the same bytes, and they are what went in.
+# Exports a collection from a private PostgreSQL as one file: export.sh PROGRAM SOURCE. Requires
+# that the command line and the service give the same bytes, and that these hold what was stored.
 set -euo pipefail
 # shellcheck source=tests/unprivileged.sh
 . "$(dirname "$0")/../unprivileged.sh"
@@ -30,14 +30,14 @@ chmod a+r in.city.jsonl
 store=(--data-dir "$folder/data")
 
 run "$program" ingest in.city.jsonl "${store[@]}" --collection delft --invalid skip -q >said 2>&1 ||
-  [ $? -eq 1 ] || fail "$(cat said)" # 1: some are invalid
+  [ $? -eq 1 ] || fail "$(cat said)" # exit status 1: some features are invalid
 run "$program" export delft -o all.wt "${store[@]}" 2>said
 grep -Eq '^watertight: [1-9][0-9]* features with [1-9][0-9]* solids written$' said || fail "$(cat said)"
 run "$program" export delft -o all.city.jsonl "${store[@]}" 2>/dev/null
 run "$program" export delft -o - "${store[@]}" 2>/dev/null | cmp - all.wt
 run "$program" decode all.wt -o back.city.jsonl
 cmp all.city.jsonl back.city.jsonl
-# Byte for byte the lines of the source, each once, in another order.
+# Each line is a line of the source, byte for byte, and occurs once; the order is another.
 [ "$(wc -l <all.city.jsonl)" -gt 100 ] || fail "$(wc -l <all.city.jsonl) lines"
 [ -z "$(sort all.city.jsonl | uniq -d)" ] || fail "a feature is there twice"
 [ -z "$(comm -23 <(sort all.city.jsonl) <(sort in.city.jsonl))" ] || fail "lines that never came in"
@@ -46,7 +46,7 @@ cmp all.city.jsonl back.city.jsonl
 grep -q "there is no collection 'none'" said || fail "$(cat said)"
 [ ! -e none.wt ] || fail "an export that failed left a file"
 
-# Formats without ids: features have the names of their files, which must differ.
+# In formats without ids a feature has the name of its file; two files must not have one name.
 mkdir a b
 echo 'SOLID Z((((0 0 0,0 1 0,1 0 0,0 0 0)),((0 0 0,1 0 0,0 0 1,0 0 0)),((0 0 0,0 0 1,0 1 0,0 0 0)),((1 0 0,0 1 0,0 0 1,1 0 0))))' |
   tee a/house.wkt b/house.wkt >b/pair.wkt
@@ -74,7 +74,7 @@ curl -fsS -H 'Accept: application/city+json-seq' "$url" | cmp - all.city.jsonl
 curl -fsS --http1.0 "$url" | cmp - all.wt
 curl -fsSI "$url" | tr -d '\r' | grep -Fxq 'Content-Disposition: attachment; filename="delft.wt"'
 curl -sS "${url/delft/none}" | grep -q '"status":404'
-# One that leaves in the middle, be it that a busy machine needs a while to begin.
+# A client that leaves in the middle of an export; a busy machine may need a while to begin it.
 for seconds in 1 5 25; do
   left=0
   curl -sS --limit-rate 1000 --max-time "$seconds" -o part "$url?f=cityjsonseq" 2>/dev/null || left=$?

@@ -31,7 +31,7 @@ class Service:
         self.address = address
 
     def request(self, method, path, body=None, content_type=None, accept=None, timeout=60):
-        """(status, text); status 0 when no answer came."""
+        """Returns (status, text); the status is 0 when no answer came."""
         request = urllib.request.Request(self.address + path, data=body, method=method)
         if content_type:
             request.add_header("Content-Type", content_type)
@@ -118,7 +118,8 @@ def query(database, sql):
 
 
 def compare_by_sql(database, collection, header, features, names):
-    """Every solid of every named feature as wt_decode gives it. Returns how many solids."""
+    """Compares every solid of every named feature, as wt_decode gives it. Returns the number of
+    solids."""
     rows = query(database,
                  "SELECT feature, object_id, geometry, ordinal, encode(wt_decode(blob), 'hex')"
                  f" FROM watertight.solid WHERE collection = '{collection}'")
@@ -139,10 +140,11 @@ def compare_by_sql(database, collection, header, features, names):
 
 
 def killed_ingest(service, header, features, names, kill, start):
-    """Posts with four connections; kills the database after a third of the features and starts it again
-    when the first request has failed. Returns what was acknowledged."""
+    """Posts with four connections; kills the database after a third of the features and starts it
+    again when the first request has failed. Returns the features that were acknowledged."""
     collection, acknowledged, failed = "killed", [], []
-    steps = [start, kill]  # what is still to be done to the database, last first
+    # the commands for the database that are still to be done, the last one first
+    steps = [start, kill]
     lock = threading.Lock()
 
     def post(name):

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds the images with podman, starts database and service by docker/compose.test.yaml, and runs
-# round_trip.py against them: a tile in by REST, out by REST and by SQL, compared exactly; the database
-# killed during an ingest. Removes what it started, whatever happens. Needs root and the packages of
-# `scripts/install-dependencies containers`.
+# round_trip.py against them: a tile is stored by REST, read by REST and by SQL, and compared
+# exactly; the database is killed while features are stored. Removes everything that it started, in
+# any case. Needs root and the packages of `scripts/install-dependencies containers`.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 export CONTAINERS_CONF=$PWD/docker/containers.conf
@@ -11,7 +11,7 @@ export CONTAINERS_CONF=$PWD/docker/containers.conf
 
 project=watertight-test-$$
 folder=$(mktemp -d)
-# A bridge network switches forwarding on; it is put back at the end.
+# A bridge network turns on the forwarding of packets; the old setting is restored at the end.
 forwarding=$(cat /proc/sys/net/ipv4/ip_forward)
 free_port() { python3 -c 'import socket; s=socket.socket(); s.bind(("127.0.0.1",0)); print(s.getsockname()[1])'; }
 POSTGRES_PASSWORD=$(head -c 18 /dev/urandom | base64 | tr -d '+/=')
@@ -36,7 +36,8 @@ clean_up() {
 trap clean_up EXIT
 
 scripts/make-base-image
-# The host's compiler cache, when there is one: same compiler, same flags, so mostly hits.
+# The builds use the host's compiler cache, if there is one: compiler and flags are the same, so
+# most units are found in it.
 cache=$(ccache --get-config cache_dir 2>/dev/null || true)
 volumes=()
 if [ -n "$cache" ]; then
@@ -50,7 +51,7 @@ for target in service postgres; do
     { tail -60 "$folder/build.log"; exit 1; }
 done
 
-# Its exit status says nothing: what counts is that both run.
+# The exit status of `compose up` is ignored; both containers must run.
 compose up --detach --no-build >"$folder/up.log" 2>&1 || true
 for name in db service; do
   podman container exists "${project}_${name}_1" || { cat "$folder/up.log"; exit 1; }

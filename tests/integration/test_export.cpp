@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Bulk export against PostgreSQL: rows keep single blobs, the file has pages, and both are the same
-// solids.
+// Tests bulk export against PostgreSQL: rows hold single blobs, the exported file holds pages, and
+// both must give the same solids.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <map>
@@ -18,7 +18,8 @@ namespace {
 
 using test::Database;
 
-/// The sample tile in a collection; solids that need an engine are left out. Returns its text.
+/// Stores the sample tile in a collection, without the solids that need an engine. Returns its
+/// text.
 std::string ingest_tile(SolidStore& store) {
   const Bytes bytes = test::read_bytes(WATERTIGHT_EXAMPLES "/delft.city.jsonl");
   formats::ReadOptions read;
@@ -66,7 +67,9 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
-TEST_CASE("an export holds every solid of the rows, in pages that are smaller, each found alone") {
+TEST_CASE(
+    "an export holds every solid of the rows, in pages that are smaller than the blobs, and finds "
+    "each solid alone") {
   const Database database;
   const auto store = database.store();
   ingest_tile(*store);
@@ -115,7 +118,7 @@ TEST_CASE("an export as a sequence has the very lines that came in, the same eac
         export_all(*store, pipeline::ExportFormat::container));
 }
 
-TEST_CASE("the service's file is the command line's") {
+TEST_CASE("the service exports the same file as the command line") {
   const Database database;
   const auto store = database.store();
   ingest_tile(*store);

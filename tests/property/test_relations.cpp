@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A slice of bench/metamorphic without its oracles: the verdict and the codes of a solid do not
+// A part of bench/metamorphic without its oracles: the verdict and the codes of a solid do not
 // depend on how it is written or where an integer affine map puts it.
 #include <catch2/catch_test_macros.hpp>
 
@@ -16,7 +16,8 @@ namespace {
 Report report_of(const Solid& solid) {
   CertifyOptions options;
   options.proof = Proof::boundary;
-  options.tolerances.planarity_metres = 1e30;  // exactly planar solids: the metric rules are off
+  // No metric rule applies: the solids are exactly planar.
+  options.tolerances.planarity_metres = 1e30;
   options.tolerances.planarity_degrees = 360;
   return certify(solid, nullptr, options).report;
 }

@@ -12,7 +12,8 @@ namespace {
 
 Point lifted(const Point& p, double z) { return {p.x, p.y, z}; }
 
-/// Walls between the outline at two heights, outward for a counter-clockwise outline.
+/// Appends walls between the outline at two heights; they face outward if the outline turns
+/// counter-clockwise.
 void add_walls(Shell& shell, const Ring& outline, double low, double high) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Point& a = outline[i];
@@ -136,7 +137,8 @@ Shell terrain(Random& random, std::size_t size, double step) {
 
 Shell voxels(const std::vector<bool>& is_filled, std::size_t n, double size) {
   const auto filled = [&](std::size_t x, std::size_t y, std::size_t z) {
-    return x < n && y < n && z < n && is_filled[(x * n + y) * n + z];  // below 0 wraps around
+    // A number below 0 wraps around to a large one.
+    return x < n && y < n && z < n && is_filled[(x * n + y) * n + z];
   };
   Shell shell;
   for (std::size_t x = 0; x < n; ++x) {
@@ -177,14 +179,15 @@ Shape with_moved_vertices(const Shape& shape, Random& random, std::size_t count,
     Point& p = arrays.vertices[random.below(arrays.vertices.size())];
     for (int axis = 0; axis < 3; ++axis) p[axis] += random.within(-reach, reach);
   }
-  // Vertices that met are one: written as points, they are.
+  // Vertices that met in one point become one vertex, because shapes are written as points.
   return solids::shape_of(solid_of(std::move(arrays), Lattice{}));
 }
 
 namespace {
 
 Ring star_outline(Random& random) {
-  // Around the centre by rational directions: star-shaped, so simple.
+  // The vertices are in rational directions from the centre: the polygon is star-shaped, so it is
+  // simple.
   static constexpr std::array<std::array<int, 2>, 12> kDirections{{{12, 0},
                                                                    {10, 6},
                                                                    {6, 10},
@@ -205,7 +208,7 @@ Ring star_outline(Random& random) {
   return ring;
 }
 
-/// Two chains over the same stretch of x, one above the other: simple.
+/// A polygon of two chains over the same stretch of x, one above the other, so it is simple.
 Ring zigzag_outline(Random& random) {
   const std::size_t steps = 3 + random.below(6);
   Ring ring;
@@ -246,7 +249,7 @@ Shell random_box(Random& random, std::int64_t size) {
 Shape random_touching_cavity(Random& random) {
   const double s = random.within(4, 50) * 2;
   const Shell outer = box({0, 0, 0}, {2 * s, 2 * s, 2 * s});
-  // At a corner, with its edge along an edge, or with a tip on a wall.
+  // The cavity has a vertex at a corner, an edge along an edge, or a tip on a wall of the box.
   switch (random.below(3)) {
     case 0:
       return {outer, inside_out(tetrahedron({0, 0, 0}, {s, 1, 1}, {1, s, 1}, {1, 1, s}))};

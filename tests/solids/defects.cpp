@@ -13,7 +13,7 @@ namespace {
 struct Block {
   Point low;
   Point high;
-  /// The point at the given tenths of each side.
+  /// The point at the given tenths of the sides.
   Point at(double x, double y, double z) const {
     return {low.x + (high.x - low.x) / 10 * x, low.y + (high.y - low.y) / 10 * y,
             low.z + (high.z - low.z) / 10 * z};
@@ -22,7 +22,7 @@ struct Block {
   Shell cavity(const Point& from, const Point& to) const {
     return inside_out(box(at(from.x, from.y, from.z), at(to.x, to.y, to.z)));
   }
-  /// With a tunnel between these tenths.
+  /// The block with a tunnel between the given tenths of its sides.
   Shell tunnelled(double x0, double y0, double x1, double y1) const {
     return tunnelled_box(low, high, at(x0, y0, 0), at(x1, y1, 0));
   }
@@ -37,7 +37,7 @@ Block random_block(Random& random) {
   return block;
 }
 
-/// A solid with more to it than a box.
+/// A solid that is more complex than a box.
 Shell random_base(Random& random) {
   const Block block = random_block(random);
   switch (random.below(4)) {
@@ -93,7 +93,7 @@ Defect bow_tie(Random& random) {
   return {"a ring crosses itself", {shell}, {104, 302}, 104};
 }
 
-/// The hole's corner is a corner of the block, and the exterior ring runs around the hole too.
+/// A hole has a corner at a corner of the block, and the exterior ring runs around the hole too.
 Defect touching_ring(Random& random) {
   const Block block = random_block(random);
   Shell shell = block.shell();
@@ -136,7 +136,7 @@ Defect doubled_hole(Random& random) {
   return {"an interior ring is there twice", {shell}, {202, 303}, 202};
 }
 
-/// A pit whose rim touches the exterior ring in two opposite corners.
+/// A pit has a rim that touches the exterior ring in two opposite corners.
 Defect cut_facet(Random& random) {
   const Block block = random_block(random);
   Shell shell = block.shell();
@@ -151,7 +151,7 @@ Defect bent_facet(Random& random) {
   Block block = random_block(random);
   Shell shell = block.shell();
   const Point corner = block.high;
-  const double lift = 200 + 20 * random.within(0, 10);  // millimetres
+  const double lift = 200 + 20 * random.within(0, 10);  // the lift in millimetres
   for (Facet& facet : shell) {
     for (Point& p : facet[0]) {
       if (p == corner) p.z += lift;
@@ -160,7 +160,7 @@ Defect bent_facet(Random& random) {
   return {"a vertex is off its facet's plane", {shell}, {203}, 203, true};
 }
 
-/// A facet with a ridge of 8 mm on a strip of 20 mm: within 10 mm of its plane, but steep.
+/// A facet has a ridge of 8 mm on a strip of 20 mm: it is within 10 mm of its plane, but steep.
 Defect folded_facet(Random& random) {
   const double length = 20 * random.within(50, 450);
   const Ring profile{{0, 0, 0}, {20, 0, 0}, {20, 0, 1000}, {10, 0, 1008}, {0, 0, 1000}};
@@ -242,7 +242,7 @@ Defect floating_part(Random& random) {
 
 Defect pierced_floor(Random& random) {
   Shell shell = terrain(random, 3, 100);
-  const Point top = shell[0][0][2];  // the vertex (1, 1) of the grid: not on the rim
+  const Point top = shell[0][0][2];  // the vertex (1, 1) of the grid, which is not on the rim
   const double depth = random.within(1, 300);
   for (Facet& facet : shell) {
     for (Point& p : facet[0]) {
@@ -299,8 +299,8 @@ Defect outer_cavity(Random& random) {
       "a cavity lies outside", {block.shell(), block.cavity({12, 3, 3}, {16, 6, 6})}, {403}, 403};
 }
 
-/// A bipyramid whose middle square runs around the walls, which are cut there: a room above, one
-/// below.
+/// A bipyramid touches all four walls with its middle square, and the walls are cut there: the
+/// interior is divided into a room above and one below.
 Defect divided_interior(Random& random) {
   const Block block = random_block(random);
   const Ring middle{block.at(0, 0, 5), block.at(10, 0, 5), block.at(10, 10, 5), block.at(0, 10, 5)};

@@ -147,7 +147,8 @@ std::int64_t AffineMap::determinant() const {
 
 AffineMap unimodular_map(Random& random, std::int64_t size) {
   AffineMap map;
-  for (int step = 0; step < 6; ++step) {  // shears: each adds a multiple of a row to another
+  // Each step is a shear: it adds a multiple of one row to another.
+  for (int step = 0; step < 6; ++step) {
     const std::size_t to = random.below(3);
     const std::size_t from = (to + 1 + random.below(2)) % 3;
     const auto factor = static_cast<std::int64_t>(random.within(-2, 2));

@@ -8,7 +8,7 @@
 namespace watertight::solids {
 
 Shell schoenhardt() {
-  // E. Schönhardt, 1928: the upper triangle of a prism turned by 30 degrees, the walls folded
+  // E. Schönhardt, 1928: a prism whose upper triangle is turned by 30 degrees and whose walls fold
   // inward along their long diagonals.
   const Ring low{{20000, 10000, 0}, {5000, 18660, 0}, {5000, 1340, 0}};
   const Ring high{{18660, 15000, 9000}, {1340, 15000, 9000}, {10000, 0, 9000}};
@@ -23,16 +23,18 @@ Shell schoenhardt() {
 
 Shell chazelle(int notches) {
   // Based on: B. Chazelle, Convex partitions of polyhedra, 1984. Notches cut from above reach the
-  // surface z = x y, those from below z = x y + 1, crossing at right angles. Departure: the notches
-  // are folded quadrilaterals written as triangles, and two units apart at their ridges.
+  // surface z = x y, those from below z = x y + 1; the two kinds cross at right angles. Departure:
+  // the notches are folded quadrilaterals written as triangles, and two units apart at their
+  // ridges.
   const int n = notches;
   const double size = 4.0 * n;
   const double height = 8.0 * size * size;
   const auto ridge = [&](double x, double y, double offset) { return Point{x, y, x * y + offset}; };
   Shell shell;
   const auto add = [&](const Ring& ring) { shell.push_back({ring}); };
-  Ring front, back, left, right;  // along the sides, for the walls
-  // The roof: between two ridges that run along y the surface rises to `height` and falls again.
+  // The outlines of the roof and the floor along the sides, for the walls.
+  Ring front, back, left, right;
+  // The roof: between two ridges that run along y, the surface rises to `height` and falls again.
   for (int i = 0; i < n; ++i) {
     const double x = 4.0 * i + 2;
     const Point low_front = ridge(x, 0, 2), low_back = ridge(x, size, 2);
@@ -49,7 +51,7 @@ Shell chazelle(int notches) {
   }
   front.push_back({size, 0, height});
   back.push_back({size, size, height});
-  // The floor: ridges that run along x.
+  // The floor: its ridges run along x.
   for (int j = 0; j < n; ++j) {
     const double y = 4.0 * j + 2;
     const Point high_left = ridge(0, y, 0), high_right = ridge(size, y, 0);
@@ -66,8 +68,8 @@ Shell chazelle(int notches) {
   }
   left.push_back({0, size, -height});
   right.push_back({size, size, -height});
-  // Walls: front y = 0 and back y = size under the zigzag of the roof, left and right above that of
-  // the floor.
+  // The walls: front y = 0 and back y = size end in the zigzag of the roof, left and right in that
+  // of the floor.
   Ring wall = reversed(front);
   wall.push_back({0, 0, -height});
   wall.push_back({size, 0, -height});
@@ -88,7 +90,7 @@ Shell chazelle(int notches) {
 }
 
 Shell moebius_band() {
-  // Six squares around a hexagon; from the last to the first the two rims are exchanged.
+  // Six squares around a hexagon; between the last and the first square the two rims are exchanged.
   const std::vector<Point> inner{{20, 0, 0},  {10, 18, 2},   {-10, 18, 4},
                                  {-20, 0, 6}, {-10, -18, 8}, {10, -18, 10}};
   const std::vector<Point> outer{{30, 0, 10}, {15, 27, 14},  {-15, 27, 10},
@@ -105,7 +107,7 @@ Shell moebius_band() {
 }
 
 Shell klein_bottle() {
-  // A grid of 6 x 6 whose rows close as a ring and whose columns close with the ring reflected.
+  // A grid of 6 x 6 whose rows close as rings; the columns close after a reflection of the ring.
   constexpr std::size_t n = 6;
   static constexpr std::array<std::array<int, 2>, n> kRing{
       {{10, 0}, {5, 9}, {-5, 9}, {-10, 0}, {-5, -9}, {5, -9}}};

@@ -33,7 +33,7 @@ Shell cup(const Point& low, const Point& high, double wall) {
   return shell;
 }
 
-/// The saddle x y over a square: opposite corners up.
+/// A square whose opposite corners are at two heights, as on the saddle x y.
 Ring saddle(double size, double low, double high) {
   return {{0, 0, low}, {size, 0, high}, {size, size, low}, {0, size, high}};
 }
@@ -120,7 +120,7 @@ std::vector<SuiteCase> shell_cases() {
 std::vector<SuiteCase> ring_cases() {
   struct Pit {
     std::string name;
-    Ring rim;  // counter-clockwise, in the top z = 20
+    Ring rim;  // the rim of the pit, counter-clockwise in the top z = 20
     std::set<int> errors;
   };
   const std::vector<Pit> pits{
@@ -215,7 +215,7 @@ std::vector<SuiteCase> number_cases() {
   const double huge = 4503599627370496.0;  // 2^52
   cases.push_back(of("three-units-near-2-52", {cube(huge - 3001, huge - 1)}));
   cases.push_back(of("box-of-2-52", {cube(0, huge)}));
-  // A notch whose tip is one unit from the opposite wall, and one whose tip lies on it.
+  // The tip of a notch is one unit from the opposite wall, or lies on it.
   for (const double tip : {1.0, 0.0}) {
     const Ring outline{{0, 0, 0}, {huge, 0, 0}, {huge, huge, 0}, {huge / 2, tip, 0}, {0, huge, 0}};
     const bool is_open = tip > 0;
@@ -246,7 +246,7 @@ std::vector<SuiteCase> suite() {
 }
 
 Shape dented_block(Random& random, Tip tip) {
-  // The floor is spanned by u and v, the walls rise along w; all integers, right-handed.
+  // The vectors u and v span the floor, the walls rise along w; all are integers, and right-handed.
   AffineMap map;
   do {
     map = general_map(random, 99);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The suite: solids with a name whose verdict and codes are known by construction, and the way to
-// write them as CityJSON for tests/golden/solids.
+// The suite: solids with a name whose verdict and codes are known by construction, and a function
+// that writes them as CityJSON for tests/golden/solids.
 #pragma once
 
 #include <set>
@@ -12,11 +12,11 @@
 
 namespace watertight::solids {
 
-/// The question, and with it the answer that can be expected.
+/// The proof that the case needs; the verdict to be expected depends on it.
 enum class Ask : std::uint8_t {
-  rung_zero,  // the exact tests and the canonical Delaunay tetrahedralization decide
-  engines,    // needs the engines' rungs
-  boundary    // proof by boundary: the exact tests alone
+  rung_zero,  // the exact tests and the canonical DT decide
+  engines,    // the engines' rungs decide
+  boundary    // the exact tests alone decide
 };
 
 struct SuiteCase {
@@ -31,13 +31,13 @@ struct SuiteCase {
 /// All cases, in a fixed order, with distinct names.
 std::vector<SuiteCase> suite();
 
-/// Cases by subject; suite() joins them.
+/// The cases of one subject each; suite() joins them.
 std::vector<SuiteCase> shell_cases();    // shells beside, in and on each other
 std::vector<SuiteCase> ring_cases();     // rings that touch, in planes of all directions
 std::vector<SuiteCase> surface_cases();  // tori, notches, surfaces with one side
-std::vector<SuiteCase> number_cases();   // small, large, thin, geographic
+std::vector<SuiteCase> number_cases();   // small, large, thin and geographic coordinates
 
-/// A dent in a block whose floor is sloped: the tip lies on the floor exactly, or one step above.
+/// A block with a sloped floor and a dent whose tip lies exactly on the floor, or one step above.
 enum class Tip : std::uint8_t { on_floor, above_floor };
 Shape dented_block(Random& random, Tip tip);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Documents that other validators misread or die of: what the reader must say, or the verdict that
-// must come out of document and validator together.
+// Documents that other validators misread or that make them crash: each test states the reader's
+// error, or the verdict of reader and validator together.
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 
@@ -30,7 +30,7 @@ bool is_refused(const std::string& text, Format format) {
   return true;
 }
 
-/// The errors of the first solid; {-1} when the document is refused or holds none.
+/// The codes of the errors of the first solid; {-1} if the document is refused or holds no solid.
 std::set<int> codes_of(const std::string& text, Format format) {
   const auto document = formats::read_document(as_bytes(text), format);
   if (!document || document->features.empty() || document->features[0].solids.empty()) return {-1};
@@ -85,13 +85,13 @@ TEST_CASE("OFF: comments are passed over, indices are checked, a far unused vert
   CHECK(codes_of(far, Format::off).empty());
 }
 
-TEST_CASE("CityJSON: wrong indices are refused; a missing lod and empty arrays are not the end") {
+TEST_CASE("CityJSON: wrong indices are refused; a missing lod and empty arrays are read") {
   CHECK(codes_of(city_json(kCube), Format::city_json).empty());
   CHECK(is_refused(city_json(replaced(kCube, "4,5,6,7", "4,5,6,8")), Format::city_json));
   CHECK(is_refused(city_json(replaced(kCube, "4,5,6,7", "4,5,6,-1")), Format::city_json));
   CHECK(is_refused(city_json(replaced(kCube, "4,5,6,7", "4,5,6,7.5")), Format::city_json));
   CHECK(codes_of(city_json(replaced(kCube, R"("lod":"1",)", "")), Format::city_json).empty());
-  // A facet without a ring, a ring without a point, and so an open shell.
+  // A facet without a ring and a ring without a point each leave the shell open.
   CHECK(codes_of(city_json(replaced(kCube, "[[4,5,6,7]]", "[]")), Format::city_json) ==
         std::set<int>{101, 302});
   CHECK(codes_of(city_json(replaced(kCube, "[[4,5,6,7]]", "[[]]")), Format::city_json) ==

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The suite of solids whose truth is known by construction, through the library and as files: what
-// tests/golden/solids holds must be what the builders make, and expected.csv what they state. With
-// WATERTIGHT_UPDATE_GOLDEN set in the environment the files are written instead of compared.
+// Tests the suite of solids whose truth is known by construction, through the library and as files:
+// the files of tests/golden/solids must equal the builders' solids, and expected.csv their
+// statements. With WATERTIGHT_UPDATE_GOLDEN set in the environment the files are written, not
+// compared.
 #include <catch2/catch_test_macros.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -57,7 +58,7 @@ void check(const SuiteCase& truth, const Report& report) {
   CHECK(report.verdict == truth.verdict());
 }
 
-/// A file is kept of what CityJSON can hold.
+/// True for a solid that has a golden file: one that CityJSON can hold, except a large one.
 bool has_file(const SuiteCase& truth) {
   return truth.solid.lattice().kind == LatticeKind::decimal && truth.name != "chazelle-20";
 }
@@ -82,7 +83,7 @@ TEST_CASE("every solid of the suite gets the verdict and the codes it was built 
   }
 }
 
-TEST_CASE("the suite's files are what the builders make, and read as files they say the same") {
+TEST_CASE("the suite's files are what the builders make, and give the same verdicts when read") {
   std::string table = "file,verdict,errors,warnings,proof\n";
   std::set<std::string> names;
   for (const SuiteCase& truth : suite()) {
@@ -96,7 +97,8 @@ TEST_CASE("the suite's files are what the builders make, and read as files they 
              text_of(truth.errors) + "," + text_of(truth.warnings) + "," +
              std::string(proof_of(truth.ask)) + "\n";
     const Solid solid = read_solid(text, Format::city_json);
-    // The engines' verdicts are tested above; here only that the file says the same.
+    // The test above checks the engines' verdicts; here the exact tests alone check the solid of
+    // the file.
     const bool is_decided = truth.ask == Ask::engines;
     if (!is_decided || solid.shell_count() == 1) {
       check(truth, report_of(solid, is_decided ? Ask::boundary : truth.ask));
@@ -121,7 +123,7 @@ TEST_CASE("every injected defect gives exactly its codes, whatever the order and
 }
 
 TEST_CASE("a dent whose tip lies on the opposite sloped facet is found in 200 of 200 files") {
-  // The transform is one that loses the contact when coordinates are computed in doubles.
+  // With this transform, computing the coordinates in doubles would lose the contact.
   Lattice lattice = millimetres();
   lattice.origin = {GridNumber{84616468, -3}, GridNumber{447422301, -3}, GridNumber{-2517, -3}};
   Random random(21);

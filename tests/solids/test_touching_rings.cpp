@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Solids in whose facets rings touch inside edges, through the whole path: verdict, certificate,
-// every mode of the codec, every format.
+// Tests solids whose facets have rings that touch inside edges, through the whole path: verdict,
+// certificate, every mode of the codec, every format.
 #include <catch2/catch_test_macros.hpp>
 #include <map>
 
@@ -31,7 +31,7 @@ Inspection inspect(const Solid& solid, Proof proof = Proof::boundary) {
   return certify(solid, proof == Proof::boundary ? nullptr : &engines(), options);
 }
 
-/// The valid solids of touching_rings() and some at random.
+/// The valid solids of touching_rings() and some random ones.
 std::vector<TouchingRings> valid_solids() {
   std::vector<TouchingRings> list = touching_rings();
   Random random(77);
@@ -72,7 +72,7 @@ TEST_CASE("rings that touch inside edges get their codes, however they are writt
       CHECK((report.verdict == Verdict::valid) == touching.errors.empty());
     }
   }
-  CHECK(seen.size() == 4);  // valid, 302, 205, and both
+  CHECK(seen.size() == 4);  // the sets {}, {302}, {205} and {302, 205}
 }
 
 TEST_CASE("rings may touch inside edges of facets that are planar within the tolerance only") {
@@ -98,7 +98,7 @@ TEST_CASE("a vertex beside an edge by one step in space still meets it in the pl
       }
     }
   }
-  // The front wall has the vertex as a corner; it is the upper facet whose edge passes above it.
+  // The vertex is a corner of the front wall; the edge of the upper facet passes above the vertex.
   CHECK(codes_of(inspect(solid_of({shell}, millimetres())).report, Severity::error).contains(201));
 }
 
@@ -131,7 +131,7 @@ TEST_CASE(
   REQUIRE(finding.other);
   CHECK(finding.other->facet == 1);
   CHECK(finding.other->ring == 0);
-  // The edge that the vertex splits starts in a corner of the ring as submitted.
+  // The edge that the vertex splits starts in a corner of the submitted ring.
   CHECK(solid.vertices()[finding.other->vertex] == Point{0, 0, 6000});
   CHECK(finding.detail.find("T-junction") != std::string::npos);
 }
@@ -179,7 +179,8 @@ TEST_CASE("modes give back rings that touch inside edges as submitted, or declin
   }
   CHECK(held[Mode::automatic] == held[Mode::raw]);
   CHECK(held[Mode::walk] == 0);
-  CHECK(held[Mode::polygon] > 0);  // where both facets of an edge have the touch
+  // Solids in which both facets of an edge have the vertex of the touch.
+  CHECK(held[Mode::polygon] > 0);
 }
 
 TEST_CASE("solids whose rings touch inside edges share pages with others") {

@@ -9,16 +9,16 @@
 namespace watertight::solids {
 namespace {
 
-constexpr double kUnit = 100;  // of the coordinates below: 10 cm
-constexpr double kTop = 60;    // height of the blocks
+constexpr double kUnit = 100;  // the unit of the coordinates below: 100 mm
+constexpr double kTop = 60;    // the height of the blocks, in units
 
-constexpr std::size_t kUpper = 1;  // facet of a prism()
+constexpr std::size_t kUpper = 1;  // the index of the upper facet of a prism()
 
 class PittedBlock {
  public:
   explicit PittedBlock(const Ring& outline) : shell_(prism(outline, 0, kTop)) {}
 
-  /// A pit below a facet: its rim turns counter-clockwise seen from outside.
+  /// Adds a pit to a facet; its rim turns counter-clockwise seen from outside.
   void add_pit(std::size_t facet, const Ring& rim, const Point& bottom) {
     shell_[facet].push_back(reversed(rim));
     for (std::size_t i = 0; i < rim.size(); ++i) {
@@ -26,7 +26,7 @@ class PittedBlock {
     }
   }
 
-  /// Gives the vertex to the rings of all other facets than `facet` that have it inside an edge.
+  /// Inserts the vertex into the rings of all facets but `facet` in which it lies inside an edge.
   void give_to_facets_across(const Point& v, std::size_t facet) {
     for (std::size_t f = 0; f < shell_.size(); ++f) {
       if (f == facet) continue;
@@ -34,7 +34,7 @@ class PittedBlock {
     }
   }
 
-  /// The facet that has a wall's upper edge from a to b.
+  /// The index of the facet whose exterior ring has the edge from a to b.
   std::size_t facet_with_edge(const Point& a, const Point& b) const {
     for (std::size_t f = 0; f < shell_.size(); ++f) {
       const Ring& ring = shell_[f][0];
@@ -84,19 +84,19 @@ Ring rectangle(double width, double depth) {
   return {{0, 0, 0}, {width, 0, 0}, {width, depth, 0}, {0, depth, 0}};
 }
 
-/// A pit that touches the outline or another pit in (x, y), with its far edge at y + 12.
+/// Adds a pit that touches the outline or another pit in (x, y); its far edge is at y + 12.
 void add_upper_pit(PittedBlock& block, double x, double y) {
   block.add_pit(kUpper, {{x, y, kTop}, {x + 7, y + 12, kTop}, {x - 7, y + 12, kTop}},
                 {x, y + 8, kTop - 8});
 }
 
-/// A pit of the front wall below the place x of its upper edge.
+/// Adds a pit in the front wall that touches the upper edge of the wall at x.
 void add_front_pit(PittedBlock& block, std::size_t front, double x) {
   block.add_pit(front, {{x, 0, kTop}, {x - 7, 0, kTop - 12}, {x + 7, 0, kTop - 12}},
                 {x, 4, kTop - 14});
 }
 
-/// A pit whose edge passes through the tip (x, y) of a notch of the outline.
+/// Adds a pit whose edge passes through the tip (x, y) of a notch of the outline.
 void add_notched_pit(PittedBlock& block, double x, double y) {
   block.add_pit(kUpper, {{x - 6, y, kTop}, {x + 6, y, kTop}, {x, y + 12, kTop}},
                 {x, y + 4, kTop - 8});
@@ -120,7 +120,7 @@ class Rows {
   static constexpr double kDepth = 48;
   struct Row {
     double x = 0;
-    std::size_t pits = 0;  // one behind the other
+    std::size_t pits = 0;  // the number of pits, one behind the other
     bool has_notch = false;
     bool reaches_back = false;
     bool has_front_pit = false;
@@ -138,7 +138,7 @@ class Rows {
     }
   }
 
-  /// A rectangle with a notch in the front at each row that has one.
+  /// A rectangle with a notch in its front for each row that has one.
   Ring outline() const {
     Ring ring{{0, 0, 0}};
     for (const Row& row : rows_) {
@@ -149,8 +149,8 @@ class Rows {
     return ring;
   }
 
-  /// Gives the vertex of a touch to the facet across, or forgets to: once, for a vertex between two
-  /// that are lacked has an umbrella of its own on either side (303).
+  /// Gives the vertex of a touch to the facet across the edge, or leaves it out at random. Only one
+  /// vertex of a shape is left out: a vertex between two such vertices would have two fans (303).
   void give(PittedBlock& block, const Point& v, std::size_t facet) {
     if (!errors_.contains(302) && random_.below(10) == 0) {
       errors_.insert(302);
@@ -166,7 +166,7 @@ class Rows {
       if (i == 0 && row.has_notch) {
         add_notched_pit(block, row.x, y);
         give(block, touch, kUpper);
-        return;  // the pit's tip points backwards: nothing touches it
+        return;  // the tip of the pit points backward: nothing touches it
       }
       const bool is_last = i + 1 == row.pits && row.reaches_back;
       if (is_last) {
@@ -188,7 +188,7 @@ class Rows {
     }
   }
 
-  /// From the pit before to the back edge.
+  /// Adds a pit that reaches from the pit before to the back edge.
   void add_last_pit(PittedBlock& block, double x, double y) {
     const Point back{x, kDepth, kTop};
     block.add_pit(kUpper, {{x, y, kTop}, {x + 6, y + 12, kTop}, back, {x - 6, y + 12, kTop}},
@@ -197,7 +197,7 @@ class Rows {
     errors_.insert(205);
   }
 
-  /// The front wall whose edges are (from, 0) to (to, 0) around x.
+  /// The front wall that has x between its ends.
   Index front_of(const PittedBlock& block, double x) const {
     const Ring ring = outline();
     for (std::size_t i = 0; i + 1 < ring.size(); ++i) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The library's results for the solids of files, as rows for COPY: name, EWKB, blob (\N when the
-// solid is not valid). For a blob (a golden), the solid that it decodes to. run_regress.sh compares
-// them with what the extension makes of the same EWKB. Undecided solids and files that hold no
-// document are left out.
+// Prints the library's results for the solids of files, as rows for COPY: name, EWKB, blob (\N if
+// the solid is not valid). The row of a golden blob has the solid that the blob decodes to.
+// run_regress.sh compares the rows with the results of the extension for the same EWKB. Undecided
+// solids and files that are no document are left out.
 #include <cstdio>
 
 #include "codec/blob.h"
@@ -26,7 +26,8 @@ std::string hex(ByteView bytes) {
   return text;
 }
 
-/// The SQL functions see EWKB, so this does: its doubles, vertices in order of first use.
+/// Prints the row of a solid. The solid goes through EWKB first, as in SQL: its coordinates are
+/// doubles, and its vertices are in order of first use.
 void print_row(const std::string& name, const Solid& solid, delaunay::EngineWorkers& workers) {
   const Bytes ewkb = formats::write_ewkb(solid);
   const auto submitted = formats::read_ewkb(ewkb);

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the extension in a private server: run_regress.sh SOURCE BUILD [PROGRAM]
-# With PROGRAM (watertight) it also compares the blobs of SQL and command line. The store's own tests
-# then see whether a private cluster of such a server has the extension.
+# With PROGRAM (watertight) the script also compares the blobs of SQL and command line. The store's
+# own tests then find out whether a private cluster of such a server has the extension.
 set -euo pipefail
 # shellcheck source=tests/unprivileged.sh
 . "$(dirname "$0")/../unprivileged.sh"
@@ -70,8 +70,8 @@ if [ -n "$program" ]; then
   echo "3 blobs of SQL and command line are equal"
 fi
 
-# The extension writes the very bytes that the library writes, of every solid of these files, finds
-# the same ones invalid, and gives back what came in. Golden blobs decode to the same.
+# For every solid of these files, the extension must write the same bytes as the library, or find
+# the solid invalid too, and give the solid back. Golden blobs must decode to the same solids.
 if [ -x "$build/bin/encode_documents" ]; then
   query() { run "$bin/psql" -X -q -At -v ON_ERROR_STOP=1 "${connect[@]}" -d regression "$@"; }
   (cd "$source" && find examples tests/data tests/golden/solids tests/golden/blobs -type f |
@@ -101,7 +101,7 @@ if [ -x "$build/bin/test_store" ]; then
   WATERTIGHT_POSTGRES_BIN=$bin "$build/bin/test_store" "the database has the extension*"
 fi
 
-# Helpers end with their backends: all connections are closed now.
+# A helper process ends with its backend, and all connections are closed now.
 helpers() {
   for link in /proc/[0-9]*/exe; do
     case $(readlink "$link" 2>/dev/null) in

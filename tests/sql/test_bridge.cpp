@@ -13,7 +13,7 @@ namespace {
 
 using Function = void (*)(const wt_job*, wt_reply*) noexcept;
 
-/// A reply that frees itself.
+/// A reply that frees its memory.
 struct Reply {
   wt_reply value{};
   Reply() = default;
@@ -115,7 +115,7 @@ TEST_CASE("an engine that finds no helpers is made and ended") {
   const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr};
   Reply reply;
   wt_bridge_is_valid(&job, &reply.value);
-  CHECK(reply.value.truth);  // a cube needs none
+  CHECK(reply.value.truth);  // a cube needs no helper
   wt_engine_end(engine);
   wt_engine_end(nullptr);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A slice of bench/verdict: no wrong verdict about the first solids of each family, as they are
-// and, of some, mirrored, renumbered, by the boundary alone and with each engine first.
+// A part of bench/verdict: the first solids of each family must get no wrong verdict, as they are,
+// and some of them also mirrored, renumbered, by the boundary alone and with each engine first.
 #include <catch2/catch_test_macros.hpp>
 #include <string_view>
 
@@ -32,7 +32,7 @@ void check_family(std::string_view name) {
       }
     }
   }
-  CHECK(right > kSeeds / 2);  // the rest: unknown to the oracle, or beyond the bounds
+  CHECK(right > kSeeds / 2);  // the other solids are unknown to the oracle, or beyond its bounds
 }
 
 TEST_CASE("cavities along diagonals of quads get the oracle's verdict") {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The oracle of bench/verdict against truths that were found by hand.
+// Tests the oracle of bench/verdict with verdicts that were found by hand.
 #include <catch2/catch_test_macros.hpp>
 
 #include "bench/verdict/oracle.h"
@@ -23,8 +23,8 @@ std::set<int> codes(const Shape& shape) { return truth_of(solid_of(shape)).codes
 
 Shell cavity(const Shell& shell) { return inside_out(shell); }
 
-/// The corners of the box with the corner (0,0,0) cut off by three quads that meet there; a cavity
-/// with the corners a, b, d has edges along their diagonals.
+/// A box with its corner (0,0,0) cut off by three quadrilaterals that meet there; a cavity with the
+/// corners a, b, d has edges along their diagonals.
 Shape sealed_corner(double inset) {
   const Point o{0, 0, 0};
   const Point a{10000, inset, inset};
@@ -61,8 +61,10 @@ TEST_CASE("the oracle refuses shells that are not closed 2-manifolds") {
   Shell open = cube;
   open.pop_back();
   CHECK(codes({open}).count(302) == 1);
-  CHECK(codes({join(cube, box({2, 2, 0}, {4, 4, 2}))}).count(303) == 1);  // an edge in common
-  CHECK(codes({join(cube, box({2, 2, 2}, {4, 4, 4}))}).count(303) == 1);  // a vertex in common
+  // The parts have an edge in common.
+  CHECK(codes({join(cube, box({2, 2, 0}, {4, 4, 2}))}).count(303) == 1);
+  // The parts have a vertex in common.
+  CHECK(codes({join(cube, box({2, 2, 2}, {4, 4, 4}))}).count(303) == 1);
   CHECK(codes({join(cube, box({5, 5, 5}, {6, 6, 6}))}).count(305) == 1);
   CHECK(codes({join(cube, box({1, 1, 1}, {3, 3, 3}))}).count(306) == 1);
   Shell turned = cube;
@@ -87,7 +89,7 @@ TEST_CASE("the oracle follows the canonical diagonals of quads that are not plan
   CHECK(codes(sealed_corner(0)) == std::set<int>{404});
   CHECK(codes(sealed_corner(4)) == std::set<int>{404});
   Shape open = sealed_corner(4);
-  for (Facet& facet : open[1]) {  // one corner of the cavity goes inside
+  for (Facet& facet : open[1]) {  // moves one corner of the cavity inward
     for (Ring& ring : facet) {
       for (Point& p : ring) {
         if (p.z == 10000 && p.x == 4) p = {1000, 1000, 9000};
@@ -98,7 +100,7 @@ TEST_CASE("the oracle follows the canonical diagonals of quads that are not plan
 }
 
 TEST_CASE("the oracle refuses walls that cross along a diagonal of both") {
-  // The walls from a to d and from f to c run through the line from b to e.
+  // The walls from a to d and from f to c pass through the line from b to e.
   const Point a{-10, -5, 10}, b{0, 0, 10}, c{14, 7, 10}, c0{14, 7, 0}, b0{0, 0, 0}, a0{-10, -5, 0};
   const Point f{14, -7, 10}, f0{14, -7, 0}, g{-10, 5, 10}, g0{-10, 5, 0};
   const Shell prism{{{a, b, c, c0, b0, a0}}, {{c, f, f0, c0}}, {{f, b, g, g0, b0, f0}},

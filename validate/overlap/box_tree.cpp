@@ -35,7 +35,7 @@ BoxTree::BoxTree(std::span<const Box> boxes) {
       entries[i].centre[axis] = box.min[axis] / 2 + box.max[axis] / 2;
     }
   }
-  // Ranges still to be made nodes; the lower half is made first.
+  // A stack of the ranges of entries that are still to become nodes, lower halves on top.
   std::vector<std::pair<Index, Index>> ranges;
   if (!entries.empty()) ranges.emplace_back(0, static_cast<Index>(entries.size()));
   while (!ranges.empty()) {

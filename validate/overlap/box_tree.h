@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A static tree of boxes for exact and measured searches: which boxes reach a point, a box or a
-// ray. It only leaves out what the caller's test of a whole box rules out. Internal to validate/.
+// A static tree of boxes that finds the boxes near a point, a box or a ray. A search leaves out
+// only boxes that the caller's test rules out, so it can be exact. Internal to validate/.
 #pragma once
 
 #include <span>
@@ -16,8 +16,8 @@ class BoxTree {
   /// Cost: O(n log n). The same boxes in the same order give the same tree.
   explicit BoxTree(std::span<const Box> boxes);
 
-  /// Calls visit(item) for the items of all leaves that enter(box) lets in. `enter` is asked for
-  /// inner boxes first; each contains all boxes below it. Cost: the boxes asked about.
+  /// Calls visit(item) for the items of each leaf for whose box and all boxes above it enter(box)
+  /// is true. A box contains all boxes below it. Cost: the number of calls of `enter`.
   template <class Enter, class Visit>
   void visit(Enter enter, Visit visit) const {
     for (std::size_t i = 0; i < nodes_.size();) {
@@ -31,7 +31,7 @@ class BoxTree {
     }
   }
 
-  /// Calls visit(items, box) for every leaf: items that lie close to each other.
+  /// Calls visit(items, box) for every leaf; the items of a leaf lie close to each other.
   template <class Visit>
   void visit_leaves(Visit visit) const {
     for (const Node& node : nodes_) {
@@ -43,13 +43,13 @@ class BoxTree {
  private:
   struct Node {
     Box box;
-    Index begin = 0;  // items of a leaf; an inner node has none of its own
+    Index begin = 0;  // the first item of a leaf; an inner node has no items
     Index end = 0;
-    std::size_t next = 0;  // the node after all that are below this one
+    std::size_t next = 0;  // the index of the first node after all nodes below this one
   };
 
   std::vector<Index> items_;
-  std::vector<Node> nodes_;  // each before those below it, the lower half first
+  std::vector<Node> nodes_;  // each node before the nodes below it, the lower half first
 };
 
 /// The box of a triangle.

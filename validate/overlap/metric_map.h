@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// From lattice coordinates of a solid to metres in the world, for everything that is measured:
-// through the units of its reference system, or, for a geometry template, through the placement of
-// an instance. Internal to validate/.
+// The map from lattice coordinates of a solid to metres in the world, for all measurements: by the
+// units of the solid's reference system, and for a geometry template by the placement of an
+// instance. Internal to validate/.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ namespace watertight::validate {
 
 class MetricMap {
  public:
-  /// `placement` may be null: the solid stands where it is.
+  /// `placement` is null for a solid whose coordinates are world coordinates.
   MetricMap(const Solid& solid, const geometry::Placement* placement);
 
-  /// The vector in metres between two points of the lattice. Rounded.
+  /// The vector in metres between two points of the lattice, rounded.
   std::array<double, 3> metres(const Point& from, const Point& to) const;
 
   /// True if each lattice axis keeps its direction, so that two different points of the grid are at

@@ -16,8 +16,8 @@ double squared_distance(const Point& a, const Point& b) {
   return x * x + y * y + z * z;
 }
 
-/// A lower bound of the squared distance between points of two boxes. Rounding is monotone, so it
-/// never exceeds the squared distance computed of two points.
+/// A lower bound of the squared distance between points of two boxes. Rounding is monotone, so the
+/// bound never exceeds the squared distance that is computed for two points.
 double squared_distance(const Box& a, const Box& b) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {

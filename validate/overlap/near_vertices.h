@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points that nearly coincide with another: measured, for warning 801 and for snapping. Internal to
-// validate/.
+// Finds points that nearly coincide with another point, for warning 801 and for snapping. Internal
+// to validate/.
 #pragma once
 
 #include <array>
@@ -14,15 +14,16 @@
 namespace watertight::validate {
 
 struct NearPoints {
-  std::vector<Index> points;  // those with another at most `reach` away; ascending
+  std::vector<Index> points;  // the points with another point at most `reach` away; ascending
   Index first = kNone;        // the closest pair, first < second
   Index second = kNone;
-  double distance = 0;  // of the closest pair
+  double distance = 0;  // the distance of the closest pair
 };
 
-/// All points that have another at most `reach` away. Every point's nearest neighbour is looked
-/// for, so it does not matter how many pairs are near. `cancel` (may be empty) ends the search with
-/// what was found. Deterministic. Cost: O(n log n) but for points placed against it.
+/// Finds all points that have another point at most `reach` away. The search is for the nearest
+/// neighbour of each point, so the number of near pairs does not matter. If `cancel` (may be empty)
+/// returns true, the search ends with the points found so far. Deterministic. Cost: O(n log n)
+/// except for points arranged to defeat the search.
 NearPoints near_points(std::span<const Point> points, double reach, const CancelPoll& cancel);
 
 }  // namespace watertight::validate

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The corners of the overlap of two solids are corners of one that are not outside the other, and
-// points where an edge of one meets a triangle of the other. Triangles with a corner in common
-// belong to one part of the overlap. The convex hull of a part's corners contains the part, so its
-// extent along any direction bounds the part's: the depth is never too small.
+// The corners of the overlap of two solids are corners of one solid that are not outside the other,
+// and points where an edge of one solid meets a triangle of the other. Triangles that have a corner
+// of the overlap in common belong to one part of the overlap. The convex hull of a part's corners
+// contains the part, so the extent of the hull along any direction is an upper bound of the extent
+// of the part: the depth is never too small.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,11 +19,11 @@
 namespace watertight::validate {
 namespace {
 
-/// Beyond this many corners the extent of the common box bounds the depth.
+/// With this many corners or more, the depth is the least extent of the common box.
 constexpr std::size_t kMostCorners = 100'000;
-/// Normals looked at per part.
+/// The largest number of directions along which the extent of a part is measured.
 constexpr std::size_t kMostNormals = 64;
-/// Pairs of corners between which a witness is looked for.
+/// The largest number of pairs of corners whose middle is tried as a witness.
 constexpr std::size_t kMostTries = 64;
 
 using Metres = Vector;
@@ -41,7 +42,8 @@ Box common_box(const RegionSurface& first, const RegionSurface& second) {
   return common;
 }
 
-/// Where the segment pq meets the triangle, if it crosses its plane.
+/// The point where the segment pq meets the triangle, if p and q are on different sides of its
+/// plane; else nothing.
 std::optional<Point> crossing(const Point& p, const Point& q, const std::array<Point, 3>& t) {
   const int at_p = geometry::orient3d(t[0], t[1], t[2], p);
   if (at_p == 0 || at_p * geometry::orient3d(t[0], t[1], t[2], q) >= 0) return std::nullopt;
@@ -83,9 +85,10 @@ class OverlapMeasurer {
  private:
   struct Corner {
     Point at;
-    Index triangle;  // one that has it, by number
+    Index triangle;  // the number of a triangle that has this corner
   };
-  /// Triangles of the first come before those of the second.
+  /// The number of the i-th triangle of a side: the triangles of the first solid come before those
+  /// of the second.
   Index number(std::size_t side, std::size_t i) const {
     return static_cast<Index>(side * triangles_[0].size() + i);
   }
@@ -115,7 +118,7 @@ class OverlapMeasurer {
   StepMetres step_metres_;
   Box common_;
   std::array<std::vector<Index>, 2> triangles_;
-  geometry::DisjointSets parts_;  // of triangles, by number
+  geometry::DisjointSets parts_;  // the parts of the overlap, as sets of triangle numbers
   std::vector<Corner> corners_;
 };
 
@@ -134,7 +137,8 @@ double OverlapMeasurer::depth_of_box() const {
 void OverlapMeasurer::add_vertices(std::size_t side) {
   const RegionSurface& own = *surfaces_[side];
   const RegionSurface& other = *surfaces_[1 - side];
-  std::map<Index, std::pair<bool, Index>> seen;  // vertex -> not outside, first triangle
+  // Vertex -> true if it is a corner of the overlap, and the number of its first triangle.
+  std::map<Index, std::pair<bool, Index>> seen;
   for (std::size_t i = 0; i < triangles_[side].size() && corners_.size() < kMostCorners; ++i) {
     for (const Index vertex : own.triangles()[triangles_[side][i]]) {
       const Point& p = own.vertices()[vertex];
@@ -150,11 +154,11 @@ void OverlapMeasurer::add_vertices(std::size_t side) {
   }
 }
 
-/// Edges of one side with triangles of the other.
+/// Adds the points in which edges of one side meet triangles of the other side.
 void OverlapMeasurer::add_crossings(std::size_t side) {
   const RegionSurface& own = *surfaces_[side];
   const RegionSurface& other = *surfaces_[1 - side];
-  std::map<Index, std::size_t> position;  // triangle of the other -> in its list
+  std::map<Index, std::size_t> position;  // triangle of the other side -> its index in the list
   for (std::size_t j = 0; j < triangles_[1 - side].size(); ++j) {
     position.emplace(triangles_[1 - side][j], j);
   }
@@ -209,7 +213,7 @@ double OverlapMeasurer::depth_of(std::span<const Corner> corners,
   return std::min(depth, depth_of_box());
 }
 
-/// A point that is exactly inside both solids: the mean of the corners, or of two of them.
+/// A point that is exactly inside both solids: the mean of all corners, or of two corners.
 std::optional<Point> OverlapMeasurer::witness(std::span<const Corner> corners) const {
   const auto is_inside = [&](const Point& p) {
     return surfaces_[0]->locate(p) == Location::inside &&
@@ -235,7 +239,7 @@ std::optional<Point> OverlapMeasurer::witness(std::span<const Corner> corners) c
   return std::nullopt;
 }
 
-/// Over all parts; the witness is of the deepest part that gives one.
+/// The largest depth of all parts. The witness is from the deepest part in which one is found.
 double OverlapMeasurer::largest_depth(OverlapExtent& extent) {
   const auto root_of = [&](const Corner& corner) { return parts_.root(corner.triangle); };
   std::stable_sort(corners_.begin(), corners_.end(),
@@ -291,9 +295,9 @@ double distance_to_triangle(const Metres& p, const std::array<Metres, 3>& t) {
   return is_above ? std::abs(dot(normal, p - t[0])) : distance;
 }
 
-/// Looks for a point of one boundary that lies further inside the other solid than rounding
-/// reaches, or, where boundaries lie on each other, for a point that far inside both. Where two
-/// solids overlap, an edge of one enters the other, or both boundaries lie on each other.
+/// Searches for a point of one boundary that lies further inside the other solid than rounding can
+/// move it, and, where boundaries lie on each other, for a point that far inside both solids. Where
+/// two solids overlap, an edge of one enters the other, or both boundaries lie on each other.
 class OverlapProver {
  public:
   OverlapProver(const RegionSurface& first, const RegionSurface& second,
@@ -331,7 +335,7 @@ class OverlapProver {
     return result;
   }
 
-  /// True if the point behind the middle of a triangle is inside both solids.
+  /// True if a point a little behind the middle of a triangle is deep inside both solids.
   bool is_behind_inside(const std::array<Point, 3>& t) const {
     const Metres normal = triangle_normal(metres(t[0]), metres(t[1]), metres(t[2]));
     Point p = centroid(t);
@@ -342,8 +346,8 @@ class OverlapProver {
     return is_deep(p, *surfaces_[0], rounding_) && is_deep(p, *surfaces_[1], rounding_);
   }
 
-  /// True if the middle of a piece of the segment, between crossings with the surface, is deep
-  /// inside.
+  /// True if the segment pq has a point deep inside the other solid. Tried are p and the middles of
+  /// the pieces into which the surface of the other solid cuts the segment.
   bool enters(const Point& p, const Point& q, const RegionSurface& other) const {
     Box box;
     box.include(p);
@@ -366,6 +370,7 @@ class OverlapProver {
     return is_deep(p, other, 2 * rounding_);
   }
 
+  /// True if p is inside the surface and further than `distance` metres from all its triangles.
   bool is_deep(const Point& p, const RegionSurface& surface, double distance) const {
     if (!common_.overlaps(Box{p, p}) || surface.locate(p) != Location::inside) return false;
     Box near{p, p};

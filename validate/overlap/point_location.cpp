@@ -14,8 +14,8 @@ int sign(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
 bool is_same_in_plan(const Point& a, const Point& b) { return a.x == b.x && a.y == b.y; }
 
-/// Side of the moved point to the line ab in plan: 0 only if a and b have the same plan position.
-/// The turn a, b, p grows with p.x by -(b.y - a.y) and with p.y by b.x - a.x.
+/// The sign of the turn a, b, p in plan after p is moved: 0 only if a and b are the same in plan.
+/// The turn grows with p.x by -(b.y - a.y) and with p.y by b.x - a.x.
 int moved_turn(const Point& a, const Point& b, const Point& p) {
   if (is_same_in_plan(a, b)) return 0;
   if (!is_same_in_plan(a, p) && !is_same_in_plan(b, p)) {
@@ -34,7 +34,8 @@ bool is_in_closed_box(const Point& p, const Point& a, const Point& b, const Poin
   return true;
 }
 
-/// Requires p on the plane of abc and in its box. Decides in a projection where abc has an area.
+/// True if p is in the closed triangle abc. Requires p on the plane of abc and in the box of abc.
+/// Decides in a projection in which abc has an area.
 bool is_in_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
   if (p == a || p == b || p == c) return true;
   for (int axis = 0; axis < 3; ++axis) {
@@ -51,7 +52,7 @@ bool is_in_triangle(const Point& p, const Point& a, const Point& b, const Point&
   return false;
 }
 
-/// The parity of the triangles above a point, one triangle at a time.
+/// Counts, modulo 2, the triangles above a point, one triangle at a time.
 class RayParity {
  public:
   RayParity(const Point& p, std::span<const Point> vertices) : p_(p), vertices_(vertices) {}
@@ -61,7 +62,7 @@ class RayParity {
     const Point& b = vertices_[t[1]];
     const Point& c = vertices_[t[2]];
     if (is_on_boundary_ || is_missed(a, b, c)) return;
-    int height = 2;  // not known yet; else the sign of orient3d
+    int height = 2;  // the sign of orient3d, or 2 as long as it is not known
     if (is_in_closed_box(p_, a, b, c)) {
       const bool is_corner = p_ == a || p_ == b || p_ == c;
       height = is_corner ? 0 : geometry::orient3d(a, b, c, p_);
@@ -71,7 +72,7 @@ class RayParity {
     const int turn = moved_turn(a, b, p_);
     if (turn == 0 || moved_turn(b, c, p_) != turn || moved_turn(c, a, p_) != turn) return;
     if (height == 2) height = geometry::orient3d(a, b, c, p_);
-    // From below, a triangle that turns left in plan turns clockwise: orient3d is positive above.
+    // For a triangle that turns left in plan, orient3d is positive if the point is above it.
     if (height * turn < 0) is_inside_ = !is_inside_;
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Whether a point lies inside a closed triangulated surface, exactly. Internal to validate/.
+// Decides exactly whether a point lies inside a closed triangulated surface. Internal to validate/.
 #pragma once
 
 #include <span>
@@ -12,16 +12,15 @@ namespace watertight::validate {
 
 enum class Location : signed char { outside = -1, boundary = 0, inside = 1 };
 
-/// Locates a point by the parity of the number of triangles that a ray from it meets. The ray runs
-/// along +z and is moved by a symbolic step along x and a smaller one along y, so that it meets no
-/// edge. Requires every edge of the surface to be met an
-/// even number of times. Source: simulation of simplicity, Edelsbrunner & Muecke 1990, with the
-/// point alone perturbed.
+/// Locates a point by the parity of the number of triangles that a ray from the point meets. The
+/// ray runs along +z and is moved by a symbolic step along x and a smaller one along y, so that it
+/// meets no edge. Requires that every edge of the surface belongs to an even number of triangles.
+/// Source: simulation of simplicity, Edelsbrunner & Muecke 1990; only the point is perturbed.
 class PointLocator {
  public:
-  /// Keeps the spans. Cost: O(n log n).
+  /// The locator keeps the spans, not their elements. Cost: O(n log n).
   PointLocator(std::span<const Point> vertices, std::span<const Triangle> triangles);
-  /// Cost: the triangles above or below the point in plan, and a logarithm.
+  /// Cost: linear in the triangles above or below the point, plus a logarithm of all triangles.
   Location locate(const Point& p) const;
 
  private:
@@ -30,7 +29,7 @@ class PointLocator {
   BoxTree tree_;
 };
 
-/// The same for a single point. Cost: linear.
+/// Locates a single point without a PointLocator. Cost: linear.
 Location locate(const Point& p, std::span<const Point> vertices,
                 std::span<const Triangle> triangles);
 

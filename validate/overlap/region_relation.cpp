@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Let X and Y be regions, each bounded by one closed 2-manifold that does not meet itself, and let
-// the inner side of a triangle be the one that its region is on. The triangles of one surface meet
-// the inside (without edges) of none of its other triangles, so a small half-ball on the inner side
-// of a point inside a triangle belongs to the region.
+// the inner side of a triangle be the side on which its region is. A triangle of a surface meets
+// the inside (the triangle without its edges) of no other triangle of that surface, so a small
+// half-ball on the inner side of a point inside a triangle belongs to the region.
 //
 // (1) If a triangle u meets the inside of a triangle t of the other region and has a vertex
 //     strictly on the inner side of t's plane, the insides of the regions meet: from the common
-//     point on, u runs into the half-ball beside t. So they do if two triangles in one plane,
-//     turned alike, share an area.
+//     point on, u runs into the half-ball beside t. The insides of the regions also meet if two
+//     triangles in one plane, turned alike, share an area.
 // (2) Otherwise all triangles of one boundary that meet the inside of a triangle t of the other lie
 //     on the closed outer side of t there. The inner half of a small ball around a point inside t
-//     is then free of the other boundary, so it lies inside the other region or outside of it, and
-//     the same for all points inside t, as they are connected: t is `in` or `out`. It is out if it
-//     shares an area with a triangle turned the other way.
+//     is then free of the other boundary, so the half-ball lies inside the other region or outside
+//     of it. Since the inside of t is connected, the answer is the same for all points inside t: t
+//     is `in` or `out`. A triangle that shares an area with a triangle turned the other way is out.
 // (3) Then the insides meet if and only if a triangle of Y is in, or an arbitrary triangle of X is:
 //     the inside of X is connected, so it holds a point of Y's boundary (and a triangle of Y there
 //     is in) or lies inside Y as a whole (and all triangles of X are in).
-// (4) Every point of such a triangle that is not on the other boundary shows whether it is in or
-//     out. Triangles that do not meet the other boundary share their answer with all triangles that
-//     have a corner of them.
+// (4) Every point of a triangle that is not on the other boundary shows whether the triangle is in
+//     or out. A triangle that does not meet the other boundary has the same answer as all triangles
+//     with which it shares a corner.
 //
-// Nothing here needs the inside of Y to be connected or bounded, so the complement of Y (its
-// triangles turned) can take its place: X lies in Y when X does not meet Y's complement. The
+// None of (1) to (4) needs the inside of Y to be connected or bounded, so the complement of Y (with
+// the triangles of Y turned) can replace Y: X lies in Y when X does not meet Y's complement. The
 // boundary of a solid with cavities is no such surface: where a cavity touches a facet from within,
 // the half-ball beside the facet is not all interior. validate/overlap/solid_overlap.cpp compares
 // solids shell by shell.
@@ -41,7 +41,7 @@ namespace watertight::validate {
 namespace {
 
 constexpr std::uint64_t kCancelInterval = std::uint64_t{1} << 16U;
-/// Below this many pairs of boxes all are compared; above a tree is built.
+/// Up to this number of pairs of boxes, all pairs are compared; above it a tree is built.
 constexpr std::size_t kFewPairs = 1024;
 
 Box common_box(const Box& a, const Box& b) {
@@ -60,7 +60,7 @@ std::vector<Box> boxes_of(std::span<const Point> vertices, std::span<const Trian
   return boxes;
 }
 
-/// Signs of a triangle's corners to the plane of another.
+/// The sides of a triangle's plane on which corners of another triangle lie.
 struct Sides {
   bool has_inner = false;
   bool has_outer = false;
@@ -78,7 +78,7 @@ Sides sides_to(const std::array<Point, 3>& plane, const std::array<Point, 3>& co
   return sides;
 }
 
-/// Requires triangles in one plane.
+/// True if two triangles have the same orientation. Requires triangles in one plane.
 bool are_turned_alike(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
   for (int axis = 0; axis < 3; ++axis) {
     const int turn = geometry::orient2d(a[0], a[1], a[2], axis);
@@ -87,8 +87,9 @@ bool are_turned_alike(const std::array<Point, 3>& a, const std::array<Point, 3>&
   return false;
 }
 
-/// Where the triangle's points off the surface are. Requires a triangle that is in or out (2) and
-/// shares no area with the surface, which then meets it in segments and points only.
+/// The location of the triangle's points that are not on the surface. Requires a triangle that is
+/// in or out by (2) and shares no area with the surface: the surface then meets the triangle in
+/// segments and points only.
 Location locate_triangle(const std::array<Point, 3>& corners, const RegionSurface& surface) {
   for (int exponent = 2; exponent <= 52; exponent = exponent == 2 ? 8 : exponent + 8) {
     for (std::uint64_t i = 1; i <= geometry::triangle_points(exponent); ++i) {
@@ -103,15 +104,16 @@ Location locate_triangle(const std::array<Point, 3>& corners, const RegionSurfac
       if (location != Location::boundary) return location;
     }
   }
-  return Location::outside;  // more than 2^25 segments
+  return Location::outside;  // reached only if the surface meets the triangle in > 2^25 segments
 }
 
-/// One of the two regions: its triangles that reach into the common box.
+/// One of the two regions, with its triangles that reach into the common box.
 struct Side {
   const RegionSurface* surface = nullptr;
   std::vector<Index> triangles;
-  std::vector<char> is_touched = {};   // it meets the other boundary
-  std::vector<char> shares_area = {};  // with a triangle in its plane
+  std::vector<char> is_touched = {};  // 1 if the triangle meets the other boundary
+  std::vector<char> shares_area =
+      {};  // 1 if the triangle shares an area with one of the other side
 };
 
 class Comparison {
@@ -147,11 +149,11 @@ class Comparison {
   Side second_;
   const RegionQuestions& questions_;
   const CancelPoll& cancel_;
-  std::vector<Point> points_;  // of the listed triangles, three each, the first solid's first
+  std::vector<Point> points_;  // three corners of each triangle of first_, then those of second_
   std::vector<Box> boxes_;     // the boxes of the second region's triangles
   std::uint64_t comparisons_ = 0;
-  bool first_leaves_ = false;   // the first meets the complement of the second
-  bool second_leaves_ = false;  // and the other way round
+  bool first_leaves_ = false;   // the first region meets the complement of the second
+  bool second_leaves_ = false;  // the second region meets the complement of the first
   RegionRelation relation_;
 };
 
@@ -162,7 +164,7 @@ void Comparison::note_overlap(Index triangle, Index other) {
   relation_.other_facet = other == kNone ? kNone : second_.surface->facet_of(other);
 }
 
-/// (1) for the regions and for each with the complement of the other.
+/// Applies (1) to the two regions, and to each region with the complement of the other.
 void Comparison::note(geometry::ContactClass contact, std::size_t i, std::size_t j) {
   const Index t = first_.triangles[i];
   const Index u = second_.triangles[j];
@@ -183,8 +185,8 @@ void Comparison::note(geometry::ContactClass contact, std::size_t i, std::size_t
     }
   } else if (contact == geometry::ContactClass::vertex_face ||
              contact == geometry::ContactClass::edge_face) {
-    // The triangle whose inside is met lies in one plane, on both sides of which the other has
-    // corners.
+    // If the second triangle has corners of the first on both sides of its plane, the inside of the
+    // first triangle is met; else the inside of the second.
     const Sides of_first = sides_to(b, a);
     const bool is_second_met = !of_first.are_both();
     const bool is_inner = is_second_met ? of_first.has_inner : sides_to(a, b).has_inner;
@@ -264,7 +266,7 @@ class TriangleSides {
     }
   }
 
-  /// Returns `inside` or `outside` for triangle i of the side.
+  /// `inside` or `outside` for triangle i of the side.
   Location operator()(std::size_t i) {
     const Index triangle = side_.triangles[i];
     for (const Index vertex : side_.surface->triangles()[triangle]) {
@@ -276,8 +278,8 @@ class TriangleSides {
       }
       return location;
     }
-    // Each point of the triangle that is not on the other boundary decides. A corner is located at
-    // less cost than a point inside the triangle.
+    // Any point of the triangle that is not on the other boundary decides. To locate a corner costs
+    // less than to locate a point inside the triangle.
     for (const Index vertex : side_.surface->triangles()[triangle]) {
       const auto [place, is_new] = touched_.try_emplace(vertex, Location::boundary);
       if (is_new) place->second = other_.locate(side_.surface->vertices()[vertex]);
@@ -299,10 +301,13 @@ class TriangleSides {
   std::vector<Index> free_;
   geometry::DisjointSets parts_{0};
   std::vector<Location> known_;
-  std::map<Index, Location> touched_;  // corners of triangles that meet the other surface
+  std::map<Index, Location>
+      touched_;  // corner of a triangle that meets the other surface -> location
 };
 
-/// (3), when (1) does not hold. Notes the first triangle that is in.
+/// True if the insides of two regions meet, by (3); requires that (1) has not shown it. With
+/// `is_complement`, the complement of `other` is the second region. Notes the first triangle that
+/// is in.
 bool Comparison::meets(const Side& connected, const Side& other, bool is_complement) {
   const auto note_in = [&](Index of_connected, Index of_other) {
     if (is_complement) return;
@@ -322,7 +327,7 @@ bool Comparison::meets(const Side& connected, const Side& other, bool is_complem
     note_in(kNone, triangle);
     return true;
   }
-  // Triangles that are not listed lie outside the other's box.
+  // Triangles of `connected` that are not listed lie outside the box of the other region.
   if (connected.triangles.size() < connected.surface->triangles().size()) return is_complement;
   if (connected.shares_area[0] != 0) return false;
   TriangleSides own(connected, *other.surface);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How two regions lie to each other, each bounded by one shell: whether their insides meet, whether
-// one holds the other, whether they share an area of their boundaries. Exact, by orientation
-// predicates and point location on the triangles of the boundaries. For cavities in their solid and
-// for solids of a group. Internal to validate/.
+// Decides how two regions, each bounded by one shell, lie to each other: whether their insides
+// meet, whether one contains the other, whether their boundaries share an area. The answers are
+// exact, by orientation predicates and point location on the triangles of the boundaries. For
+// cavities in their solid and for solids of a group. Internal to validate/.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@
 
 namespace watertight::validate {
 
-/// A closed surface as triangles, turned outward. Move only: the trees refer to the arrays.
+/// A closed surface as triangles, turned outward. The class cannot be copied, because its trees
+/// refer to its arrays.
 class RegionSurface {
  public:
   RegionSurface(std::vector<Point> vertices, std::vector<Triangle> triangles,
@@ -38,7 +39,7 @@ class RegionSurface {
     const Triangle& t = triangles_[triangle];
     return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
   }
-  /// Triangles whose boxes meet a closed box, ascending.
+  /// The triangles whose boxes meet a closed box, ascending.
   std::vector<Index> triangles_in(const Box& box) const;
 
  private:
@@ -50,8 +51,8 @@ class RegionSurface {
   PointLocator locator_;
 };
 
-/// The triangles of the shells [begin, end) of a solid, with the vertices that they use. `vertices`
-/// are the solid's, on any grid; an inner shell taken alone is turned outward by `is_turned_over`.
+/// The surface of the shells [begin, end) of a solid, with the vertices that they use. `vertices`
+/// are the vertices of the solid on any grid; `is_turned_over` turns an interior shell outward.
 RegionSurface surface_of_shells(const Solid& solid, std::span<const Point> vertices,
                                 const tessellate::FacetTriangles& facets, IndexRange shells,
                                 bool is_turned_over);
@@ -66,21 +67,22 @@ struct RegionQuestions {
 };
 
 struct RegionRelation {
-  bool is_cancelled = false;        // nothing else is known
+  bool is_cancelled = false;        // true: the other members say nothing
   bool do_overlap = false;          // the insides have a point in common
-  bool is_first_inside = false;     // when asked: no point of the first is outside the second
-  bool is_second_inside = false;    // when asked: no point of the second is outside the first
+  bool is_first_inside = false;     // if asked: no point of the first is outside the second
+  bool is_second_inside = false;    // if asked: no point of the second is outside the first
   bool touch_back_to_back = false;  // triangles share an area, turned against each other
   bool touch_side_by_side = false;  // triangles share an area, turned alike
-  std::uint64_t looks = 0;          // triangles in the common box and comparisons: the work done
-  Index facet = kNone;              // a facet of the first that shows the overlap
-  Index other_facet = kNone;        // one of the second; kNone if none shows it
+  std::uint64_t looks = 0;          // the work: the triangles in the common box plus comparisons
+  Index facet = kNone;              // a facet of the first that shows the overlap, or kNone
+  Index other_facet = kNone;        // a facet of the second that shows the overlap, or kNone
 };
 
-/// Requires that each surface is one closed 2-manifold that does not meet itself, turned outward.
-/// The touch_ flags are complete where the insides do not meet or where the asked region is inside.
-/// Deterministic. Cost: near linear in the triangles inside the overlap of the boxes; the product
-/// of their numbers when all of them meet.
+/// The relation of two regions. Requires that each surface is one closed 2-manifold that does not
+/// meet itself, turned outward. The touch_ members are complete if the insides do not meet, or if a
+/// region for which this was asked is inside the other. Deterministic. Cost: near linear in the
+/// triangles inside the overlap of the boxes; the product of the two numbers of triangles if all of
+/// them meet.
 RegionRelation relate_regions(const RegionSurface& first, const RegionSurface& second,
                               const RegionQuestions& questions, const CancelPoll& cancel);
 

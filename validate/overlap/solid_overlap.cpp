@@ -3,13 +3,14 @@
 // Let A be the region inside the exterior shell of a solid X, A_i the regions of its cavities, and
 // B, B_j those of Y.
 //
-// (1) The interiors of X and Y are disjoint if and only if those of A and B are, or B lies in one
-//     A_i, or A lies in one B_j. For the interior of Y is connected and, if it misses X, lies in
-//     the closed regions that X leaves: outside A, A_1, A_2, ... These have points and segments in
-//     common at most, which do not cut an open connected set apart, so it lies in one of them. If
-//     that is an A_i, B is in it too: the outside of A_i is connected, reaches infinity and meets
-//     no point of B's surface. If it is the outside of A, then A misses Y; the same argument for
-//     A, which is connected, leaves the outside of B or one B_j.
+// (1) The interiors of X and Y are disjoint if and only if the interiors of A and B are disjoint,
+//     or B lies in one A_i, or A lies in one B_j. Proof: the interior of Y is connected. If it
+//     misses X, it lies in the closed regions that X leaves: outside A, A_1, A_2, ... Two of these
+//     regions have at most points and segments in common, which do not divide an open connected
+//     set, so the interior of Y lies in one region. If that region is an A_i, B is in A_i too: the
+//     outside of A_i is connected, reaches infinity and meets no point of B's surface. If the
+//     region is the outside of A, then A misses Y; the same argument for A, which is connected,
+//     shows that A lies outside B or in one B_j.
 // (2) X and Y are equal if and only if A = B and each cavity of one is a cavity of the other: the
 //     regions that a solid leaves are determined by its points.
 //
@@ -26,7 +27,7 @@ namespace {
 
 bool are_same(const Box& a, const Box& b) { return a.min == b.min && a.max == b.max; }
 
-/// Equal regions have equal boxes and volumes; both are quickly compared.
+/// False only if two regions differ: equal regions have equal boxes and equal volumes.
 bool may_be_equal(const RegionSurface& a, const RegionSurface& b) {
   return are_same(a.box(), b.box()) && geometry::six_volume(a.vertices(), a.triangles()) ==
                                            geometry::six_volume(b.vertices(), b.triangles());
@@ -63,7 +64,8 @@ class SolidComparison {
     return relation;
   }
 
-  /// If so, the solids share an area where the region fills the cavity up to its wall.
+  /// True if a region lies in a cavity of the solid, or if the comparison was cancelled. The solids
+  /// then share an area where the region reaches the wall of the cavity.
   bool is_in_cavity(const RegionSurface& region, const SolidSurface& solid) {
     for (const RegionSurface& cavity : solid.cavities()) {
       if (!contains(cavity.box(), region.box())) continue;
@@ -75,8 +77,8 @@ class SolidComparison {
     return result_.is_cancelled;
   }
 
-  /// If one exterior shell is inside the other, no two facets of these shells show the overlap.
-  /// Then a facet of a cavity and one of the exterior shell of the other solid may show it.
+  /// If one exterior shell is inside the other, no two facets of these shells show the overlap. A
+  /// facet of a cavity and a facet of the exterior shell of the other solid may then show it.
   void name_crossing_facets() {
     for (const RegionSurface& cavity : first_.cavities()) {
       const RegionRelation relation = ask(cavity, second_.exterior(), {});
@@ -95,7 +97,8 @@ class SolidComparison {
     return true;
   }
 
-  /// Cavities of a solid are disjoint: no two of them equal the same one.
+  /// True if each cavity of one solid equals a cavity of the other. The cavities of a solid are
+  /// disjoint, so no two of them equal one cavity of the other solid.
   bool have_equal_cavities() {
     if (first_.cavities().size() != second_.cavities().size()) return false;
     std::map<std::pair<Point, Point>, std::vector<const RegionSurface*>> by_box;

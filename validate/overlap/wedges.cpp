@@ -12,7 +12,7 @@ struct Passage {
   Index vertex, before, after, corner;
 };
 
-/// The passages of all corners at vertices that the facet's rings pass more than once, by vertex.
+/// The passages at all vertices that the facet's rings pass more than once, sorted by vertex.
 std::vector<Passage> shared_passages(const Solid& solid, Index facet) {
   std::vector<Passage> list;
   const IndexRange rings = solid.rings_of(facet);
@@ -36,8 +36,8 @@ std::vector<Passage> shared_passages(const Solid& solid, Index facet) {
   return shared;
 }
 
-/// A triangle seen from one of its corners: its inside lies from the edge to `right` counter-
-/// clockwise to the edge to `left`.
+/// A triangle seen from one of its corners: the inside lies counter-clockwise from the edge to
+/// `right` to the edge to `left`.
 struct Sector {
   Index vertex, right, left;
   friend auto operator<=>(const Sector&, const Sector&) = default;
@@ -60,14 +60,15 @@ std::vector<Wedge> shared_wedges(const Solid& solid, const tessellate::FacetTria
     }
   }
   std::sort(sectors.begin(), sectors.end());
-  std::vector<std::tuple<Index, Index, Index>> arrivals;  // vertex, vertex before it, corner
+  std::vector<std::tuple<Index, Index, Index>>
+      arrivals;  // vertex, the vertex before it in its ring, corner
   for (const Passage& passage : passages) {
     arrivals.emplace_back(passage.vertex, passage.before, passage.corner);
   }
   std::sort(arrivals.begin(), arrivals.end());
   std::vector<Wedge> wedges;
   for (const Passage& start : passages) {
-    // Triangles counter-clockwise around the vertex, to the next ring edge. Each is passed once.
+    // Goes through the triangles counter-clockwise around the vertex up to the next ring edge.
     Index edge = start.after;
     Index end = kNone;
     for (std::size_t steps = 0; end == kNone && steps <= sectors.size(); ++steps) {

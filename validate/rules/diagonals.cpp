@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Facets that are planar within the tolerance but not exactly (804): would one flip of a diagonal
-// of the canonical triangulation make an intersection with another facet, or undo one? Exact on
-// the flipped triangles. Flips of several diagonals at once are not looked at.
+// Facets that are planar within the tolerance but not exactly (804): decides whether one flip of a
+// diagonal of the canonical triangulation would make or undo an intersection with another facet.
+// Exact on the flipped triangles. Flips of several diagonals at once are not examined.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,7 +20,7 @@
 namespace watertight::validate {
 namespace {
 
-/// Pairs of triangles classified: half a second of work.
+/// The largest number of pairs of triangles that are classified: half a second of work.
 constexpr std::uint64_t kMostPairs = 3'000'000;
 
 class DiagonalExaminer {
@@ -58,9 +58,9 @@ class DiagonalExaminer {
   const ShellContacts& contacts_;
   std::span<const Point> vertices_;
   const tessellate::FacetTriangles& all_;
-  std::vector<Box> boxes_;                         // of all triangles
-  BoxTree tree_;                                   // of boxes_
-  std::map<Index, std::vector<FacetEdge>> edges_;  // of facets that were asked about
+  std::vector<Box> boxes_;                         // the boxes of all triangles
+  BoxTree tree_;                                   // the tree of boxes_
+  std::map<Index, std::vector<FacetEdge>> edges_;  // facet -> edges, for facets examined so far
   std::uint64_t pairs_ = 0;
 };
 
@@ -71,7 +71,7 @@ std::vector<Box> DiagonalExaminer::boxes() const {
   return boxes;
 }
 
-/// Whether the segment is a diagonal of the canonical triangulation of a facet.
+/// True if the segment ab is a diagonal of the canonical triangulation of a facet.
 bool DiagonalExaminer::is_diagonal(Index facet, Index a, Index b) {
   auto place = edges_.find(facet);
   if (place == edges_.end()) place = edges_.emplace(facet, facet_edges(all_, facet)).first;
@@ -85,9 +85,9 @@ bool DiagonalExaminer::is_diagonal(Index facet, Index a, Index b) {
          edge->is_diagonal();
 }
 
-/// Whether the common edge of a flipped triangle t and a triangle u is one that facets of a shell
-/// may share: on the boundary of both. Diagonals other than the flipped one that meet another
-/// facet's edge were found before.
+/// True if facets of a shell may share the common edge of a flipped triangle t and a triangle u:
+/// the edge is on the boundary of both facets. Contacts of other diagonals than the flipped one
+/// with edges of other facets are among the contacts found before.
 bool DiagonalExaminer::is_common_boundary(const Diagonal& flip, const Triangle& t, Index facet,
                                           const Triangle& u, Index other) {
   const auto has = [](const Triangle& triangle, Index vertex) {
@@ -100,7 +100,8 @@ bool DiagonalExaminer::is_common_boundary(const Diagonal& flip, const Triangle& 
   return !is_diagonal(facet, a, b) && !is_diagonal(other, a, b);
 }
 
-/// How a flipped triangle of `facet` meets a triangle of another facet, if that is a finding.
+/// The contact of a flipped triangle of `facet` with a triangle of another facet, if the contact is
+/// a finding; else nothing.
 std::optional<geometry::ContactClass> DiagonalExaminer::contact_of(const Diagonal& flip,
                                                                    const Triangle& t, Index facet,
                                                                    Index triangle) {
@@ -138,7 +139,7 @@ void DiagonalExaminer::report(const Diagonal& diagonal, Index facet, Index other
   finding.place.vertex = examined_.submitted_vertex(diagonal.left);
   finding.other = examined_.at_facet(other);
   finding.witness = examined_.world(witness);
-  // How far apart the two diagonals pass each other: the depth of what lies between the surfaces.
+  // The distance between the lines of the two diagonals: how far the two surfaces are apart.
   const Vector along = examined_.metres(diagonal.u, diagonal.v);
   const Vector across = examined_.metres(diagonal.left, diagonal.right);
   finding.measured =
@@ -166,7 +167,7 @@ std::vector<Index> DiagonalExaminer::near(const Box& around, Index facet) const 
   return triangles;
 }
 
-/// One finding for each other facet that would be met.
+/// Reports one finding for each other facet that the facet would intersect with another diagonal.
 void DiagonalExaminer::find_made(Index facet, const std::vector<Diagonal>& diagonals) {
   std::vector<Index> reported;
   for (const Diagonal& diagonal : diagonals) {
@@ -191,6 +192,7 @@ void DiagonalExaminer::find_made(Index facet, const std::vector<Diagonal>& diago
   }
 }
 
+/// True, with a finding, if another diagonal of `facet` undoes all its intersections with `other`.
 /// Requires all pairs of triangles of the two facets that make the finding.
 bool DiagonalExaminer::is_undone(std::span<const TrianglePair> group, Index facet, Index other) {
   const auto mine = [&](const TrianglePair& pair) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Facets: planar within tolerance (203, 204), connected interior (205), interior rings turning
-// against the exterior ring (208). 203 and 204 are measured in metres and degrees; a facet that is
-// exactly planar has neither, whatever the rounding of the measurement says.
+// Rules of facets: planar within tolerance (203, 204), connected interior (205), interior rings
+// that turn against the exterior ring (208). 203 and 204 are measured in metres and degrees; a
+// facet that is exactly planar has neither finding, whatever rounding does to the measured values.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -25,7 +25,7 @@ struct Corner {
   Index vertex = 0;
 };
 
-/// The corners of the rings as submitted: a vertex that splits an edge is no corner of that ring.
+/// The corners of the rings as submitted, without the vertices that split edges.
 std::vector<Corner> corners_of(const ExaminedSolid& examined, Index facet) {
   std::vector<Corner> corners;
   const Solid& solid = examined.solid();
@@ -46,7 +46,7 @@ std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index face
       .subspan(all.first[facet], all.first[facet + 1] - all.first[facet]);
 }
 
-/// False if a distance in the facet exceeds the doubles.
+/// False if a distance in the facet is beyond the range of doubles.
 bool is_measurable(const ExaminedSolid& examined, const std::vector<Corner>& corners) {
   return std::all_of(corners.begin(), corners.end(), [&](const Corner& corner) {
     const Vector d = examined.metres(corners.front().vertex, corner.vertex);
@@ -54,7 +54,7 @@ bool is_measurable(const ExaminedSolid& examined, const std::vector<Corner>& cor
   });
 }
 
-/// False if 203 was found.
+/// Applies rule 203. False if there is a finding.
 bool check_distance(ExaminedSolid& examined, Index facet, const std::vector<Corner>& corners) {
   const double limit = examined.tolerances().planarity_metres;
   std::vector<Vector> points;
@@ -82,7 +82,8 @@ struct WidestPair {
   std::size_t b = 0;
 };
 
-/// The pair with the smallest cosine. Cost: near linear, but for normals placed against it.
+/// The pair of normals with the smallest cosine of the angle between them. Cost: near linear except
+/// for normals arranged to defeat the search.
 WidestPair widest_pair(const std::vector<Vector>& normals) {
   std::vector<Box> boxes;
   boxes.reserve(normals.size());
@@ -93,7 +94,7 @@ WidestPair widest_pair(const std::vector<Vector>& normals) {
     const double cosine = dot(normals[a], normals[b]);
     if (cosine < widest.cosine) widest = {cosine, std::min(a, b), std::max(a, b)};
   };
-  // A first guess: the normal farthest from the first one, then the one farthest from that.
+  // A first guess: the normal farthest from the first normal, then the one farthest from that one.
   for (int round = 0; round < 2; ++round) {
     const std::size_t from = widest.b;
     for (std::size_t i = 0; i < normals.size(); ++i) compare(from, i);
@@ -128,7 +129,7 @@ void check_normals(ExaminedSolid& examined, Index facet) {
     normals.push_back(unit_normal(examined.metres(t[0], t[1]), examined.metres(t[0], t[2])));
     for (std::size_t axis = 0; axis < 3; ++axis) mean[axis] += normals.back()[axis];
   }
-  // Two normals within half the limit of a third direction are within the limit of each other.
+  // If all normals are within half the limit of one direction, any two are within the limit.
   mean = direction_of(mean);
   const double half = std::cos(limit / 2 * (std::numbers::pi / 180.0));
   if (std::all_of(normals.begin(), normals.end(),
@@ -157,7 +158,7 @@ void check_normals(ExaminedSolid& examined, Index facet) {
   examined.mark_faulty(facet);
 }
 
-/// Number of parts the triangles of a facet fall into when joined over edges.
+/// The number of parts of a facet whose triangles are connected through edges.
 std::size_t count_parts(std::span<const Triangle> triangles) {
   geometry::DisjointSets sets(triangles.size());
   struct Side {
@@ -186,7 +187,7 @@ std::size_t count_parts(std::span<const Triangle> triangles) {
 }
 
 void check_connected(ExaminedSolid& examined, Index facet) {
-  // Rings that share no vertex cannot cut the interior apart.
+  // Rings that share no vertex cannot divide the interior.
   const Solid& solid = examined.solid();
   std::vector<Index> vertices;
   for (Index r = solid.rings_of(facet).begin; r < solid.rings_of(facet).end; ++r) {
@@ -224,7 +225,7 @@ void check_turns(ExaminedSolid& examined, Index facet) {
   }
 }
 
-/// False for facets with finding 101 or 102.
+/// False if the facet has finding 101 or 102.
 bool has_good_points(const Solid& solid, IndexRange rings) {
   for (Index r = rings.begin; r < rings.end; ++r) {
     const std::span<const Index> ring = solid.ring(r);
@@ -234,7 +235,7 @@ bool has_good_points(const Solid& solid, IndexRange rings) {
   return rings.size() > 0;
 }
 
-/// False if the facet is too large to be measured.
+/// Applies the rules to one facet. False if the facet is too large to be measured.
 bool check_facet(ExaminedSolid& examined, Index facet, bool is_triangulated) {
   const Solid& solid = examined.solid();
   bool is_measured = true;

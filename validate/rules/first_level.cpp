@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// val3dity's cascade: an open ring (103) ends it while reading; per facet the first failing test
-// ends the facet; all facets of a shell must pass before the shell is looked at, all shells before
-// the solid; a shell turned the wrong way (405) ends the tests of the solid. A one-sided shell
-// (300) is 303 there: its builder cannot add the facet that closes the strip.
+// The order of tests in val3dity: an open ring (103) ends all tests while the file is read; the
+// first failing test of a facet ends the tests of that facet; a shell is tested only if all its
+// facets pass, the solid only if all shells pass; a shell turned the wrong way (405) ends the tests
+// of the solid. val3dity reports 303 for a one-sided shell (300), because its builder cannot add
+// the facet that closes the strip.
 #include <algorithm>
 #include <initializer_list>
 #include <map>
@@ -18,7 +19,7 @@ using Codes = std::set<int>;
 
 bool has(const Codes& codes, int code) { return codes.count(code) != 0; }
 
-/// The first of `order` that is in `codes`, alone.
+/// The first code of `order` that is in `codes`, or none.
 Codes first_of(const Codes& codes, std::initializer_list<int> order) {
   for (const int code : order) {
     if (has(codes, code)) return {code};
@@ -51,7 +52,7 @@ struct ShellCodes {
   bool has_folds = false;
   Codes shell;
 
-  /// A shell's facets come before the shell itself, and all of them before 204.
+  /// The codes of the first level that fails: the facets, then 204, then the shell itself.
   Codes first_level() const {
     Codes result;
     for (const auto& [facet, codes] : facets) result.merge(of_facet(codes));

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shells that touch along edges may cut the interior apart (404). Exact, without a
+// Shells that touch along edges may divide the interior (404). The test is exact and needs no
 // tetrahedralization:
 //
 // The canonical triangles, divided where shells touch (delaunay/shell_contacts.h), form a complex:
-// they meet in common vertices and edges only. Consider the inner side of each triangle, the one
-// that the interior is on. Two triangles at an edge that only they have show the same part of the
-// interior there. Around an edge of several shells the triangles are sorted by angle, and two
-// neighbours with interior between them show the same part. Each class of triangles that are linked
-// so is a component of the boundary of one part, moved inward by next to nothing, and a closed
-// surface. A connected bounded region has exactly one outer boundary component, whose volume is
-// positive, turned outward, and the volumes of the others are negative: as many parts as classes of
-// positive volume. Vertices that shells share link nothing: around one, the space that is not
-// interior is made of discs on a small sphere, and cutting their tips off joins and parts nothing.
+// they meet in common vertices and edges only. The inner side of a triangle is the side on which
+// the interior is. If exactly two triangles have an edge, their inner sides belong to the same part
+// of the interior. Around an edge of several shells the triangles are sorted by angle, and two
+// neighbours with interior between them belong to the same part. Each class of triangles that are
+// linked in this way is a closed surface: moved inward by an infinitely small distance, it is a
+// component of the boundary of one part. A connected bounded region has exactly one outer boundary
+// component, whose volume is positive; the volumes of its other components are negative. So there
+// are as many parts as classes of positive volume. Vertices that shells share link no triangles: a
+// small sphere around such a vertex meets the space that is not interior in discs, and to cut off
+// the tips of that space neither joins nor divides parts.
 //
-// Shells that do not touch cut nothing: the complement of n disjoint closed connected surfaces has
-// n + 1 components (Alexander duality), n - 1 cavities, the outside and one more.
+// Shells that do not touch divide nothing: the complement of n disjoint closed connected surfaces
+// has n + 1 components (Alexander duality): n - 1 cavities, the outside and one more.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -31,21 +32,21 @@
 namespace watertight::validate {
 namespace {
 
-/// Other diagonals are tried on solids of at most this many triangles, and so many at most: a
-/// second of work.
+/// Other diagonals are tried on solids of at most kMostTriangles triangles, at most kMostFlips for
+/// each solid: a second of work.
 constexpr std::size_t kMostTriangles = 5'000;
 constexpr std::size_t kMostFlips = 32;
 
 /// A triangle at one of its edges.
 struct Sheet {
-  Triangle key{};  // the edge's smaller vertex, its larger one, the triangle
-  Index apex = 0;
-  /// The triangle passes the edge from its smaller vertex to its larger one: seen against that
+  Triangle key{};  // the edge's smaller vertex, the edge's larger vertex, the triangle
+  Index apex = 0;  // the vertex of the triangle that is not on the edge
+  /// True if the triangle passes the edge from the smaller to the larger vertex: seen against that
   /// direction, the interior is clockwise of the triangle.
   bool is_forward = false;
 };
 
-/// The parts that a boundary cuts the interior into.
+/// The parts into which a boundary divides the interior.
 struct InteriorParts {
   std::size_t count = 0;
   Index facet = kNone;  // the first facet of the boundary of the smallest part
@@ -56,7 +57,7 @@ class PartCounter {
   PartCounter(std::span<const Point> points, const tessellate::FacetTriangles& facets)
       : points_(points), facets_(facets), sides_(facets.triangles.size()) {}
 
-  /// Nothing if the triangles form no boundary of an interior.
+  /// The parts of the interior; nothing if the triangles form no boundary of an interior.
   std::optional<InteriorParts> run() {
     collect_sheets();
     for (std::size_t begin = 0; begin < sheets_.size();) {
@@ -86,8 +87,8 @@ class PartCounter {
                                [](const Sheet& sheet) { return sheet.key; });
   }
 
-  /// Links the triangles at one edge that show the same part there. False if inside and outside do
-  /// not alternate.
+  /// Links the triangles at one edge whose inner sides belong to the same part there. False if
+  /// inside and outside do not alternate around the edge.
   bool link_around(std::span<Sheet> sheets) {
     if (sheets.size() > 2) sort_by_angle(sheets);
     for (std::size_t i = 0; i < sheets.size(); ++i) {
@@ -98,8 +99,8 @@ class PartCounter {
     return true;
   }
 
-  /// Sorts the triangles at one edge by their angle around it: the first one stays, and the others
-  /// follow counter-clockwise, seen against the direction of the edge.
+  /// Sorts the triangles at one edge by their angle around the edge: the first triangle stays, and
+  /// the others follow counter-clockwise, seen against the direction of the edge.
   void sort_by_angle(std::span<Sheet> sheets) const {
     const Point& low = points_[sheets[0].key[0]];
     const Point& high = points_[sheets[0].key[1]];
@@ -107,8 +108,8 @@ class PartCounter {
     const auto turn = [&](Index a, Index b) {
       return a == b ? 0 : geometry::orient3d(low, high, points_[a], points_[b]);
     };
-    // A class of the angle from the first triangle: 0 for none, 1 for less than half a turn, 2 for
-    // half a turn, 3 for more.
+    // The class of a triangle's angle from the first triangle: 0 for the angle 0, 1 for less than
+    // half a turn, 2 for half a turn, 3 for more.
     const auto sector = [&](const Sheet& sheet) {
       if (sheet.apex == first) return 0;
       const int side = turn(first, sheet.apex);
@@ -124,7 +125,7 @@ class PartCounter {
   }
 
   std::optional<InteriorParts> count() {
-    std::map<Index, std::vector<Index>> classes;  // root -> triangles
+    std::map<Index, std::vector<Index>> classes;  // root of a class -> triangles
     for (Index t = 0; t < facets_.triangles.size(); ++t) classes[sides_.root(t)].push_back(t);
     InteriorParts parts;
     double least = 0;
@@ -146,7 +147,7 @@ class PartCounter {
   std::span<const Point> points_;
   const tessellate::FacetTriangles& facets_;
   std::vector<Sheet> sheets_;
-  geometry::DisjointSets sides_;  // of triangles: their inner sides
+  geometry::DisjointSets sides_;  // the classes of triangles, linked through their inner sides
 };
 
 /// True if no two triangles of different facets meet in more than a vertex or an edge of both.
@@ -160,7 +161,8 @@ bool is_complex(const Solid& solid, const tessellate::FacetTriangles& facets,
   return pairs && pairs->empty();
 }
 
-/// Nothing if the contacts cannot be written with the vertices of the solid.
+/// The parts of the interior; nothing if the contacts of shells cannot be written with the vertices
+/// of the solid, or the triangles form no complex or no boundary.
 std::optional<InteriorParts> parts_of(const Solid& solid, const tessellate::FacetTriangles& facets,
                                       const delaunay::ContactTriangles& contacts,
                                       const CancelPoll& cancel) {
@@ -170,7 +172,7 @@ std::optional<InteriorParts> parts_of(const Solid& solid, const tessellate::Face
   return PartCounter(solid.vertices(), divided).run();
 }
 
-/// The canonical triangles with one other diagonal.
+/// The canonical triangles with one diagonal flipped.
 tessellate::FacetTriangles with_flip(tessellate::FacetTriangles facets, const Diagonal& diagonal) {
   const auto [first, second] = diagonal.flipped();
   facets.triangles[diagonal.first] = first;
@@ -186,7 +188,7 @@ class InteriorExaminer {
         contacts_(contacts),
         cancel_([this] { return examined_.ask_cancelled(); }) {}
 
-  /// False if it could not be decided.
+  /// Applies rule 404 and its part of 804. False if 404 could not be decided.
   bool examine() {
     const auto parts = parts_of(solid_, examined_.triangles(), contacts_, cancel_);
     if (!parts) return false;
@@ -205,7 +207,7 @@ class InteriorExaminer {
                    " parts; this facet bounds the smallest"});
   }
 
-  /// Warning 804 where one other diagonal of a facet that is not flat makes or undoes 404.
+  /// Reports 804 where one other diagonal of a facet that is not flat makes or undoes 404.
   void try_other_diagonals(std::size_t count) {
     std::size_t flips = 0;
     for (Index facet = 0; facet < solid_.facet_count(); ++facet) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Facets that intersect: within a shell (306) and between shells (401). Exact. Facets of one shell
-// may meet in common vertices and common ring edges only; facets of different shells may also
-// touch, in points and along edges, but not cross or share an area.
+// Rules of facets that intersect, within a shell (306) and between shells (401). Exact. Facets of
+// one shell may meet in common vertices and common ring edges only; facets of different shells may
+// also touch, in points and along edges, but not cross or share an area.
 #include <algorithm>
 
 #include "geometry/intersection/box_partition.h"
@@ -12,15 +12,15 @@
 namespace watertight::validate {
 namespace {
 
-/// The first search stops at this many pairs: enough for any report. When all of them are allowed
-/// contacts of shells, the search is repeated with more.
+/// The number of pairs at which the first search stops: enough for any report. If all these pairs
+/// are allowed contacts of shells, the search is repeated with a higher limit, up to kLastLimit.
 constexpr std::uint64_t kFirstLimit = 20'000;
-constexpr std::uint64_t kLastLimit = 10'000'000;  // some 550 MB
+constexpr std::uint64_t kLastLimit = 10'000'000;  // the pairs then take some 550 MB
 
 struct FacetPair {
   Index first = 0;
   Index second = 0;
-  geometry::IntersectingPair worst;  // the most severe of their triangle pairs
+  geometry::IntersectingPair worst;  // the most severe pair of triangles of the two facets
 };
 
 class IntersectionExaminer {
@@ -87,7 +87,7 @@ bool IntersectionExaminer::have_common_vertex(const geometry::IntersectingPair& 
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-/// True if the pair is a finding; notes contacts of shells.
+/// True if the contact of two facets is a finding. Also notes which shells touch or intersect.
 bool IntersectionExaminer::is_wrong(const FacetPair& pair) {
   const Index a = examined_.shell_of(pair.first);
   const Index b = examined_.shell_of(pair.second);

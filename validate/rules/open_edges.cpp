@@ -12,15 +12,16 @@
 namespace watertight::validate {
 namespace {
 
-/// Pairs of edge and vertex looked at per shell, after the tree has left out those that are apart:
-/// a second of work. Only vertices placed close to many edges come near it.
+/// The largest number of pairs of an edge and a vertex that are tested in a shell, after the tree
+/// has left out pairs that are far apart: a second of work. Only vertices close to many edges come
+/// near this number.
 constexpr std::uint64_t kMostPairs = 50'000'000;
-/// Far above the rounding of the few products in is_near(), relative to their size.
+/// A bound far above the rounding error of the products in is_near(), relative to their size.
 constexpr double kRounding = 1e-12;
 
 struct End {
   Index vertex = 0;
-  std::size_t edge = 0;  // an open edge that ends there
+  std::size_t edge = 0;  // the index of an open edge that ends at the vertex
 };
 
 class OpenEdgeExaminer {
@@ -49,7 +50,7 @@ class OpenEdgeExaminer {
 
   std::span<const Point> vertices_;
   std::span<const EdgeUse> open_;
-  std::vector<End> ends_;  // one per vertex, ascending
+  std::vector<End> ends_;  // one entry for each end of open edges, ascending by vertex
   std::uint64_t pairs_ = 0;
   std::vector<bool> is_explained_;
   OpenEdges result_;
@@ -74,8 +75,8 @@ std::vector<Box> OpenEdgeExaminer::end_boxes() const {
   return boxes;
 }
 
-/// False only if no point of the box lies on the segment ab. (Separating axes across the segment
-/// and an edge of the box, besides the three axes.)
+/// False only if no point of the box lies on the segment ab. The test is by separating axes: the
+/// coordinate axes, and the cross products of the segment with the edges of the box.
 bool is_near(const Point& a, const Point& b, const Box& box) {
   Box around;
   around.include(a);
@@ -134,7 +135,8 @@ void OpenEdgeExaminer::find_junctions(const BoxTree& tree, std::size_t number) {
   explain(number, chain);
 }
 
-/// Open edges that together cover the edge from the other side are no border of their own.
+/// Notes open edges that together cover another open edge from the other side: neither these edges
+/// nor the covered edge belong to a border.
 void OpenEdgeExaminer::explain(std::size_t number, const std::vector<Index>& chain) {
   std::vector<Index> stops = chain;
   stops.push_back(open_[number].low);
@@ -155,7 +157,7 @@ void OpenEdgeExaminer::explain(std::size_t number, const std::vector<Index>& cha
 }
 
 void OpenEdgeExaminer::collect_borders() {
-  std::map<Index, Index> group_of;  // vertex -> number
+  std::map<Index, Index> group_of;  // vertex -> its number among the vertices of border edges
   for (std::size_t e = 0; e < open_.size(); ++e) {
     if (is_explained_[e]) continue;
     for (const Index vertex : {open_[e].low, open_[e].high}) {
@@ -166,7 +168,7 @@ void OpenEdgeExaminer::collect_borders() {
   for (std::size_t e = 0; e < open_.size(); ++e) {
     if (!is_explained_[e]) sets.join(group_of[open_[e].low], group_of[open_[e].high]);
   }
-  std::map<Index, std::size_t> border_of;  // root -> border
+  std::map<Index, std::size_t> border_of;  // root of a set of vertices -> index of its border
   for (std::size_t e = 0; e < open_.size(); ++e) {
     if (is_explained_[e]) continue;
     const Index root = sets.root(group_of[open_[e].low]);

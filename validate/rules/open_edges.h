@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Edges that only one facet meets: T-junctions among them, and the borders they form. Internal to
-// validate/.
+// Examines the edges that only one facet meets: finds the T-junctions and the borders that these
+// edges form. Internal to validate/.
 #pragma once
 
 #include <vector>
@@ -24,13 +24,14 @@ struct Border {
 };
 
 struct OpenEdges {
-  std::vector<TJunction> junctions;  // in edge order, along each edge
-  std::vector<Border> borders;       // of the edges that T-junctions do not explain
-  bool is_complete = true;           // false: not all T-junctions were looked for
+  std::vector<TJunction> junctions;  // ordered by edge, then along the edge
+  std::vector<Border> borders;       // the borders of edges that T-junctions do not explain
+  bool is_complete = true;           // false: the search for T-junctions did not finish
 };
 
-/// Requires edges that are each used once, sorted by vertices. Exact. `is_cancelled` ends the
-/// search for T-junctions. Cost: O(n log n + vertices close to each edge), bounded.
+/// Finds the T-junctions and borders of open edges. Requires edges that are each used once, sorted
+/// by vertices. Exact. If `is_cancelled` returns true, the search for T-junctions ends. Cost:
+/// O(n log n + vertices close to each edge), bounded.
 OpenEdges examine_open_edges(const Solid& solid, std::span<const EdgeUse> open,
                              const CancelPoll& is_cancelled);
 

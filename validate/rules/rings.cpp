@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rings: enough points (101), no point twice in a row (102), closed (103), simple (104), and how
-// the rings of a facet lie to each other (201, 202, 206, 207). Exact, in the facet's projection.
+// Rules of rings: enough points (101), no point twice in a row (102), closed (103), simple (104),
+// and the relations of the rings of a facet (201, 202, 206, 207). Exact, in the facet's projection.
 #include <algorithm>
 
 #include "base/quantity.h"
@@ -11,7 +11,8 @@
 namespace watertight::validate {
 namespace {
 
-/// Problems reported per facet; more are counted as omitted.
+/// The largest number of problems that are reported for a facet; if there are more, one finding is
+/// counted as omitted.
 constexpr std::size_t kMostProblemsPerFacet = 100;
 
 bool check_points(ExaminedSolid& examined, Index facet) {
@@ -91,7 +92,7 @@ Finding finding_of(const ExaminedSolid& examined, Index facet,
   return finding;
 }
 
-/// Reports a facet without a triangulation for which the search found no closer reason.
+/// Reports a facet without a triangulation for which the search found no more precise reason.
 void report_no_region(ExaminedSolid& examined, Index facet) {
   examined.findings.add({.code = examined.solid().rings_of(facet).size() == 1
                                      ? kRingSelfIntersection

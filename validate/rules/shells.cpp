@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shells by their edges and vertices alone: two-sided (300), enough facets (301), closed (302),
-// 2-manifold (303), one component (305), facets turned alike (307). Exact: vertices are equal or
-// they are not.
+// Rules of shells that need only edges and vertices: two-sided (300), enough facets (301), closed
+// (302), 2-manifold (303), one component (305), facets turned alike (307). Exact: two vertices are
+// one only if they are equal.
 #include <map>
 
 #include "base/quantity.h"
@@ -19,7 +19,7 @@ namespace {
 
 class ShellExaminer {
  public:
-  /// Requires edges that examine the shell.
+  /// Requires that edges.examine(shell) was called.
   ShellExaminer(ExaminedSolid& examined, const EdgeTable& edges, Index shell)
       : examined_(examined),
         solid_(examined.solid()),
@@ -61,7 +61,8 @@ class ShellExaminer {
   bool bounds_region(Index facet) const {
     return examined_.triangles().state[facet] == tessellate::FacetState::triangulated;
   }
-  /// The first corner of the first ring that has one. Requires a facet with an edge.
+  /// The first corner of the first ring of a facet that is not empty. Requires a facet with an
+  /// edge.
   Place first_corner(Index facet) const {
     const Solid& submitted = examined_.submitted();
     const Index begin = submitted.rings_of(facet).begin;
@@ -74,7 +75,7 @@ class ShellExaminer {
     return examined_.at_corner(use.facet, place.ring_in_facet, place.position);
   }
 
-  /// Calls visit(a, b) for the two uses of each edge that has two.
+  /// Calls visit(a, b) for the two uses of each edge that is used exactly twice.
   template <class Visit>
   void for_each_pair(Visit visit) const {
     geometry::for_each_edge(uses_, [&](EdgeSpan edge) {
@@ -88,7 +89,7 @@ class ShellExaminer {
   Index shell_;
   IndexRange facets_;
   EdgeSpan uses_;
-  std::vector<EdgeUse> open_;   // used once
+  std::vector<EdgeUse> open_;   // the edges used once
   std::vector<Index> crowded_;  // vertices of edges used more than twice, ascending
   bool is_shell_faulty_ = false;
   std::string interior_connected_;
@@ -176,8 +177,8 @@ void ShellExaminer::check_open() {
   }
 }
 
-/// Links the two edges of each facet that bound its inside at a vertex: those of one corner, but
-/// where several rings of a facet pass the vertex.
+/// Links the two edges that bound the inside of a facet at a vertex. They are the edges of one
+/// corner, unless several rings of the facet pass the vertex.
 void ShellExaminer::link_wedges(geometry::DisjointSets& fans, Index first_corner,
                                 Index last_corner) {
   std::vector<Wedge> shared;
@@ -195,8 +196,9 @@ void ShellExaminer::link_wedges(geometry::DisjointSets& fans, Index first_corner
   }
 }
 
-/// Ring edges around a vertex, linked by the facets between them, form one fan or several. The
-/// edge that leaves corner c is number 2 c + 1, the one that arrives there 2 c.
+/// Reports vertices with several fans. The ring edges around a vertex, linked by the facets between
+/// them, form the fans. The edge that arrives at corner c has the number 2 c, the edge that leaves
+/// it 2 c + 1, both counted from the first corner of the shell.
 void ShellExaminer::check_fans() {
   const auto& offsets = solid_.arrays().ring_offsets;
   const auto& ring_vertices = solid_.arrays().ring_vertices;
@@ -206,7 +208,7 @@ void ShellExaminer::check_fans() {
   const auto arriving = [&](Index corner) { return 2 * (corner - first_corner); };
   const auto leaving = [&](Index corner) { return arriving(corner) + 1; };
   link_wedges(fans, first_corner, last_corner);
-  const auto ends = [&](const EdgeUse& use) {  // the edge at its low and at its high vertex
+  const auto ends = [&](const EdgeUse& use) {  // the numbers at the low and at the high vertex
     const Index next = place_of_corner(solid_, use.facet, use.corner).next;
     return edges_.is_forward(use) ? std::pair(leaving(use.corner), arriving(next))
                                   : std::pair(arriving(next), leaving(use.corner));
@@ -220,7 +222,7 @@ void ShellExaminer::check_fans() {
   // Every fan lies around one vertex.
   struct Around {
     Index fans = 0;
-    Index facet = kNone;  // the first
+    Index facet = kNone;  // the first facet at the vertex
   };
   std::vector<Around> around(edges_.vertices().size());
   std::vector<bool> is_seen(2 * std::size_t{last_corner - first_corner}, false);
@@ -258,9 +260,9 @@ void ShellExaminer::report_pinch(Index vertex, Index facet, std::size_t fans) {
   examined_.findings.add(std::move(finding));
 }
 
-/// For a closed shell that touches itself in vertices: each part that is connected over edges
-/// bounds a region. One part leaves the interior connected; several do when all but one are turned
-/// inward (cavities that touch the outside in a vertex).
+/// "yes" or "no" for a closed shell that touches itself in vertices. Each part of the shell that is
+/// connected through edges bounds a region. The interior is connected if there is one part, or if
+/// all parts but one are turned inward (cavities that touch the outside in a vertex).
 std::string_view ShellExaminer::interior_connected() {
   if (!interior_connected_.empty()) return interior_connected_;
   geometry::DisjointSets parts(facets_.size());
@@ -284,7 +286,8 @@ std::string_view ShellExaminer::interior_connected() {
 void ShellExaminer::check_components() {
   geometry::DisjointSets vertices(edges_.vertices().size());
   for (const EdgeUse& use : uses_) vertices.join(number_of(use.low), number_of(use.high));
-  // Only the facet may connect an interior ring of a facet to its exterior ring.
+  // Joins the rings of each facet: edges alone need not connect an interior ring to the exterior
+  // ring.
   std::vector<Index> anchor(facets_.size(), kNone);
   for (const EdgeUse& use : uses_) {
     Index& first = anchor[local(use.facet)];
@@ -296,7 +299,7 @@ void ShellExaminer::check_components() {
   };
   topology_.is_connected = std::none_of(anchor.begin(), anchor.end(), is_apart);
   if (topology_.is_connected) return;
-  std::map<Index, std::vector<Index>> components;  // root vertex -> facets
+  std::map<Index, std::vector<Index>> components;  // root of a set of vertices -> facets
   for (Index i = 0; i < anchor.size(); ++i) {
     if (anchor[i] != kNone) components[vertices.root(anchor[i])].push_back(facets_.begin + i);
   }
@@ -319,7 +322,7 @@ void ShellExaminer::check_components() {
 }
 
 void ShellExaminer::check_orientation() {
-  // Two facets that are neighbours at an edge. The links are in the order of edges.
+  // Two facets that are neighbours at an edge; in a conflict they turn in opposite directions.
   struct Link {
     Index from, to;
     bool is_conflict;
@@ -331,7 +334,8 @@ void ShellExaminer::check_orientation() {
   if (topology_.is_oriented) return;
   std::vector<Link> links;
   for_each_pair([&](const EdgeUse& a, const EdgeUse& b) {
-    if (!bounds_region(a.facet) || !bounds_region(b.facet)) return;  // has no side to compare
+    if (!bounds_region(a.facet) || !bounds_region(b.facet))
+      return;  // a facet without a region has no side
     const bool is_conflict = edges_.is_forward(a) == edges_.is_forward(b);
     links.push_back({local(a.facet), local(b.facet), is_conflict});
     links.push_back({local(b.facet), local(a.facet), is_conflict});
@@ -342,7 +346,8 @@ void ShellExaminer::check_orientation() {
   for (const Link& link : links) ++first[link.from + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
 
-  std::vector<char> turn(facets_.size(), 0);  // +1 as the first facet of its part, -1 opposite
+  // +1: the facet turns as the first facet of its part does, -1: the other way, 0: not known yet.
+  std::vector<char> turn(facets_.size(), 0);
   for (Index start = 0; start < facets_.size(); ++start) {
     if (turn[start] != 0) continue;
     turn[start] = 1;
@@ -374,7 +379,8 @@ void ShellExaminer::check_orientation() {
   }
 }
 
-/// The smaller group of facets is the one that is turned over.
+/// Reports the facets that are turned over: of the two groups that turn in opposite directions, the
+/// smaller.
 void ShellExaminer::report_turned(const std::vector<Index>& members,
                                   const std::vector<char>& turn) {
   const auto opposite = static_cast<std::size_t>(

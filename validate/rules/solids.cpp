@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Solids: shells turned the right way (405), none twice (402), cavities inside the exterior shell
-// (403) and not inside each other (401), shells with a volume (806). Exact.
+// Rules of solids: shells turned the right way (405), no shell twice (402), cavities inside the
+// exterior shell (403) and not inside each other (401), shells with a volume (806). Exact.
 #include <algorithm>
 #include <map>
 
@@ -14,10 +14,11 @@
 namespace watertight::validate {
 namespace {
 
-/// Points located and boxes compared while shells are located against each other: a few seconds of
-/// work.
+/// The largest number of points that are located and boxes that are compared to locate the shells:
+/// a few seconds of work.
 constexpr std::uint64_t kMostLooks = 10'000'000;
-/// Seven points inside a triangle are located where its corners decide nothing.
+/// The exponent of the points inside a triangle (seven) that are located where its corners decide
+/// nothing.
 constexpr int kPointExponent = 6;
 
 std::span<const Triangle> triangles_of(const ExaminedSolid& examined, Index shell) {
@@ -56,7 +57,7 @@ class SolidExaminer {
 
   void check_orientation();
   void check_nesting();
-  /// Why a shell could not be located, "" if all were.
+  /// The reason why a shell could not be located, "" if all were located.
   const std::string& unlocated() const { return unlocated_; }
 
  private:
@@ -87,8 +88,8 @@ class SolidExaminer {
   const std::vector<Index>& duplicate_of_;
   const ShellContacts& contacts_;
   std::vector<Box> boxes_;
-  std::vector<bool> is_surface_;   // closed and triangulated
-  std::vector<int> volume_signs_;  // of shells that are closed and turned alike, else 0
+  std::vector<bool> is_surface_;   // shell -> whether it is closed and triangulated
+  std::vector<int> volume_signs_;  // shell -> sign of its volume; 0 if it has no meaning
   std::map<Index, PointLocator> locators_;
   std::map<Index, RegionSurface> regions_;
   std::string unlocated_;
@@ -96,15 +97,15 @@ class SolidExaminer {
   std::vector<std::string> reasons_;
 };
 
-/// Each reason once.
+/// Notes rules that were not evaluated; each reason once.
 void SolidExaminer::skip(std::vector<int> codes, const std::string& reason) {
   if (std::find(reasons_.begin(), reasons_.end(), reason) != reasons_.end()) return;
   reasons_.push_back(reason);
   examined_.findings.skip(std::move(codes), reason);
 }
 
-/// A closed 2-manifold that does not meet itself encloses a volume. So a shell without volume
-/// always has another finding too.
+/// Reports a shell without volume (806). A closed 2-manifold that does not meet itself encloses a
+/// volume, so such a shell always has another finding too.
 void SolidExaminer::report_no_volume(Index shell) {
   examined_.findings.add({.code = kZeroVolume,
                           .place = examined_.at_shell(shell),
@@ -141,8 +142,8 @@ void SolidExaminer::check_orientation() {
   }
 }
 
-/// Tests the triangles of a small surface one by one, and makes a tree for a large one at first
-/// use.
+/// Locates a point to a shell: tests the triangles of a small shell one by one, and makes a tree
+/// for a large shell at first use.
 Location SolidExaminer::locate(const Point& p, Index around) {
   constexpr std::size_t kSmall = 64;
   if (!boxes_[around].overlaps(Box{p, p})) return Location::outside;
@@ -162,10 +163,10 @@ Location SolidExaminer::locate_inside(const geometry::TrianglePoint& point, Inde
       point, examined_.solid().vertices(), triangles_of(examined_, around)))};
 }
 
-/// Where `shell` lies to `around`, for shells that have no point in common, or of which one has
-/// defects of its own. Points of `shell` that are not on `around` decide: the first one when the
-/// shells have no point in common, else all. Requires shells whose facets neither cross nor
-/// overlap.
+/// The sides of `around` on which `shell` lies, for shells that have no point in common, or of
+/// which one has defects of its own. Points of `shell` that are not on `around` decide: the first
+/// of them when the shells have no point in common, else all. Requires shells whose facets neither
+/// cross nor overlap.
 SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
   const std::span<const Point> vertices = examined_.solid().vertices();
   const bool is_one_enough = !contacts_.is_touching[shell] || !contacts_.is_touching[around];
@@ -183,7 +184,7 @@ SolidExaminer::Sides SolidExaminer::locate_shell(Index shell, Index around) {
     if (looks_ > kMostLooks || examined_.is_cancelled()) break;
     bool is_seen = false;
     for (const Index vertex : t) is_seen = look(vertices[vertex]) || is_seen;
-    // All three corners touch: points inside the triangle.
+    // If all three corners are on `around`, points inside the triangle are located.
     for (std::uint64_t i = 1; i <= geometry::triangle_points(kPointExponent) && !is_seen; ++i) {
       ++looks_;
       const std::array<Point, 3> corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
@@ -204,8 +205,8 @@ void SolidExaminer::report(int code, Index shell, Index other, std::string detai
                           .uncertain = is_uncertain()});
 }
 
-/// True if the shells touch and both are surfaces without a defect of their own, so that the
-/// regions inside them can be compared; else some of their points are located.
+/// True if two shells touch and both are surfaces without a defect of their own, so that the
+/// regions inside them can be compared. For other shells, single points are located.
 bool SolidExaminer::can_be_related(Index a, Index b) const {
   const auto is_region = [&](Index shell) {
     return contacts_.is_touching[shell] && is_surface_[shell] && shells_[shell].is_sound() &&
@@ -214,7 +215,7 @@ bool SolidExaminer::can_be_related(Index a, Index b) const {
   return !is_uncertain() && is_region(a) && is_region(b);
 }
 
-/// The region inside a shell, made when first asked for.
+/// The region inside a shell, made at the first call for this shell.
 const RegionSurface& SolidExaminer::region(Index shell) {
   auto place = regions_.find(shell);
   if (place == regions_.end()) {
@@ -261,7 +262,7 @@ void SolidExaminer::check_inside_exterior(Index shell) {
   }
 }
 
-/// Requires overlapping boxes, a != b.
+/// Reports two interior shells that cross or are nested. Requires overlapping boxes, a != b.
 void SolidExaminer::check_apart(Index a, Index b) {
   const Index first = std::min(a, b);
   const Index second = std::max(a, b);
@@ -293,7 +294,7 @@ void SolidExaminer::check_nesting() {
   for (Index shell = 1; shell < shells_.size() && !must_end(); ++shell) {
     check_inside_exterior(shell);
   }
-  // Inner shells against those before them whose boxes overlap theirs.
+  // Each interior shell is compared with the earlier interior shells whose boxes overlap its box.
   std::vector<Index> shells;
   std::vector<Box> boxes;
   for (Index shell = 1; shell < shells_.size(); ++shell) {
@@ -335,7 +336,7 @@ std::vector<Index> check_duplicate_shells(ExaminedSolid& examined) {
   const Solid& solid = examined.solid();
   std::vector<Index> result(solid.shell_count(), kNone);
   if (solid.shell_count() < 2) return result;
-  // Shells as sorted lists of sorted triangles, whichever way they are turned.
+  // Each shell as a sorted list of triangles with sorted vertices, so that orientation is ignored.
   std::vector<std::pair<std::vector<Triangle>, Index>> shells;
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
     const std::span<const Triangle> source = triangles_of(examined, shell);
@@ -345,7 +346,7 @@ std::vector<Index> check_duplicate_shells(ExaminedSolid& examined) {
     if (!triangles.empty()) shells.emplace_back(std::move(triangles), shell);
   }
   std::sort(shells.begin(), shells.end());
-  std::vector<ShellPair> pairs;  // duplicate, original
+  std::vector<ShellPair> pairs;  // pairs of a duplicate and its original
   for (std::size_t i = 1; i < shells.size(); ++i) {
     if (shells[i].first != shells[i - 1].first) continue;
     const Index before = shells[i - 1].second;

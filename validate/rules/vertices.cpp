@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Warnings about vertices and very narrow facets (801, 802, 803, 805): nothing is wrong, something
-// is likely not meant. Measured in metres.
+// Warnings about vertices and very narrow facets (801, 802, 803, 805): the solid may be valid, but
+// probably is not what was meant. Measured in metres.
 #include <algorithm>
 #include <cmath>
 
@@ -13,15 +13,15 @@
 namespace watertight::validate {
 namespace {
 
-/// Vertices that are closer than val3dity's default snap tolerance are worth a warning.
+/// Vertices closer than this get a warning: val3dity's default snap tolerance.
 constexpr double kNearMetres = 0.001;
-/// Facets narrower than that are worth a warning: the same length, across the facet.
+/// Facets narrower than this get a warning.
 constexpr double kSliverMetres = 0.001;
 
 void check_near(ExaminedSolid& examined) {
   const Solid& solid = examined.solid();
   if (solid.vertex_count() < 2) return;
-  // Different vertices of a coarse lattice cannot be near: they differ by a step of some axis.
+  // Different vertices of a coarse lattice cannot be near: they differ by a step on some axis.
   const std::array<double, 3> step = examined.metres(Point{}, Point{1, 1, 1});
   const auto is_integer = [](const Point& p) {
     return p.x == std::trunc(p.x) && p.y == std::trunc(p.y) && p.z == std::trunc(p.z);
@@ -57,7 +57,7 @@ void check_near(ExaminedSolid& examined) {
   examined.findings.add(std::move(finding));
 }
 
-/// `left_out` are those that the reader has left out of the solid.
+/// Warning 802. `left_out` are the unused vertices that the reader has left out of the solid.
 void check_unused(ExaminedSolid& examined, const geometry::UnusedVertices& left_out) {
   Index first = kNone;
   std::uint64_t count = left_out.count;
@@ -81,8 +81,8 @@ void check_unused(ExaminedSolid& examined, const geometry::UnusedVertices& left_
   examined.findings.add(std::move(finding));
 }
 
-/// Width across the longest extent of a facet: its area divided by that extent, doubled (exact for
-/// a triangle: its height).
+/// Warning 803. The width of a facet is twice its area, divided by its longest triangle edge (of a
+/// triangle: its least height).
 void check_slivers(ExaminedSolid& examined) {
   const tessellate::FacetTriangles& all = examined.triangles();
   for (Index facet = 0; facet < examined.solid().facet_count(); ++facet) {

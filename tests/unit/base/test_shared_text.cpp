@@ -14,7 +14,7 @@ TEST_CASE("copies of a shared text are the same bytes") {
   CHECK(copy == text);
 }
 
-TEST_CASE("shared texts compare by what they say") {
+TEST_CASE("shared texts compare by their content") {
   SharedText a;
   CHECK(a.empty());
   CHECK(a == SharedText(std::string()));

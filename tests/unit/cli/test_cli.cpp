@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Runs the executable on small files.
+// Tests that run the executable on small files.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 struct Ran {
   int status = -1;
-  std::string output;  // standard output and error
+  std::string output;  // standard output and standard error together
 };
 
 class Fixture {
@@ -137,7 +137,7 @@ TEST_CASE_METHOD(Fixture, "a report is written as JSON") {
   CHECK(json["features"][1]["verdict"] == "valid");
 }
 
-TEST_CASE_METHOD(Fixture, "a run over several files writes a line of JSON for each") {
+TEST_CASE_METHOD(Fixture, "a run over several files writes a line of JSON for each file") {
   write("good.city.jsonl", kValid);
   write("bad.city.jsonl", kInvalid);
   CHECK(run("validate -q good.city.jsonl missing.obj bad.city.jsonl --report r.json").status == 2);
@@ -188,7 +188,7 @@ TEST_CASE_METHOD(Fixture, "a line that cannot be read costs only itself") {
   CHECK(json["dataset_errors"][0]["code"] == 901);
 }
 
-TEST_CASE_METHOD(Fixture, "a document without solids is valid, and said to have none") {
+TEST_CASE_METHOD(Fixture, "a document without solids is valid, and reported to have none") {
   write("none.city.json",
         R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
         R"("CityObjects":{"a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2",)"
@@ -214,7 +214,7 @@ TEST_CASE_METHOD(Fixture, "an interior shell of another file becomes a cavity") 
         "v .2 .8 .8\nf 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n");
   const std::string options = "validate cube.obj --interior-shell cavity.obj --report r.json";
   const Ran ran = run(options);
-  CHECK((ran.status == 0 || ran.status == 3));  // undecided in a build without engines
+  CHECK((ran.status == 0 || ran.status == 3));  // 3: undecided in a build without engines
   CHECK(run(options + " --interior-shell cavity.obj").status == 1);
   CHECK(nlohmann::json::parse(read("r.json"))["all_errors"] == nlohmann::json::array({402}));
   write("two.city.jsonl", kValid);
@@ -230,7 +230,7 @@ TEST_CASE_METHOD(Fixture, "an engine that is named makes every proof") {
     const Ran ran = run("validate in.city.jsonl --report r.json --engine " + engine);
     const auto json = nlohmann::json::parse(read("r.json"), nullptr, false);
     const auto& report = json["features"][0]["primitives"][0];
-    // A build without the engine is undecided: another rung must not stand in for it.
+    // Without the named engine the solid is undecided: no other rung may replace the engine.
     CHECK((ran.status == 0 || ran.status == 3));
     CHECK(report["rung"] == (ran.status == 3 ? "none" : engine == "cgal" ? "patch" : "tetgen"));
   }
@@ -249,13 +249,13 @@ TEST_CASE_METHOD(Fixture, "encode and decode return the document") {
   CHECK(read("y.wt") == read("x.wt"));
 }
 
-/// Another document than kValid: in another place.
+/// A document that differs from kValid in its position.
 std::string moved() {
   std::string text = kValid;
   return text.replace(text.find("100.0"), 5, "900.0");
 }
 
-/// A Watertight file of kValid and moved().
+/// A Watertight file of the documents kValid and moved().
 std::string two_documents() {
   pipeline::ContainerWriter writer;
   for (const std::string& text : {kValid, moved()}) {
@@ -290,7 +290,7 @@ TEST_CASE_METHOD(Fixture, "encode writes nothing when a solid is invalid") {
   CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "a bare blob is the one solid") {
+TEST_CASE_METHOD(Fixture, "a bare blob is read as one solid") {
   write("cube.obj", kCubeObj);
   REQUIRE(run("encode cube.obj --bare -o cube.blob").status == 0);
   const Ran info = run("info cube.blob");
@@ -322,7 +322,7 @@ TEST_CASE_METHOD(Fixture, "convert follows the ending of the output") {
   CHECK(run("convert cube.obj -o no/such/folder.off").status == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "what is wrong with a blob is said, whatever the file is called") {
+TEST_CASE_METHOD(Fixture, "an error in a blob is reported, whatever the file is called") {
   write("cube.obj", kCubeObj);
   REQUIRE(run("encode cube.obj --bare -o cube.blob").status == 0);
   const std::string whole = read("cube.blob");
@@ -357,7 +357,7 @@ TEST_CASE_METHOD(Fixture, "an output behind a link is written there") {
   CHECK(run("convert cube.obj -o link.off").status == 0);
   CHECK(fs::is_symlink(folder / "link.off"));
   CHECK(read("old.off").starts_with("OFF"));
-  // To a file that is yet to be, and to nowhere.
+  // A link leads to a file that does not exist yet; two others lead to each other.
   fs::create_symlink("new.off", folder / "early.off");
   CHECK(run("convert cube.obj -o early.off").status == 0);
   CHECK(fs::is_symlink(folder / "early.off"));
@@ -390,7 +390,7 @@ TEST_CASE_METHOD(Fixture, "decode writes each of several documents, or none") {
   CHECK(run("info both.wt").output.find("documents            2") != std::string::npos);
   CHECK(run("decode both.wt -o .jsonl").status == 0);
   CHECK(fs::exists(folder / "-2.jsonl"));
-  // The second name is the input, a link to it, a folder.
+  // The second output would replace the input, a link to the input, or a folder.
   write("in-2.city.jsonl", file);
   fs::create_symlink("in-2.city.jsonl", folder / "link-2.city.jsonl");
   fs::create_directory(folder / "taken-2.city.jsonl");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Hostile documents and careless command lines must not harm the terminal or files.
+// Tests that hostile documents and careless command lines do not harm the terminal or files.
 #include <sys/wait.h>
 
 #include <catch2/catch_test_macros.hpp>
@@ -34,7 +34,7 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  /// Exit status; standard output and error go to the file "printed".
+  /// Runs the command; returns its exit status. Standard output and error go to the file "printed".
   int run(const std::string& arguments) const {
     const std::string command =
         "cd " + path_.string() + " && " WATERTIGHT_EXECUTABLE " " + arguments + " > printed 2>&1";
@@ -48,15 +48,16 @@ class Folder {
   fs::path path_;
 };
 
-TEST_CASE("what a terminal would obey is replaced, the rest stays") {
+TEST_CASE("bytes that a terminal would obey are replaced, the others stay") {
   const std::string mark = "\xEF\xBF\xBD";
   CHECK(cli::printable("Gebäude 1, 高い") == "Gebäude 1, 高い");
   CHECK(cli::printable("a\x1b[31mb\x07") == "a" + mark + "[31mb" + mark);
   CHECK(cli::printable("a\r\nb\tc\x7f") == "a" + mark + mark + "b" + mark + "c" + mark);
   CHECK(cli::printable("a\xC2\x9B"
-                       "31mb") == "a" + mark + "31mb");  // CSI of the C1 set
+                       // The control sequence introducer of the C1 set.
+                       "31mb") == "a" + mark + "31mb");
   CHECK(cli::printable("a\x9B"
-                       "31mb\xFF") == "a" + mark + "31mb" + mark);  // no UTF-8
+                       "31mb\xFF") == "a" + mark + "31mb" + mark);  // not UTF-8
   CHECK(cli::printable("a\xE2\x80\xAE"
                        "b\xE2\x81\xA6"
                        "c") == "a" + mark + "b" + mark + "c");
@@ -91,8 +92,8 @@ TEST_CASE("an interior shell that cannot be read is named") {
         std::string::npos);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // takes terabytes of address space
-TEST_CASE("more jobs than there is memory for threads are no crash") {
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer takes terabytes of address space
+TEST_CASE("more jobs than there is memory for threads do not crash the program") {
   const Folder folder;
   const int status = folder.run("--version && ulimit -v 600000 && " WATERTIGHT_EXECUTABLE
                                 " validate -j 256 in.obj");

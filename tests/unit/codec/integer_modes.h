@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The modes for integers as their tests drive them: a stream of one solid, without page and blob
-// around it.
+// Functions that drive the modes for integers in tests: a stream of one solid, without a page or
+// blob around the stream.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ inline constexpr IntegerMode kPolygon{codec::polygon::model_layout, codec::polyg
 inline constexpr IntegerMode kParallelogram{codec::parallelogram::model_layout,
                                             codec::parallelogram::code_solid};
 
-/// The canonical form of a boundary on its grid; nothing if it is on none.
+/// The canonical form of a boundary on its grid; nothing if the boundary has no grid.
 std::optional<codec::IntegerSolid> integers_of(const OrientedBoundary& boundary);
 
 /// The stream of a solid. Errors: those of the mode.
@@ -33,20 +33,22 @@ Result<Bytes> write(const IntegerMode& mode, const codec::IntegerSolid& solid,
 Result<codec::IntegerSolid> read(const IntegerMode& mode, ByteView bytes,
                                  const codec::PageMemory& memory = {}, const Limits& limits = {});
 
-/// Shells of facets of rings of positions.
+/// The positions of the corners of a ring.
 using PlacedRing = std::vector<codec::GridPoint>;
 using PlacedFacet = std::vector<PlacedRing>;
 using PlacedShell = std::vector<PlacedFacet>;
 
-/// Equal for equal solids, however their arrays are arranged. Requires indices in range.
+/// The shells of a solid as positions, sorted: equal for equal solids, in whatever order their
+/// arrays are. Requires indices in range.
 std::vector<PlacedShell> placed(const codec::IntegerSolid& solid);
 
-/// Writes and reads, and requires the same solid.
+/// Writes a solid, reads it back, and requires that it is equal.
 void check_round_trip(const IntegerMode& mode, const codec::IntegerSolid& solid,
                       const codec::PageMemory& memory = {});
 
-/// Reads every prefix of a stream, then `changes` copies with up to three bytes changed: what
-/// comes back is within the limits, with indices in range, and it is not the solid of the stream.
+/// Reads every prefix of a stream, then `changes` copies with up to three bytes changed; each
+/// result must be within the limits, have its indices in range, and differ from the solid of the
+/// stream.
 void check_damaged(const IntegerMode& mode, const codec::IntegerSolid& solid, int changes);
 
 }  // namespace watertight::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The places of coordinates in mode parallelogram: which list is suggested, that it comes back,
-// that it pays, and damaged ones.
+// Tests the places of coordinates in mode parallelogram: the kind that is suggested, the round
+// trip, the gain in size, and damaged data.
 #include <algorithm>
 #include <array>
 #include <catch2/catch_test_macros.hpp>
@@ -33,7 +33,8 @@ Result<codec::parallelogram::AxisPlaces> read(ByteView bytes, const Limits& limi
   return codec::parallelogram::AxisPlaces::code(stream, models, Kind::every, {}, limits);
 }
 
-/// Each value has a place that gives it back, and places ascend with values.
+/// Checks that each value has a place that gives the value back, and that places ascend with
+/// values.
 void check_values(const codec::parallelogram::AxisPlaces& places,
                   std::vector<std::int64_t> values) {
   std::sort(values.begin(), values.end());
@@ -46,8 +47,8 @@ void check_values(const codec::parallelogram::AxisPlaces& places,
   }
 }
 
-/// These places are suggested for the values, true to them, and still so when written and read.
-/// Returns those read.
+/// Checks that places of this kind are suggested for the values and give them back, also after a
+/// round trip. Returns the places that were read back.
 codec::parallelogram::AxisPlaces check_suggestion(const std::vector<std::int64_t>& values,
                                                   Kind kind) {
   const codec::parallelogram::AxisPlaces places = codec::parallelogram::AxisPlaces::suggest(values);
@@ -114,7 +115,7 @@ Bytes round_trip(const codec::IntegerSolid& solid) {
   return bytes;
 }
 
-TEST_CASE("values of even steps are suggested as such and come back") {
+TEST_CASE("values of even steps are suggested as steps and come back") {
   for (const double step : {8.36, 10.0, 1274.999, 1e9 / 3}) {
     check_suggestion(steps(step, 0.3, 400), Kind::stepped);
   }
@@ -142,7 +143,7 @@ TEST_CASE("nothing is suggested for values all over their range") {
   CHECK(read(write({}))->kind() == Kind::every);
 }
 
-TEST_CASE("a solid on a grid finer than its source takes what it takes on the coarse one") {
+TEST_CASE("a solid on a grid finer than its source takes less than one anywhere on the grid") {
   generated::Random bump(7);
   const codec::IntegerSolid coarse = changed(gridded_torus(), [&](std::int64_t c) {
     return 20 * c + static_cast<std::int64_t>(bump.below(18));
@@ -187,7 +188,7 @@ TEST_CASE("lists that are too long or too wide are refused") {
   CHECK(read(write(places), few));
 }
 
-TEST_CASE("noise makes no endless or unsound places") {
+TEST_CASE("random bytes make no endless or unsound places") {
   generated::Random random(11);
   Limits limits;
   limits.vertices = 2000;

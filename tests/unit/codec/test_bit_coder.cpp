@@ -42,7 +42,7 @@ TEST_CASE("rare bits cost little") {
   CHECK(std::move(encoder).finish().size() < 60);
 }
 
-TEST_CASE("a decoder past the end says so") {
+TEST_CASE("a decoder past the end reports it") {
   for (const codec::bitmap::BitCoding coding :
        {codec::bitmap::BitCoding::plain, codec::bitmap::BitCoding::arithmetic}) {
     const Bytes bytes{0x12, 0x34};

@@ -30,7 +30,8 @@ Bytes encoded(const OrientedBoundary& boundary, const EncodeOptions& options) {
 constexpr std::array kModes{Mode::raw,     Mode::bitmap,        Mode::walk,
                             Mode::polygon, Mode::parallelogram, Mode::automatic};
 
-/// Nothing where the mode cannot hold the solid; raw, bitmap and automatic hold all of solids().
+/// The blob, or nothing if the mode cannot hold the solid; raw, bitmap and automatic hold all of
+/// solids().
 std::optional<Bytes> blob_if_held(const OrientedBoundary& boundary, const EncodeOptions& options) {
   auto blob = codec::encode_boundary(boundary, Acceptance{}, options);
   if (blob) return *std::move(blob);
@@ -79,7 +80,7 @@ TEST_CASE("automatic takes the smallest blob") {
     const std::size_t automatic = encoded(boundary, {.mode = Mode::automatic}).size();
     for (const Mode mode : kModes) {
       const auto blob = blob_if_held(boundary, {.mode = mode});
-      // Costs are estimated to the bit, sizes are whole bytes.
+      // The encoder estimates costs to the bit, but sizes are whole bytes.
       if (blob) CHECK(automatic <= blob->size() + 1);
     }
   }
@@ -104,7 +105,8 @@ TEST_CASE("acceptance, SRID and lattice come back in every mode for polygons") {
 }
 
 TEST_CASE("a house 0.0001 degrees wide with one corner 3 cm up comes back") {
-  // Its roof is not flat: that it has triangles depends on the projection, thus on the SRID.
+  // The roof is not flat: the SRID decides about the projection, and with it whether the roof has
+  // triangles.
   SolidArrays arrays;
   generated::add_box(arrays, {0, 0, 0}, {1000, 800, 6000});
   for (Point& p : arrays.vertices) {
@@ -135,7 +137,7 @@ TEST_CASE("the parts of a blob add up to its size") {
     REQUIRE(info);
     double sum = 0;
     for (const auto& part : info->parts) sum += part.bytes;
-    // A stream ends on a whole byte, and parts are estimates of fractions.
+    // A stream ends on a whole byte, and the sizes of parts are estimated fractions.
     const double rest = static_cast<double>(blob.size()) - sum;
     CHECK(rest > -0.5);
     CHECK(rest < 2);
@@ -156,7 +158,8 @@ TEST_CASE("a certificate's Steiner vertices are stored and leave the polygons al
 }
 
 TEST_CASE("Steiner vertices on edges and in facets are dropped from rings") {
-  // A box, one edge split at its middle and one facet with a vertex inside, as an engine would.
+  // The certificate of a box, as an engine would make it: one edge is split at its middle, and one
+  // facet has a vertex inside.
   const OrientedBoundary boundary = generated::box();
   const Solid& solid = boundary.solid();
   delaunay::Certificate certificate;
@@ -188,7 +191,7 @@ TEST_CASE("Steiner vertices on edges and in facets are dropped from rings") {
       }
       continue;
     }
-    // A fan from the split vertex, or from the first one: never a flat triangle.
+    // The fan starts at the split vertex, or at the first one, so that no triangle is flat.
     const auto split = std::find(outline.begin(), outline.end(), middle);
     if (split != outline.end()) std::rotate(outline.begin(), split, outline.end());
     for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
@@ -243,7 +246,7 @@ TEST_CASE("coordinates beyond a safe Delaunay tetrahedralization fall back to ra
 }
 
 TEST_CASE("a flat boundary is encoded raw") {
-  // Two triangles back to back: closed and oriented, but of no volume.
+  // Two triangles back to back: they are closed and oriented, but have no volume.
   SolidArrays arrays;
   arrays.vertices = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}};
   generated::add_facet(arrays, {{0, 1, 2}});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The seven decomposition steps and the seven composition steps of Verbree & Si 2008, section 4.1,
-// one test each.
+// Tests the seven decomposition steps and the seven composition steps of Verbree & Si 2008, section
+// 4.1.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <set>
@@ -36,7 +36,7 @@ delaunay::CanonicalDelaunay delaunay_of(const codec::bitmap::BoundaryComplex& co
   return *delaunay;
 }
 
-/// A decomposition and the sections a decoder finds in its blob.
+/// A decomposition, and the sections that a decoder finds in its blob.
 struct Stored {
   codec::bitmap::Decomposition parts;
   codec::bitmap::BitmapSections sections;
@@ -81,7 +81,7 @@ TEST_CASE("decomposition step 1: with a certificate the nodes are its nodes, Ste
   CHECK(complex.vertex_count == 6);
   CHECK(complex.points[6] == Point{10000.5, 10000.125, 4500});
   CHECK(std::is_sorted(complex.points.begin(), complex.points.begin() + 6));
-  // The certificate speaks of source vertices, the complex of canonical ones.
+  // The certificate has source vertices, the complex canonical ones.
   for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
     const auto ring = solid.boundary.solid().ring(complex.facet_of[i]);
     Triangle sorted{ring[0], ring[1], ring[2]};
@@ -103,7 +103,7 @@ TEST_CASE("decomposition step 2: the nodes are stored apart, integers and double
   CHECK(std::equal(vertices->begin(), vertices->end(), complex.points.begin()));
   CHECK(vertices->size() == 6);
   CHECK(*steiner == std::vector<Point>{complex.points[6]});
-  // z is an integer: a flag byte, two doubles and two bytes.
+  // z is an integer, x and y are not: a flag byte, two doubles and two bytes.
   CHECK(result.steiner.size() == 1 + 1 + 8 + 8 + 2);
 }
 
@@ -263,7 +263,7 @@ TEST_CASE("composition step 7: surface and unrecovered faces close to the polyhe
     REQUIRE(boundary);
     CHECK(geometry::canonical_form(*boundary).boundary.solid() == canonical);
   }
-  // A face that is marked and listed as unrecovered is no polyhedron.
+  // A face that is both marked and listed as unrecovered makes the blob malformed.
   const Stored stored = stored_schoenhardt(nullptr);
   const auto nodes = codec::bitmap::read_nodes(stored.sections, {});
   REQUIRE(nodes);

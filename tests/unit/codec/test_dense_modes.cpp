@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Mode parallelogram: what comes back, what it refuses, and damaged streams.
+// Tests mode parallelogram: round trips, refused solids, and damaged streams.
 #include <catch2/catch_test_macros.hpp>
 #include <utility>
 #include <vector>
@@ -61,7 +61,7 @@ TEST_CASE("mode parallelogram keeps cavities and bodies that touch") {
                                           {0, 0, 900},     {100, 100, 100}, {150, 100, 100},
                                           {100, 150, 100}, {100, 100, 150}};
   check_round_trip(triangles(far, {tetrahedron(0, 1, 2, 3), tetrahedron(4, 6, 5, 7)}));
-  // Two tetrahedra of one shell with a common vertex, then with a common edge.
+  // Two tetrahedra of one shell have a common vertex, or a common edge.
   const std::vector<codec::GridPoint> points{{0, 0, 0},   {90, 0, 0},  {0, 90, 0},     {0, 0, 90},
                                              {-90, 0, 0}, {0, -90, 0}, {-10, -10, -90}};
   auto at_vertex = tetrahedron(0, 1, 2, 3);
@@ -110,7 +110,7 @@ TEST_CASE("mode parallelogram writes the same bytes whatever the order of facets
   CHECK(*bytes == *shuffled);
 }
 
-TEST_CASE("mode parallelogram asks its limits before it grows") {
+TEST_CASE("mode parallelogram checks its limits before it grows") {
   const auto bytes = write(kParallelogram, integers_of(generated::torus(16, 12)));
   REQUIRE(bytes);
   Limits few;

@@ -46,7 +46,7 @@ std::vector<Sample> samples(std::uint32_t seed, int count) {
   return result;
 }
 
-/// Codes the samples in one of the three directions; when reading, `all` is overwritten.
+/// Codes the samples in the direction of the stream; a reader overwrites `all`.
 void code(codec::EntropyStream& stream, codec::ModelBank& models, std::vector<Sample>& all) {
   std::uint32_t last = 0;
   for (Sample& sample : all) {
@@ -86,7 +86,7 @@ TEST_CASE("the latest answers are the lowest bits, and older ones are forgotten"
   CHECK(answers.last<1>().value == 1);
 }
 
-TEST_CASE("what an entropy stream writes it reads, and ends where it ended") {
+TEST_CASE("a reader reads what a writer has written, and ends where the writer ended") {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     std::vector<Sample> written = samples(seed, 300);
     codec::EntropyStream writer = codec::EntropyStream::writer();
@@ -109,7 +109,7 @@ TEST_CASE("what an entropy stream writes it reads, and ends where it ended") {
   }
 }
 
-TEST_CASE("a measuring stream measures the bytes that a writing one takes") {
+TEST_CASE("a measuring stream measures the bytes that a writing stream takes") {
   std::vector<Sample> all = samples(7, 5000);
   codec::EntropyStream writer = codec::EntropyStream::writer();
   codec::EntropyStream meter = codec::EntropyStream::meter();
@@ -200,7 +200,7 @@ TEST_CASE("a prior of another layout is refused") {
   CHECK_FALSE(models.load({}));
 }
 
-TEST_CASE("every numbered set of priors is there, and no other") {
+TEST_CASE("every numbered set of priors exists, and no other") {
   for (std::uint8_t number = 0; number < 2; ++number) {
     INFO(int{number});
     const auto models = codec::ModelSet::make(number);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The golden files. A change of theirs is a change of the format: see CONTRIBUTING.
+// Tests the golden files. A change of a golden file is a change of the format: see CONTRIBUTING.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <fstream>
@@ -31,7 +31,7 @@ void check_decoded(const generated::Golden& golden, const Bytes& bytes) {
   CHECK((decoded->info.steiner_vertices > 0) == golden.with_steiner);
 }
 
-/// The solids of a page or page file, by their numbers.
+/// The solids of a page or page file, in the order of their numbers.
 Result<std::vector<Solid>> solids_of(ByteView bytes, bool is_file) {
   std::vector<Solid> solids;
   if (!is_file) {
@@ -56,14 +56,15 @@ void write_file(const std::string& path, ByteView bytes) {
              static_cast<std::streamsize>(bytes.size()));
 }
 
-/// The bytes of the worked example: in its fenced lines, the pairs of hex digits before two spaces.
+/// The bytes of the document's worked example: the pairs of hexadecimal digits before two spaces in
+/// its fenced lines.
 Bytes example_of(const std::string& document) {
   const std::string text = test::read_text(WATERTIGHT_TEST_DATA "/../../docs/" + document);
   const std::size_t example = text.find("\n## Example");
   if (example == std::string::npos) return {};
   std::istringstream lines(text.substr(std::min(text.find("```\n", example), text.size())));
   std::string line;
-  std::getline(lines, line);  // the fence
+  std::getline(lines, line);  // skips the fence
   Bytes bytes;
   while (std::getline(lines, line) && line != "```") {
     const std::size_t first = line.find_first_not_of(' ');
@@ -134,7 +135,7 @@ TEST_CASE("bytes that no encoder writes are refused with the error that the spec
   }
 }
 
-TEST_CASE("the golden table of refused bytes is the one that is tested") {
+TEST_CASE("the table of refused bytes in the golden file is up to date") {
   const Bytes table = test::read_bytes(folder_of_goldens() + "refused.csv");
   CHECK(as_text(table) == generated::refused_csv());
 }

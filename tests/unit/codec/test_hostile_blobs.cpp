@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The decoder against bytes that no encoder wrote. Every blob that decodes must be a well-formed
-// boundary that encodes again.
+// Tests the decoder with bytes that no encoder wrote. Every blob that decodes must give a
+// well-formed boundary that can be encoded again.
 #include <catch2/catch_test_macros.hpp>
 #include <filesystem>
 #include <string>
@@ -20,7 +20,7 @@ using namespace watertight;
 
 namespace {
 
-/// Two plates of n x n squares, each two triangles, closed at the sides: as regular as can be.
+/// Two plates of n x n squares of two triangles each, closed at the sides: a very regular surface.
 OrientedBoundary plate(Index n) {
   SolidArrays arrays;
   const auto at = [n](Index x, Index y, Index z) { return (z * (n + 1) + x) * (n + 1) + y; };
@@ -50,7 +50,7 @@ OrientedBoundary plate(Index n) {
   return generated::boundary_of(std::move(arrays));
 }
 
-/// A cone over n points of a parabola: one vertex of degree n.
+/// A cone over n points of a parabola: its tip has degree n.
 OrientedBoundary cone(Index n) {
   SolidArrays arrays;
   std::vector<Index> base;
@@ -108,7 +108,7 @@ void require_automatic_mode_encodes(const OrientedBoundary& boundary, Mode not_i
 TEST_CASE("a mode declines a solid whose few bytes a decoder would take for a bomb") {
   const OrientedBoundary small = plate(50);
   CHECK(codec::encode_boundary(small, {}, {.mode = Mode::parallelogram, .keep_order = false}));
-  const OrientedBoundary large = plate(90);  // in about 100 bytes
+  const OrientedBoundary large = plate(90);  // its blob has about 100 bytes
   const auto blob =
       codec::encode_boundary(large, {}, {.mode = Mode::parallelogram, .keep_order = false});
   REQUIRE_FALSE(blob);
@@ -198,7 +198,7 @@ TEST_CASE("a mutated blob is rejected or still a boundary that encodes again") {
     REQUIRE(boundary);
     REQUIRE(codec::encode_boundary(*boundary, decoded->info.acceptance, {.mode = Mode::raw}));
   }
-  // Mutations that cancel out leave the blob as it was; nothing else passes the checksum.
+  // A mutated blob is accepted only if its mutations cancel out: all others fail the checksum.
   CHECK(accepted < 2000);
 }
 
@@ -228,7 +228,7 @@ TEST_CASE("other versions, models and modes are unsupported") {
   CHECK(code_with(0, 'X') == "malformed");
   CHECK(code_with(2, 0) == "unsupported");
   CHECK(code_with(2, 2) == "unsupported");
-  CHECK(code_with(2, 0x81) == "malformed");  // a page
+  CHECK(code_with(2, 0x81) == "malformed");  // 0x81 is a page, not a blob
   CHECK(code_with(3, 0xFF) == "unsupported");
 }
 
@@ -248,7 +248,7 @@ TEST_CASE("a changed acceptance, lattice or order does not pass the checksum") {
   CHECK(decoded_changed == 0);
 }
 
-TEST_CASE("models that come to expect one answer do not make a long blob without end") {
+TEST_CASE("a blob whose models come to expect one answer does not decode without end") {
   for (const Mode mode :
        {Mode::raw, Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram}) {
     const auto blob = codec::encode_boundary(generated::torus(8, 4), {}, {.mode = mode});
@@ -263,9 +263,9 @@ TEST_CASE("models that come to expect one answer do not make a long blob without
   }
 }
 
-TEST_CASE("of the columns of a page only those nearby are looked at for each of a solid") {
-  // All of the page's are in the solid's range of x and none is in its range of y: without a bound
-  // each place would look at all of them, which takes minutes.
+TEST_CASE("only nearby columns of a page are considered for each column of a solid") {
+  // All columns of the page are in the solid's range of x, and none is in its range of y: without a
+  // bound, the search for each column of the solid would take minutes.
   codec::PageMemory memory;
   for (std::int64_t i = 0; i < 2'000'000; ++i) memory.columns.push_back({i / 4, 1'000'000 + i % 4});
   std::vector<codec::GridPoint> points;

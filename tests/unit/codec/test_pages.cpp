@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Pages and page files: every solid comes back, wherever it stands; what no writer wrote is
-// refused.
+// Tests pages and page files: every solid comes back, wherever it stands, and bytes that no writer
+// wrote are refused.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 
@@ -17,7 +17,7 @@ namespace {
 using generated::NamedBoundary;
 using Boundaries = std::vector<const OrientedBoundary*>;
 
-/// The solids of all() by what pages share, each group in the order of all().
+/// The solids grouped by their frames, each group in the given order.
 std::vector<Boundaries> groups_of(const std::vector<NamedBoundary>& solids) {
   std::vector<Boundaries> groups;
   std::vector<codec::Frame> frames;
@@ -40,7 +40,7 @@ Bytes blob_of(const OrientedBoundary& boundary, const EncodeOptions& options = {
   return *std::move(blob);
 }
 
-/// A grid with steps of so many millimetres.
+/// A grid with steps of the given number of millimetres.
 Lattice grid_of(std::int64_t millimetres) {
   Lattice lattice;
   lattice.step.fill(GridNumber{millimetres, -3});
@@ -53,7 +53,7 @@ OrientedBoundary box_at(double x, const Lattice& lattice) {
   return generated::boundary_of(std::move(arrays), lattice, 28992);
 }
 
-/// Boxes on two grids in turn, and one of floating point numbers at every fifth place.
+/// Boxes on two grids in turn; every fifth box has floating point coordinates.
 std::vector<OrientedBoundary> interleaved(std::size_t count) {
   generated::Random random(7);
   const Lattice lattices[2] = {grid_of(1), grid_of(3)};
@@ -89,7 +89,7 @@ codec::PageFileReader opened(ByteView file) {
   return *std::move(reader);
 }
 
-/// A page file around any pages and any index, with the right checksum.
+/// A page file of any pages with any index and the right checksum.
 Bytes forged(const std::vector<Bytes>& pages, const std::vector<std::uint64_t>& index) {
   ByteWriter numbers;
   for (const std::uint64_t number : index) numbers.varint(number);
@@ -103,7 +103,7 @@ Bytes forged(const std::vector<Bytes>& pages, const std::vector<std::uint64_t>& 
   return std::move(writer).bytes();
 }
 
-/// Reads all that a damaged file gives.
+/// Reads every page and solid that a damaged file gives.
 void read_all(ByteView file, const Limits& limits = {}) {
   const auto reader = codec::PageFileReader::open(file, limits);
   if (!reader) {
@@ -118,7 +118,7 @@ void read_all(ByteView file, const Limits& limits = {}) {
 
 }  // namespace
 
-TEST_CASE("a lattice whose origin leaves 128 bits on the way is refused") {
+TEST_CASE("a lattice whose origin takes more than 128 bits in between is refused") {
   codec::PageGrid grid;
   grid.step.fill(GridNumber{(std::int64_t{1} << 62) + 1, 18});
   grid.phase.fill(GridNumber{1, 0});
@@ -162,7 +162,7 @@ TEST_CASE("a page holds solids in any one mode") {
   }
 }
 
-TEST_CASE("a page of like solids is smaller than their blobs") {
+TEST_CASE("a page of similar solids is smaller than their blobs") {
   const Lattice lattice = grid_of(1);
   std::vector<OrientedBoundary> solids;
   Boundaries page;
@@ -194,7 +194,8 @@ TEST_CASE("an error in a page names the solid and the byte") {
   const OrientedBoundary box = generated::box();
   auto page = codec::encode_boundaries(Boundaries{&box, &box, &box}, {});
   REQUIRE(page);
-  page->erase(page->end() - 12, page->end() - 4);  // of the stream; the checksum follows
+  // Removes bytes of the stream; the checksum stays.
+  page->erase(page->end() - 12, page->end() - 4);
   const auto refused = codec::decode_page(*page);
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::malformed);
@@ -202,7 +203,7 @@ TEST_CASE("an error in a page names the solid and the byte") {
   CHECK(refused.error().byte_offset.value_or(0) > 4);
 }
 
-TEST_CASE("solids that share no page are refused by name") {
+TEST_CASE("an error names the solids that cannot share a page") {
   const auto solids = interleaved(5);
   const auto mixed = codec::encode_boundaries(Boundaries{&solids[0], &solids[1]}, {});
   REQUIRE_FALSE(mixed);
@@ -290,7 +291,7 @@ TEST_CASE("a page file keeps more grids apart than it has pages open") {
   }
 }
 
-TEST_CASE("a page file keeps what a blob says of its acceptance") {
+TEST_CASE("a page file keeps the acceptance that a blob states") {
   const OrientedBoundary box = generated::box();
   Acceptance other;
   other.proof = Proof::boundary;
@@ -309,7 +310,7 @@ TEST_CASE("a page file keeps what a blob says of its acceptance") {
   CHECK(reader.solid(1)->info.acceptance == other);
 }
 
-TEST_CASE("page files without solids and with one") {
+TEST_CASE("page files with no solid and with one solid can be read") {
   const Bytes empty = page_file_of({}, 256);
   const codec::PageFileReader none = opened(empty);
   CHECK(none.size() == 0);
@@ -360,7 +361,7 @@ TEST_CASE("mutated page files are read or refused") {
   for (int i = 0; i < 3000; ++i) read_all(generated::mutated(files, random));
 }
 
-TEST_CASE("a page file with an index that lies is refused before anything is decoded") {
+TEST_CASE("a page file with a false index is refused before anything is decoded") {
   const OrientedBoundary box = generated::box();
   const auto made = codec::encode_boundaries(Boundaries{&box, &box}, {});
   REQUIRE(made);
@@ -370,20 +371,20 @@ TEST_CASE("a page file with an index that lies is refused before anything is dec
   REQUIRE(codec::PageFileReader::open(forged({page}, {2, 1, size, 2, 0, 0})));
   const std::vector<std::vector<std::uint64_t>> lies = {
       {kHuge, 1, size, 2, 0, 0},                      // more solids than the index has bytes
-      {2, kHuge, size, 2, 0, 0},                      // more pages
+      {2, kHuge, size, 2, 0, 0},                      // more pages than the index has bytes
       {2, 1, kHuge, 2, 0, 0},                         // a page beyond the file
-      {2, 1, size + 1, 2, 0, 0},                      //
-      {2, 1, size - 1, 2, 0, 0},                      // bytes between pages and index
+      {2, 1, size + 1, 2, 0, 0},                      // a page that ends in the index
+      {2, 1, size - 1, 2, 0, 0},                      // bytes between the page and the index
       {2, 1, size, kHuge, 0, 0},                      // a page of too many solids
-      {2, 1, size, codec::kMaxPageSolids + 1, 0, 0},  //
-      {2, 1, size, 2, 0, 1},                          // solid 2 of 2
-      {2, 1, size, 2, 0, kHuge},                      //
-      {2, 1, size, 2, 0},                             // an index that ends early
-      {2, 1, size, 2, 0, 0, 0},                       // or late
-      {3, 1, size, 2, 0, 0},                          // a solid in no page
-      {1, 1, size, 2, 0, 0},                          // a solid too many
-      {2, 2, size, 2, 0, 0, 0, 0},                    // a page without solids
-      {2, 2, size, 2, 0, 0, 0, 1, 0},                 // a solid twice
+      {2, 1, size, codec::kMaxPageSolids + 1, 0, 0},  // one solid more than a page may have
+      {2, 1, size, 2, 0, 1},           // solid number 2, where the numbers are 0 and 1
+      {2, 1, size, 2, 0, kHuge},       // a number of a solid that is too large
+      {2, 1, size, 2, 0},              // an index that ends early
+      {2, 1, size, 2, 0, 0, 0},        // an index that ends late
+      {3, 1, size, 2, 0, 0},           // a solid in no page
+      {1, 1, size, 2, 0, 0},           // a solid more than the file states
+      {2, 2, size, 2, 0, 0, 0, 0},     // a page without solids
+      {2, 2, size, 2, 0, 0, 0, 1, 0},  // a solid twice
   };
   for (const auto& lie : lies) {
     const auto reader = codec::PageFileReader::open(forged({page}, lie));
@@ -392,7 +393,7 @@ TEST_CASE("a page file with an index that lies is refused before anything is dec
   }
 }
 
-TEST_CASE("a page of another count than the index says is refused") {
+TEST_CASE("a page with another number of solids than the index states is refused") {
   const OrientedBoundary box = generated::box();
   const auto page = codec::encode_boundaries(Boundaries{&box, &box}, {});
   REQUIRE(page);

@@ -21,7 +21,7 @@ void check_round_trip(const OrientedBoundary& boundary) {
   test::check_round_trip(kPolygon, *solid);
 }
 
-/// A box with a chimney: a facet with a hole whose ring begins at a new vertex.
+/// A box with a chimney: the hole of a facet begins at a new vertex.
 OrientedBoundary box_with_chimney() {
   SolidArrays arrays;
   generated::add_box(arrays, {0, 0, 0}, {10, 10, 10});
@@ -52,7 +52,7 @@ OrientedBoundary box_with_chimney() {
   return generated::boundary_of(std::move(result));
 }
 
-/// A box whose cavity has an edge in common with it, so that this edge has four facets.
+/// A box with a cavity that has an edge in common with the box: the edge has four facets.
 OrientedBoundary cavity_touching_at_edge() {
   SolidArrays arrays;
   generated::add_box(arrays, {0, 0, 0}, {10, 10, 10});
@@ -94,7 +94,7 @@ TEST_CASE("mode polygon holds coordinates up to its bound, and refuses those bey
   REQUIRE(prism);
   for (const std::int64_t bound : {most, most + 1}) {
     codec::IntegerSolid solid = *prism;
-    // Every other vertex at one end of an axis, so that all predictions are far off.
+    // The vertices alternate between the ends of an axis, so that all predictions are far off.
     for (std::size_t i = 0; i < solid.vertices.size(); ++i) {
       solid.vertices[i][i % 3] = i % 2 == 0 ? bound : -bound;
     }
@@ -106,7 +106,7 @@ TEST_CASE("mode polygon holds coordinates up to its bound, and refuses those bey
   }
 }
 
-TEST_CASE("mode polygon codes a solid the better for the page around it") {
+TEST_CASE("mode polygon takes fewer bytes for a solid after others in a page") {
   generated::Random random(5);
   const auto prism = integers_of(generated::random_prism(random, 9));
   REQUIRE(prism);
@@ -127,7 +127,7 @@ TEST_CASE("mode polygon writes the same bytes for the same solid") {
   }
 }
 
-TEST_CASE("mode polygon holds to the limits when it reads") {
+TEST_CASE("mode polygon keeps to the limits when it reads") {
   const auto bytes = write(kPolygon, *integers_of(generated::grid_cube(5)));
   REQUIRE(bytes);
   Limits few;

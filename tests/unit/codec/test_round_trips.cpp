@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A slice of what bench/codec/round_trips runs on a million solids.
+// A part of the round trips that bench/codec/round_trips makes for a million solids.
 #include <catch2/catch_test_macros.hpp>
 
 #include "tests/generated/round_trip.h"

@@ -24,13 +24,13 @@ Bytes written(const Solid& canonical, const geometry::SourceOrder& order) {
   return std::move(stream).finish();
 }
 
-/// Nothing when the stream says that the bytes are none.
+/// The order that the bytes give, or nothing if the stream refuses the bytes.
 std::optional<geometry::SourceOrder> read_back(const Solid& canonical, const Bytes& bytes) {
   auto stream = codec::EntropyStream::reader(bytes);
   auto bank = neutral_bank();
   geometry::SourceOrder order;
   codec::code_order(stream, bank, canonical, order);
-  CHECK(geometry::restore_order(canonical, order));  // permutations, whatever the bytes
+  CHECK(geometry::restore_order(canonical, order));  // any bytes give permutations
   if (!stream.is_finished()) return std::nullopt;
   return order;
 }
@@ -52,7 +52,7 @@ void shuffle(std::vector<Index>& list, std::size_t begin, std::size_t end, Rando
   }
 }
 
-/// Any arrangement that a source could have.
+/// A random order that a source could have.
 geometry::SourceOrder random_order(const Solid& solid, Random& random) {
   geometry::SourceOrder order;
   order.vertex.resize(solid.vertex_count());
@@ -98,7 +98,7 @@ TEST_CASE("the source order of a solid comes back") {
   }
 }
 
-TEST_CASE("any order comes back, at the cost of a permutation") {
+TEST_CASE("any order comes back, and costs no more than a permutation") {
   Random random(5);
   for (const OrientedBoundary& boundary : samples()) {
     const geometry::CanonicalSolid canonical = geometry::canonical_form(boundary);
@@ -112,7 +112,7 @@ TEST_CASE("any order comes back, at the cost of a permutation") {
   }
 }
 
-/// Numbers the vertices as readers do: by first use.
+/// Numbers the vertices by first use, as readers do.
 void number_by_first_use(const Solid& solid, geometry::SourceOrder& order) {
   std::vector<Index> rings(order.ring.size());
   for (Index ring = 0; ring < rings.size(); ++ring) rings[order.ring[ring]] = ring;
@@ -127,7 +127,7 @@ void number_by_first_use(const Solid& solid, geometry::SourceOrder& order) {
   }
 }
 
-TEST_CASE("a bank that has seen a habit codes it in next to nothing") {
+TEST_CASE("a bank that has learned a habit codes it in next to nothing") {
   geometry::CanonicalSolid canonical = geometry::canonical_form(generated::box());
   number_by_first_use(canonical.boundary.solid(), canonical.order);
   const Solid& solid = canonical.boundary.solid();
@@ -143,7 +143,7 @@ TEST_CASE("a bank that has seen a habit codes it in next to nothing") {
   CHECK(last < 4U << codec::kCostBits);
 }
 
-TEST_CASE("bytes that are no order give permutations all the same") {
+TEST_CASE("bytes that are no order give permutations nonetheless") {
   Random random(9);
   const geometry::CanonicalSolid canonical = geometry::canonical_form(generated::pierced_block(3));
   const Solid& solid = canonical.boundary.solid();

@@ -69,17 +69,17 @@ TEST_CASE("mode walk brings back every generated solid or refuses it") {
     for (const auto& [name, boundary] : generated::all(seed)) {
       INFO(name);
       const auto solid = integers_of(boundary);
-      if (!solid) continue;  // doubles that are on no grid
+      if (!solid) continue;  // the solid has doubles that are on no grid
       const auto bytes = write(kWalk, *solid);
       ++(bytes ? held : refused);
       if (bytes) test::check_round_trip(kWalk, *solid);
     }
   }
-  CHECK(refused <= 4);  // the block whose hole touches the outer ring
+  CHECK(refused <= 4);  // the block whose hole touches the outer ring is refused
   CHECK(held > 100);
 }
 
-TEST_CASE("mode walk refuses what has no volume or leaves its range") {
+TEST_CASE("mode walk refuses solids without volume or outside its range") {
   const auto solid = integers_of(generated::box());
   REQUIRE(solid);
   codec::IntegerSolid flat = *solid;
@@ -105,7 +105,7 @@ TEST_CASE("in a page mode walk takes columns from the solids before") {
   CHECK(write(kWalk, *solid, memory)->size() < write(kWalk, *solid)->size());
 }
 
-TEST_CASE("a measuring stream walks as a writing one, and both the same way every time") {
+TEST_CASE("a measuring stream walks as a writing one, and every walk is the same") {
   Random random(5);
   const auto solid = integers_of(generated::random_terrain(random, 8));
   REQUIRE(solid);

@@ -15,7 +15,7 @@ using IntegerPoint = std::array<std::int64_t, 3>;
 using IntegerPoints = std::vector<IntegerPoint>;
 constexpr std::int64_t kMost = (std::int64_t{1} << 30) - 1;
 
-/// (i, j, k) for 0 <= i < a, 0 <= j < b, 0 <= k < c.
+/// The points (i, j, k) for 0 <= i < a, 0 <= j < b, 0 <= k < c.
 IntegerPoints box(std::int64_t a, std::int64_t b, std::int64_t c) {
   IntegerPoints points;
   for (std::int64_t i = 0; i < a; ++i) {
@@ -26,7 +26,7 @@ IntegerPoints box(std::int64_t a, std::int64_t b, std::int64_t c) {
   return points;
 }
 
-/// All integer points at squared distance q from the origin.
+/// All integer points whose squared distance from the origin is q.
 IntegerPoints sphere(std::int64_t q) {
   IntegerPoints points;
   std::int64_t r = 0;
@@ -52,7 +52,7 @@ IntegerPoints random(std::int64_t n, std::int64_t m, std::int64_t seed) {
   return points;
 }
 
-/// Each coordinate one of five.
+/// n points, each coordinate of which is one of five values.
 IntegerPoints extreme(std::int64_t n, std::int64_t seed) {
   constexpr std::array<std::int64_t, 5> kChoices{0, 1, std::int64_t{1} << 29, kMost - 1, kMost};
   IntegerPoints points = random(n, 5, seed);
@@ -62,7 +62,7 @@ IntegerPoints extreme(std::int64_t n, std::int64_t seed) {
   return points;
 }
 
-/// A sphere times k, each coordinate moved by -1, 0 or 1.
+/// The points of a sphere times k, with each coordinate moved by -1, 0 or 1.
 IntegerPoints near_sphere(std::int64_t q, std::int64_t k, std::int64_t seed) {
   Numbers numbers(static_cast<std::uint64_t>(seed));
   IntegerPoints points = sphere(q);
@@ -72,7 +72,7 @@ IntegerPoints near_sphere(std::int64_t q, std::int64_t k, std::int64_t seed) {
   return points;
 }
 
-/// Points (x, y, z), x^2 + y^2 = q, at k heights that are h apart.
+/// The points (x, y, z) with x^2 + y^2 = q at k heights that are h apart.
 IntegerPoints circles(std::int64_t q, std::int64_t k, std::int64_t h) {
   IntegerPoints points;
   for (std::int64_t x = -q; x <= q; ++x) {
@@ -83,7 +83,7 @@ IntegerPoints circles(std::int64_t q, std::int64_t k, std::int64_t h) {
   return points;
 }
 
-/// Gabled houses of 1000 by 800 by 500, ridges 300 higher, in a row.
+/// A row of gabled houses of 1000 by 800 by 500, with ridges 300 higher.
 IntegerPoints houses(std::int64_t n) {
   IntegerPoints points;
   for (std::int64_t i = 0; i <= n; ++i) {
@@ -95,7 +95,7 @@ IntegerPoints houses(std::int64_t n) {
   return points;
 }
 
-/// A random footprint at two or three heights: walls, and points on few planes.
+/// A random footprint at two or three heights: points on walls and on few planes.
 IntegerPoints tower(std::int64_t n, std::int64_t m, std::int64_t seed) {
   Numbers numbers(static_cast<std::uint64_t>(seed));
   const std::array<std::int64_t, 3> heights{0, numbers.below(m), numbers.below(m)};
@@ -109,14 +109,14 @@ IntegerPoints tower(std::int64_t n, std::int64_t m, std::int64_t seed) {
   return points;
 }
 
-/// A flat random set and d points off its plane.
+/// A random set in a plane, and d points off the plane.
 IntegerPoints flat(std::int64_t n, std::int64_t m, std::int64_t d, std::int64_t seed) {
   IntegerPoints points = random(n, m, seed);
   for (std::int64_t i = d; i < n; ++i) points[static_cast<std::size_t>(i)][2] = 0;
   return points;
 }
 
-/// Points on few lines: all coordinates but one from {0, m}.
+/// Points on few lines: all coordinates but one are 0 or m.
 IntegerPoints lines(std::int64_t n, std::int64_t m, std::int64_t seed) {
   Numbers numbers(static_cast<std::uint64_t>(seed));
   IntegerPoints points;
@@ -159,7 +159,7 @@ IntegerPoints paraboloid(std::int64_t a) {
   return points;
 }
 
-/// Two lines that are skew: n points on each.
+/// Two skew lines of n points each.
 IntegerPoints skew(std::int64_t n) {
   IntegerPoints points;
   for (std::int64_t i = 0; i < n; ++i) {

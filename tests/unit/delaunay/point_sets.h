@@ -26,14 +26,14 @@ class Numbers {
   std::uint64_t state_;
 };
 
-/// A kind of set and its parameters, e.g. "grid 3 3 3": without points if there is no such kind.
-/// Distinct, in lexicographic order.
+/// The points of a formula, which has a kind of set and its parameters, e.g. "grid 3 3 3":
+/// distinct, in lexicographic order. No points if there is no such kind.
 std::vector<Point> make(const std::string& formula);
 
-/// Formula number `number` of an endless sequence: all kinds, mostly small.
+/// The formula of a number, in an endless sequence of all kinds; most of the sets are small.
 std::string any_formula(std::uint64_t number);
 
-/// The same points in another order.
+/// The points in another order.
 std::vector<Point> shuffled(std::vector<Point> points, std::uint64_t seed);
 
 }  // namespace watertight::point_sets

@@ -41,7 +41,8 @@ Shape schoenhardt() {
   Shell shell = {{{0, 2, 1}}, {{3, 4, 5}}};
   for (Index i = 0; i < 3; ++i) {
     const Index j = (i + 1) % 3;
-    // Lower edge (i, j), upper edge (i + 3, j + 3), reflex diagonal i -> j + 3.
+    // A side has the lower edge (i, j), the upper edge (i + 3, j + 3) and the reflex diagonal i ->
+    // j + 3.
     shell.push_back({{i, j, j + 3}});
     shell.push_back({{i, j + 3, i + 3}});
   }
@@ -58,8 +59,8 @@ Shape tunnelled_box() {
     for (const auto& [x, y] : inner) shape.vertices.push_back({x, y, z});
   }
   Shell shell;
-  shell.push_back({{3, 2, 1, 0}, {4, 5, 6, 7}});        // bottom, seen from below
-  shell.push_back({{8, 9, 10, 11}, {15, 14, 13, 12}});  // top
+  shell.push_back({{3, 2, 1, 0}, {4, 5, 6, 7}});        // the bottom, seen from below
+  shell.push_back({{8, 9, 10, 11}, {15, 14, 13, 12}});  // the top
   for (Index i = 0; i < 4; ++i) {
     const Index j = (i + 1) % 4;
     shell.push_back({{i, j, j + 8, i + 8}});

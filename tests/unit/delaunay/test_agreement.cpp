@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// For one closed orientable shell the exact tests are a proof by themselves (Jordan-Brouwer), and
-// the certificate is another that shares nothing with them but predicates: they must always agree.
-// Generated solids, sound ones and such that meet themselves, go through both.
+// For one closed orientable shell the exact tests are a proof (Jordan-Brouwer), and the certificate
+// is another proof, which shares only predicates with them: the two must always agree. Generated
+// solids, sound ones and self-intersecting ones, go through both.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 using samples::Shape;
 using test::Random;
 
-/// A prism over a polygon that is star-shaped around the origin, with integer corners.
+/// A prism over a polygon with integer corners that is star-shaped around the origin.
 Shape random_prism(Random& random) {
   const int corners = 3 + int(random.below(14));
   std::vector<std::array<double, 2>> polygon;
@@ -34,8 +34,8 @@ Shape random_prism(Random& random) {
   return samples::prism(polygon, random.within(1, 900));
 }
 
-/// Triangles of a grid of around x across vertices that closes both ways (a torus) or, with caps,
-/// one way (a sphere whose last two vertices are the poles).
+/// Adds the triangles of a grid of around x across vertices that closes both ways (a torus) or one
+/// way, with caps (a sphere whose last two vertices are the poles).
 void add_grid(Shape& shape, int around, int across, bool is_torus) {
   shape.shells.emplace_back();
   const auto at = [&](int i, int j) { return Index((i % around) * across + j % across); };
@@ -54,7 +54,7 @@ void add_grid(Shape& shape, int around, int across, bool is_torus) {
 Shape random_torus(Random& random) {
   const int around = 3 + int(random.below(8));
   const int across = 3 + int(random.below(5));
-  const int tube = 300 + int(random.below(800));  // more than 1000: it meets itself
+  const int tube = 300 + int(random.below(800));  // a tube of more than 1000 meets itself
   Shape shape;
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < across; ++j) {
@@ -69,7 +69,7 @@ Shape random_torus(Random& random) {
   return shape;
 }
 
-/// Star-shaped around the origin, spiky.
+/// A spiky surface that is star-shaped around the origin.
 Shape random_star(Random& random) {
   const int around = 3 + int(random.below(7));
   const int across = 1 + int(random.below(5));
@@ -90,8 +90,8 @@ Shape random_star(Random& random) {
   return shape;
 }
 
-/// The boundary of some tetrahedra of a Delaunay tetrahedralization of points on a small lattice:
-/// many cospherical and coplanar points. Vertices that no facet uses are left out.
+/// The boundary of some tetrahedra of a Delaunay tetrahedralization of points on a small lattice,
+/// with many cospherical and coplanar points. Vertices that no facet uses are left out.
 Shape random_union(Random& random, std::uint64_t extent) {
   std::set<Point> chosen;
   const auto count = 5 + random.below(14);
@@ -103,7 +103,7 @@ Shape random_union(Random& random, std::uint64_t extent) {
   const auto delaunay = delaunay::canonical_delaunay(points);
   Shape shape;
   if (!delaunay || delaunay->tetrahedra.empty()) return shape;
-  std::set<Triangle> boundary;  // directed, smallest corner first
+  std::set<Triangle> boundary;  // directed triangles that start at their smallest corner
   const auto add_face = [&](Triangle face) {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     if (boundary.erase({face[0], face[2], face[1]}) == 0) boundary.insert(face);
@@ -111,7 +111,7 @@ Shape random_union(Random& random, std::uint64_t extent) {
   const auto share = 2 + random.below(4);
   for (const auto& [a, b, c, d] : delaunay->tetrahedra) {
     if (random.below(share) == 0) continue;
-    // The normals of these turn away from the fourth corner.
+    // The normals of these faces point away from the opposite corners.
     for (const Triangle& face :
          {Triangle{a, c, b}, Triangle{a, b, d}, Triangle{b, c, d}, Triangle{c, a, d}}) {
       add_face(face);
@@ -150,12 +150,12 @@ Shape random_shape(Random& random) {
       shape = random_union(random, 8 + random.below(1000));
       break;
   }
-  // Some shapes meet themselves, or nearly.
+  // Moved vertices make some shapes meet themselves, or nearly.
   for (auto moves = random.below(3); moves > 0 && !shape.vertices.empty(); --moves) {
     if (random.below(3) != 0) continue;
     Point& p = shape.vertices[random.below(shape.vertices.size())];
     const Point& q = shape.vertices[random.below(shape.vertices.size())];
-    // Half the way to another vertex, or a step.
+    // The vertex moves half the way to another one, or by a step.
     if (random.below(2) == 0) {
       p = {std::floor((p.x + q.x) / 2), std::floor((p.y + q.y) / 2), std::floor((p.z + q.z) / 2)};
     } else {
@@ -176,8 +176,10 @@ CertifyOptions exact_options(Proof proof) {
 
 struct Counts {
   int sound = 0;
-  int meeting = 0;  // themselves
-  int other = 0;    // findings that the certificate does not judge (pinches, several components)
+  int meeting = 0;  // the number of solids that meet themselves
+  // The number of solids with findings that the certificate does not judge (pinches, several
+  // components).
+  int other = 0;
 };
 
 /// True if the exact tests find self-intersections and nothing else.
@@ -203,7 +205,8 @@ void check_agreement(const Solid& solid, delaunay::EngineWorkers& workers, bool 
     return;
   }
   ++counts.meeting;
-  // The exact tests spare the engines these solids: no certificate accepts any answer to them.
+  // The product gives no such solid to the engines; the test does, and requires that the
+  // certificate accepts none of their answers.
   const Solid merged = geometry::merge_equal_vertices(solid).solid;
   delaunay::LadderOptions options;
   options.seconds_per_rung = 0.5;
@@ -233,7 +236,7 @@ TEST_CASE("certificate and exact tests agree on generated shells") {
   CHECK(counts.meeting > 10);
 }
 
-// Not run by default: WATERTIGHT_AGREEMENT_SOLIDS=100000 test_agreement "[long]".
+// The test does not run by default: WATERTIGHT_AGREEMENT_SOLIDS=100000 test_agreement "[long]".
 TEST_CASE("certificate and exact tests agree on very many generated shells", "[.long]") {
   const char* text = std::getenv("WATERTIGHT_AGREEMENT_SOLIDS");
   const Counts counts =

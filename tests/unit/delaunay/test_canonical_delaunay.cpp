@@ -27,7 +27,7 @@ std::vector<Point> grid(int side, double step = 1, Point origin = {}) {
   return points;
 }
 
-/// Integer points at the given squared distances from the origin: many cospherical at once.
+/// The integer points at the given squared distances from the origin: many are cospherical.
 std::vector<Point> integer_spheres(int radius, const std::vector<int>& squares) {
   std::vector<Point> points;
   for (int x = -radius; x <= radius; ++x) {
@@ -43,7 +43,7 @@ std::vector<Point> integer_spheres(int radius, const std::vector<int>& squares) 
 }
 
 std::vector<Point> prism(int sides, double height) {
-  // Integer points on one circle of radius 65, repeated at two heights.
+  // The integer points of a circle of radius 65, at two heights.
   const std::vector<std::array<int, 2>> circle = {
       {65, 0},   {63, 16},  {60, 25},  {56, 33},   {52, 39},   {39, 52},   {33, 56},  {25, 60},
       {16, 63},  {0, 65},   {-16, 63}, {-25, 60},  {-33, 56},  {-39, 52},  {-52, 39}, {-56, 33},
@@ -63,7 +63,7 @@ delaunay::CanonicalDelaunay build(const std::vector<Point>& points) {
   return std::move(*result);
 }
 
-/// Faces with the indices that the lexicographically sorted points would have.
+/// A digest of the faces, with the indices of the lexicographically sorted points.
 std::uint64_t digest(const std::vector<Point>& points) {
   std::vector<Point> sorted = points;
   std::sort(sorted.begin(), sorted.end());
@@ -96,7 +96,7 @@ struct NamedSet {
   std::uint64_t digest;
 };
 
-/// The tie rule is part of the blob format: these digests never change.
+/// The golden sets. The tie rule is part of the blob format: their digests never change.
 std::vector<NamedSet> golden_sets() {
   return {
       {"cube", grid(2), 0xf0a9f1e5f7102bd2},
@@ -215,8 +215,8 @@ TEST_CASE("canonical Delaunay lists the vertices opposite to a face by side") {
   }
 }
 
-/// Sign of the in-sphere determinant of a positively oriented tetrahedron, in integers: positive
-/// if `q` is strictly inside. Exact for coordinates below 2^8.
+/// The sign of the in-sphere determinant of a positively oriented tetrahedron, in integers:
+/// positive if `q` is strictly inside the sphere. Exact for coordinates below 2^8.
 std::int64_t in_sphere(const std::array<Point, 4>& t, const Point& q) {
   std::array<std::array<std::int64_t, 4>, 4> m{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -224,7 +224,7 @@ std::int64_t in_sphere(const std::array<Point, 4>& t, const Point& q) {
     m[i][3] = m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2];
   }
   std::int64_t sum = 0;
-  for (std::size_t i = 0; i < 4; ++i) {  // expansion along the last column
+  for (std::size_t i = 0; i < 4; ++i) {  // expands the determinant along the last column
     std::array<std::size_t, 3> r{};
     for (std::size_t k = 0, used = 0; k < 4; ++k) {
       if (k != i) r[used++] = k;
@@ -268,7 +268,7 @@ TEST_CASE("canonical Delaunay refuses equal, infinite and too many points") {
   const std::vector<Point> infinite = {{0, 0, std::numeric_limits<double>::infinity()}};
   CHECK_FALSE(delaunay::canonical_delaunay(infinite).has_value());
 
-  // Points on two skew lines: every pair of segments spans a tetrahedron.
+  // The points are on two skew lines: every pair of segments spans a tetrahedron.
   std::vector<Point> skew;
   for (int i = 0; i < 100; ++i) {
     skew.push_back({double(i), 0, 0});

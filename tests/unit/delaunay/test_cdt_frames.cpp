@@ -96,7 +96,7 @@ TEST_CASE("CDT frames with wrong indices, counts or coordinates are malformed") 
   CHECK(refuses_answer([](delaunay::Tetrahedralization& t) {
     t.points[4].z = std::numeric_limits<double>::infinity();
   }));
-  // A count that the bytes cannot hold is refused before anything is allocated.
+  // A number of elements that the bytes cannot hold is refused before anything is allocated.
   Bytes bytes = delaunay::write_answer(sample_answer());
   bytes[9] = bytes[10] = bytes[11] = bytes[12] = 0xFF;
   CHECK_FALSE(delaunay::read_answer(bytes, vertices, 2).has_value());

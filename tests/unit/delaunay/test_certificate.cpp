@@ -27,7 +27,8 @@ struct Case {
   }
 };
 
-/// From the canonical Delaunay tetrahedralization; requires that facets are unions of its faces.
+/// A case from the canonical Delaunay tetrahedralization; requires that facets are unions of its
+/// faces.
 Case delaunay_case(const Shape& shape) {
   Solid solid = samples::make_solid(shape);
   tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
@@ -46,7 +47,7 @@ Case delaunay_case(const Shape& shape) {
   return {std::move(solid), std::move(canonical), std::move(own)};
 }
 
-/// The cube with one Steiner point: its tetrahedralization is the Delaunay one of nine points.
+/// The cube with one Steiner point, with the Delaunay tetrahedralization of the nine points.
 Case cube_with_steiner_point(const Point& steiner, Index facet_of_steiner) {
   const Shape shape = samples::box({0, 0, 0}, {64, 64, 64});
   Solid solid = samples::make_solid(shape);
@@ -95,7 +96,7 @@ TEST_CASE("certificate accepts solids whose boundary is in the Delaunay tetrahed
 
 TEST_CASE("certificate names a facet that is not planar and is filled otherwise") {
   CHECK(delaunay_case(cube()).full().certificate.refilled_facets.empty());
-  // The roof of the warped box has two triangulations; exactly one of them is the canonical one.
+  // The roof of the warped box has two triangulations, of which exactly one is canonical.
   Case up = delaunay_case(samples::warped_box(1));
   const delaunay::CertificateResult result = up.full();
   REQUIRE(result.refusal == delaunay::CertificateRefusal::none);
@@ -113,7 +114,7 @@ TEST_CASE("certificate names a facet that is not planar and is filled otherwise"
     }
     std::sort(canonical.begin(), canonical.end());
     std::sort(own.begin(), own.end());
-    const bool is_warped = facet == 1 || facet == 3 || facet == 5;  // facets of vertex 7
+    const bool is_warped = facet == 1 || facet == 3 || facet == 5;  // the facets of vertex 7
     if (canonical != own && is_warped && facet == 1) expected.push_back(facet);
   }
   CHECK(result.certificate.refilled_facets == expected);
@@ -182,7 +183,8 @@ TEST_CASE("certificate refuses an inner face with a facet number") {
 }
 
 TEST_CASE("certificate refuses a bubble: the three other faces of a tetrahedron") {
-  // Replacing one face of a facet by the other three of its tetrahedron keeps the boundary closed.
+  // A face of a facet is replaced by the other three faces of its tetrahedron: the boundary stays
+  // closed.
   const Case good = delaunay_case(cube());
   int bubbles = 0;
   for (const geometry::Tetrahedron& t : good.tetrahedralization.tetrahedra) {
@@ -212,7 +214,7 @@ TEST_CASE("certificate refuses a bubble: the three other faces of a tetrahedron"
 }
 
 TEST_CASE("certificate refuses a bubble through a Steiner point") {
-  // A point above the facet's middle, and the facet's faces led over it.
+  // The Steiner point is above the middle of the facet, and the faces of the facet pass through it.
   Case bad = cube_with_steiner_point({32, 32, 8}, 0);
   CHECK(bad.judge() == delaunay::CertificateRefusal::facet_not_conforming);
 }
@@ -262,7 +264,7 @@ TEST_CASE("certificate refuses moved, dropped and additional vertices") {
 }
 
 TEST_CASE("certificate refuses an outer surface that is no convex hull") {
-  // Two tetrahedra on a face: the hull of the five points has more.
+  // Two tetrahedra with a common face do not fill the convex hull of the five points.
   Shape shape;
   shape.vertices = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {3, 3, 9}, {20, 20, -1}};
   shape.shells = {{{{0, 2, 1}}, {{0, 1, 3}}, {{1, 2, 3}}, {{2, 0, 3}}}};
@@ -278,7 +280,7 @@ TEST_CASE("certificate refuses an outer surface that is no convex hull") {
 }
 
 TEST_CASE("certificate refuses a complex that winds twice around an edge") {
-  // Eight positive wedges around the z axis, each of 90 degrees: a double cover of the square.
+  // Eight positive wedges around the z axis, of 90 degrees each, cover the square twice.
   Shape shape;
   shape.vertices = {{0, 0, -8}, {0, 0, 8}};
   const std::vector<Point> ring = {{9, 0, 0}, {0, 9, 0},  {-9, 0, 0},  {0, -9, 0},
@@ -326,7 +328,7 @@ TEST_CASE("certificate finds a disconnected interior") {
   CHECK(delaunay_case(nested).judge() == delaunay::CertificateRefusal::interior_disconnected);
 }
 
-/// The second box gets the first one's corner (63: all coordinates high) instead of its own.
+/// Two boxes with a common vertex: the corner of the first one where all coordinates are greatest.
 Shape boxes_sharing_a_vertex() {
   Shape shape = samples::box({0, 0, 0}, {8, 8, 8});
   samples::add_box_facets(shape, {8, 8, 8}, {16, 16, 16}, false);
@@ -366,7 +368,7 @@ TEST_CASE("certificate accepts cavities that touch in a vertex") {
   INFO(result.detail);
   CHECK(result.refusal == delaunay::CertificateRefusal::none);
 
-  // The same two cavities declared as one inner shell.
+  // The two cavities are declared as one interior shell.
   Shape merged = shape;
   merged.shells[1].insert(merged.shells[1].end(), merged.shells[2].begin(), merged.shells[2].end());
   merged.shells.pop_back();
@@ -378,13 +380,13 @@ TEST_CASE("certificate finds shells that are declared wrongly") {
   std::swap(swapped.shells[0], swapped.shells[1]);
   CHECK(delaunay_case(swapped).judge() == delaunay::CertificateRefusal::cavity_mismatch);
 
-  Shape joined = box_with_cavity();  // the cavity's facets in the exterior shell
+  Shape joined = box_with_cavity();  // the exterior shell gets the facets of the cavity
   joined.shells[0].insert(joined.shells[0].end(), joined.shells[1].begin(), joined.shells[1].end());
   joined.shells.pop_back();
   CHECK(delaunay_case(joined).judge() == delaunay::CertificateRefusal::cavity_mismatch);
 }
 
-/// The facets of unit cubes that no other of the cubes has, as one shell.
+/// The boundary of some unit cubes as one shell: the facets that belong to one cube only.
 Shape cubes(const std::vector<std::array<int, 3>>& cells) {
   Shape shape;
   shape.shells.emplace_back();
@@ -418,7 +420,7 @@ Shape cubes(const std::vector<std::array<int, 3>>& cells) {
 }
 
 TEST_CASE("certificate refuses a shell that touches itself in an edge or a vertex") {
-  // An arch whose feet touch; its interior hangs together over the top.
+  // The feet of an arch touch; its interior is connected over the top.
   const std::vector<std::array<int, 3>> in_an_edge{
       {0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}};
   CHECK(delaunay_case(cubes(in_an_edge)).judge() == delaunay::CertificateRefusal::not_a_manifold);

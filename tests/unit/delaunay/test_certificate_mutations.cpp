@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Certificates of many solids, damaged at many positions: each damage must be refused, and for the
-// reason that it is.
+// Damages certificates of many solids at many positions: each damaged certificate must be refused,
+// and for the right reason.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
@@ -26,7 +26,7 @@ constexpr delaunay::CertificateRefusal kNoComplex = delaunay::CertificateRefusal
 constexpr delaunay::CertificateRefusal kNotConvex = delaunay::CertificateRefusal::not_convex;
 constexpr delaunay::CertificateRefusal kVertex = delaunay::CertificateRefusal::vertex_missing;
 
-/// Positions tried in each list.
+/// The number of positions that are tried in each list.
 constexpr std::size_t kPositions = 60;
 
 struct Proof {
@@ -47,7 +47,8 @@ delaunay::EngineWorkers& engines() {
 }
 
 Shape schoenhardt_in_a_cavity() {
-  // Schoenhardt's prism as a cavity of a box: Steiner points and an inner shell.
+  // Schoenhardt's prism as a cavity of a box: the certificate has Steiner points and an interior
+  // shell.
   Shape shape = samples::box({-2000, -2000, -1000}, {2000, 2000, 2000});
   const Shape prism = samples::schoenhardt();
   const auto first = Index(shape.vertices.size());
@@ -62,8 +63,8 @@ Shape schoenhardt_in_a_cavity() {
 }
 
 Shape touching_pits_in_a_cavity() {
-  // Small cavities above the rims, and below them inside the pits: edges that leave a vertex where
-  // rims touch need Steiner points.
+  // Small cavities lie above the rims and, inside the pits, below the rims: edges that leave a
+  // vertex where rims touch need Steiner points.
   Shape shape = samples::box({-100, -100, -100}, {200, 200, 200});
   const Shape pits = samples::touching_pits();
   const auto first = Index(shape.vertices.size());
@@ -89,7 +90,7 @@ Shape boxes_in_a_box(int cavities) {
   return shape;
 }
 
-/// A certificate made by the ladder, from the given rung on.
+/// Adds a solid with the certificate that the ladder makes, from the given rung on.
 void add(std::vector<Proof>& proofs, const std::string& name, const Shape& shape,
          delaunay::Rung first) {
   Proof proof{name, shape, samples::make_solid(shape), {}, {}};
@@ -126,8 +127,8 @@ const std::vector<Proof>& proofs() {
   return made;
 }
 
-/// Calls `change` with a copy of each proof's data and each of some positions below count(data).
-/// The changed data must be refused for one of the reasons. `change` returns false to skip one.
+/// Calls `change` with a copy of each proof's data and with some positions below count(data). The
+/// changed data must be refused for one of the reasons. `change` returns false to skip a position.
 template <class Count, class Change>
 void check_refused(const Refusals& reasons, Count count, Change change) {
   std::size_t changes = 0;
@@ -192,7 +193,8 @@ TEST_CASE("mutated certificate: two facets that change numbers are refused") {
 
 TEST_CASE("mutated certificate: a face that names no face of a tetrahedron is refused") {
   check_refused({kNonconforming}, face_count, [](auto& data, std::size_t i, const Proof&) {
-    // All corners of a constrained face stay in the boundary; one of them becomes a stranger's.
+    // The corners of the constrained face stay in the boundary; one of them becomes a corner of
+    // another face.
     auto& corners = data.constrained[i].vertices;
     const Index other =
         data.constrained[(i + data.constrained.size() / 2) % data.constrained.size()].vertices[1];
@@ -236,7 +238,7 @@ TEST_CASE("mutated certificate: a double cover is refused") {
     std::copy_n(proof.data.tetrahedra.begin(), count, std::back_inserter(twice.tetrahedra));
     CHECK(proof.judge(twice) == kNoComplex);
 
-    // The second sheet on points of its own, at the same places or aside.
+    // The second sheet has points of its own, at the same places or beside them.
     for (const double aside : {0.0, 0.25, 1e6}) {
       twice = proof.data;
       const auto first = Index(twice.points.size());
@@ -250,8 +252,8 @@ TEST_CASE("mutated certificate: a double cover is refused") {
   }
 }
 
-/// Replaces tetrahedron i by the four that its centre makes with its faces. False if rounding
-/// makes one of them flat.
+/// Replaces tetrahedron i by the four tetrahedra that its centre makes with its faces. Returns
+/// false if rounding makes one of them flat.
 bool split(delaunay::Tetrahedralization& data, std::size_t i) {
   const geometry::Tetrahedron t = data.tetrahedra[i];
   Point centre{};
@@ -272,7 +274,7 @@ bool split(delaunay::Tetrahedralization& data, std::size_t i) {
   return true;
 }
 
-/// The four faces of a tetrahedron, each without one corner, sorted.
+/// The four faces of a tetrahedron, each with sorted corners.
 std::array<Triangle, 4> faces_of(const geometry::Tetrahedron& t) {
   std::array<Triangle, 4> faces{};
   for (std::size_t f = 0; f < 4; ++f) {
@@ -284,7 +286,7 @@ std::array<Triangle, 4> faces_of(const geometry::Tetrahedron& t) {
   return faces;
 }
 
-/// A constrained face among the faces of a tetrahedron, or the end.
+/// A constrained face among the faces of the tetrahedron, or the end of the list.
 auto constrained_face(delaunay::Tetrahedralization& data, const geometry::Tetrahedron& t) {
   const auto faces = faces_of(t);
   return std::find_if(data.constrained.begin(), data.constrained.end(), [&](const auto& face) {
@@ -293,7 +295,7 @@ auto constrained_face(delaunay::Tetrahedralization& data, const geometry::Tetrah
 }
 
 TEST_CASE("certificate accepts a needless Steiner point inside a tetrahedron") {
-  // The data from which the bubbles below start are accepted by themselves.
+  // The data from which the bubbles below start must be accepted.
   for (const Proof& proof : proofs()) {
     delaunay::Tetrahedralization data = proof.data;
     REQUIRE(split(data, data.tetrahedra.size() / 2));
@@ -302,7 +304,7 @@ TEST_CASE("certificate accepts a needless Steiner point inside a tetrahedron") {
 }
 
 TEST_CASE("mutated certificate: a bubble of new tetrahedra with a facet number is refused") {
-  // The facet is led around a new tetrahedron: the complex is sound, the boundary closed.
+  // The facet passes around a new tetrahedron: the complex is sound and the boundary is closed.
   check_refused({kNonconforming}, tetrahedron_count, [](auto& data, std::size_t i, const Proof&) {
     const auto at = constrained_face(data, data.tetrahedra[i]);
     if (at == data.constrained.end() || !split(data, i)) return false;
@@ -314,7 +316,7 @@ TEST_CASE("mutated certificate: a bubble of new tetrahedra with a facet number i
     }
     return true;
   });
-  // All faces of a new tetrahedron beside the facet's own.
+  // The facet has all faces of a new tetrahedron besides its own.
   check_refused({kNonconforming}, tetrahedron_count, [](auto& data, std::size_t i, const Proof&) {
     if (!split(data, i)) return false;
     for (const Triangle& face : faces_of(data.tetrahedra.back())) {
@@ -329,7 +331,7 @@ TEST_CASE("mutated certificate: a displaced Steiner vertex is refused") {
   for (const double distance : {1e-8, 1e-3, 1.0, 1e6}) {
     check_refused({kNonconforming, kNoComplex, kNotConvex}, steiner_count,
                   [distance](auto& data, std::size_t i, const Proof&) {
-                    // In no plane that the samples have.
+                    // The direction is in no plane of the samples.
                     Point& p = data.points[data.input_count + i];
                     p = {p.x + 0.37 * distance, p.y - 0.61 * distance, p.z + 0.83 * distance};
                     return true;
@@ -347,7 +349,8 @@ TEST_CASE("mutated certificate: a moved input vertex is refused") {
 }
 
 TEST_CASE("mutated certificate: a dropped input vertex is refused") {
-  // The Delaunay tetrahedralization of the others: sound, but for the one that is missing.
+  // The Delaunay tetrahedralization of the other vertices is sound, except that one vertex is
+  // missing.
   for (const Proof& proof : proofs()) {
     for (Index v = 0; v < proof.data.input_count; ++v) {
       std::vector<Point> others(proof.data.points);
@@ -361,7 +364,7 @@ TEST_CASE("mutated certificate: a dropped input vertex is refused") {
       }
       CHECK(proof.judge(damaged) == kVertex);
 
-      damaged = proof.data;  // its point is gone as well
+      damaged = proof.data;  // the point of the vertex is removed as well
       damaged.points.erase(damaged.points.begin() + v);
       --damaged.input_count;
       CHECK(proof.judge(damaged) == kVertex);
@@ -377,7 +380,7 @@ TEST_CASE("mutated certificate: a duplicated vertex is refused") {
     return true;
   });
   check_refused({kVertex}, input_count, [](auto& data, std::size_t i, const Proof&) {
-    data.points.push_back(data.points[i]);  // in no tetrahedron
+    data.points.push_back(data.points[i]);  // the new point is in no tetrahedron
     return true;
   });
 }
@@ -410,10 +413,10 @@ TEST_CASE("mutated certificate: a solid with a facet or a shell turned over is r
 }
 
 TEST_CASE("mutated certificate: other rings than those that touch are refused") {
-  // The same faces, but facet 1 declares something else.
+  // The faces are unchanged, but facet 1 declares other rings.
   using Rings = samples::Facet;
   const auto joined = [](const samples::Ring& a, const samples::Ring& b, Index at) {
-    samples::Ring ring = a;  // runs along a, then along b, and so passes `at` twice
+    samples::Ring ring = a;  // the ring runs along a, then along b, and so passes `at` twice
     samples::Ring other = b;
     std::rotate(ring.begin(), std::find(ring.begin(), ring.end(), at), ring.end());
     std::rotate(other.begin(), std::find(other.begin(), other.end(), at), other.end());
@@ -457,7 +460,7 @@ TEST_CASE("mutated certificate: other rings than those that touch are refused") 
 }
 
 TEST_CASE("mutated certificate: a pit's mouth that belongs to the facet is refused") {
-  // The mouth of a pit that touches another ring, where it is a face of the tetrahedra.
+  // The mouth of a pit that touches another ring, if the mouth is a face of the tetrahedra.
   const Shape shape = samples::touching_pits();
   std::size_t closed = 0;
   for (const Proof& proof : proofs()) {
@@ -477,7 +480,7 @@ TEST_CASE("mutated certificate: a pit's mouth that belongs to the facet is refus
       delaunay::Tetrahedralization damaged = proof.data;
       damaged.constrained.push_back({mouth, 1});
       CHECK(proof.judge(damaged) == kNonconforming);
-      Shape without = shape;  // and its ring is not declared
+      Shape without = shape;  // the ring of the mouth is not declared either
       without.shells[0][1].erase(without.shells[0][1].begin() + long(r));
       const Solid solid = samples::make_solid(without);
       CHECK(delaunay::check_certificate(solid, tessellate::triangulate_facets(solid), damaged,
@@ -509,7 +512,7 @@ TEST_CASE("mutated certificate: random numbers in place of indices are never acc
   }
 }
 
-TEST_CASE("a cancelled certificate says so and nothing else") {
+TEST_CASE("a cancelled certificate reports the cancellation and nothing else") {
   for (const Proof& proof : proofs()) {
     const delaunay::CertificateResult result = delaunay::check_certificate(
         proof.solid, proof.canonical, proof.data, delaunay::Rung::patch, [] { return true; });

@@ -31,7 +31,8 @@ Followed follow(const Shape& shape) {
   return {std::move(solid), std::move(canonical), std::move(*delaunay), std::move(following)};
 }
 
-/// Each facet: triangles turn as the facet does, and their edges cancel to exactly the rings.
+/// Checks each facet: its triangles turn as the facet does, and their edges cancel to exactly its
+/// rings.
 void check_facets(const Followed& f) {
   REQUIRE(f.following.first.size() == std::size_t{f.solid.facet_count()} + 1);
   Index missing_total = 0;
@@ -72,7 +73,7 @@ void check_facets(const Followed& f) {
   CHECK(f.following.missing_total == missing_total);
 }
 
-/// The triangles as sorted triples of points.
+/// The set of triangles, each as a sorted triple of points.
 std::set<std::array<Point, 3>> as_points(const Followed& f) {
   std::set<std::array<Point, 3>> result;
   for (const Triangle& t : f.following.triangles) {
@@ -84,7 +85,7 @@ std::set<std::array<Point, 3>> as_points(const Followed& f) {
   return result;
 }
 
-/// A wheel with `teeth` teeth whose tips and gaps lie on rough circles.
+/// A wheel with `teeth` teeth; their tips and the gaps between them lie on approximate circles.
 Shape gear(int teeth) {
   std::vector<std::array<double, 2>> polygon;
   for (int i = 0; i < 2 * teeth; ++i) {
@@ -130,8 +131,8 @@ TEST_CASE("facets that are unions of Delaunay faces are found whole") {
 }
 
 TEST_CASE("a facet that is no union of Delaunay faces keeps the least number of other triangles") {
-  // The six vertices are tetrahedralized around one of the three reflex diagonals; the two others
-  // are no Delaunay edges, and each of them has two triangles.
+  // The tetrahedra of the six vertices surround one of the three reflex diagonals; the other two
+  // diagonals are no Delaunay edges, and each of them belongs to two triangles.
   const Followed f = follow(samples::schoenhardt());
   CHECK(f.following.missing_total == 4);
 }

@@ -43,7 +43,7 @@ std::string attempts(const delaunay::LadderResult& result) {
   return text;
 }
 
-/// An executable that ends at once, and one that never answers.
+/// Engines whose executables do not work.
 delaunay::EngineWorkers broken_engines(const std::string& executable) {
   delaunay::EngineWorkers::Options options;
   options.cgal_executable = executable;
@@ -73,11 +73,11 @@ Shape torus(int around, int across) {
   return shape;
 }
 
-/// A house whose x and y are like degrees and z like metres on one lattice of 1e-9.
+/// A house with x and y as in degrees and z as in metres, on one lattice of 1e-9.
 Shape degrees_house() {
   Shape shape = samples::prism(
       {{0, 0}, {150'000, 9'000}, {140'000, 88'000}, {70'000, 60'000}, {-9'000, 91'000}}, 12.5e9);
-  // A wall that leans a little, so that the Delaunay tetrahedralization alone does not do.
+  // One wall leans a little, so that the Delaunay tetrahedralization alone is not enough.
   shape.vertices[8].x += 7;
   return shape;
 }
@@ -119,7 +119,8 @@ TEST_CASE("without engines a solid that needs Steiner points is undecided") {
       delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), nullptr, {});
   CHECK_FALSE(result.certificate.has_value());
   CHECK(result.property == delaunay::CertificateRefusal::none);
-  REQUIRE(result.attempts.size() == 4);  // all facets are triangles: no rung for them alone
+  // The rung for triangles alone is left out: all facets are triangles.
+  REQUIRE(result.attempts.size() == 4);
   CHECK(result.attempts[0].outcome.starts_with("refused: 4 of 8"));
   CHECK(result.attempts[0].result == delaunay::RungOutcome::not_delaunay);
   CHECK(result.attempts[1].result == delaunay::RungOutcome::not_started);
@@ -238,7 +239,8 @@ TEST_CASE("an engine that crashes, answers nonsense or is missing leaves a solid
 }
 
 TEST_CASE("an engine that takes too long is stopped") {
-  // /bin/sleep without an operand ends at once; /bin/cat waits for its input, which is /dev/null.
+  // The executable writes for ever; /bin/sleep without an operand would end at once, and /bin/cat
+  // too, because its input is /dev/null.
   delaunay::EngineWorkers workers = broken_engines("/usr/bin/yes");
   delaunay::LadderOptions options;
   options.seconds_per_rung = 0.2;
@@ -267,20 +269,20 @@ TEST_CASE("rungs that would give an engine the same task again are left out") {
     return tried;
   };
   using enum delaunay::Rung;
-  // Extents of one size: scaling changes nothing but the unit.
+  // The extents have one size, so that scaling changes only the unit.
   const Shape cube = samples::box({0, 0, 0}, {64, 64, 64});
   CHECK(rungs(cube, false) == std::vector{patch, triangles_scaled});
   CHECK(rungs(cube, true) == std::vector{triangles_scaled});
   const Shape flat = samples::box({0, 0, 0}, {64, 64, 10});
   CHECK(rungs(flat, false) == std::vector{patch, patch_scaled, triangles_scaled});
-  // Facets that are triangles.
+  // All facets are triangles.
   CHECK(rungs(samples::schoenhardt(), false) == std::vector{patch, patch_scaled});
   CHECK(rungs(torus(4, 3), true) == std::vector{triangles_scaled});
 }
 
 TEST_CASE("all rungs together keep to the time for all") {
   delaunay::EngineWorkers workers =
-      broken_engines("/usr/bin/yes");  // writes for ever, and uses CPU time
+      broken_engines("/usr/bin/yes");  // the executable writes for ever, and uses CPU time
   delaunay::LadderOptions options;
   options.seconds_in_all = 0.2;
   const Solid solid = samples::make_solid(samples::box({0, 0, 0}, {64, 64, 10}));
@@ -297,7 +299,7 @@ TEST_CASE("all rungs together keep to the time for all") {
   CHECK(delaunay::default_ladder_seconds(1000) == 22.5);
 }
 
-TEST_CASE("statistics count solids by what became of them and attempts by class") {
+TEST_CASE("statistics count solids by their result and attempts by class") {
   const Solid needs_steiner = samples::make_solid(samples::schoenhardt());
   const Solid simple = samples::make_solid(samples::box({0, 0, 0}, {5, 6, 7}));
   Shape two_bodies = samples::box({0, 0, 0}, {8, 8, 8});
@@ -310,7 +312,7 @@ TEST_CASE("statistics count solids by what became of them and attempts by class"
                 .attempts);
     statistics += one;
   }
-  statistics.add({});  // never climbed
+  statistics.add({});  // a result without attempts
   CHECK(statistics.solids == 3);
   CHECK(statistics.accepted == 1);
   CHECK(statistics.refuted == 1);
@@ -329,10 +331,10 @@ TEST_CASE("statistics count solids by what became of them and attempts by class"
   CHECK_FALSE(names.contains(""));
 }
 
-TEST_CASE("a climb is cancelled within the Delaunay rung, and says so") {
+TEST_CASE("a climb that is cancelled within the Delaunay rung reports the cancellation") {
   delaunay::LadderOptions options;
   int asked = 0;
-  options.cancel = [&] { return ++asked > 1; };  // the first question is before the rung
+  options.cancel = [&] { return ++asked > 1; };  // the first call comes before the rung
   const delaunay::LadderResult result = climb(torus(90, 60), options);
   CHECK_FALSE(result.certificate.has_value());
   REQUIRE(result.attempts.size() == 1);

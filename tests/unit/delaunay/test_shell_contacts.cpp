@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shells that touch inside each other's facets and edges: valid solids whose tetrahedralization
-// must have the contacts within the facets.
+// Tests shells that touch inside each other's facets and edges: valid solids whose
+// tetrahedralization must contain the contacts in the facets.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <set>
@@ -23,8 +23,8 @@ delaunay::EngineWorkers& engines() {
   return workers;
 }
 
-/// Adds a cavity whose facets are given by the places of `points`, turned out of the cavity. A
-/// point that the shape has is used again.
+/// Adds a cavity. Its facets are given by indices into `points` and face out of the cavity. A point
+/// that is a vertex of the shape already is used again.
 void add_cavity(Shape& shape, const std::vector<Point>& points,
                 const std::vector<std::vector<std::size_t>>& facets) {
   std::vector<Index> number;
@@ -43,7 +43,7 @@ void add_cavity(Shape& shape, const std::vector<Point>& points,
   shape.shells.push_back(shell);
 }
 
-/// A tetrahedron abcd, whichever way it turns.
+/// Adds a cavity that is a tetrahedron of four points, in whichever orientation they are.
 void add_tetrahedron(Shape& shape, const std::vector<Point>& p) {
   std::vector<Point> points = p;
   const std::vector<Triangle> facets{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -65,7 +65,7 @@ Shape edge_on_wall(const Point& from, const Point& to) {
   return shape;
 }
 
-/// A cavity with a square rim that runs around the walls at half height.
+/// A block with a cavity whose square rim runs around the walls at half height.
 Shape divided() {
   Shape shape = block();
   add_cavity(
@@ -77,20 +77,20 @@ Shape divided() {
 
 std::vector<Shape> touching() {
   std::vector<Shape> shapes{
-      tip_on_wall({100, 100, 200}),                 // on the diagonal of a wall
-      tip_on_wall({100, 60, 200}),                  // beside it
-      tip_on_wall({110, 0, 200}),                   // in an edge of two walls
-      edge_on_wall({30, 50, 200}, {170, 90, 200}),  // inside a wall, over its diagonal
-      edge_on_wall({0, 50, 200}, {200, 90, 200}),   // from edge to edge
-      edge_on_wall({0, 0, 200}, {200, 200, 200}),   // one diagonal of a wall
-      edge_on_wall({0, 200, 200}, {200, 0, 200}),   // the other
-      edge_on_wall({40, 0, 200}, {160, 0, 200}),    // in an edge of two walls
-      edge_on_wall({0, 0, 200}, {100, 30, 200})};   // from a vertex
-  Shape two = tip_on_wall({100, 100, 200});         // a cavity on a wall ...
+      tip_on_wall({100, 100, 200}),                 // a tip on the diagonal of a wall
+      tip_on_wall({100, 60, 200}),                  // a tip beside the diagonal
+      tip_on_wall({110, 0, 200}),                   // a tip in an edge of two walls
+      edge_on_wall({30, 50, 200}, {170, 90, 200}),  // an edge inside a wall, across its diagonal
+      edge_on_wall({0, 50, 200}, {200, 90, 200}),   // an edge from edge to edge of a wall
+      edge_on_wall({0, 0, 200}, {200, 200, 200}),   // an edge on one diagonal of a wall
+      edge_on_wall({0, 200, 200}, {200, 0, 200}),   // an edge on the other diagonal
+      edge_on_wall({40, 0, 200}, {160, 0, 200}),    // an edge in an edge of two walls
+      edge_on_wall({0, 0, 200}, {100, 30, 200})};   // an edge from a vertex of the block
+  Shape two = tip_on_wall({100, 100, 200});         // two cavities on one wall
   add_tetrahedron(two, {{60, 60, 60}, {130, 60, 60}, {90, 130, 50}, {100, 100, 10}});
   add_tetrahedron(two, {{120, 30, 150}, {160, 30, 150}, {150, 10, 120}, {140, 25, 200}});
-  shapes.push_back(two);     // ... and another on the same
-  Shape cavities = block();  // a cavity's tip on a cavity
+  shapes.push_back(two);
+  Shape cavities = block();  // a tip of a cavity on another cavity
   samples::add_box(cavities, {40, 40, 40}, {120, 120, 80}, true);
   add_tetrahedron(cavities, {{60, 60, 120}, {100, 60, 130}, {80, 110, 120}, {70, 90, 80}});
   shapes.push_back(cavities);
@@ -149,7 +149,7 @@ TEST_CASE("a cavity that touches the walls all around divides the interior") {
 }
 
 TEST_CASE("edges of different shells that cross in no vertex are named") {
-  // The edge of a cavity leaves the upper floor of a step over the step's edge.
+  // The edge of a cavity goes from the upper floor of a step over the edge of the step.
   Shape shape =
       samples::prism({{0, 0}, {200, 0}, {200, 200}, {100, 200}, {100, 100}, {0, 100}}, 200);
   add_tetrahedron(shape, {{150, 40, 60}, {160, 40, 120}, {50, 100, 100}, {150, 100, 103}});
@@ -184,7 +184,8 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
     std::vector<Point> apexes;
     for (const Triangle& t : roof) {
       const Point tip =
-          mean({points[t[0]], points[t[0]], points[t[1]], points[t[2]]});  // exact: quarters
+          // Exact, because the weights are quarters.
+          mean({points[t[0]], points[t[0]], points[t[1]], points[t[2]]});
       Shape touched = warped;
       add_tetrahedron(touched, {{100, 50, 90}, {150, 100, 80}, {50, 150, 90}, tip});
       const delaunay::LadderResult result = climb(touched, {});
@@ -199,7 +200,8 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
       }
     }
     const Point middle = mean(fold);
-    if (middle.z > mean(apexes).z) continue;  // a ridge: an edge across it would leave the block
+    // The fold is a ridge: an edge across it would leave the block.
+    if (middle.z > mean(apexes).z) continue;
     ++valleys;
     const double dx = apexes[0].x > apexes[1].x ? 20 : -20;
     const double dy = apexes[0].y > apexes[1].y ? 20 : -20;
@@ -228,7 +230,7 @@ TEST_CASE("triangles divided at contacts are the same surface") {
     CHECK(divided->triangles.first.size() == canonical.first.size());
     CHECK(geometry::six_volume(solid.vertices(), divided->triangles.triangles) ==
           geometry::six_volume(solid.vertices(), canonical.triangles));
-    // No triangle of one shell meets another's but in a common vertex or edge.
+    // Triangles of different shells meet in common vertices and edges only.
     const auto& triangles = divided->triangles.triangles;
     for (Index a = 0; a < triangles.size(); ++a) {
       for (Index b = a + 1; b < triangles.size(); ++b) {
@@ -252,7 +254,8 @@ TEST_CASE("shells without contacts, and single shells, are left as they are") {
 }
 
 TEST_CASE("a vertex that is not exactly on the facet is no contact") {
-  // The proof of a tip on the wall, for the solid whose tip is one unit (or the least double) off.
+  // The proof of a solid with a tip on the wall must not hold for a solid whose tip is one unit, or
+  // the least double, off the wall.
   const delaunay::LadderResult result = climb(tip_on_wall({100, 60, 200}), {});
   REQUIRE(result.certificate.has_value());
   const double below = 200 - 0x1p-45;
@@ -267,7 +270,7 @@ TEST_CASE("a vertex that is not exactly on the facet is no contact") {
 }
 
 TEST_CASE("a facet's faces must reach its own edge where another shell touches it") {
-  // A face of a wall given to the neighbour, at a contact in their common edge.
+  // A face of a wall is given to the neighbouring wall, at a contact in their common edge.
   const Solid solid = samples::make_solid(tip_on_wall({110, 0, 200}));
   const tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
   const delaunay::LadderResult result = delaunay::climb_ladder(solid, canonical, &engines(), {});

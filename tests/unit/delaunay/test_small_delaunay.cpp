@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The two implementations of the canonical Delaunay tetrahedralization: the golden digests of the
-// tie rule, and the same result from both.
+// Tests the two implementations of the canonical Delaunay tetrahedralization: the golden digests of
+// the tie rule, and equal results.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cstdint>
@@ -62,7 +62,7 @@ bool is_same(const delaunay::CanonicalDelaunay& a, const delaunay::CanonicalDela
   return a.tetrahedra == b.tetrahedra && a.faces == b.faces && a.apexes == b.apexes;
 }
 
-/// Both implementations refuse, or both give the same.
+/// True if both implementations refuse the points, or both give the same result.
 bool is_same_from_both(const std::vector<Point>& points) {
   const auto expected = delaunay::cgal_delaunay(points);
   const auto found = delaunay::small_delaunay(points);
@@ -99,7 +99,8 @@ TEST_CASE("both implementations agree on sets of every kind in any order") {
 }
 
 TEST_CASE("both implementations agree on every set of corners of small cubes") {
-  // All subsets of a cube's corners, and of those with its center: ties wherever possible.
+  // All subsets of a cube's corners, with and without its centre: they have as many ties as
+  // possible.
   const std::vector<Point> corners = point_sets::make("grid 2 2 2 2");
   for (unsigned chosen = 0; chosen < 512; ++chosen) {
     std::vector<Point> points;
@@ -186,7 +187,7 @@ TEST_CASE("a small grid has integers in a box with sides below 2^30") {
 
 TEST_CASE(
     "canonical Delaunay takes the same way for integers and for the same set made fractions") {
-  // CGAL takes what has a coordinate that is no integer.
+  // CGAL takes the sets that have a coordinate that is no integer.
   for (const char* formula : {"grid 3 3 3 1", "houses 3", "spheres 9 25", "tower 20 1024 1"}) {
     std::vector<Point> points = point_sets::make(formula);
     const auto expected = delaunay::canonical_delaunay(points);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Small GML documents that the tests of the reader share.
+// Small GML documents for the tests of the GML reader.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ inline std::string model(const std::string& content) {
          content + "</CityModel>";
 }
 
-/// A building of one solid.
+/// A building with one solid.
 inline std::string building(const std::string& solid, const std::string& id = "b") {
   return "<cityObjectMember><Building g:id=\"" + id + "\"><lod2Solid>" + solid +
          "</lod2Solid></Building></cityObjectMember>";
@@ -74,7 +74,7 @@ inline const std::string kSides = member(polygon("0 0 0 1 0 0 0 0 1 0 0 0")) +
                                   member(polygon("0 1 0 0 0 0 0 0 1 0 1 0"));
 inline const std::string kTetrahedron = solid_of(member(kBase) + kSides);
 
-/// Every edge is used once in each direction.
+/// True if every edge is used once in each direction.
 inline bool is_closed(const Solid& solid) {
   std::vector<std::pair<Index, Index>> edges;
   for (Index ring = 0; ring < solid.ring_count(); ++ring) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Small city models that the tests of formats/ share.
+// Small city models for the tests of formats/.
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ inline Result<Document> read(std::string_view text, Format format, bool is_split
   return formats::read_document(as_bytes(text), format, options);
 }
 
-/// A tetrahedron as a Solid, and a MultiSurface that uses a fifth vertex; two top-level objects,
-/// the second with a child that has a MultiSolid of two tetrahedra.
+/// Two top-level objects: the first has a Solid, a tetrahedron, and a MultiSurface that uses a
+/// fifth vertex; the second has a child with a MultiSolid of two tetrahedra.
 inline const std::string kTwoBuildings =
     R"({"type":"CityJSON","version":"2.0",)"
     R"("transform":{"scale":[0.001,0.001,0.001],"translate":[85000.5,447000.25,-3.0]},)"

@@ -145,7 +145,8 @@ TEST_CASE("a changed solid does not fit its skeleton") {
   feature = document->features[0];
   feature.solids[0].solid = document->features[1].solids[0].solid;
   const auto other = formats::write_feature(*document, feature);
-  CHECK(other);  // as many vertices: another tetrahedron in the same place of the document
+  // The number of vertices is equal: another tetrahedron takes the place of the first one.
+  CHECK(other);
   feature.skeleton = "{}";
   CHECK_FALSE(formats::write_feature(*document, feature));
 }

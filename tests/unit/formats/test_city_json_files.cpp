@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Real files (tests/data/README.md): good ones come back equal, broken ones give the right error.
+// Tests real files (tests/data/README.md): good files come back equal, broken ones give the right
+// error.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <filesystem>
@@ -17,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The error that each broken file must give, by JSON Pointer or by a part of the message.
+// The error that each broken file must give: a JSON Pointer or a part of the message.
 const std::map<std::string, std::string> kBroken{
     {"invalid_missing_type.json", "/type"},
     {"invalid_out_of_range_vertex_index.json",
@@ -83,8 +84,8 @@ TEST_CASE("broken city models give an error that names the place") {
   }
 }
 
-// Vertex indices and appearance indices replaced by what they stand for, so that two city models
-// that number them differently compare equal.
+// Replaces vertex and appearance indices by the elements that they name, so that two city models
+// compare equal if they differ in these numbers only.
 Json resolved(const Json& nested, const Json& list) {
   if (nested.is_array()) {
     Json out = Json::array();
@@ -152,12 +153,13 @@ TEST_CASE("a city model put together from its features is equivalent") {
     if (kBroken.contains(name) || !name.ends_with(".json")) continue;
     INFO(name);
     const std::string text = test::file_text("cityjson/" + name);
-    if (text.starts_with("\xEF\xBB\xBF")) continue;  // the test's own parser needs plain JSON
+    // The test's own parser takes no byte order mark.
+    if (text.starts_with("\xEF\xBB\xBF")) continue;
     const auto document = test::read(text, Format::city_json);
     REQUIRE(document);
     const auto again = formats::write_document(*document, Format::city_json);
     REQUIRE(again);
-    // Objects are grouped by feature, members of the root are not in source order.
+    // Objects are grouped by feature, and members of the root are not in source order.
     CHECK(nlohmann::json(resolved_model(as_text(*again))) == nlohmann::json(resolved_model(text)));
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Geometry templates, and city models that leave out what others have.
+// Tests geometry templates, and city models that lack optional members.
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 
@@ -138,7 +138,9 @@ TEST_CASE("errors in geometry instances name the place") {
                    Format::city_json));
 }
 
-TEST_CASE("instances have their template, exact matrix and place, in whole and split documents") {
+TEST_CASE(
+    "instances have their template, exact matrix and reference point, in whole and split "
+    "documents") {
   const std::string text =
       model(section(geometry("Solid", kTetrahedron)),
             instance("0", "[0]", "[0.10,0,0,1.5,0,2e0,0,-2,0,0,3,0.25,0,0,0.0,1.0]"));
@@ -169,7 +171,7 @@ TEST_CASE("a child that the document does not hold is an error") {
   CHECK(error_of(with_children("{}")).pointer == "/CityObjects/a/children");
 }
 
-TEST_CASE("empty boundaries and a missing lod are no errors of reading") {
+TEST_CASE("empty boundaries and a missing lod are read without an error") {
   for (const std::string boundaries : {"[]", "[[]]", "[[[]]]", "[[[[]]]]", "[[[[0]]]]"}) {
     const auto document =
         read(model("", R"({"type":"Solid","boundaries":)" + boundaries + "}"), Format::city_json);

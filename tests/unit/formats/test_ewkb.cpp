@@ -17,7 +17,7 @@ const std::string kHollow =
     "SOLID Z ((((0 0 0,9 0 0,0 9 0,0 0 0)),((0 0 0,0 0 9,9 0 0,0 0 0))),"
     "(((1 1 1,2 1 1,1 2 1,1 1 1))))";
 
-// A writer of the big-endian form, which write_ewkb never makes.
+// Writes EWKB in big-endian order, which write_ewkb never makes.
 class BigEndian {
  public:
   void u8(std::uint8_t value) { bytes.push_back(value); }
@@ -129,7 +129,8 @@ TEST_CASE("EWKB has the bytes that PostGIS gives") {
     hex += "0123456789abcdef"[bytes[i] >> 4];
     hex += "0123456789abcdef"[bytes[i] & 15];
   }
-  // order 1, type 15 with Z and SRID, SRID 7415, 1 polygon: order 1, type 3 with Z, 1 ring, ...
+  // Byte order 1, type 15 with Z and SRID, SRID 7415, 1 polygon: byte order 1, type 3 with Z, 1
+  // ring, ...
   CHECK(hex == "010f0000a0f71c0000010000000103000080010000000400000000");
 }
 
@@ -150,8 +151,8 @@ TEST_CASE("EWKB that is not a closed solid of finite points is an error") {
   CHECK_FALSE(formats::read_ewkb(one_triangle(1015, 1003, 0.25)));
   CHECK_FALSE(
       formats::read_ewkb(one_triangle(1015, 1003, std::numeric_limits<double>::quiet_NaN())));
-  CHECK_FALSE(formats::read_ewkb(one_triangle(15, 3, 0.5)));       // no z
-  CHECK_FALSE(formats::read_ewkb(one_triangle(3015, 3003, 0.5)));  // z and m
+  CHECK_FALSE(formats::read_ewkb(one_triangle(15, 3, 0.5)));       // positions without z
+  CHECK_FALSE(formats::read_ewkb(one_triangle(3015, 3003, 0.5)));  // positions with z and m
   CHECK_FALSE(formats::read_ewkb(one_triangle(1015, 1015, 0.5)));
   CHECK_FALSE(formats::read_ewkb(one_triangle(1006, 1003, 0.5)));
   Bytes longer = one_triangle(1015, 1003, 0.5);
@@ -159,7 +160,7 @@ TEST_CASE("EWKB that is not a closed solid of finite points is an error") {
   CHECK_FALSE(formats::read_ewkb(longer));
 }
 
-// Found by fuzzing: a solid of zero shells was written as an empty surface, which has one.
+// A fuzzer found: a solid of zero shells was written as an empty surface, which has one shell.
 TEST_CASE("a solid without shells has an empty exterior shell and comes back as the same solid") {
   const Bytes none{1, 0x65, 0, 0, 0x80, 0, 0, 0, 0};
   const auto solid = formats::read_ewkb(none);
@@ -174,7 +175,7 @@ TEST_CASE("a solid without shells has an empty exterior shell and comes back as 
   CHECK(text->solid.shell_count() == 1);
 }
 
-// Found by fuzzing: a ring of no points was written and then refused.
+// A fuzzer found: a ring of no points was written, and then refused when read.
 TEST_CASE("EWKB with an empty ring comes back as the same solid") {
   SolidArrays arrays;
   arrays.end_ring();

@@ -10,7 +10,7 @@
 namespace watertight {
 namespace {
 
-/// Gives a text in pieces of `step` bytes.
+/// A source that gives a text in pieces of `step` bytes.
 formats::ByteSource in_pieces(std::string text, std::size_t step) {
   return [text = std::move(text), step,
           at = std::size_t{0}](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
@@ -89,7 +89,7 @@ TEST_CASE("one bad line of a sequence does not cost the others, and is named") {
 TEST_CASE("separators, carriage returns and a byte order mark around lines are skipped") {
   std::string text = "\xEF\xBB\xBF";
   text += "\x1E" + std::string(samples::kHeader) + "\r\n\r\n\x1E" + samples::feature("a") + "\r\n";
-  text += "  " + samples::feature("b");  // no line end
+  text += "  " + samples::feature("b");  // the last line has no line end
   auto reader = formats::FeatureReader::open(in_pieces(text, 33), "x.jsonl");
   REQUIRE(reader);
   CHECK(reader->document().notes.size() == 1);
@@ -136,7 +136,7 @@ TEST_CASE("an error of the source is passed on, then the input is at its end") {
         return pieces(bytes);
       },
       "x.jsonl");
-  // The glimpse for the format may meet the error already.
+  // The reader may meet the error already when it detects the format.
   if (!reader) {
     CHECK(reader.error().code == ErrorCode::unavailable);
     return;

@@ -34,7 +34,8 @@ TEST_CASE("GML: a lone Solid has shells of triangles, patches and polygons") {
   CHECK(submitted.facet_ids[0].empty());
 }
 
-TEST_CASE("GML: a CityGML 2 building takes its facets by reference, turned where it says so") {
+TEST_CASE(
+    "GML: a CityGML 2 building takes its facets by reference, turned where the reference says so") {
   const Document document = file("citygml_2_xlinks.gml");
   REQUIRE(document.features.size() == 1);
   const Feature& feature = document.features[0];
@@ -55,7 +56,7 @@ TEST_CASE("GML: a CityGML 2 building takes its facets by reference, turned where
   CHECK(part.solid == house.solid);
 }
 
-TEST_CASE("GML: CityGML 3 spaces, exact numbers, comments and CDATA in coordinates") {
+TEST_CASE("GML: CityGML 3 spaces, exact numbers, comments and CDATA in coordinates are read") {
   const Document document = file("citygml_3.gml");
   REQUIRE(document.features.size() == 1);
   const Feature& tower = document.features[0];
@@ -73,7 +74,7 @@ TEST_CASE("GML: CityGML 3 spaces, exact numbers, comments and CDATA in coordinat
   CHECK(is_closed(document.templates[0].solid));
 }
 
-TEST_CASE("GML: real files have the solids that others count in them") {
+TEST_CASE("GML: real files have the number of solids that other programs count") {
   CHECK(file("ogc_Building_LOD1-EPSG25832.gml").features.at(0).srid == 25832);
   const Document lod2 = file("ogc_Building_LOD2-EPSG25832.gml");
   REQUIRE(lod2.features.size() == 1);
@@ -192,7 +193,7 @@ TEST_CASE("GML: a solid or polygon without exterior has an empty one") {
   CHECK(solid.ring(1).size() == 3);
 }
 
-TEST_CASE("GML: what no solid uses is not judged") {
+TEST_CASE("GML: geometry that no solid uses is not judged") {
   const Document document =
       gml_of(model("<cityObjectMember><Road g:id=\"r\"><lod1MultiSurface><g:MultiSurface>" +
                    member(polygon("not numbers")) + member_of("nothing") +
@@ -202,7 +203,7 @@ TEST_CASE("GML: what no solid uses is not judged") {
   CHECK(document.notes[0] == "the document has no solids; 1 other geometry is passed over");
 }
 
-TEST_CASE("GML: positions by pos in Points, and by three numbers in coordinates") {
+TEST_CASE("GML: positions are read from pos, from Points and from coordinates with three numbers") {
   const std::string ring =
       "<g:pointProperty><g:Point><g:pos>0 0 0</g:pos></g:Point></g:pointProperty>"
       "<g:pos>0 1 0</g:pos><g:pointRep><g:Point><g:coordinates>1,0,0</g:coordinates></g:Point>"
@@ -215,13 +216,13 @@ TEST_CASE("GML: positions by pos in Points, and by three numbers in coordinates"
         gml_of(model(building(kTetrahedron))).features.at(0).solids.at(0).solid);
 }
 
-TEST_CASE("GML: digits beyond the exact ones are rounded and said so") {
+TEST_CASE("GML: digits beyond the exact ones are rounded and reported") {
   const Document document = gml_of(model(
       building(solid_of(member(polygon("0 0 0 0 1 0.12345678901234567890123 1 0 0 0 0 0"))))));
   CHECK(document.features.at(0).solids.at(0).rounded == std::vector<Index>{1});
 }
 
-TEST_CASE("GML: srsName to EPSG code") {
+TEST_CASE("GML: an srsName gives its EPSG code") {
   CHECK(formats::srid_of_srs_name("EPSG:25832") == 25832);
   CHECK(formats::srid_of_srs_name("epsg:4979") == 4979);
   CHECK(formats::srid_of_srs_name("urn:ogc:def:crs:EPSG::6697") == 6697);
@@ -264,7 +265,7 @@ TEST_CASE("GML: features can have reference systems of their own, a solid only o
 }
 
 TEST_CASE("GML: latitude first is read as longitude first where the srsName means so") {
-  // Outward as latitude, longitude, height.
+  // The facets face outward in the axes latitude, longitude, height.
   const std::string tetrahedron = member(polygon("35 139 0 36 139 0 35 140 0 35 139 0")) +
                                   member(polygon("36 139 0 35 139 0 35 139 1 36 139 0")) +
                                   member(polygon("35 140 0 36 139 0 35 139 1 35 140 0")) +
@@ -299,7 +300,8 @@ TEST_CASE("GML: latitude first is read as longitude first where the srsName mean
   }
 }
 
-TEST_CASE("GML: first positions beyond the poles are no latitudes; templates are on no system") {
+TEST_CASE(
+    "GML: first positions beyond the poles are no latitudes; templates have no reference system") {
   const Document far =
       gml_of(model(building(solid_of(member(polygon("139 35 0 140 35 0 139 36 0 139 35 0")),
                                      " srsName=\"urn:ogc:def:crs:EPSG::6697\""))));
@@ -406,7 +408,7 @@ TEST_CASE("GML: solids are written as CityJSON, OBJ and WKT; GML is not written"
   CHECK(gml.error().code == ErrorCode::unsupported);
 }
 
-// Found by fuzzing: writing it as CityJSON called the document malformed.
+// A fuzzer found: writing the document as CityJSON reported that it was malformed.
 TEST_CASE("GML whose decimals span too many digits for one grid is not written as CityJSON") {
   const std::string text =
       R"(<g:Solid xmlns:g="http://www.opengis.net/gml/3.2"><g:exterior><g:Polygon><g:exterior>)"

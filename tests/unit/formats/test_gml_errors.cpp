@@ -31,7 +31,8 @@ TEST_CASE("GML: two-dimensional positions are refused with their place") {
                                 "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>")),
              "a position of 2 numbers"));
 
-  // Six positions of two numbers are four of three; the Envelope and the ring's end decide.
+  // Six positions of two numbers are four of three; the Envelope and the closing point of the ring
+  // decide.
   const std::string envelope = "<g:boundedBy><g:Envelope srsDimension=\"2\"/></g:boundedBy>";
   const std::string flat = building(solid_of(member(polygon("0 0 4 0 4 4 2 5 0 4 0 0"))));
   CHECK(says(gml_error(model(envelope + flat)), "srsDimension 2 of the Envelope"));
@@ -80,8 +81,8 @@ TEST_CASE("GML: a reference must lead to one geometry of the document") {
              "of object 'b'"));
 }
 
-TEST_CASE("GML: a reference by way of others keeps every turn") {
-  // r1 turns p, r2 turns r1: p as written. A ring can be referred to as well.
+TEST_CASE("GML: a reference by way of other references keeps every turn") {
+  // r1 turns p and r2 turns r1, so r2 is p as written. A ring can be referred to as well.
   const Document document = gml_of(model(
       building(
           solid_of(member("<g:OrientableSurface orientation=\"-\"><g:baseSurface x:href=\"#r1\"/>"
@@ -123,7 +124,7 @@ TEST_CASE("GML: geometry that contains itself by reference is refused") {
 }
 
 TEST_CASE("GML: references cannot multiply geometry without bound") {
-  // Every surface holds the next one twice: 2^40 polygons.
+  // Every surface holds the next one twice: together they would be 2^40 polygons.
   std::string members = member(polygon("0 0 0 1 0 0 0 1 0 0 0 0", " g:id=\"c0\""));
   const auto numbered = [](int i) { return std::string("c").append(std::to_string(i)); };
   for (int i = 1; i <= 40; ++i) {
@@ -137,7 +138,7 @@ TEST_CASE("GML: references cannot multiply geometry without bound") {
   CHECK(says(error, "xlinks repeat more geometry than a document of this size could hold"));
 }
 
-TEST_CASE("GML: what a solid cannot be made of is named") {
+TEST_CASE("GML: elements of which a solid cannot be made are named") {
   const Error ring = solid_error(
       member("<g:Polygon><g:exterior><g:Ring><g:curveMember/></g:Ring></g:exterior></g:Polygon>"));
   CHECK(ring.code == ErrorCode::unsupported);
@@ -171,7 +172,7 @@ TEST_CASE("GML: XML that is broken is refused where it breaks") {
   CHECK(says(gml_error("<a>\xC3(</a>"), "invalid token"));
 }
 
-TEST_CASE("GML: XML of something else is refused, and its root named") {
+TEST_CASE("GML: XML of another format is refused, and its root named") {
   const Error page = gml_error("<?xml version=\"1.0\"?>\n<html><body>Not found</body></html>");
   CHECK(page.code == ErrorCode::malformed);
   CHECK(says(page, "line 2: not GML: the root element is 'html'"));
@@ -247,7 +248,9 @@ TEST_CASE("GML: a gml:id that every solid would repeat at length is refused") {
   CHECK(solid_error(member(polygon("", id))).code == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("GML: a million members, attributes and text that nobody reads cost their size") {
+TEST_CASE(
+    "GML: a million members, attributes and texts that the reader skips take no more than their "
+    "size") {
   std::string many = "<g:MultiSurface g:id=\"m\">";
   for (int i = 0; i < 100'000; ++i) many += "<g:surfaceMember/>";
   many += "</g:MultiSurface>";

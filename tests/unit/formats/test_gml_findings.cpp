@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The defects of the OGC's quality experiment (QIE), written as GML of our own: what the reader
-// hands over must give the code of each. A building's gml:id is "b-CODE", "b-CODE-remark" or
-// "b-valid-remark"; the code is the one of the first level.
+// Tests the defects of the OGC's quality experiment (QIE), written as GML of our own: the solids
+// that the reader gives must have the code of each defect. The gml:id of a building is "b-CODE",
+// "b-CODE-remark" or "b-valid-remark"; the code is that of the first level.
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 #include <utility>
@@ -41,7 +41,7 @@ TEST_CASE("GML: every defect of the quality experiment is found under its code")
   }
 }
 
-/// Outward in axes of a right hand, from (x, y, 0) to (x + 2, y + 3, 4).
+/// The facets of the box from (x, y, 0) to (x + 2, y + 3, 4), outward in right-handed axes.
 std::string box(int x, int y, bool is_latitude_first) {
   std::string members;
   for (const std::string facet : {"0462", "1375", "0154", "2673", "0231", "4576"}) {

@@ -10,7 +10,7 @@ namespace {
 
 using test::read;
 
-// A tetrahedron; coordinates with digits that a double would keep and some that it would print
+// A tetrahedron; a double would keep the digits of its coordinates, but would print some of them
 // otherwise.
 const std::string kShell = R"([[[[0.10,0,0],[0.10,1e0,0],[1.1,0,0],[0.10,0,0]]],)"
                            R"([[[0.10,0,0],[1.1,0,0],[0.10,0,1],[0.10,0,0]]],)"
@@ -128,7 +128,7 @@ TEST_CASE("JSON-FG errors have a pointer") {
   CHECK(error_of(std::string(100000, '[')).code == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("empty polyhedra, shells, polygons and rings are for the validator") {
+TEST_CASE("empty polyhedra, shells, polygons and rings are left to the validator") {
   for (const std::string shells : {"", "[]", "[[]]", "[[[]]]", "[[[[1,2,3]]]]"}) {
     CHECK(read(feature(polyhedron(shells)), Format::json_fg));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Documents read with ReadOptions::keep_text are written byte for byte as they were.
+// Tests that documents read with ReadOptions::keep_text are written byte for byte as they were.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <filesystem>
@@ -31,7 +31,7 @@ std::string read_and_written(std::string_view text, Format format) {
   return written ? std::string(as_text(*written)) : to_string(written.error());
 }
 
-/// The text with something else between its tokens, as `blank` gives it.
+/// The text with other white space between its tokens: the results of `blank`.
 template <class Blank>
 std::string respaced(std::string_view text, Blank blank) {
   std::string out;
@@ -48,7 +48,8 @@ std::string respaced(std::string_view text, Blank blank) {
   return out;
 }
 
-/// A sequence: a header and the tetrahedron twice, with `between` the lines and at the end.
+/// A sequence of a header and the tetrahedron twice: `before` starts it, `between` separates the
+/// lines, `after` ends it.
 std::string sequence(const std::string& before, const std::string& between,
                      const std::string& after) {
   const std::string feature =
@@ -71,14 +72,14 @@ TEST_CASE("every real city model comes back byte for byte") {
     const std::string text = test::file_text("cityjson/" + name);
     const auto format = formats::detect_format(name, as_bytes(text));
     REQUIRE(format);
-    if (!read_kept(text, *format)) continue;  // test_city_json_files.cpp has the broken ones
+    if (!read_kept(text, *format)) continue;  // the broken files are in test_city_json_files.cpp
     CHECK(read_and_written(text, *format) == text);
     ++files;
   }
   CHECK(files > 20);
 }
 
-TEST_CASE("white space anywhere comes back") {
+TEST_CASE("white space comes back wherever it stands") {
   std::mt19937 random(7);
   const std::vector<std::string> blanks{"", "", "", " ", "\n", "\r\n", "\t", "   \n\t"};
   for (int round = 0; round < 200; ++round) {
@@ -88,7 +89,7 @@ TEST_CASE("white space anywhere comes back") {
   }
 }
 
-TEST_CASE("byte order mark, line ends and what follows the text come back") {
+TEST_CASE("byte order mark, line ends and bytes after the text come back") {
   for (const std::string before : {"", "\xEF\xBB\xBF", "\n \t", "\xEF\xBB\xBF\r\n"}) {
     for (const std::string after : {"", "\n", "\r\n", " \n\n"}) {
       const std::string text = before + kTwoBuildings + after;
@@ -126,7 +127,7 @@ TEST_CASE("coordinates without transform keep their digits") {
   }
 }
 
-TEST_CASE("what stands between the lines of a sequence comes back") {
+TEST_CASE("bytes between the lines of a sequence come back") {
   for (const std::string before : {"", "\xEF\xBB\xBF", "\x1E", "\n\n \t"}) {
     for (const std::string between : {"\n", "\r\n", "\n\n", " \n\x1E", "\n\n\r\n \n"}) {
       for (const std::string after : {"", "\n", "\r\n", "\n\n", " \n ", "\n\x1E"}) {
@@ -204,7 +205,8 @@ TEST_CASE("a layout cannot make more than the size that it states") {
   std::string plain = "[0";
   for (int i = 0; i < 20'000; ++i) plain += ",0";
   plain += ']';
-  formats::ExceptionWriter gaps;  // a long gap before the first number, and so before each of them
+  // Every number expects the gap before the first one, which is long.
+  formats::ExceptionWriter gaps;
   gaps.expected();
   gaps.exception(std::string(60'000, ' '));
   const Bytes gap_bytes = std::move(gaps).finish();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// STL, PLY and POLY.
+// Tests the formats STL, PLY and POLY.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -322,7 +322,8 @@ TEST_CASE("POLY errors name line and byte") {
   const Error range = error_of(kPolyNodes + "1 0\n1 0\n3 1 2 5\n", Format::poly);
   CHECK(range.message.starts_with("line 8: "));
   CHECK(range.byte_offset == kPolyNodes.size() + 14);
-  CHECK_FALSE(read(kPolyNodes + "1 0\n1 0\n3 1 2 0\n", Format::poly));  // from 1
+  // The nodes count from 1, so there is no node 0.
+  CHECK_FALSE(read(kPolyNodes + "1 0\n1 0\n3 1 2 0\n", Format::poly));
   CHECK_FALSE(read(kPolyNodes + "1 0\n1 0\n3 1 2 3 4\n", Format::poly));
   CHECK_FALSE(read(kPolyNodes + "99999999999999 0\n", Format::poly));
   CHECK_FALSE(read(kPolyNodes + "1 0\n1 4000000000\n3 1 2 3\n", Format::poly));

@@ -96,7 +96,7 @@ TEST_CASE("vertices of a file that no face uses are left out and reported") {
   CHECK(objects->features[0].solids[0].unused.count == 0);
 }
 
-TEST_CASE("OBJ faces may come before their vertices") {
+TEST_CASE("OBJ faces may come before the vertices that they use") {
   CHECK(read("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", Format::obj));
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("OBJ and OFF print the digits of the source") {
   CHECK(again->features[0].solids[0].solid == document->features[0].solids[0].solid);
 }
 
-// Found by fuzzing: objects without a name were written without their line, and became one.
+// A fuzzer found: objects without a name were written without their line, and became one object.
 TEST_CASE("OBJ keeps objects without a name apart") {
   const auto document = read("v 0 0 0\nf 1 1 1\no\nf 1 1 1\n", Format::obj);
   REQUIRE(document);

@@ -40,7 +40,7 @@ inline Solid solid_of(std::vector<Point> vertices, const std::vector<Shell>& she
   return std::move(solid).value();
 }
 
-/// Appends the eight corners of a box and gives its six facets, outward or inward.
+/// Appends the eight corners of a box and returns its six facets, turned outward or inward.
 inline Shell box_shell(std::vector<Point>& vertices, const Point& min, const Point& max,
                        bool is_outward) {
   const auto first = static_cast<Index>(vertices.size());
@@ -64,8 +64,8 @@ inline std::pair<std::vector<Point>, std::vector<Shell>> tunnel_with_cavities() 
   std::vector<Point> vertices;
   Shell outer = box_shell(vertices, {0, 0, 0}, {30, 20, 10}, true);
   Shell tunnel = box_shell(vertices, {2, 2, 0}, {5, 5, 10}, false);
-  outer[0].push_back(tunnel[0][0]);  // bottom
-  outer[1].push_back(tunnel[1][0]);  // top
+  outer[0].push_back(tunnel[0][0]);  // the bottom
+  outer[1].push_back(tunnel[1][0]);  // the top
   outer.insert(outer.end(), tunnel.begin() + 2, tunnel.end());
   Shell second = box_shell(vertices, {8, 2, 0}, {11, 5, 10}, false);
   outer[0].push_back(second[0][0]);

@@ -16,7 +16,7 @@ struct Soup {
   std::vector<Triangle> triangles;
 };
 
-/// Triangles of the given extent on a grid, some sharing vertices.
+/// Random triangles of the given extent on a grid; some share vertices.
 Soup random_soup(Random& random, std::size_t count, std::int64_t grid, std::int64_t extent) {
   Soup soup;
   while (soup.triangles.size() < count) {
@@ -65,7 +65,7 @@ std::vector<geometry::IntersectingPair> found_pairs(const Soup& soup) {
   return std::move(pairs).value();
 }
 
-/// A closed sphere-like surface of quads split in two: rings x segments.
+/// A closed surface like a sphere, of rings x segments quadrilaterals split in two.
 Soup sphere(int rings, int segments) {
   Soup soup;
   for (int i = 0; i <= rings; ++i) {
@@ -87,7 +87,7 @@ Soup sphere(int rings, int segments) {
   return soup;
 }
 
-/// A fan around vertex 0 whose far edges run along a line, or around a cone when `is_closed`.
+/// A fan around vertex 0 whose outer edges run along a line, or around a cone if `is_closed`.
 Soup fan(Index count, bool is_closed, Random& random) {
   Soup soup;
   soup.points.push_back({0, 0, 500});
@@ -103,7 +103,7 @@ Soup fan(Index count, bool is_closed, Random& random) {
   return soup;
 }
 
-/// Needles in one direction, or in all when `is_random`.
+/// Long thin triangles in one direction, or in random ones if `is_random`.
 Soup needles(Index count, bool is_random, Random& random) {
   Soup soup;
   for (Index i = 0; i < count; ++i) {
@@ -122,7 +122,7 @@ Soup needles(Index count, bool is_random, Random& random) {
   return soup;
 }
 
-/// More triangles, of points of the soup and of others, so that fans and needles are hit.
+/// Adds triangles of points of the soup and of new points, so that some hit fans and needles.
 void add_random_triangles(Soup& soup, std::size_t count, Random& random) {
   const std::size_t last = soup.points.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -139,7 +139,7 @@ void add_random_triangles(Soup& soup, std::size_t count, Random& random) {
   }
 }
 
-/// Enough triangles for several pieces of work.
+/// A soup with enough triangles for several pieces of work.
 Soup crossing_spheres() {
   Soup soup = sphere(90, 110);
   const Soup other = sphere(90, 110);
@@ -151,7 +151,7 @@ Soup crossing_spheres() {
   return soup;
 }
 
-/// Soups whose boxes no axis-parallel plane takes apart, each with some defects.
+/// Soups in which no axis-parallel plane separates the boxes, each with some defects.
 std::vector<Soup> hard_soups() {
   Random random(11);
   std::vector<Soup> soups;
@@ -159,7 +159,7 @@ std::vector<Soup> hard_soups() {
     soups.push_back(fan(600, is_closed, random));
     add_random_triangles(soups.back(), 100, random);
   }
-  // Two fans around different places at one point, and triangles through the common vertex.
+  // Two fans around two vertices at one point, and triangles through that point.
   Soup twins = fan(400, true, random);
   const auto other = static_cast<Index>(twins.points.size());
   twins.points.push_back(twins.points[0]);
@@ -172,7 +172,7 @@ std::vector<Soup> hard_soups() {
     soups.push_back(needles(400, is_random, random));
     add_random_triangles(soups.back(), 50, random);
   }
-  // A plane grid, every third square twice, and a fan over it in the same plane.
+  // A plane grid with every third square twice, and a fan above the grid in its plane.
   Soup grid;
   for (int i = 0; i < 30; ++i) {
     for (int j = 0; j < 30; ++j) grid.points.push_back({10.0 * i, 10.0 * j, 5.0 * i + 5.0 * j});
@@ -189,7 +189,7 @@ std::vector<Soup> hard_soups() {
 
 }  // namespace
 
-TEST_CASE("fans, needles and coplanar grids give the pairs that comparing all triangles gives") {
+TEST_CASE("fans, needles and coplanar grids give the same pairs as a comparison of all triangles") {
   for (const Soup& soup : hard_soups()) {
     const auto expected = all_pairs(soup);
     INFO(soup.triangles.size() << " triangles, " << expected.size() << " pairs");
@@ -198,7 +198,7 @@ TEST_CASE("fans, needles and coplanar grids give the pairs that comparing all tr
   }
 }
 
-TEST_CASE("any number of threads finds the same pairs, also those up to a limit") {
+TEST_CASE("any number of threads finds the same pairs, also with a limit on their number") {
   std::vector<Soup> soups = hard_soups();
   soups.push_back(crossing_spheres());
   for (const Soup& soup : soups) {
@@ -251,7 +251,8 @@ TEST_CASE("only the caller's thread is asked whether to end a search with thread
 }
 
 TEST_CASE("fans of many triangles end after few comparisons") {
-  // Comparing all boxes would take billions of steps: the search asks often enough.
+  // Comparing all boxes would take billions of steps; the number of calls shows that the search
+  // does not.
   Random random(8);
   for (const Soup& soup : {fan(60'000, true, random), fan(30'000, false, random)}) {
     std::uint64_t asked = 0;
@@ -262,7 +263,7 @@ TEST_CASE("fans of many triangles end after few comparisons") {
   }
 }
 
-TEST_CASE("the box partition finds the pairs that comparing all triangles finds") {
+TEST_CASE("the box partition finds the same pairs as a comparison of all triangles") {
   Random random(5);
   for (const auto& [count, grid, extent] : {std::array<std::int64_t, 3>{10, 4, 4},
                                             {400, 60, 8},
@@ -281,7 +282,7 @@ TEST_CASE("the box partition finds the pairs that comparing all triangles finds"
 TEST_CASE("a surface without self-intersection has no pairs and a moved vertex is found") {
   Soup soup = sphere(40, 50);
   CHECK(found_pairs(soup).empty());
-  soup.points[1020].x *= -2;  // through the opposite side
+  soup.points[1020].x *= -2;  // moves the vertex through the opposite side
   soup.points[1020].y *= -2;
   const auto pairs = found_pairs(soup);
   CHECK(!pairs.empty());

@@ -15,7 +15,7 @@ OrientedBoundary boundary_of(Solid solid) {
   return std::move(boundary).value();
 }
 
-/// The same solid with vertices, inner shells, facets, interior rings and ring starts shuffled.
+/// The solid with vertices, interior shells, facets, interior rings and ring starts shuffled.
 Solid renumbered(std::vector<Point> vertices, std::vector<Shell> shells, Random& random) {
   std::vector<Index> number(vertices.size());
   std::iota(number.begin(), number.end(), Index{0});

@@ -28,14 +28,15 @@ TEST_CASE("unstated and unknown systems count as metres with a note") {
 }
 
 TEST_CASE("systems in feet have feet") {
-  // New York Long Island (US survey feet), Arizona (international feet), NYC with heights in feet.
+  // New York Long Island (US survey feet), Arizona (international feet), New York with heights in
+  // feet.
   CHECK(geometry::axis_units(2263, {}).metres_per_unit[0] == 1200.0 / 3937.0);
   CHECK(geometry::axis_units(2223, {}).metres_per_unit == Units{0.3048, 0.3048, 0.3048});
   CHECK(!geometry::axis_units(2263, {}).note.empty());
 }
 
 TEST_CASE("geographic systems have metres per degree at the centre") {
-  // Lengths of a degree at 52 degrees, from the WGS 84 ellipsoid: 68.678 km and 111.268 km.
+  // The lengths of a degree at latitude 52, on the WGS 84 ellipsoid, are 68.678 km and 111.268 km.
   for (const std::uint32_t code : {4326U, 4979U, 4258U, 4937U, 6668U}) {
     const geometry::AxisUnits units = geometry::axis_units(code, {4.36, 52.0, 10.0});
     INFO(code);
@@ -64,19 +65,19 @@ TEST_CASE("geographic systems have angles up to a full turn, others none") {
     INFO(code);
     CHECK(geometry::largest_angle(code) == 360);
   }
-  CHECK(geometry::largest_angle(4807) == 400);  // NTF (Paris), in grads
+  CHECK(geometry::largest_angle(4807) == 400);  // NTF (Paris), whose angles are in grads
   for (const std::uint32_t code : {0U, 1U, 4978U, 7415U, 25832U, 2263U, 4'294'967'295U}) {
     INFO(code);
     CHECK(geometry::largest_angle(code) == 0);
   }
 }
 
-TEST_CASE("geographic systems put latitude first, but for those named after the other order") {
+TEST_CASE("geographic systems put latitude first, except those named after the other order") {
   for (const std::uint32_t code : {4326U, 4979U, 4258U, 6668U, 6697U, 4937U}) {
     INFO(code);
     CHECK(geometry::pole_of_first_axis(code) == 90);
   }
-  CHECK(geometry::pole_of_first_axis(4807) == 100);  // NTF (Paris), in grads
+  CHECK(geometry::pole_of_first_axis(4807) == 100);  // NTF (Paris), whose angles are in grads
   for (const std::uint32_t code : {0U, 1U, 4978U, 7415U, 25832U, 31467U, 7034U, 7042U, 7084U}) {
     INFO(code);
     CHECK(geometry::pole_of_first_axis(code) == 0);

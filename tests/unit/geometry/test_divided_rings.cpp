@@ -9,7 +9,7 @@ namespace {
 
 using Touches = std::vector<geometry::RingTouch>;
 
-/// One facet with these rings.
+/// A solid of one facet with the given rings.
 Solid facet_solid(const std::vector<Point>& vertices, const Facet& rings) {
   return solid_of(vertices, {{rings}});
 }
@@ -28,13 +28,14 @@ TEST_CASE("touches are given by corner and along the edge, for either direction"
 TEST_CASE("vertices of the same ring, shared vertices and vertices beside an edge touch nothing") {
   const std::vector<Point> vertices{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0},
                                     {4, 0, 0}, {5, 2, 0}, {3, 2, 0}, {4, 0, 1}};
-  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}})).empty());  // one ring
+  // The vertex is in the same ring.
+  CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}})).empty());
   CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 4, 3}, {4, 6, 5}}))
-            .empty());  // has it too
+            .empty());  // the exterior ring has the vertex too
   CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 4, 1, 2, 3}, {4, 6, 5}}))
-            .empty());  // shared
+            .empty());  // the vertex is shared
   CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {7, 6, 5}}))
-            .empty());  // one step off
+            .empty());  // the vertex is one step off the edge
   CHECK(geometry::ring_touches(facet_solid(vertices, {{0, 1, 2, 3}, {4, 6, 5}})).size() == 1);
 }
 
@@ -58,7 +59,7 @@ TEST_CASE("divided rings keep vertices, facets and shells and say where each cor
 }
 
 TEST_CASE("rings that must share segments are not divided, and take no more memory for it") {
-  // Each of n rings runs along the same line, with its ends inside the edges of the others.
+  // Each of n rings runs along one line, with its ends inside the edges of the others.
   std::vector<Point> vertices;
   Facet rings;
   for (int i = 0; i < 400; ++i) {

@@ -35,11 +35,10 @@ TEST_CASE("a size that is a power of two changes a distance by that factor exact
 
 TEST_CASE(
     "where doubles cannot find the plane of a needle its distance is still that of the plane") {
-  // 1e9 long, 1 wide, and one point 0.3 off the plane of the others.
+  // A needle 1e9 long and 1 wide, and one point 0.3 off the plane of the others.
   const Points needle{{0, 0, 0}, {1e9, 0, 0}, {1e9, 1, 0}, {0, 1, 0}, {5e8, 0.5, 0.3}};
   const double measured = geometry::distance_to_fitted_plane(needle, 0.01).distance;
-  // The least squares plane across the width: the mean is 0.06 up, and by symmetry it is not
-  // tilted.
+  // The least squares plane is 0.06 up, the mean of the five points, and by symmetry not tilted.
   CHECK(std::fabs(measured - 0.24) < 1e-12);
 }
 

@@ -182,7 +182,8 @@ TEST_CASE("source digits return as text") {
 }
 
 TEST_CASE("a scale that is no power of ten is the step where that keeps coordinates compact") {
-  // Feet as metres: on 1e-7 the coordinates would exceed 2^30, on 3.048e-4 they do not.
+  // Coordinates in feet, given in metres: in steps of 1e-7 they would exceed 2^30, in steps of
+  // 3.048e-4 not.
   const Integers integers{{0, 0, 0}, {1'000'001, 999'999, 31'234}};
   const geometry::Transform transform = transform_of("3.048e-4", {"0", "0", "0"});
   const auto points = geometry::lattice_of_integers(integers, transform);
@@ -194,7 +195,7 @@ TEST_CASE("a scale that is no power of ten is the step where that keeps coordina
   const auto back = geometry::integers_under(points->lattice, points->points, transform);
   REQUIRE(back.has_value());
   CHECK(*back == integers);
-  // Where coordinates stay compact, the power of ten is the form, as for the doubles.
+  // Small coordinates stay compact with a power of ten, which is then the step, as for doubles.
   const auto close = geometry::lattice_of_integers(Integers{{0, 0, 0}, {7, 9, 11}}, transform);
   REQUIRE(close.has_value());
   CHECK(close->lattice.step[0] == GridNumber{1, -7});
@@ -249,7 +250,7 @@ TEST_CASE("seventeen-digit scales keep the integers, and an origin that is too l
   const auto integers = geometry::integers_under(moved->lattice, moved->points, transform);
   REQUIRE(integers.has_value());
   CHECK(*integers == shifted);
-  // A point between those of the grid has no integers.
+  // A point between those of the grid has no integers under the transform.
   const std::vector<Point> between{{0.5, 0, 0}};
   CHECK_FALSE(geometry::integers_under(moved->lattice, between, transform));
   Lattice beside = moved->lattice;

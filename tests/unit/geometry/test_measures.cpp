@@ -8,7 +8,7 @@
 namespace watertight::test {
 namespace {
 
-/// Fans of facets without interior rings; enough for boxes.
+/// The fans of triangles of facets without interior rings, which is enough for boxes.
 std::vector<Triangle> fans(const Solid& solid) {
   std::vector<Triangle> triangles;
   for (Index ring = 0; ring < solid.ring_count(); ++ring) {
@@ -62,13 +62,13 @@ TEST_CASE("the sign of the volume follows the orientation") {
 }
 
 TEST_CASE("volumes are exact where doubles cancel") {
-  // A sheet one unit thick at 2^52: the terms are near 2^156.
+  // A sheet one unit thick at 2^52: the terms of its volume are near 2^156.
   const double far = std::ldexp(1.0, 52);
   const Solid thin = box_solid({far, far, far}, {far + 1, far + 3, far + 5}, {});
   CHECK(geometry::six_volume(thin.vertices(), fans(thin)) == 6.0 * 15);
   const Solid wide = box_solid({0, 0, 0}, {far, far, 1}, {});
   CHECK(geometry::six_volume(wide.vertices(), fans(wide)) == 6.0 * std::ldexp(1.0, 104));
-  // Doubles that are no integers, and a span of magnitudes.
+  // Doubles that are no integers and have very different magnitudes.
   Lattice plain;
   plain.kind = LatticeKind::float64;
   const Solid small = box_solid({1e-200, 0.5, 0.25}, {3e-200, 0.75, 1e200}, plain);
@@ -89,7 +89,7 @@ TEST_CASE("128-bit and long integers give the same volume") {
       for (Index& vertex : triangle) vertex = static_cast<Index>(random.below(vertices.size()));
     }
     const double direct = geometry::six_volume(vertices, triangles);
-    // Scaled by 2^-21 they are no integers: the same sum times 2^-63, in long integers.
+    // Coordinates scaled by 2^-21 are no integers: long integers add the same terms, times 2^-63.
     std::vector<Point> eighths = vertices;
     for (Point& p : eighths) {
       for (int axis = 0; axis < 3; ++axis) p[axis] /= 2097152.0;

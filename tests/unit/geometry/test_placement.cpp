@@ -26,7 +26,7 @@ TEST_CASE("the sign of a determinant is exact") {
         -1);
   CHECK(geometry::determinant_sign(placement_of({"1", "0", "0", "0", "1", "0", "0", "0", "0"})) ==
         0);
-  // Rows that are multiples in decimals and not in doubles, and their neighbours.
+  // The rows are multiples as decimals, but not as doubles; the other two matrices differ a little.
   CHECK(geometry::determinant_sign(
             placement_of({"0.1", "0.2", "0.3", "0.7", "1.4", "2.1", "5", "1", "9"})) == 0);
   CHECK(geometry::determinant_sign(placement_of(

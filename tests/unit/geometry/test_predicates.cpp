@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The predicates where their filter fails: points in one plane or on one line, or next to it, with
-// coordinates on both sides of the sizes at which another arithmetic takes over.
+// Tests the predicates where their filter fails: points in one plane or on one line, or near it,
+// with coordinates on both sides of the sizes at which another arithmetic is used.
 #include "geometry/predicates/predicates.h"
 
 #include <CGAL/Exact_rational.h>
@@ -39,7 +39,7 @@ int exact_orient3d(const Point& a, const Point& b, const Point& c, const Point& 
   return sign_of(volume);
 }
 
-/// a + i (b - a) + j (c - a), moved by one or not at all: exact for integers below 2^53.
+/// The point a + i (b - a) + j (c - a), or one a step beside it: exact for integers below 2^53.
 Point near_plane(const Point& a, const Point& b, const Point& c, std::mt19937_64& random) {
   const double i = double(random() % 3) - 1, j = double(random() % 3) - 1;
   Point d;

@@ -65,7 +65,7 @@ TEST_CASE("solids of one placement are on the grid of their template") {
 
 TEST_CASE("solids of different placements are put into the world exactly where a grid holds them") {
   const Solid solid = triangle_of({{0, 0, 0}, {10, 0, 0}, {0, 10, 25}}, decimal_lattice(-1));
-  geometry::Placement turned;  // 0.6 -0.8; 0.8 0.6
+  geometry::Placement turned;  // a rotation by the matrix (0.6 -0.8; 0.8 0.6)
   turned.linear[0] = {decimal("0.6"), decimal("-0.8"), {}};
   turned.linear[1] = {decimal("0.8"), decimal("0.6"), {}};
   turned.offset = {{decimal("0.125"), {}, {}}};
@@ -97,7 +97,7 @@ TEST_CASE("a grid too fine for doubles is coarsened, and says whose vertices are
   CHECK(grid->rounded_axes(1) == std::array{true, true, false});
   const auto placed = grid->vertices(1);
   REQUIRE(placed);
-  // 4.949747468305832668 on steps of 1e-14.
+  // The coordinate 4.949747468305832668 is rounded to steps of 1e-14.
   CHECK(grid->lattice().step[0] == GridNumber{1, -14});
   CHECK((*placed)[1].x == 494974746830583);
   CHECK(grid->world((*grid->vertices(0))[1]) == std::array<double, 3>{7, 0, 0});
@@ -116,7 +116,7 @@ TEST_CASE("doubles of a template count as the decimals that they are") {
   CHECK(grid->world((*grid->vertices(0))[2]) == std::array<double, 3>{0, 0, 1});
 }
 
-TEST_CASE("places beyond the doubles have no grid") {
+TEST_CASE("positions beyond the range of doubles have no grid") {
   const Solid solid = triangle_of({{0, 0, 0}, {7, 0, 0}, {0, 7, 3}}, decimal_lattice(1000));
   geometry::Placement far;
   far.linear[0][0] = {1, 300};

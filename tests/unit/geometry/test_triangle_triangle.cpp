@@ -11,7 +11,8 @@
 namespace watertight::test {
 namespace {
 
-/// The class of (p0, p1, p2) and three further points, or common ones where indices are given.
+/// The class of the triangle of the first three points and `second`, three further points unless
+/// given.
 geometry::ContactClass contact(std::vector<Point> points, Triangle second = {3, 4, 5}) {
   return geometry::classify_contact(points, {0, 1, 2}, second);
 }
@@ -81,12 +82,12 @@ TEST_CASE("triangles with a common vertex or edge can still intersect") {
   CHECK(contact(with_floor({{0, 12, 0}}), {1, 0, 3}) == geometry::ContactClass::duplicate);
 }
 
-TEST_CASE("the witness is the middle of what triangles have in common") {
+TEST_CASE("the witness is the middle of the common part of two triangles") {
   auto points = with_floor({{3, 3, -3}, {3, 3, 3}, {20, 3, 0}});
   CHECK(geometry::contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{6, 3, 0});
   points = with_floor({{1, 1, 0}, {1, 1, 1}, {1, 2, 1}});
   CHECK(geometry::contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{1, 1, 0});
-  // A third is no double: rounded once.
+  // A third is no double, so the witness is rounded once.
   points = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {1, 1, -1}, {1, 1, 2}, {2, 1, 2}};
   CHECK(geometry::contact_witness(points, {0, 1, 2}, {3, 4, 5}) == Point{1 + 1.0 / 6, 1, 0});
 }
@@ -102,7 +103,7 @@ TEST_CASE("the classification agrees with an exact construction on random degene
     REQUIRE_FALSE(difference.has_value());
     ++counts[geometry::classify_contact(pair.points, pair.first, pair.second)];
   }
-  // Every class occurs often enough to mean something.
+  // Every class must occur often.
   CHECK(counts.size() == 12);
   for (const auto& [contact_class, count] : counts) {
     INFO(geometry::to_string(contact_class));

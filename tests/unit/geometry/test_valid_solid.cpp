@@ -31,7 +31,7 @@ TEST_CASE("a closed oriented solid with holes and cavities is an oriented bounda
 
 TEST_CASE("a missing facet is named by its first unmatched edge") {
   BoxParts box;
-  box.shell.erase(box.shell.begin());  // ring 0 2 3 1: its edges 0-2, 2-3, 3-1, 1-0
+  box.shell.erase(box.shell.begin());  // removes the ring 0 2 3 1 with the edges 0-2, 2-3, 3-1, 1-0
   CHECK(reason(box.make()) == "the edge from vertex 0 to vertex 1 is not matched by its reverse");
 }
 
@@ -43,7 +43,7 @@ TEST_CASE("a flipped facet leaves unmatched edges") {
 }
 
 TEST_CASE("an edge used twice in each direction is matched") {
-  // Two boxes that share the edge 3-7 of the first: four facets meet there.
+  // Two boxes share the edge 3-7 of the first box, where four facets meet.
   std::vector<Point> vertices;
   Shell shell = box_shell(vertices, {0, 0, 0}, {1, 1, 1}, true);
   Shell second = box_shell(vertices, {1, 1, 0}, {2, 2, 1}, true);
@@ -54,7 +54,8 @@ TEST_CASE("an edge used twice in each direction is matched") {
 }
 
 TEST_CASE("an edge is matched by its parts where a ring of its facet touches it") {
-  // The upper facet has a triangular pit whose vertex 8 lies inside its edge from 5 to 4.
+  // The upper facet has a triangular pit whose vertex 8 lies inside the edge of the facet from 5 to
+  // 4.
   std::vector<Point> vertices;
   Shell shell = box_shell(vertices, {0, 0, 0}, {8, 8, 8}, true);
   vertices.insert(vertices.end(), {{4, 0, 8}, {6, 4, 8}, {2, 4, 8}, {4, 3, 6}});
@@ -68,7 +69,7 @@ TEST_CASE("an edge is matched by its parts where a ring of its facet touches it"
     if (has_edge(facet[0], 4, 5)) facet.push_back({8, 10, 9});
   }
   shell.insert(shell.end(), {{{8, 9, 11}}, {{9, 10, 11}}, {{10, 8, 11}}});
-  // Across lies the plain edge: closed by edges, as it stands.
+  // The facet across has the edge undivided: the boundary is closed as it stands.
   CHECK(OrientedBoundary::make(solid_of(vertices, {shell})).has_value());
   for (Facet& facet : shell) {
     if (!has_edge(facet[0], 5, 4)) continue;
@@ -78,7 +79,7 @@ TEST_CASE("an edge is matched by its parts where a ring of its facet touches it"
   const auto boundary = OrientedBoundary::make(solid);
   REQUIRE(boundary.has_value());
   CHECK(boundary->solid() == solid);
-  // Beside the edge by one step, the vertex splits nothing.
+  // The vertex is one step beside the edge, so it splits no edge.
   vertices[8].y = 1;
   CHECK(reason(OrientedBoundary::make(solid_of(vertices, {shell})))
             .find("not matched by its reverse") != std::string::npos);

@@ -25,7 +25,8 @@ Kernel::Triangle_3 exact(const TrianglePair& pair, const Triangle& t) {
   return {exact(pair.points[t[0]]), exact(pair.points[t[1]]), exact(pair.points[t[2]])};
 }
 
-/// Corners of the common part: none, a point, a segment's ends or a polygon's corners.
+/// The corners of the common part: none, a point, the ends of a segment or the corners of a
+/// polygon.
 std::vector<Exact> common_part(const TrianglePair& pair) {
   const auto common = CGAL::intersection(exact(pair, pair.first), exact(pair, pair.second));
   std::vector<Exact> corners;
@@ -44,7 +45,8 @@ std::vector<Exact> common_part(const TrianglePair& pair) {
 
 enum class Feature { vertex, edge, inside };
 
-/// Where a point of a triangle lies in it: a barycentric coordinate is zero on the edge opposite.
+/// The feature of a triangle in which a point lies: a barycentric coordinate is zero on the
+/// opposite edge.
 Feature feature_of(const Kernel::Triangle_3& triangle, const Exact& point) {
   int zeros = 0;
   for (int i = 0; i < 3; ++i) {
@@ -91,8 +93,8 @@ bool is_degenerate(const TrianglePair& pair, const Triangle& t) {
   return geometry::are_collinear(pair.points[t[0]], pair.points[t[1]], pair.points[t[2]]);
 }
 
-/// Moves a vertex of the second triangle to a point of the first one's plane: weights of sixths on
-/// its vertices (all multiples of 6), so that vertices, edges, insides and outsides all occur.
+/// Moves a vertex of the second triangle into the plane of the first one, whose vertices are
+/// multiples of 6: its weights are sixths, so that vertices, edges, insides and outsides all occur.
 void place_on_first(TrianglePair& pair, std::size_t vertex, Random& random) {
   const std::int64_t u = random.between(-2, 8);
   const std::int64_t v = random.below(2) == 0 ? 0 : random.between(-2, 8);
@@ -106,7 +108,7 @@ void place_on_first(TrianglePair& pair, std::size_t vertex, Random& random) {
 }
 
 TrianglePair candidate(Random& random) {
-  // 6 x 2^16 and 6 x 2^17: about the size up to which planes are exact.
+  // 6 x 2^16 and 6 x 2^17 are about the size up to which planes are exact.
   constexpr std::array<std::uint64_t, 9> kGrids{2,    3,         4,         6,        10,
                                                 1000, 1U << 16U, 1U << 17U, 1U << 28U};
   TrianglePair pair{{}, {0, 1, 2}, {3, 4, 5}};
@@ -119,7 +121,7 @@ TrianglePair candidate(Random& random) {
   }
   const std::uint64_t placed = random.below(4);
   for (std::uint64_t i = 0; i < placed; ++i) place_on_first(pair, 3 + i, random);
-  // Up to three common vertices, or equal vertices under different indices.
+  // The triangles get up to three common vertices, or equal vertices with different indices.
   const std::uint64_t common = random.below(3) == 0 ? random.below(4) : 0;
   const bool is_by_index = random.below(4) != 0;
   std::array<Index, 3> chosen{0, 1, 2};
@@ -179,7 +181,7 @@ std::optional<std::string> disagreement(const TrianglePair& pair, Random& random
   shuffle(second, random);
   const auto turned = geometry::classify_contact(pair.points, second, first);
   if (turned != expected) return "turned: " + description(pair, expected, turned);
-  // The box partition decides most pairs by shorter ways.
+  // The box partition decides most pairs without a full classification.
   const std::array<Triangle, 2> both{first, second};
   const auto searched = geometry::intersecting_pairs(pair.points, both);
   const bool is_found = searched && searched->size() == 1;

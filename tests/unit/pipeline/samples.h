@@ -20,17 +20,17 @@ inline constexpr std::string_view kHeader =
     R"("translate":[100.0,200.0,0.0]},"metadata":{"referenceSystem":)"
     R"("https://www.opengis.net/def/crs/EPSG/0/7415"},"CityObjects":{},"vertices":[]})";
 
-/// Facets of a box over vertices 0 to 7; outward.
+/// The facets of a box over vertices 0 to 7, turned outward.
 inline constexpr std::string_view kBoxFacets =
     "[[[0,3,2,1]],[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]";
-/// The same without its top.
+/// The facets of the box without its top.
 inline constexpr std::string_view kOpenFacets =
     "[[[0,3,2,1]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]";
 inline constexpr std::string_view kBoxVertices =
     "[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,2500],[1000,0,2500],[1000,1000,2500],"
     "[0,1000,2500]]";
 
-/// One line: a building with one solid.
+/// One line of a sequence: a building with one solid.
 inline std::string feature(const std::string& id, std::string_view facets = kBoxFacets,
                            std::string_view vertices = kBoxVertices) {
   return R"({"type":"CityJSONFeature","id":")" + id + R"(","CityObjects":{")" + id +
@@ -45,7 +45,7 @@ inline std::string sequence(const std::vector<std::string>& features) {
   return text + "\n";
 }
 
-/// A store in memory that keeps its promises, and can be away.
+/// A store in memory that keeps the promises of a store, and can be made unavailable.
 class MemoryStore final : public SolidStore {
  public:
   bool is_away = false;

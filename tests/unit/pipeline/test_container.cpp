@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Watertight files: documents come back, solids stand in pages, damage is refused.
+// Tests Watertight files: documents come back, solids stand in pages, damaged files are refused.
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 
@@ -42,7 +42,8 @@ std::string text_of(const Document& document) {
   return std::string(as_text(*text));
 }
 
-/// `count` boxes, each wider than the one before, of ids that sort as they are numbered.
+/// A sequence of `count` boxes, each wider than the one before; their ids sort in the order of
+/// their numbers.
 std::string row_of_boxes(int count) {
   std::vector<std::string> lines;
   for (int i = 0; i < count; ++i) {
@@ -72,7 +73,7 @@ void put(samples::MemoryStore& store, const std::string& text) {
   REQUIRE(store.put(features));
 }
 
-/// All bytes of an export; the first error.
+/// All bytes of an export, or its first error.
 Result<Bytes> export_all(SolidStore& store, pipeline::ExportFormat format,
                          pipeline::Exported* exported = nullptr) {
   auto exporting = pipeline::CollectionExport::start(store, "town", format);
@@ -88,7 +89,7 @@ Result<Bytes> export_all(SolidStore& store, pipeline::ExportFormat format,
   return all;
 }
 
-/// A file of one part with these texts, page file and blobs.
+/// A file of one part with the given texts, page file and blobs.
 Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
   const auto packed = formats::pack_text(as_text(texts.bytes()));
   REQUIRE(packed);
@@ -105,19 +106,19 @@ Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
   return std::move(writer).bytes();
 }
 
-/// Texts of one OFF document with one feature of one solid.
+/// The texts of one OFF document with one feature of one solid.
 ByteWriter texts_of_one(std::uint64_t document, std::uint64_t blob_size) {
   ByteWriter texts;
   texts.varint(1);
   texts.varint(3);
   texts.append(as_bytes("off"));
-  texts.varint(0);  // header
-  texts.varint(0);  // framing
+  texts.varint(0);  // the header
+  texts.varint(0);  // the framing
   texts.varint(1);
   texts.varint(document);
-  for (int i = 0; i < 4; ++i) texts.varint(0);  // id, type, SRID, skeleton
+  for (int i = 0; i < 4; ++i) texts.varint(0);  // id, type, SRID and skeleton
   texts.varint(1);
-  for (int i = 0; i < 4; ++i) texts.varint(0);  // object, LoD, geometry, ordinal
+  for (int i = 0; i < 4; ++i) texts.varint(0);  // object, LoD, geometry and ordinal
   texts.varint(blob_size);
   return texts;
 }
@@ -187,7 +188,8 @@ TEST_CASE("a file of several parts has its features in order") {
   }
 }
 
-TEST_CASE("solids in pages have the mode that is asked for, and those with Steiner vertices stay") {
+TEST_CASE(
+    "solids in pages have the mode that is asked for, and those with Steiner vertices stay blobs") {
   const auto box = codec::encode_boundary(generated::box(), {}, {.mode = Mode::raw});
   const delaunay::Certificate certificate = generated::schoenhardt_certificate();
   const auto proven = codec::encode_boundary(generated::schoenhardt(), {},
@@ -242,7 +244,7 @@ TEST_CASE("the features of a document hold one copy of its header") {
   CHECK(&document.features[0].header.str() == &document.features[1].header.str());
 }
 
-TEST_CASE("documents that differ in their line ends only are one") {
+TEST_CASE("documents that differ in their line ends only count as one") {
   const std::string plain = samples::sequence({samples::feature("a"), samples::feature("b")});
   std::string other;
   for (const char c : plain) other += c == '\n' ? std::string("\r\n") : std::string(1, c);
@@ -297,13 +299,14 @@ TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
   REQUIRE(pipeline::decode_container(file_of(texts_of_one(0, blob.size()), {}, blob)));
   REQUIRE(pipeline::decode_container(file_of(texts_of_one(0, 0), *pages, {})));
   const Bytes wrong[] = {
-      file_of(texts_of_one(1, blob.size()), {}, blob),      // of no document
-      file_of(texts_of_one(0, blob.size() + 1), {}, blob),  // beyond the file
+      file_of(texts_of_one(1, blob.size()), {}, blob),      // a feature of no document
+      file_of(texts_of_one(0, blob.size() + 1), {}, blob),  // a blob beyond the file
       file_of(texts_of_one(0, blob.size() - 1), {}, blob),  // a cut blob
       file_of(texts_of_one(0, ~std::uint64_t{0}), {}, blob),
-      file_of(texts_of_one(0, 0), {}, {}),                  // in a page that is not there
-      file_of(texts_of_one(0, blob.size()), *pages, blob),  // in no feature
-      file_of(texts_of_one(0, 0), blob, {}),                // no page file
+      file_of(texts_of_one(0, 0), {}, {}),  // a solid in a page that is not there
+      // A solid of the page file in no feature.
+      file_of(texts_of_one(0, blob.size()), *pages, blob),
+      file_of(texts_of_one(0, 0), blob, {}),  // a blob in the place of the page file
   };
   for (const Bytes& bytes : wrong) {
     const auto documents = pipeline::decode_container(bytes);
@@ -371,7 +374,7 @@ TEST_CASE("an export as a sequence has the header and each feature's line") {
   REQUIRE_FALSE(mixed);
   CHECK(mixed.error().code == ErrorCode::unsupported);
   CHECK(mixed.error().message.find("different headers") != std::string::npos);
-  // A feature that came after the start is refused where it stands.
+  // A feature that came after the start is refused when the export reaches it.
   REQUIRE(begun->next());
   const auto late = begun->next();
   REQUIRE_FALSE(late);

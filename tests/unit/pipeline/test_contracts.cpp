@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Documents come back as their contract says, through Watertight files and a store.
+// Tests that documents come back as their contract says, through Watertight files and a store.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A box with semantics, a texture and a surface of its own, written with white space; the facet
-/// whose semantics are "top" is the one with all z = 2500.
+/// whose surface type is "top" is the one with all z = 2500.
 const std::string kBox =
     "\xEF\xBB\xBF{ \"type\": \"CityJSON\", \"version\": \"2.0\",\r\n"
     R"( "transform": {"scale":[0.0010,1e-3,0.001],"translate":[100.0,200.0,0.0]},
@@ -35,8 +35,8 @@ const std::string kBox =
     [1000,1000,2500],[0,1000,2500],[5,5,5],[6,6,6]]}
 )";
 
-/// A cavity that touches a facet of its shell from within, on a grid of US survey feet as metres:
-/// the exact place of its least corner has more than 18 digits.
+/// A solid with a cavity that touches a facet of the exterior shell from within, on a grid of US
+/// survey feet in metres: the exact position of its least corner has more than 18 digits.
 const std::string kSurveyFeet =
     R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.00030480060960121926,)"
     R"(0.00030480060960121926,0.00030480060960121926],"translate":[84616.468,447422.3,0]},)"
@@ -72,7 +72,7 @@ std::string through_container(const std::string& text, Format format, formats::C
   return std::string(as_text(*written));
 }
 
-/// The box's positions around each facet, from the smallest on, beside its surface type.
+/// For each facet of the box, its positions from the smallest on and its surface type.
 std::vector<std::string> typed_facets(const Json& model, const Json& geometry) {
   std::vector<std::string> facets;
   const Json& shell = geometry["boundaries"][0];
@@ -89,7 +89,7 @@ std::vector<std::string> typed_facets(const Json& model, const Json& geometry) {
   return facets;
 }
 
-/// Position and texture vertex of each corner that has one.
+/// The position and the texture vertex of each corner that has one.
 std::vector<std::string> textured_corners(const Json& model, const Json& geometry) {
   std::vector<std::string> corners;
   const Json& shell = geometry["boundaries"][0];

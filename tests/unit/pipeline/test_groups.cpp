@@ -9,7 +9,7 @@
 namespace watertight {
 namespace {
 
-/// Boxes from x to x + 1000 over vertices 8 i to 8 i + 7.
+/// The vertices of boxes from x to x + 1000; box i has vertices 8 i to 8 i + 7.
 std::string vertices_of(const std::vector<int>& positions) {
   std::string text = "[";
   for (const int x : positions) {
@@ -29,7 +29,7 @@ std::string vertices_of(const std::vector<int>& positions) {
   return text + ']';
 }
 
-/// The shells of the box over vertices 8 i to 8 i + 7.
+/// The shells of box i, over vertices 8 i to 8 i + 7.
 std::string shells(int i, bool is_open = false) {
   std::string text = "[[";
   const auto facet = [&](int a, int b, int c, int d) {
@@ -50,7 +50,7 @@ std::string shells(int i, bool is_open = false) {
   return text + "]]";
 }
 
-/// The solids of two boxes.
+/// The boundaries of two solids, each of them a box.
 std::string both(int first, int second) {
   std::string text(1, '[');
   text += shells(first);
@@ -83,7 +83,7 @@ pipeline::InspectedFeature inspected(const std::string& objects,
   return pipeline::inspect(std::move(document->features[0]), nullptr, {});
 }
 
-/// A building with one part for each position.
+/// A building with one part for each geometry.
 std::string building(const std::vector<std::string>& part_geometries, const std::string& own = "",
                      const std::string& part_type = "BuildingPart") {
   std::string children;
@@ -135,7 +135,7 @@ TEST_CASE("solids of one MultiSolid are not compared with each other") {
   const std::string members = both(0, 1);
   const std::string multi = geometry("MultiSolid", "2", members);
   CHECK(inspected(building({multi}), {0, 900}).groups.empty());
-  // With another part they are of one group, and only pairs with that part are compared.
+  // With another part the two solids are in one group, and only pairs with that part are compared.
   const pipeline::InspectedFeature feature =
       inspected(building({multi, geometry("Solid", "2", shells(2))}), {0, 900, 1800});
   REQUIRE(feature.groups.size() == 1);

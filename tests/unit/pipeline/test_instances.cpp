@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Instances of geometry templates through validation, encoding and ingesting.
+// Tests instances of geometry templates through validation, encoding and storing.
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ namespace {
 const std::string kCube =
     R"({"type":"Solid","lod":"2","boundaries":[[[[0,3,2,1]],[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],)"
     R"([[2,3,7,6]],[[3,0,4,7]]]]})";
-/// The same with a corner raised by a tenth of its size: 25 mm off the plane.
+/// A box with one corner raised by a tenth of its size, which is 25 mm off the plane of the top.
 const std::string kBent =
     R"({"type":"Solid","lod":"2","boundaries":[[[[0,3,2,1]],[[4,5,8,7]],[[0,1,5,4]],[[1,2,8,5]],)"
     R"([[2,3,7,8]],[[3,0,4,7]]]]})";
@@ -33,7 +33,7 @@ struct Use {
   std::string matrix;
 };
 
-/// A document with both templates; objects o0, o1, ... have one instance each.
+/// A document with the two templates; each of the objects o0, o1, ... has one instance.
 std::string city(const std::vector<Use>& uses) {
   std::string objects;
   for (std::size_t i = 0; i < uses.size(); ++i) {
@@ -60,7 +60,7 @@ Document read(const std::string& text, bool is_split) {
 
 struct Seen {
   std::string id;
-  std::vector<std::string> solids;  // type, verdict, first code
+  std::vector<std::string> solids;  // for each solid, its type, verdict and codes of errors
 };
 
 std::string line_of(const pipeline::InspectedSolid& solid) {
@@ -96,12 +96,12 @@ using Lines = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("valid instances share their template's solid, which comes last") {
+TEST_CASE("valid instances share their template's solid, which comes last in the document") {
   const auto seen = stream(city({{0, kSame}, {0, kTurned}, {0, kTenfold}}));
   REQUIRE(seen.size() == 4);
   for (std::size_t i = 0; i < 3; ++i) CHECK(seen[i].solids.empty());
   CHECK(seen[3].id == "geometry-templates");
-  // Nothing uses the second: it is judged as it is.
+  // No instance uses the second template: it is judged on its own lattice.
   CHECK(seen[3].solids == Lines{"Solid valid", "Solid invalid 203"});
 }
 
@@ -112,7 +112,8 @@ TEST_CASE("instances that are not valid are solids of their features") {
   CHECK(seen[1].solids == Lines{"GeometryInstance invalid 306"});
   CHECK(seen[2].solids == Lines{"GeometryInstance invalid 203"});
   CHECK(seen[3].solids.empty());
-  // No instance of the first is valid; the second is valid as the last one has it.
+  // No valid instance uses the first template; the second one is valid where the last instance puts
+  // it.
   CHECK(seen[4].solids == Lines{"Solid valid"});
   for (const std::size_t threads : {std::size_t{2}, std::size_t{4}}) {
     const auto again = stream(city({{0, kMirror}, {0, kFlat}, {1, kTurned}, {1, kTenth}}), threads);
@@ -156,7 +157,7 @@ TEST_CASE("findings of an instance name it and its template, and lie in the worl
   CHECK(features[0].feature.solids[0].solid.world(0) == std::array<double, 3>{108, 208, 9});
 }
 
-TEST_CASE("instances that no feature has are judged with the templates") {
+TEST_CASE("instances that belong to no feature are judged with the templates") {
   Document document = read(city({{0, kSame}}), true);
   formats::TemplateInstance mirrored = document.features.at(0).instances.at(0);
   mirrored.placement.linear[0][0] = GridNumber{-1, 0};
@@ -179,7 +180,8 @@ TEST_CASE("instances that no feature has are judged with the templates") {
   CHECK(detail.find("(template 0, mirrored and placed by 'tree')") != std::string::npos);
 }
 
-TEST_CASE("a document with an invalid instance is not encoded, others come back byte for byte") {
+TEST_CASE(
+    "a document with an invalid instance is not encoded, other documents come back byte for byte") {
   const std::string good = city({{0, kSame}, {0, kTenfold}, {1, kTenth}});
   const auto encoded = pipeline::encode_document(read(good, false), nullptr, {});
   REQUIRE(encoded);

@@ -30,7 +30,7 @@ std::string sequence_of(const Document& document) {
   return std::string(as_text(*bytes));
 }
 
-/// A box whose top names vertices of its own, equal to those of the walls.
+/// A box whose top has vertices of its own, which are equal to those of the walls.
 std::string box_with_equal_vertices() {
   return samples::feature(
       "twins", "[[[0,3,2,1]],[[8,9,10,11]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]",
@@ -75,7 +75,7 @@ TEST_CASE("ingest refuses the whole document when one feature is invalid") {
   CHECK_FALSE(store.get("town", "a"));
 }
 
-TEST_CASE("ingest can skip invalid features and says which were stored") {
+TEST_CASE("ingest can skip invalid features and reports which were stored") {
   samples::MemoryStore store;
   pipeline::IngestOptions options = into("town");
   options.invalid_features = pipeline::InvalidFeatures::skip;
@@ -144,7 +144,7 @@ TEST_CASE("equal vertices of a document keep their own numbers through the store
 }
 
 TEST_CASE("convert triangulates facets with holes for OBJ") {
-  // A box with a square dent of depth 0 in its top is not closed; for conversion that is no matter.
+  // A box with a square dent of depth 0 in its top is not closed, but it can be converted.
   const std::string text = samples::sequence({samples::feature(
       "holed", "[[[0,1,2,3],[4,7,6,5]]]",
       "[[0,0,0],[4000,0,0],[4000,4000,0],[0,4000,0],[1000,1000,0],[3000,1000,0],[3000,3000,0],"
@@ -167,8 +167,8 @@ TEST_CASE("JSON strings are escaped and always UTF-8") {
   CHECK(json_string("\xED\xA0\x80") == "\"\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\"");
 }
 
-// Two facets of this solid are not planar and share three vertices; both could follow one Delaunay
-// face, and the bitmap would have lost one of them.
+// Two facets of the solid are not planar and share three vertices. Both could follow one Delaunay
+// face; the bitmap would then have lost one of them.
 TEST_CASE("facets that could follow the same Delaunay face keep apart in mode bitmap") {
   const Bytes bytes =
       test::read_bytes(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Instances of geometry templates in groups: members of composite templates, and instances in a
-// building with its parts.
+// Tests instances of geometry templates in groups: members of composite templates, and instances in
+// a building with its parts.
 #include <catch2/catch_test_macros.hpp>
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ const std::string kMirror = "-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
 const std::string kDouble = "2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1";
 const std::string kHalfTurn = "-1,0,0,2,0,-1,0,1,0,0,1,0,0,0,0,1";
 
-/// Cubes of 1 m from x = 0, 0.5, 1 and 3, on vertices 8 k to 8 k + 7.
+/// The least x of each cube of 1 m; cube k has vertices 8 k to 8 k + 7.
 constexpr double kStarts[] = {0, 0.5, 1, 3};
 
 std::string listed(const std::vector<std::string>& parts) {
@@ -46,7 +46,7 @@ std::string cube_vertices() {
   return listed(vertices);
 }
 
-/// The boundaries of cube k, inside out if it will be mirrored.
+/// The boundaries of cube k, turned inside out for an instance that mirrors it.
 std::string cube(int k, bool is_inside_out = false) {
   std::vector<std::string> facets;
   for (const auto& ring : {std::array{0, 3, 2, 1},
@@ -79,7 +79,7 @@ std::string object(const std::string& id, const std::string& type, const std::st
          "]}";
 }
 
-/// Document and templates have the vertices of the cubes.
+/// A city model in which the document and the templates have the vertices of the cubes.
 std::string city(const std::string& form, const std::string& objects) {
   return R"({"type":"CityJSON","version":"2.0","CityObjects":{)" + objects + R"(},"vertices":)" +
          cube_vertices() + R"(,"geometry-templates":{"templates":[)" + form +
@@ -136,7 +136,7 @@ TEST_CASE("members of a composite template are compared where an instance has th
   CHECK(composite_codes(composite({cube(0, true), cube(2, true)}), kMirror).empty());
 }
 
-TEST_CASE("a group of an instance says where it is, and how deep the overlap is in place") {
+TEST_CASE("a group of an instance states its instance, and the depth of the overlap in place") {
   const auto features = stream(
       city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kDouble, 24))));
   REQUIRE(features.size() == 2);
@@ -154,7 +154,8 @@ TEST_CASE("a group of an instance says where it is, and how deep the overlap is 
   CHECK(finding.measured == 1.0);
   REQUIRE(finding.witness);
   CHECK(((*finding.witness)[0] > 4 && (*finding.witness)[0] < 5));
-  // The template counts as one that valid instances share; it is not reported again.
+  // The template counts as a template that valid instances share; its overlap is not reported
+  // again.
   CHECK(features[1].solids.size() == 2);
   CHECK(features[1].groups.empty());
 }
@@ -190,12 +191,12 @@ TEST_CASE("instances are compared with the solids of their building") {
     return R"({"type":"Solid","lod":"2","boundaries":)" + cube(k) + "}";
   };
   CHECK(said(solid(0), instance(kSame)) == Codes{601});
-  CHECK(said(solid(0), instance(kSame, 8)) == Codes{601});  // from x = 0.5
-  CHECK(said(solid(0), instance(kSame, 16)).empty());       // from x = 1: a party wall
+  CHECK(said(solid(0), instance(kSame, 8)) == Codes{601});  // the instance begins at x = 0.5
+  CHECK(said(solid(0), instance(kSame, 16)).empty());  // the instance begins at x = 1: a party wall
   CHECK(said(instance(kSame), instance(kSame)) == Codes{601});
-  CHECK(said(instance(kSame), instance(kHalfTurn)).empty());  // from x = 2 to 1
+  CHECK(said(instance(kSame), instance(kHalfTurn)).empty());  // the instance goes from x = 2 to 1
   CHECK(said(instance(kSame), instance(kDouble, 8)) == Codes{601});
-  // Not in one level of detail, not of one building.
+  // Solids of different levels of detail are not compared.
   CHECK(
       said(R"({"type":"Solid","lod":"1","boundaries":)" + cube(0) + "}", instance(kSame)).empty());
 }
@@ -220,8 +221,9 @@ TEST_CASE("a building's instances are its solids where they overlap, and only th
   CHECK(overlapping.groups[0].report.findings.at(0).measured == 0.5);
 }
 
-TEST_CASE("walls that touch but for the digits of a rotation do not overlap") {
-  // An eighth of a turn in 18 digits: the grid of the world is rounded.
+TEST_CASE("walls that differ from a contact only by the digits of a rotation do not overlap") {
+  // The instances are turned by 45 degrees, in 18 digits: their vertices are rounded to a common
+  // grid.
   const std::string sine = "0.707106781186547524";
   const std::string turn =
       sine + ",-" + sine + ",0,0," + sine + "," + sine + ",0,0,0,0,1,0,0,0,0,1";
@@ -237,12 +239,12 @@ TEST_CASE("walls that touch but for the digits of a rotation do not overlap") {
             .at(0));
   };
   CHECK(said(shifted(sine, sine)).empty());
-  CHECK(said(shifted("0.7071067811865475", "0.7071067811865475")).empty());  // 5e-17 too near
-  CHECK(said(shifted("0.7071067", "0.7071067")) == Codes{601});              // 0.1 micrometres
+  CHECK(said(shifted("0.7071067811865475", "0.7071067811865475")).empty());  // too near by 5e-17 m
+  CHECK(said(shifted("0.7071067", "0.7071067")) == Codes{601});  // too near by 0.1 micrometres
 }
 
 TEST_CASE("the depth of an overlap is that in place, whichever instance comes first") {
-  // Under a turn about the diagonal the overlap of two cubes is longer along the world's axes.
+  // Under a turn about a diagonal the overlap of two cubes is longer along the axes of the world.
   const std::string tilt = "0.6,-0.8,0,0,0.8,0.6,0,0,0,0,1,0,0,0,0,1";
   const std::string form = composite({cube(0), cube(1)});
   validate::GroupOptions options;

@@ -11,7 +11,7 @@
 namespace watertight {
 namespace {
 
-/// A sequence of `count` features; every fifth is open, every seventh no JSON.
+/// A sequence of `count` features; every fifth is open, every seventh is no JSON.
 class LongSequence {
  public:
   explicit LongSequence(std::size_t count) : count_(count), rest_(samples::kHeader) {
@@ -141,7 +141,7 @@ TEST_CASE("features read far ahead of a slow sink are bounded") {
       [](const Error&) -> Status { return Done{}; });
   REQUIRE(outcome);
   CHECK(handed_on == outcome->features);
-  CHECK(farthest < 900);  // far fewer than 2,000: one chunk of bytes and 64 features
+  CHECK(farthest < 900);  // not all 2,000 features, but those in one chunk of bytes and 64 more
 }
 
 }  // namespace

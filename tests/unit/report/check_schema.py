@@ -14,7 +14,7 @@ import tempfile
 
 import jsonschema
 
-# Members that need a time, an engine, or input that no sample is.
+# Members that need a time, an engine, or input that no sample has.
 ABSENT = {"time", "seconds", "undecided_reason", "tolerant", "lod", "solids"}
 
 
@@ -62,7 +62,7 @@ def browse(report):
         for row in report[name]:
             assert row["type"] is not None and row["total"] - row["valid"] >= 0
         assert sum(row["total"] for row in report[name]) >= sum(row["valid"] for row in report[name])
-    # The browser looks each of these up in its own table of codes and fails on any other.
+    # The browser looks each code up in a table of its own and fails on any other code.
     assert all(code < 800 or code >= 900 for code in report["all_errors"])
     for error in report["dataset_errors"]:
         assert error["code"] and error["description"] and error["info"]
@@ -83,7 +83,8 @@ def main():
     samples = sorted(path for path in (root / "tests/golden/findings").iterdir()
                      if not path.name.endswith(".report.json") and path.is_file())
     assert samples
-    # A facet that is not planar and that the proof fills otherwise than the exact tests.
+    # The sample has a facet that is not planar and that the proof fills otherwise than the exact
+    # tests.
     samples.append(root / "tests/golden/solids/slab-depends-on-diagonal.city.json")
     failures = [f"{path}: no description" for path in undescribed(schema)]
     reports = reports_of(program, samples)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Validated features for tests of reports, made by hand: no reader and no rule is needed.
+// Validated features for tests of reports, made without a reader or a rule.
 #pragma once
 
 #include <catch2/catch_test_macros.hpp>
@@ -10,7 +10,8 @@
 
 namespace watertight::test {
 
-/// A box of two triangles a side at `x`, on a decimal lattice of millimetres far from the origin.
+/// A box with two triangles on each side, which begins at `x`, on a decimal lattice of millimetres
+/// far from the origin.
 inline Solid box_at(double x, std::uint32_t srid = 7415) {
   SolidArrays arrays;
   for (int i = 0; i < 8; ++i) {
@@ -44,7 +45,7 @@ inline Finding finding_of(int code, Index facet, std::optional<Index> other = {}
   return finding;
 }
 
-/// A feature of one solid with the findings given.
+/// A feature of one solid with the given findings.
 inline pipeline::ValidatedFeature feature_of(const std::string& id, std::vector<Finding> findings,
                                              std::uint32_t srid = 7415) {
   SubmittedSolid submitted{box_at(0, srid),
@@ -68,7 +69,7 @@ inline pipeline::ValidatedFeature feature_of(const std::string& id, std::vector<
   return feature;
 }
 
-/// A building of two parts that overlap.
+/// A building with two parts that overlap.
 inline pipeline::ValidatedFeature overlapping_parts() {
   pipeline::ValidatedFeature feature = feature_of("part-1", {});
   SubmittedSolid second{box_at(2000),
@@ -94,7 +95,7 @@ inline pipeline::ValidatedFeature overlapping_parts() {
   return feature;
 }
 
-/// The text of a report, and how its pieces came.
+/// The text of a report, and the number and the largest size of its pieces.
 struct Written {
   std::string text;
   std::size_t largest_piece = 0;

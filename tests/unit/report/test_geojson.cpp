@@ -57,7 +57,7 @@ TEST_CASE("points of another reference system than the layer's are not drawn in 
   CHECK(layer["features"][1]["properties"]["coordinates"].size() == 3);
 }
 
-TEST_CASE("a document without findings is an empty layer, an unreadable one a feature") {
+TEST_CASE("a document without findings gives an empty layer, an unreadable document a feature") {
   CHECK(layer_of({feature_of("a", {})})["features"].empty());
   Written written;
   const auto report = report::geojson_report(written.sink(), head_without_times());

@@ -32,8 +32,8 @@ TEST_CASE("the page has the counts, a row and a picture for each finding") {
   CHECK(page.find("1 of 2 features is not valid.") != page.npos);
   CHECK(count_of("<tr class=\"error\" data-code=", page) == 2);
   CHECK(count_of("data-scene='{", page) == 2);
-  CHECK(count_of("class=\"a\"", page) == 2);  // the facet concerned
-  CHECK(count_of("class=\"b\"", page) == 1);  // the other of the pair
+  CHECK(count_of("class=\"a\"", page) == 2);  // the facet of the finding
+  CHECK(count_of("class=\"b\"", page) == 1);  // the other facet of a pair
 }
 
 TEST_CASE("the page loads nothing from elsewhere") {
@@ -123,7 +123,8 @@ TEST_CASE("equal input gives an equal page") {
 }
 
 TEST_CASE("the picture of an open shell shows an edge that a vertex splits by its parts") {
-  // A pit in the top, facet 1, has its vertex 8 inside the edge from 4 to 5; the front lacks it.
+  // A pit in the top, facet 1, has its vertex 8 inside the edge from 4 to 5; the front does not
+  // have the vertex.
   const Solid box = box_at(0);
   SolidArrays arrays;
   arrays.vertices.assign(box.vertices().begin(), box.vertices().end());
@@ -152,5 +153,5 @@ TEST_CASE("the picture of an open shell shows an edge that a vertex splits by it
   REQUIRE(findings.size() == 1);
   const auto scene = report::scene_of(feature.inspected, findings[0], {});
   REQUIRE(scene);
-  CHECK(scene->lines.size() == 3);  // 4-8, 8-5 and 4-5
+  CHECK(scene->lines.size() == 3);  // the edges 4-8, 8-5 and 4-5
 }

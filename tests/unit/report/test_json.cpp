@@ -65,7 +65,7 @@ TEST_CASE("a finding about a group names both solids") {
   CHECK(report["first_level"] == Json{601});
 }
 
-TEST_CASE("what could not be read is listed and keeps the document from being valid") {
+TEST_CASE("an unreadable document or feature is listed and keeps the document from being valid") {
   Written written;
   const auto report = report::json_report(written.sink(), head_without_times());
   REQUIRE(report->begin_document({"a", std::nullopt}));

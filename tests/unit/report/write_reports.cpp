@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// write_reports json|geojson|html FILE...: the report of some documents on standard output, without
-// engines and times. For tests of the report's form.
+// write_reports json|geojson|html FILE...: prints the report of some documents, without engines and
+// times. For tests of the form of reports.
 #include <cstdio>
 
 #include "report/feature_report.h"

@@ -49,7 +49,7 @@ const std::string kTwo = samples::sequence({samples::feature("a"), samples::feat
 const std::string kOneOpen =
     samples::sequence({samples::feature("a"), samples::feature("open", samples::kOpenFacets)});
 
-/// The value, or the part of the document to which it refers.
+/// The value, or the part of the document that it refers to.
 Json resolved(const Json& document, const Json& value) {
   if (!value.contains("$ref")) return value;
   return document.at(Json::json_pointer(value["$ref"].get<std::string>().substr(1)));
@@ -162,7 +162,8 @@ TEST_CASE_METHOD(Fixture, "invalid=skip stores the valid features and reports th
   CHECK(post("/collections/town/items?invalid=maybe", kOneOpen).status == 400);
 }
 
-TEST_CASE_METHOD(Fixture, "validate gives verdicts of any format and stores nothing") {
+TEST_CASE_METHOD(Fixture,
+                 "validate gives verdicts for documents of any format and stores nothing") {
   const server::Response response = post("/validate", kOneOpen);
   REQUIRE(response.status == 200);
   CHECK(Json::parse(response.body)["verdict"] == "invalid");
@@ -302,7 +303,7 @@ TEST_CASE_METHOD(Fixture, "ETags change with the feature and save a download") {
   CHECK(get("/collections/town/items/a", {{"if-none-match", etag}}).status == 200);
 }
 
-/// `count` buildings in one document, ids "b1000", ...
+/// A document with `count` buildings, whose ids are "b1000", ...
 std::string many(int count) {
   std::vector<std::string> lines;
   for (int i = 0; i < count; ++i) {
@@ -313,7 +314,7 @@ std::string many(int count) {
   return samples::sequence(lines);
 }
 
-/// Body and rest of an answer.
+/// The whole body of an answer: its first bytes and all further parts.
 std::string whole(const server::Response& response) {
   std::string text = response.body;
   while (response.rest) {
@@ -338,7 +339,7 @@ TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is as
   const server::Response file = get("/collections/town/export");
   REQUIRE(file.status == 200);
   CHECK(file.content_type == "application/vnd.watertight");
-  CHECK_FALSE(file.rest);  // one part: its length is known
+  CHECK_FALSE(file.rest);  // the length of the only part is known
   const auto documents = pipeline::decode_container(as_bytes(file.body));
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
@@ -352,7 +353,7 @@ TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is as
   }
 }
 
-TEST_CASE_METHOD(Fixture, "an export that cannot be is refused before its first byte") {
+TEST_CASE_METHOD(Fixture, "an impossible export is refused before its first byte") {
   const auto refused = [&](const std::string& target, unsigned status, const std::string& says) {
     const server::Response response = get(target);
     INFO(target << " " << response.body);

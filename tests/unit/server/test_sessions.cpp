@@ -18,7 +18,7 @@
 namespace watertight {
 namespace {
 
-/// A client on a plain socket; whatever it waits for, it waits at most ten seconds.
+/// A client on a plain socket; it waits at most ten seconds for any event.
 class Client {
  public:
   explicit Client(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -37,7 +37,7 @@ class Client {
   void send(const std::string& text) const {
     ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
   }
-  /// Everything up to the end of the connection.
+  /// Receives all bytes up to the end of the connection.
   std::string receive_all() const {
     std::string text;
     while (receive_some(text)) {
@@ -50,7 +50,7 @@ class Client {
     }
     return true;
   }
-  /// Up to the end of the body of one answer, by its Content-Length.
+  /// Receives one answer up to the end of its body, by its Content-Length.
   std::string receive_answer() const {
     std::string text;
     for (;;) {
@@ -74,7 +74,8 @@ class Client {
   int socket_;
 };
 
-/// "/slow" computes until `release`; everything else answers at once with the body's size.
+/// A server whose route "/slow" computes until `release`; all other routes answer at once with the
+/// size of the body.
 class Server {
  public:
   explicit Server(server::ServerOptions options = small()) {
@@ -279,7 +280,8 @@ TEST_CASE("stopping cancels what does not finish in time") {
   CHECK(busy.receive_all().ends_with("cancelled"));
 }
 
-/// Answers "/parts" with `parts` parts of `bytes` bytes; with `failing`, an error after them.
+/// A server that answers "/parts" with `parts` parts of `bytes` bytes; with `failing`, an error
+/// follows them.
 struct Parts {
   explicit Parts(std::size_t count, std::size_t bytes = 5, bool failing = false) {
     server::ServerOptions options = Server::small();
@@ -307,14 +309,14 @@ struct Parts {
     server = *std::move(started);
   }
   ~Parts() { server->stop(); }
-  /// Whether no download holds its state any more, soon.
+  /// True if, within five seconds, no download holds its state any more.
   bool is_idle() const {
     for (int i = 0; i < 2500 && alive.use_count() > 1; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return alive.use_count() == 1;
   }
-  /// Whether a text was logged so many times, soon.
+  /// True if, within five seconds, a text was logged so many times.
   bool has_logged(const std::string& text, std::size_t times = 1) {
     for (int i = 0; i < 2500; ++i) {
       if (times_logged(text) >= times) return true;
@@ -377,7 +379,8 @@ TEST_CASE("parts that fail cut the answer off, which has no end then") {
 }
 
 TEST_CASE("a client that leaves or stops reading leaves nothing behind, and blocks no other") {
-  Parts parts(100'000, 1 << 16);  // a part has 0.5 s and what 100 kB/s take, 1.2 s together
+  // A part may take 0.5 s and the time of its bytes at 100 kB/s, together 1.2 s.
+  Parts parts(100'000, 1 << 16);
   {
     const Client leaving(parts.server->port());
     leaving.send(kGetParts);

@@ -15,7 +15,8 @@ std::string new_folder() {
   return mkdtemp(name.data()) == nullptr ? std::string() : name;
 }
 
-/// Where the shared cluster lives: one for all test processes under ctest, else one per process.
+/// The folder of the shared cluster: one for all test processes under ctest, else one for each
+/// process.
 std::string shared_folder() {
   if (const char* shared = std::getenv("WATERTIGHT_TEST_CLUSTER")) return shared;
   static const TemporaryFolder own;
@@ -113,7 +114,7 @@ StoredFeature sample_feature(const std::string& id) {
     StoredSolid solid;
     solid.object_id = id + "-part";
     solid.geometry = 3;
-    solid.ordinal = 1 - ordinal;  // not sorted: the order of the vector must survive
+    solid.ordinal = 1 - ordinal;  // not sorted, so that a test sees whether the order survives
     solid.lod = "2.2";
     solid.blob = {0, 1, 0xFF, static_cast<std::uint8_t>(ordinal)};
     solid.measures = "{\"volume\": 12.25}";

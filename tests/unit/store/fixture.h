@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A private cluster and fresh databases in it for the store's tests.
+// A private cluster with fresh databases for the store's tests.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace watertight::test {
 
-/// An empty directory, removed with what is in it.
+/// An empty directory, which is removed with its content at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -22,7 +22,7 @@ class TemporaryFolder {
   const std::string path;
 };
 
-/// A fresh database in the cluster that the tests share.
+/// A fresh database in the shared cluster.
 class Database {
  public:
   Database();
@@ -31,15 +31,16 @@ class Database {
   Database& operator=(const Database&) = delete;
 
   const std::string& connection() const { return connection_; }
-  /// Path of the server's socket.
+  /// The path of the server's socket.
   std::string socket() const;
   std::unique_ptr<SolidStore> store(std::size_t connections = 4) const;
-  /// The first column of the first row as text; fails the test on an error.
+  /// The first column of the first row as text; an error fails the test.
   std::string ask(const std::string& statement) const;
   /// Adds a collection "c" of 20,000 features without solids, enough for a plan to use an index:
-  /// feature i (its id) has the box from (i, i, 0) to (i + 1, i + 1, 9) and the place 1000 i.
+  /// feature i has the id i, the box from (i, i, 0) to (i + 1, i + 1, 9) and the place number 1000
+  /// i.
   void add_many_features() const;
-  /// Ends all sessions in the database but the asking one; false when the server is away.
+  /// Ends all other sessions in the database; returns false if the server is away.
   bool end_sessions() const;
 
  private:
@@ -51,7 +52,7 @@ class Database {
 std::unique_ptr<store::DatabaseSession> session_in(const std::string& connection);
 std::string ask(const std::string& connection, const std::string& statement);
 
-/// A feature with a box, two solids and bytes that no text encoding would survive.
+/// A feature with a box, two solids and bytes that are no valid text.
 StoredFeature sample_feature(const std::string& id);
 
 }  // namespace watertight::test

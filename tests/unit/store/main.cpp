@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// PostgreSQL refuses root: as root the tests become an unprivileged user before anything else.
+// PostgreSQL refuses root: if the tests run as root, they change to an unprivileged user first.
 #include <grp.h>
 #include <pwd.h>
 #include <sys/prctl.h>
@@ -21,7 +21,8 @@ bool become_unprivileged() {
     const gid_t gid = user->pw_gid;
     const char* shared = std::getenv("WATERTIGHT_TEST_CLUSTER");
     if (shared != nullptr && mkdir(shared, 0700) == 0 && chown(shared, uid, gid) != 0) return false;
-    // A process that changed its user cannot be inspected, which the leak check at its end needs.
+    // A process that changed its user cannot be inspected, but the leak check at its end must
+    // inspect it.
     return setgroups(0, nullptr) == 0 && setgid(gid) == 0 && setuid(uid) == 0 &&
            prctl(PR_SET_DUMPABLE, 1) == 0 && chdir("/") == 0;
   }

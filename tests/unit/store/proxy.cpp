@@ -57,7 +57,7 @@ void Proxy::serve() {
     if (!is_readable(listener_, 20)) continue;
     const int client = accept(listener_, nullptr, nullptr);
     if (client < 0) continue;
-    pass(client);  // one connection at a time: the store under test has one
+    pass(client);  // the store under test has one connection, so one at a time is enough
     close(client);
   }
 }
@@ -80,7 +80,9 @@ void Proxy::pass(int client) {
       if (cut == Cut::before_commit) open = false;
       if (open && write(ends[1 - from].fd, data.data(), data.size()) != count) open = false;
       if (cut == Cut::after_commit) {
-        is_readable(server, 5000);  // the answer: the commit is on the disk, nobody will hear of it
+        // Waits for the server's answer: the commit is on the disk, but the client does not hear of
+        // it.
+        is_readable(server, 5000);
         open = false;
       }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A way to the server that breaks at a chosen moment: between client and server on Unix sockets.
+// A proxy between client and server on Unix sockets, which breaks the connection at a chosen
+// moment.
 #pragma once
 
 #include <atomic>
@@ -14,10 +15,10 @@ class Proxy {
   enum class Cut {
     none,
     before_commit,  // the server never sees the next COMMIT
-    after_commit    // the server commits, its answer never arrives
+    after_commit    // the server commits, but its answer never arrives
   };
 
-  /// Listens as `folder`/.s.PGSQL.5432 and passes on to `server` (a socket's path).
+  /// Listens on `folder`/.s.PGSQL.5432 and connects clients to `server` (the path of a socket).
   Proxy(const std::string& folder, const std::string& server);
   ~Proxy();
   Proxy(const Proxy&) = delete;

@@ -88,7 +88,7 @@ TEST_CASE("a cluster recovers from every way its server can have died") {
   REQUIRE(postmaster_of(data) > 0);
   CHECK(rows() == "1");
 
-  // Its number now belongs to another process of the same user.
+  // The number of the server's process now belongs to another process of the same user.
   kill_server();
   const std::string recycled = std::to_string(getpid());
   const auto file = store::read_postmaster_file(data + "/postgres");
@@ -101,12 +101,12 @@ TEST_CASE("a cluster recovers from every way its server can have died") {
   }
   CHECK(rows() == "2");
 
-  // A lock file that was cut off.
+  // The lock file was cut off.
   kill_server();
   std::ofstream(data + "/postgres/postmaster.pid").close();
   CHECK(rows() == "3");
 
-  // A creation that was interrupted.
+  // The creation of a cluster was interrupted.
   std::filesystem::create_directory(data + "/postgres.new");
   CHECK(rows() == "3");
 }
@@ -146,7 +146,8 @@ TEST_CASE("processes that start a new cluster at the same time share it") {
     if (child == 0) {
       close(go[1]);
       char byte = 0;
-      if (read(go[0], &byte, 1) != 0) _exit(9);  // the pipe closes for all at once
+      // The closing of the pipe starts all processes at once.
+      if (read(go[0], &byte, 1) != 0) _exit(9);
       auto cluster = store::PrivateCluster::start({folder.path});
       if (!cluster) _exit(2);
       auto store = store::open_postgres_store((*cluster)->connection());
@@ -180,14 +181,14 @@ TEST_CASE("a path that no socket address or connection string can hold has its s
   CHECK(mode_of(file->socket_folder) == 0700);
   cluster.reset();
   CHECK(!std::filesystem::exists(file->socket_folder));
-  // A comma alone would make two hosts of one path.
+  // A connection string takes a path with a comma as two hosts.
   const Result<std::string> with_comma = store::prepare_socket_folder("/a,b");
   REQUIRE(with_comma);
   CHECK(with_comma->starts_with("/tmp/watertight-"));
   std::filesystem::remove(*with_comma);
 }
 
-TEST_CASE("a cluster is not made in a place that is something else") {
+TEST_CASE("a cluster is not made in a folder that holds something else") {
   const TemporaryFolder folder;
   std::ofstream(folder.path + "/thesis.txt") << "mine";
   CHECK(refusal({folder.path}) == ErrorCode::invalid_argument);
@@ -199,7 +200,7 @@ TEST_CASE("a cluster is not made in a place that is something else") {
   CHECK(refusal({folder.path + "/data", "/no/programs/here"}) == ErrorCode::unavailable);
 }
 
-TEST_CASE("a server that cannot start is reported with its own words") {
+TEST_CASE("a server that cannot start is reported with its own message") {
   const TemporaryFolder folder;
   started({folder.path}).reset();
   std::ofstream(folder.path + "/postgres/postgresql.conf", std::ios::app)
@@ -219,13 +220,13 @@ TEST_CASE("the database has the extension exactly where the server offers it") {
             " (SELECT count(*) FROM pg_proc WHERE proname = 'wt_encode') ="
             " (SELECT count(*) FROM pg_extension WHERE extname = 'watertight')") ==
         std::string("\1", 1));
-  // tests/sql sets this and gives a server that has it.
+  // tests/sql sets the variable for a server that has the extension.
   if (std::getenv("WATERTIGHT_POSTGRES_BIN") != nullptr) {
     CHECK(ask(cluster->connection(), "SELECT wt_version()") == "0.1.0");
   }
 }
 
-TEST_CASE("who is not root keeps its user") {
+TEST_CASE("a user other than root stays this user") {
   const uid_t before = geteuid();
   CHECK(store::drop_root_privileges("/nowhere/at/all"));
   CHECK(geteuid() == before);

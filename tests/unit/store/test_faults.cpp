@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The store when the server, or the way to it, breaks.
+// Tests the store when the server, or the connection to it, breaks.
 #include <signal.h>
 
 #include <atomic>
@@ -23,7 +23,7 @@ pid_t postmaster_of(const std::string& data) {
   return pid;
 }
 
-/// Puts single features in a thread of its own, as fast as the store takes them.
+/// Puts single features from a thread of its own, as fast as the store takes them.
 class Writer {
  public:
   Writer(SolidStore& store, const std::string& prefix)
@@ -36,7 +36,7 @@ class Writer {
           }
         }) {}
   std::size_t count() const { return count_; }
-  /// Waits for `more` acknowledged puts; false when they take more than a minute.
+  /// Waits for `more` acknowledged puts; returns false if they take more than a minute.
   bool writes(std::size_t more) const {
     const std::size_t goal = count_ + more;
     for (int i = 0; i < 6000 && count_ < goal; ++i) {
@@ -44,7 +44,7 @@ class Writer {
     }
     return count_ >= goal;
   }
-  /// Ends; the ids that were acknowledged.
+  /// Stops the thread; returns the ids that were acknowledged.
   const std::vector<std::string>& stop() {
     stop_ = true;
     thread_.join();
@@ -58,7 +58,7 @@ class Writer {
   std::thread thread_;
 };
 
-/// From now on each change of a feature leaves one row in `audit`, in the same transaction.
+/// Makes each later change of a feature add one row to `audit`, in the same transaction.
 void watch_features(const Database& database) {
   database.ask("CREATE TABLE audit (id text)");
   database.ask(
@@ -146,7 +146,7 @@ TEST_CASE("every acknowledged put survives kill -9 of the server, and the store 
     const pid_t before = postmaster_of(folder.path);
     REQUIRE(before > 0);
     REQUIRE(kill(before, SIGKILL) == 0);
-    // The cluster's supervisor starts the next one.
+    // The supervisor of the cluster starts the next server.
     for (int i = 0; i < 600 && (postmaster_of(folder.path) == before || !(*store)->ping()); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
@@ -162,14 +162,14 @@ TEST_CASE("every acknowledged put survives kill -9 of the server, and the store 
   }
 }
 
-TEST_CASE("a store says so when the server stays away, and works when it is back") {
+TEST_CASE("a store reports that the server stays away, and works when it is back") {
   const TemporaryFolder folder;
   Result<std::unique_ptr<store::PrivateCluster>> cluster =
       store::PrivateCluster::start({folder.path});
   REQUIRE(cluster);
   const auto store = store::open_postgres_store((*cluster)->connection(), 1);
   REQUIRE(store);
-  (*cluster).reset();  // the last user stops the server
+  (*cluster).reset();  // the end of the last user stops the server
   CHECK((*store)->ping().error().code == ErrorCode::unavailable);
   const auto got = (*store)->get("buildings", "a");
   REQUIRE(!got);

@@ -69,7 +69,7 @@ TEST_CASE("get returns what put stored, byte for byte") {
   }
 }
 
-TEST_CASE("a feature without solids, box or texts comes back so") {
+TEST_CASE("a feature without solids, box or texts comes back as it was") {
   const Database database;
   const auto store = database.store();
   StoredFeature sent;
@@ -132,7 +132,8 @@ TEST_CASE("put stores all features or none") {
   const auto store = database.store();
   StoredFeature good = sample_feature("good");
   StoredFeature bad = sample_feature("bad");
-  bad.solids[1].report = "not JSON";  // refused by the server, after the first rows were sent
+  // The server refuses the report after the first rows were sent.
+  bad.solids[1].report = "not JSON";
   CHECK(put_failure(*store, {good, bad}) == ErrorCode::invalid_argument);
   CHECK(put_failure(*store, {good, good}) == ErrorCode::conflict);
   StoredFeature elsewhere = sample_feature("elsewhere");
@@ -161,7 +162,7 @@ TEST_CASE("text that the database cannot hold is an error, never another text") 
     feature = sample_feature("a");
     feature.solids[0].report = text;
     CHECK(put_failure(*store, {feature}) == ErrorCode::invalid_argument);
-    // Asked for, such an id is simply not there.
+    // A get of such an id reports that it is not found.
     const auto got = store->get("buildings", text);
     REQUIRE(!got);
     CHECK(got.error().code == ErrorCode::not_found);
@@ -229,7 +230,8 @@ TEST_CASE("what does not exist is not found") {
   CHECK(store->remove("buildings", "a").error().code == ErrorCode::not_found);
   CHECK(store->get("buildings", "a").error().code == ErrorCode::not_found);
   CHECK(database.ask("SELECT count(*)::text FROM watertight.solid") == "0");
-  const auto empty = store->list({"buildings", 10, "", {}});  // the collection stays
+  // The collection stays, although it is empty.
+  const auto empty = store->list({"buildings", 10, "", {}});
   REQUIRE(empty);
   CHECK(empty->features.empty());
 }
@@ -308,7 +310,7 @@ TEST_CASE("a box finds exactly the features whose closed boxes share a point wit
   for (int round = 0; round < 40; ++round) {
     store::StoredBox box = random_box();
     if (round % 4 == 0)
-      box.max[0] = std::nextafter(box.max[0], -100);  // one step short of touching
+      box.max[0] = std::nextafter(box.max[0], -100);  // the box ends one step before it would touch
     if (box.max[0] < box.min[0]) box.max[0] = box.min[0];
     std::vector<std::string> expected;
     for (const StoredFeature& feature : features) {
@@ -341,7 +343,7 @@ TEST_CASE("an index serves the box filter") {
 
 TEST_CASE("concurrent writers of the same features neither fail nor mix") {
   const Database database;
-  const auto store = database.store(3);  // fewer sessions than threads
+  const auto store = database.store(3);  // the store has fewer sessions than the test has threads
   constexpr int kThreads = 6;
   constexpr int kRounds = 15;
   std::atomic<int> failures{0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Walks over a collection in order of place numbers.
+// Tests walks over a collection in the order of place numbers.
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
@@ -42,12 +42,12 @@ store::StoredBox square(double x, double y, double width) {
 
 }  // namespace
 
-TEST_CASE("the place runs through all cells, each beside the one before") {
+TEST_CASE("the place number runs through all cells, each beside the one before") {
   for (const double unit : {0.5, 1.0 / 2097152}) {
     std::map<std::int64_t, std::pair<int, int>> cells;
     for (int x = 0; x < 64; ++x) {
       for (int y = 0; y < 64; ++y) {
-        // Away from the origin where the cells are of half a unit.
+        // The cells of half a unit are tested away from the origin.
         const double shift = unit == 0.5 ? 1024 : 0;
         cells[store::place_number(square(shift + x * unit, shift + y * unit, unit / 2))] = {x, y};
       }
@@ -62,7 +62,7 @@ TEST_CASE("the place runs through all cells, each beside the one before") {
   }
 }
 
-TEST_CASE("the place of any finite box is a number, and none is after all") {
+TEST_CASE("any finite box has a place number, and a feature without a box comes last") {
   for (const double value : {0.0, 5e-324, 360.0, 1e9, 536870912.0, 1e19, 1.7e308}) {
     for (const store::StoredBox& box : {store::StoredBox{{-value, -value, 0}, {value, value, 0}},
                                         store::StoredBox{{value, -value, 0}, {value, value, 0}},
@@ -74,7 +74,7 @@ TEST_CASE("the place of any finite box is a number, and none is after all") {
   CHECK(store::place_number(std::nullopt) == store::kNoPlace);
 }
 
-TEST_CASE("a walk visits each feature once, in order of place") {
+TEST_CASE("a walk visits each feature once, in order of place number") {
   const Database database;
   const auto store = database.store();
   std::vector<StoredFeature> features;
@@ -96,7 +96,7 @@ TEST_CASE("a walk visits each feature once, in order of place") {
   REQUIRE(batch->features.size() == 3);
   CHECK(batch->features[0].solids.size() == 2);
   CHECK(batch->features[0].header == "{\"type\":\"CityJSON\"}");
-  // A feature that moves is found at its new place.
+  // A feature that moves is found at its new place number.
   features[0].box = square(-1e6, -1e6, 1);
   REQUIRE(store->put({&features[0], 1}));
   CHECK(walked_ids(*store, 200).front() == features[0].id);
@@ -135,7 +135,7 @@ TEST_CASE("a walk takes boxes of any size and unit, and none at the end, by id")
 TEST_CASE("degrees are distinguished to a hand's breadth") {
   const Database database;
   const auto store = database.store();
-  // Two rows of buildings, 1 metre and 100 km apart: each row stays together.
+  // Two rows of buildings, 1 metre and 100 km apart: each row stays together in the walk.
   std::vector<StoredFeature> features;
   for (int i = 0; i < 8; ++i) {
     features.push_back(at("a" + std::to_string(9 - i), 18.4 + 1e-5 * i, -33.9, 1e-6));
@@ -154,7 +154,8 @@ TEST_CASE("a batch ends at 16 MiB, but has one feature at least") {
   const auto store = database.store();
   std::vector<StoredFeature> features;
   for (int i = 0; i < 5; ++i) {
-    features.push_back(at("b" + std::to_string(i), 1000, 0));  // of one place: by id
+    // All features have one place number, so ids decide.
+    features.push_back(at("b" + std::to_string(i), 1000, 0));
     features.back().solids[0].blob.resize(i == 2 ? 20U << 20U : 7U << 20U);
   }
   REQUIRE(store->put(features));
@@ -185,7 +186,7 @@ TEST_CASE("a walk goes on where features were put and removed meanwhile") {
   CHECK(second->next.empty());
 }
 
-TEST_CASE("a walk starts nowhere else than where a batch ended") {
+TEST_CASE("a walk starts only where a batch ended") {
   const Database database;
   const auto store = database.store();
   CHECK(store->walk("none", 10, "").error().code == ErrorCode::not_found);
@@ -214,7 +215,7 @@ TEST_CASE("an index serves walks") {
   CHECK(plan.find("Sort") == std::string::npos);
 }
 
-TEST_CASE("the documents of a collection are listed, as many as asked for") {
+TEST_CASE("the documents of a collection are listed, as many as were asked for") {
   const Database database;
   const auto store = database.store();
   CHECK(store->documents("buildings", 5)->empty());

@@ -14,7 +14,8 @@ namespace watertight::test {
 
 using Ring = std::vector<Point>;
 
-/// A solid of one facet. Equal points are one vertex; vertices are numbered by `random`.
+/// A solid of one facet. Equal points become one vertex; `random` shuffles the numbers of the
+/// vertices.
 inline Solid facet_solid(const std::vector<Ring>& rings, std::mt19937* random = nullptr) {
   SolidArrays arrays;
   std::vector<Point>& points = arrays.vertices;

@@ -32,7 +32,7 @@ tessellate::FacetState state_of(const std::vector<Ring>& rings) {
   return result.state[0];
 }
 
-/// Twice the area in the plane z = 0, by integers.
+/// Twice the area of a ring in the plane z = 0, in integers.
 std::int64_t doubled_area(const Ring& ring) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -43,7 +43,7 @@ std::int64_t doubled_area(const Ring& ring) {
   return sum;
 }
 
-/// Incircle determinant of small integers, > 0 when d is inside the circle of a left-turning abc.
+/// The incircle determinant of small integers: > 0 if d is inside the circle of a left-turning abc.
 std::int64_t in_circle(const Point& a, const Point& b, const Point& c, const Point& d) {
   const auto row = [&](const Point& p) {
     const auto x = static_cast<std::int64_t>(p.x - d.x);
@@ -57,7 +57,8 @@ std::int64_t in_circle(const Point& a, const Point& b, const Point& c, const Poi
          u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-/// Every edge that is not a ring edge is Delaunay, ties by the rule "the largest is outside".
+/// True if every edge that is no edge of a ring is Delaunay; in a tie the largest point counts as
+/// outside.
 bool is_canonical(const std::vector<PointTriangle>& triangles, const std::vector<Ring>& rings) {
   std::set<std::pair<Point, Point>> ring_edges;
   for (const Ring& ring : rings) {
@@ -90,7 +91,7 @@ bool is_canonical(const std::vector<PointTriangle>& triangles, const std::vector
 }
 
 Ring random_star(std::mt19937& random, int count, int radius) {
-  // Integer points around the origin by angle: a simple, star-shaped ring.
+  // Integer points around the origin, sorted by angle, form a simple, star-shaped ring.
   std::map<std::pair<double, double>, Point> by_angle;
   std::uniform_int_distribution<int> coordinate(-radius, radius);
   std::vector<Point> points;
@@ -122,7 +123,7 @@ Ring rectangle(double x0, double y0, double x1, double y1, bool is_clockwise = f
   return ring;
 }
 
-/// The same ring from another start.
+/// The ring from a random start.
 Ring rotated(Ring ring, std::mt19937& random) {
   std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(random() % ring.size()),
               ring.end());
@@ -134,7 +135,7 @@ Ring rotated(Ring ring, std::mt19937& random) {
 TEST_CASE("the triangles of a facet do not depend on the numbering of its vertices") {
   std::mt19937 random(7);
   for (int round = 0; round < 200; ++round) {
-    // Grids full of cocircular points: a rectangle with every grid point of its border, and holes.
+    // A rectangle with every grid point of its border, and holes: many points are cocircular.
     const int n = 3 + round % 7;
     Ring outer;
     for (int i = 0; i < n; ++i) outer.push_back({double(i), 0, 0});
@@ -162,7 +163,7 @@ TEST_CASE("random star-shaped facets are covered and canonical") {
     const Solid solid = facet_solid({ring}, &random);
     const tessellate::FacetTriangles result = tessellate::triangulate_facets(solid);
     if (result.state[0] != tessellate::FacetState::triangulated)
-      continue;  // the origin can lie outside
+      continue;  // the origin can lie outside of the ring
     const auto triangles = point_triangles(solid);
     CHECK(triangles.size() == ring.size() - 2);
     std::int64_t area = 0;
@@ -197,7 +198,7 @@ TEST_CASE("a facet is projected along the largest component of its world area, t
   CHECK(tessellate::facet_projection(facet_solid({flat}), 0).axis == 2);
   CHECK_FALSE(tessellate::facet_projection(facet_solid({flat}), 0).is_mirrored);
 
-  // A coarser step along x makes the same lattice triangle steeper in x.
+  // A coarser step along x makes the triangle with the same lattice points steeper in x.
   Solid solid = facet_solid({Ring{{0, 0, 0}, {1, 0, 5}, {0, 1, 0}}});
   CHECK(tessellate::facet_projection(solid, 0).axis == 0);
   Lattice lattice;
@@ -216,7 +217,8 @@ TEST_CASE("in a geographic system a degree counts 2^17 metres of height") {
     REQUIRE(solid);
     return tessellate::facet_projection(*solid, 0).axis;
   };
-  // Ten units wide, one corner three units up; then turned about, x for y.
+  // The facet is ten units wide with one side three units up; the second facet has x and y
+  // exchanged.
   const Ring along_x{{0, 0, 0}, {1, 0, 30}, {1, 1, 30}, {0, 1, 0}};
   const Ring along_y{{0, 0, 0}, {1, 0, 0}, {1, 1, 30}, {0, 1, 30}};
   for (const std::uint32_t srid : {0U, 7415U, 2263U, 4978U}) {
@@ -229,13 +231,14 @@ TEST_CASE("in a geographic system a degree counts 2^17 metres of height") {
     CHECK(axis(along_x, srid) == 2);
     CHECK(axis(along_y, srid) == 2);
   }
-  // The change is where the constant says, exactly: at a tie x goes before z.
+  // The axis changes exactly where the constant states it: in a tie x precedes z.
   const auto slope = [](double height) {
     return Ring{{0, 0, 0}, {1, 0, height}, {1, 1, height}, {0, 1, 0}};
   };
   CHECK(axis(slope(131071), 4326) == 2);
   CHECK(axis(slope(131072), 4326) == 0);
-  // Steps count too: 10^-7 degrees beside 10^-3 m, so 0.0131072 m are as long as a step along x.
+  // The steps count too: with 10^-7 degrees beside 10^-3 m, 0.0131072 m are as long as a step along
+  // x.
   Lattice lattice;
   lattice.step = {GridNumber{1, -7}, GridNumber{1, -7}, GridNumber{1, -3}};
   CHECK(axis(slope(13), 6697, lattice) == 2);
@@ -248,7 +251,7 @@ TEST_CASE("in a geographic system a degree counts 2^17 metres of height") {
 TEST_CASE("coordinates that cannot be angles count as metres in a geographic system") {
   const Ring ring{{400, 0, 0}, {401, 0, 30}, {401, 1, 30}, {400, 1, 0}};
   Ring near = ring;
-  for (Point& p : near) p.x -= 41;  // to 360
+  for (Point& p : near) p.x -= 41;  // moves the greatest x to 360
   const auto axis = [](const Ring& r) {
     auto solid = Solid::make(facet_solid({r}).arrays(), Lattice{}, 4326);
     REQUIRE(solid);
@@ -274,7 +277,7 @@ TEST_CASE("holes may touch the exterior ring and each other in vertices") {
   CHECK(state_of({outer, hole}) == tessellate::FacetState::triangulated);
   const Ring other{{6, 2, 0}, {6, 4, 0}, {8, 3, 0}};
   CHECK(state_of({outer, hole, other}) == tessellate::FacetState::triangulated);
-  // Two holes that touch twice seal off a pocket, which still belongs to the facet.
+  // Two holes that touch twice enclose a pocket, which still belongs to the facet.
   const Ring left{{2, 5, 0}, {5, 3, 0}, {4, 5, 0}, {5, 7, 0}};
   const Ring right{{8, 5, 0}, {5, 7, 0}, {6, 5, 0}, {5, 3, 0}};
   const Solid solid = facet_solid({rectangle(0, 0, 10, 10), left, right});
@@ -298,7 +301,7 @@ TEST_CASE("a vertex of a ring inside an edge of another ring splits that edge") 
     const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
     CHECK(facets.state[0] == tessellate::FacetState::triangulated);
     CHECK(facets.divided);
-    // The same triangles as those of the rings that list the vertex.
+    // The triangles must be those of the rings that list the vertex.
     const tessellate::FacetTriangles listed =
         tessellate::triangulate_facets(facets.divided_solid(solid));
     CHECK_FALSE(listed.divided);
@@ -322,10 +325,10 @@ TEST_CASE("only facets that bound a region once their edges are split are divide
     CHECK(facets.state[0] == tessellate::FacetState::not_simple);
     CHECK_FALSE(facets.divided);
   }
-  // In the plane of projection the vertex is on the edge, in space it is beside it.
+  // The vertex is on the edge in the plane of projection, but beside it in space.
   const Ring beside{{0, 5, 1}, {3, 4, 0}, {3, 6, 0}};
   CHECK(state_of({outer, beside}) == tessellate::FacetState::not_simple);
-  // A vertex of the same ring splits nothing.
+  // A vertex of a ring splits no edge of the same ring.
   CHECK(state_of({{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {4, 0, 0}, {0, 8, 0}},
                   rectangle(6, 1, 7, 2)}) == tessellate::FacetState::not_simple);
 }
@@ -335,21 +338,22 @@ TEST_CASE("rings that are not simple or nest wrongly give no triangles") {
   CHECK(state_of({{{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 6, 0}}}) ==
         tessellate::FacetState::not_simple);
   CHECK(state_of({outer, rectangle(5, 5, 12, 8)}) ==
-        tessellate::FacetState::not_simple);  // crosses
+        tessellate::FacetState::not_simple);  // the hole crosses the exterior ring
   CHECK(state_of({outer, rectangle(20, 5, 22, 8)}) ==
-        tessellate::FacetState::not_simple);  // outside
+        tessellate::FacetState::not_simple);  // the hole is outside
   CHECK(state_of({outer, rectangle(1, 1, 9, 9), rectangle(2, 2, 3, 3)}) ==
-        tessellate::FacetState::not_simple);                              // nested
-  CHECK(state_of({outer, outer}) == tessellate::FacetState::not_simple);  // the same
+        tessellate::FacetState::not_simple);  // one hole is inside another
+  // The hole equals the exterior ring.
+  CHECK(state_of({outer, outer}) == tessellate::FacetState::not_simple);
   CHECK(state_of({outer, {{0, 0, 0}, {0, 10, 0}, {3, 6, 0}}}) ==
-        tessellate::FacetState::not_simple);  // an edge shared
+        tessellate::FacetState::not_simple);  // the rings share an edge
   CHECK(state_of({rectangle(2, 2, 3, 3), outer}) ==
-        tessellate::FacetState::not_simple);  // inside out
+        tessellate::FacetState::not_simple);  // the hole is around the exterior ring
   CHECK(state_of({outer, {{1, 1, 0}, {2, 2, 0}}}) == tessellate::FacetState::not_simple);
   CHECK(state_of({{{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 0}}}) ==
-        tessellate::FacetState::not_simple);  // passes a vertex twice
+        tessellate::FacetState::not_simple);  // the ring passes a vertex twice
   CHECK(state_of({{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 3, 0}}}) ==
-        tessellate::FacetState::not_simple);  // spike
+        tessellate::FacetState::not_simple);  // the ring has a spike
 }
 
 TEST_CASE("facets without area are degenerate") {
@@ -359,7 +363,7 @@ TEST_CASE("facets without area are degenerate") {
         tessellate::FacetState::degenerate);
 }
 
-TEST_CASE("different vertices with the same projection do not crash") {
+TEST_CASE("different vertices with the same projection cause no crash") {
   const Ring ring{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {5, 5, 0}, {0, 10, 0}, {5, 5, 3}};
   CHECK(state_of({ring}) == tessellate::FacetState::not_simple);
 }
@@ -380,11 +384,12 @@ TEST_CASE("a rectangle with a corner off its plane has the diagonal of its mirro
           if ((mirror >> axis & 1) != 0) p[axis] = 40 - p[axis];
         }
       }
-      std::size_t touching = 0;  // triangles with the lifted corner
+      std::size_t touching = 0;  // the number of triangles with the lifted corner
       for (const PointTriangle& t : point_triangles(facet_solid({image}))) {
         touching += std::count(t.begin(), t.end(), image[lifted]) > 0 ? 1 : 0;
       }
-      CHECK(touching == 1);  // the diagonal between the other two is the shorter one
+      // The diagonal between the corners beside the lifted one is the shorter one.
+      CHECK(touching == 1);
     }
   }
 }
@@ -398,7 +403,7 @@ TEST_CASE("triangles are grouped by facet and facets without triangles are kept"
     arrays.end_ring();
     arrays.end_facet();
   }
-  arrays.end_facet();  // a facet without rings
+  arrays.end_facet();  // adds a facet without rings
   arrays.end_shell();
   auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
   REQUIRE(solid);

@@ -37,7 +37,7 @@ Ring square(double low, double high) {
 TEST_CASE("simple rings that share at most vertices have no problems") {
   CHECK(kinds_of({square(0, 9)}).empty());
   CHECK(kinds_of({square(0, 9), square(2, 4)}).empty());
-  CHECK(kinds_of({square(0, 9), square(0, 4)}) != Kinds{});  // shares parts of edges
+  CHECK(kinds_of({square(0, 9), square(0, 4)}) != Kinds{});  // the rings share parts of edges
   CHECK(kinds_of({square(0, 9), {{0, 0, 0}, {2, 5, 0}, {5, 2, 0}}}).empty());
   CHECK(kinds_of({square(0, 9), square(1, 3), square(3, 5)}).empty());
 }
@@ -46,7 +46,7 @@ TEST_CASE("rings that touch inside edges have no problem; other contacts keep th
   const Ring at_edge{{0, 5, 0}, {3, 4, 0}, {3, 6, 0}};
   CHECK(kinds_of({square(0, 9), at_edge}).empty());
   CHECK(kinds_of({square(0, 9), at_edge, {{3, 5, 0}, {6, 4, 0}, {6, 6, 0}}}).empty());
-  // A third ring crosses the first hole; edges are counted in the rings as submitted.
+  // A third ring crosses the first hole; the numbers of edges are those of the submitted rings.
   const auto crossed = problems_of({square(0, 9), at_edge, {{2, 1, 0}, {8, 1, 0}, {2, 8, 0}}});
   REQUIRE_FALSE(crossed.empty());
   for (const tessellate::RingProblem& problem : crossed) {
@@ -55,15 +55,16 @@ TEST_CASE("rings that touch inside edges have no problem; other contacts keep th
     CHECK(problem.edge < 3);
     CHECK(problem.other_edge < 3);
   }
-  // Overlap along an edge, on the fourth edge of the exterior ring.
+  // The hole overlaps the fourth edge of the exterior ring.
   const auto along = problems_of({square(0, 9), {{0, 4, 0}, {3, 5, 0}, {0, 6, 0}}});
   REQUIRE(along.size() == 1);
   CHECK(along[0].edge == 3);
   CHECK(along[0].other_edge == 2);
-  // A hole that touches the exterior ring from outside.
+  // The hole touches the exterior ring from outside.
   CHECK(kinds_of({square(0, 9), {{9, 5, 0}, {12, 4, 0}, {12, 6, 0}}}) ==
         Kinds{tessellate::RingProblemKind::outside_exterior});
-  // Two tips of the exterior ring inside one edge of a hole; between them inside, then outside.
+  // Two tips of the exterior ring are inside one edge of a hole; the hole is inside between them,
+  // and outside beyond.
   CHECK(kinds_of({{{0, 0, 0},
                    {4, 0, 0},
                    {5, 2, 0},
@@ -119,10 +120,10 @@ TEST_CASE("rings that cross, nest or lie outside are distinguished") {
         Kinds{tessellate::RingProblemKind::outside_exterior});
   CHECK(kinds_of({square(0, 9), square(1, 8), square(3, 4)}) ==
         Kinds{tessellate::RingProblemKind::nested});
-  // Crosses the exterior ring in two of its vertices only.
+  // The hole crosses the exterior ring in two of its vertices only.
   CHECK(kinds_of({square(0, 9), {{9, 0, 0}, {12, 12, 0}, {0, 9, 0}, {4, 4, 0}}}) ==
         Kinds{tessellate::RingProblemKind::rings_meet});
-  // All vertices are vertices of the exterior ring: the edges decide.
+  // All vertices of the hole are vertices of the exterior ring, so that the edges decide.
   CHECK(kinds_of({{{0, 0, 0}, {9, 0, 0}, {5, 5, 0}, {0, 9, 0}},
                   {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}}) != Kinds{});
 }
@@ -163,7 +164,7 @@ TEST_CASE("a facet is triangulated exactly when its rings have no problem") {
   CHECK(triangulated > 1000);
 }
 
-TEST_CASE("many problems are cut off and said to be") {
+TEST_CASE("many problems are cut off, and the result says so") {
   Ring ring;
   for (int i = 0; i < 60; ++i) ring.push_back({double(i % 2 * 100), double(i * 7 % 60), 0});
   const tessellate::RingProblems result = tessellate::ring_problems(facet_solid({ring}), 0, 10);
@@ -205,7 +206,7 @@ TEST_CASE("the turn of a ring is exact and independent of its start") {
 }
 
 TEST_CASE("the search for ring problems can be cancelled") {
-  Ring ring;  // a comb: its teeth overlap in one axis
+  Ring ring;  // a comb whose teeth overlap in one axis
   for (int i = 0; i < 2000; ++i) {
     ring.push_back({0.0, 2.0 * i, 0});
     ring.push_back({1000.0, 2.0 * i + 1, 0});

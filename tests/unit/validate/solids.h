@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Small solids for the tests of this folder, from rings of points.
+// Small solids from rings of points, for the tests of this folder.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ inline Lattice lattice_of(double step) {
   return lattice;
 }
 
-/// Axis-parallel box, normals outward.
+/// An axis-parallel box whose facets face outward.
 inline Shell box(const Point& low, const Point& high) {
   const std::vector<Point> p{{low.x, low.y, low.z},    {high.x, low.y, low.z},
                              {high.x, high.y, low.z},  {low.x, high.y, low.z},
@@ -59,7 +59,7 @@ inline Shell box(const Point& low, const Point& high) {
 
 inline Shell cube(double size) { return box({0, 0, 0}, {size, size, size}); }
 
-/// All normals the other way.
+/// The shell with all facets reversed.
 inline Shell inside_out(Shell shell) {
   for (Facet& facet : shell) {
     for (Ring& ring : facet) std::reverse(ring.begin(), ring.end());
@@ -67,7 +67,8 @@ inline Shell inside_out(Shell shell) {
   return shell;
 }
 
-/// Tetrahedron at `at` with legs of `size` along +x, +y, +z (or - for a negative size).
+/// A tetrahedron at `at` with legs of length |size| along +x, +y, +z (or -x, -y, -z if `size` is
+/// negative).
 inline Shell corner(const Point& at, double size) {
   const Point o = at;
   const Point x{at.x + size, at.y, at.z};

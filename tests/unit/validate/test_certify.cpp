@@ -32,7 +32,7 @@ TEST_CASE("the boundary proof needs no tetrahedralization") {
   CHECK(two.certified);
 }
 
-/// A room of which cavities cut off an octahedron: two pyramids, base to base, or one alone.
+/// A room in which cavities enclose an octahedron: two pyramids, base to base, or only one of them.
 std::vector<Shell> room_with_pyramids(bool has_both) {
   const Point a{2, 2, 4};
   const Point b{6, 2, 4};
@@ -41,7 +41,7 @@ std::vector<Shell> room_with_pyramids(bool has_both) {
   const auto roof = [&](const Point& tip) {
     return Shell{{{a, b, tip}}, {{b, c, tip}}, {{c, d, tip}}, {{d, a, tip}}};
   };
-  // A shell around an inner part: the tips 6 and 7 up, or 2 and 1, with a band between.
+  // A cavity between two roofs whose tips are at the heights `inner` and `outer`.
   const auto lid = [&](double inner, double outer) {
     const Shell near = roof({4, 4, inner});
     const Shell far = roof({4, 4, outer});
@@ -67,8 +67,9 @@ TEST_CASE(
   CHECK(finding->place.shell > 0);
 }
 
-/// A solid of which a tetrahedral cavity seals the corner at the origin off: three of its edges are
-/// the shorter diagonals of the three quads there, which are `bulge` off their planes.
+/// A solid with a tetrahedral cavity that seals the corner at the origin off: three edges of the
+/// cavity are the shorter diagonals of the three quadrilaterals there, which are `bulge` off their
+/// planes.
 std::vector<Shell> sealed_corner(double bulge) {
   const Point o{0, 0, 0};
   const Point x{10000, bulge, bulge};
@@ -120,8 +121,9 @@ TEST_CASE("an invalid solid is never certified") {
 
 TEST_CASE("findings of all levels are reported, not those of the first failing level only") {
   Shell shell = cube(8);
-  shell[1] = {Ring{{0, 0, 8}, {8, 0, 8}, {8, 8, 9}, {0, 8, 8}}};  // off its plane, and open
-  shell = join(shell, corner({3, 3, 7}, 4));                      // crosses the top
+  // The facet is off its plane, and its edges are open.
+  shell[1] = {Ring{{0, 0, 8}, {8, 0, 8}, {8, 8, 9}, {0, 8, 8}}};
+  shell = join(shell, corner({3, 3, 7}, 4));  // the tetrahedron crosses the top
   const Report report = report_of({shell});
   CHECK(error_codes(report) == Codes{203, 302, 305, 306});
   CHECK(report.first_level == std::vector<int>{203});
@@ -148,7 +150,7 @@ TEST_CASE("a missing facet is one border, two missing facets apart are two") {
   Shell shell = cube(4);
   shell.pop_back();
   CHECK(report_of({shell}).findings.size() == 1);
-  shell.erase(shell.begin() + 3);  // the opposite wall
+  shell.erase(shell.begin() + 3);  // erases the opposite wall
   const Report report = report_of({shell});
   CHECK(report.findings.size() == 2);
   CHECK(error_codes(report) == Codes{302});
@@ -175,10 +177,10 @@ TEST_CASE("a hole may touch an edge of its facet where the facet across has the 
   const Inspection inspection = certify(solid_of({shell}), nullptr, {});
   CHECK(inspection.report.findings.empty());
   REQUIRE(inspection.certified);
-  // The certified solid has the rings as submitted.
+  // The certified solid has the submitted rings.
   CHECK(inspection.certified->solid.solid().ring(1).size() == 4);
 
-  // The ring's own vertex inside its edge is another matter.
+  // A vertex of a ring inside an edge of the same ring is an error.
   Shell own = cube(8);
   own[1][0] = {{0, 0, 8}, {8, 0, 8}, {8, 8, 8}, {4, 0, 8}, {0, 8, 8}};
   CHECK(error_codes(report_of({own})).contains(104));
@@ -194,7 +196,7 @@ TEST_CASE("solids that touch in a vertex or an edge are not 2-manifold") {
 }
 
 TEST_CASE("a pinch that leaves the interior connected says so") {
-  // A cavity that touches the outside in a vertex, written as one shell.
+  // A cavity that touches the outside in a vertex belongs to the exterior shell.
   const Point apex{0, 0, 0};
   const Point a{4, 2, 2};
   const Point b{2, 4, 2};
@@ -205,7 +207,7 @@ TEST_CASE("a pinch that leaves the interior connected says so") {
   CHECK(report.findings[0].detail.find("interior_connected: yes") != std::string::npos);
 }
 
-TEST_CASE("facets turned over are found by their neighbours") {
+TEST_CASE("facets turned over are found through their neighbours") {
   Shell shell = cube(4);
   std::reverse(shell[3][0].begin(), shell[3][0].end());
   const Report report = report_of({shell});
@@ -247,7 +249,7 @@ TEST_CASE("cavities that cross, share a face, lie outside or in each other are f
 }
 
 TEST_CASE("a cavity that crosses the wall only along edges is found") {
-  // An octahedron whose four middle edges lie in the wall x = 9: one half is outside.
+  // Four edges of the octahedron lie in the wall x = 9: one half of it is outside.
   const std::vector<Point> ring{{9, 3, 3}, {9, 6, 3}, {9, 6, 6}, {9, 3, 6}};
   Shell octahedron;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -270,7 +272,7 @@ TEST_CASE("a part of a shell that floats inside is a component, not a cavity") {
 }
 
 TEST_CASE("equal vertices are one vertex, whatever their numbers") {
-  // solid_of() gives every corner a vertex of its own: 24 for a cube.
+  // solid_of() gives every corner a vertex of its own, 24 for a cube.
   const Solid solid = solid_of({cube(4)});
   CHECK(solid.vertex_count() == 24);
   CHECK(certify(solid, nullptr).report.verdict == Verdict::valid);
@@ -290,13 +292,13 @@ TEST_CASE("planarity is measured in metres through the lattice and the tolerance
     options.tolerances.planarity_metres = metres;
     return error_codes(certify(solid_of({shell}, millimetres), nullptr, options).report);
   };
-  CHECK(codes(0.01).empty());  // 30 mm up: 7.5 mm off the fitted plane
+  CHECK(codes(0.01).empty());  // one corner is 30 mm up: 7.5 mm off the fitted plane
   CHECK(codes(0.005) == Codes{203});
-  CHECK(error_codes(report_of({shell})) == Codes{203});  // the same numbers as metres
+  CHECK(error_codes(report_of({shell})) == Codes{203});  // the coordinates are metres
 }
 
 TEST_CASE("exactly planar facets have no planarity finding, however long and thin") {
-  // A prism of 1 x 1 x 4e9 along a direction that no double plane fits well.
+  // A prism of 1 x 1 x 4e9 along a direction that no plane of doubles fits well.
   const Point d{3999999999.0, 2999999999.0, 1999999999.0};
   const auto along = [&](const Point& p) { return Point{p.x + d.x, p.y + d.y, p.z + d.z}; };
   const Point a{0, 0, 0};
@@ -314,7 +316,7 @@ TEST_CASE("exactly planar facets have no planarity finding, however long and thi
   CHECK(error_codes(report_of({prism}, options)).empty());
 }
 
-TEST_CASE("a snap tolerance closes a gap and says that the solid is another one") {
+TEST_CASE("a snap tolerance closes a gap, and the report says that the solid is another one") {
   Shell shell = cube(1000);
   shell[1][0][2].x = 1001;  // one corner of the top is 1 mm off
   Lattice millimetres;
@@ -362,7 +364,7 @@ TEST_CASE("a cancelled certification is undecided, never valid") {
   CertifyOptions options;
   options.proof = Proof::boundary;
   options.ladder.cancel = [] { return true; };
-  // A fine box: enough triangles for the search to ask.
+  // A finely divided box has enough triangles for the search to call `cancel`.
   Shell shell;
   const int n = 90;
   for (const Facet& facet : cube(n)) {
@@ -389,7 +391,7 @@ TEST_CASE("a cancelled certification is undecided, never valid") {
   CHECK(certify(solid_of({shell}), nullptr, options).report.verdict == Verdict::valid);
 }
 
-// Found by tests/fuzz/fuzz_certify.cpp: the place of finding 305 was taken from the exterior ring.
+// tests/fuzz/fuzz_certify.cpp found: the place of finding 305 was taken from the exterior ring.
 TEST_CASE("an empty exterior ring in a part of its own is reported, not divided by") {
   Shell shell = join(cube(4), {{Ring{}, Ring{{9, 9, 9}, {9, 9, 8}, {9, 8, 9}}}});
   const Report report = report_of({shell});

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// tests/golden/findings holds one small file per finding with its expected report. The table of
-// findings, docs/findings.md with its figures, and the samples must agree. With
-// WATERTIGHT_UPDATE_GOLDEN set in the environment the expected reports are written instead of
-// compared.
+// tests/golden/findings holds one small file for each finding, with its expected report. The table
+// of findings, docs/findings.md with its figures, and the samples must agree. With
+// WATERTIGHT_UPDATE_GOLDEN set in the environment the expected reports are written, not compared.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -32,7 +31,7 @@ struct Sample {
   std::string pointer;
 };
 
-/// Documents that fail (901, 904), and what is no document (903).
+/// True for findings about documents that fail (901, 904) or input that is no document (903).
 bool is_about_input(int code) {
   return code == validate::kInvalidInputFile || code == validate::kWrongInputParameters ||
          code == validate::kFormatNotSupported;
@@ -41,7 +40,7 @@ bool is_about_groups(int code) {
   return validate::finding_level(code) == 5 || validate::finding_level(code) == 6;
 }
 
-/// Reads as the program does: the solids of the one feature.
+/// The solids of the only feature of a file, read as the program reads them.
 std::vector<SubmittedSolid> read_solids(const std::filesystem::path& path) {
   const std::string text = read_text(path);
   const auto format = formats::detect_format(path.filename().string(), as_bytes(text));
@@ -60,7 +59,7 @@ Sample read_sample(const std::filesystem::path& path) {
           submitted.source.pointer};
 }
 
-/// Compares with the expected report, or writes it.
+/// Compares a report with the expected one, or writes the latter.
 void check_expected(int code, const char* suffix, const std::string& text) {
   const std::filesystem::path expected = kSamples / (std::to_string(code) + suffix);
   if (std::getenv("WATERTIGHT_UPDATE_GOLDEN") != nullptr) {

@@ -12,7 +12,7 @@
 namespace watertight::test {
 namespace {
 
-/// Keeps certified solids alive.
+/// A group of members; it keeps their certified solids alive.
 class Group {
  public:
   Group& add(const std::vector<Shell>& shells, const Lattice& lattice = {},
@@ -132,7 +132,7 @@ TEST_CASE("contact in an edge or a vertex alone does not connect members") {
   CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({4, 4, 0}, {8, 8, 4})) == Codes{503});
   CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({4, 4, 4}, {8, 8, 8})) == Codes{503});
   CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({5, 0, 0}, {8, 4, 4})) == Codes{503});
-  // The tip of a tetrahedron on a facet, and an edge along a facet.
+  // The tip of a tetrahedron touches a facet, and an edge lies along a facet.
   CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}),
                         inside_out(Shell{{{{2, 2, 4}, {1, 1, 6}, {3, 1, 6}}},
                                          {{{2, 2, 4}, {3, 1, 6}, {2, 3, 6}}},
@@ -151,14 +151,16 @@ TEST_CASE("a member inside another overlaps it, a member inside its cavity does 
 }
 
 TEST_CASE("solids whose boundaries touch only and whose interiors meet overlap") {
-  // Flush inside a face; the same footprint with another height; a plug that fills a notch exactly.
+  // The members are: a box flush inside a face; a box with the same base but another height; a plug
+  // that fills a notch exactly.
   CHECK(composite_codes(cube(10), box({0, 2, 2}, {5, 5, 5})) == Codes{501});
   CHECK(composite_codes(cube(10), box({0, 0, 0}, {10, 10, 4})) == Codes{501});
   CHECK(composite_codes(u_shape(), box({2, 2, 0}, {4, 6, 4})).empty());
   CHECK(composite_codes(u_shape(), box({2, 1, 0}, {4, 6, 4})) == Codes{501});
-  // The hull of the notch: all vertices of its facets lie on the other boundary.
+  // The second member is the hull of the first: all vertices of its facets lie on the first
+  // boundary.
   CHECK(composite_codes(u_shape(), box({0, 0, 0}, {6, 6, 4})) == Codes{501});
-  // A tetrahedron with all four corners on edges of the cube.
+  // The second member is a tetrahedron with all four corners on edges of the cube.
   CHECK(composite_codes(cube(4), Shell{{{{0, 0, 0}, {4, 4, 0}, {4, 0, 4}}},
                                        {{{0, 0, 0}, {0, 4, 4}, {4, 4, 0}}},
                                        {{{0, 0, 0}, {4, 0, 4}, {0, 4, 4}}},
@@ -168,13 +170,13 @@ TEST_CASE("solids whose boundaries touch only and whose interiors meet overlap")
 TEST_CASE("equal members are duplicates, however their facets are divided") {
   CHECK(composite_codes(cube(4), cube(4)) == Codes{502});
   Shell divided = cube(4);
-  divided.erase(divided.begin() + 1);  // the top, in two
+  divided.erase(divided.begin() + 1);  // the top is divided in two
   divided.push_back({{{0, 0, 4}, {4, 0, 4}, {4, 4, 4}}});
   divided.push_back({{{0, 0, 4}, {4, 4, 4}, {0, 4, 4}}});
   CHECK(composite_codes(cube(4), divided) == Codes{502});
   const std::vector<Shell> hollow{cube(10), inside_out(box({2, 2, 2}, {8, 8, 8}))};
   CHECK(composite_codes(Group().add(hollow).add(hollow)) == Codes{502});
-  // The same box and volume, not the same points.
+  // The members have equal boxes and volumes, but different points.
   const std::vector<Shell> shifted{cube(10), inside_out(box({1, 2, 2}, {7, 8, 8}))};
   CHECK(composite_codes(Group().add(hollow).add(shifted)) == Codes{501});
   CHECK(composite_codes(Group().add(cube(4)).add(cube(4)).add(cube(4))) == Codes{502, 502, 502});
@@ -197,7 +199,7 @@ TEST_CASE("building parts may touch, be apart and fill each other's cavities, bu
   CHECK(equal.findings[0].code == 601);
 }
 
-TEST_CASE("an overlap no deeper than allowed is none") {
+TEST_CASE("an overlap no deeper than allowed is not reported") {
   const Group group =
       Group(Group().add(box({0, 0, 0}, {10, 10, 10}))).add(box({9, 3, 0}, {20, 9, 9}));
   validate::GroupOptions options;
@@ -209,7 +211,7 @@ TEST_CASE("an overlap no deeper than allowed is none") {
 }
 
 TEST_CASE("the depth is the thickness of an oblique slab") {
-  // Two prisms whose roof and floor are parallel planes with the normal (1, 1, 0).
+  // The prisms overlap in a slab between two planes with the normal (1, 1, 0).
   const Ring diamond{{0, 0}, {10, -10}, {20, 0}, {10, 10}};
   const Ring moved{{9, -9}, {19, -19}, {29, -9}, {19, 1}};
   const validate::GroupReport report = Group()
@@ -240,7 +242,7 @@ TEST_CASE("solids of different lattices are brought onto one grid exactly") {
   Lattice shifted;
   for (auto& step : shifted.step) step = {25, -3};
   shifted.origin = {GridNumber{4, 0}, GridNumber{5, -3}, GridNumber{}};
-  // [0, 4] x [0, 4] x [0, 4], and [4, 5] x [0.005, 1.005] x [0, 1] beside it.
+  // [0, 4] x [0, 4] x [0, 4], and beside it [4, 5] x [0.005, 1.005] x [0, 1].
   const Group touching = Group(Group().add({cube(400)}, centimetres)).add({cube(40)}, shifted);
   CHECK(touching.check(validate::GroupKind::composite_solid).findings.empty());
   shifted.origin[0] = {3999, -3};
@@ -283,7 +285,7 @@ TEST_CASE("a cancelled comparison is undecided") {
   CHECK(report.not_run.size() == 1);
 }
 
-TEST_CASE("findings are bounded, and the report says what was left out") {
+TEST_CASE("findings are bounded, and the report says that some were left out") {
   Group group;
   for (int i = 0; i < 20; ++i) group.add(cube(4));
   validate::GroupOptions options;
@@ -315,7 +317,7 @@ TEST_CASE("a point of a triangle in doubles is located like the same point in ra
     const geometry::TrianglePoint at = geometry::triangle_point(corners, 2 + 2 * (i % 5), 1);
     const auto exact = geometry::exact_doubles(at);
     REQUIRE(exact);
-    // Inside: all coordinates positive and their sum below 8.
+    // A point is inside if all coordinates are positive and their sum is below 8.
     const double least =
         std::min({exact->x, exact->y, exact->z, 8 - exact->x - exact->y - exact->z});
     const int expected = least > 0 ? 1 : least < 0 ? -1 : 0;
@@ -341,7 +343,7 @@ TEST_CASE("the comparison does not depend on the order of members") {
     };
     const auto [a, b] = box_at(corner_of());
     const auto [c, d] = box_at(corner_of());
-    // Truth of boxes: the overlap of their intervals.
+    // The overlap of two boxes is the overlap of their intervals.
     int positive = 0;
     int zero = 0;
     for (int axis = 0; axis < 3; ++axis) {

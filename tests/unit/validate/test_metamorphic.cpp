@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The verdict does not depend on how a solid is written down.
+// Tests that the verdict does not depend on how a solid is written.
 #include "tests/unit/validate/solids.h"
 
 using namespace watertight;
@@ -8,7 +8,7 @@ using namespace watertight::test;
 
 namespace {
 
-/// The same solid with facets, interior shells, ring starts and vertices in another order.
+/// The solid with facets, interior shells, ring starts and vertices in another order.
 Solid shuffled(std::vector<Shell> shells, std::mt19937& random) {
   for (Shell& shell : shells) {
     std::shuffle(shell.begin(), shell.end(), random);
@@ -24,14 +24,14 @@ Solid shuffled(std::vector<Shell> shells, std::mt19937& random) {
   return solid_of(shells);
 }
 
-/// How often each code was found.
+/// The codes of all findings, each as often as it was found.
 std::multiset<int> code_counts(const Report& report) {
   std::multiset<int> codes;
   for (const Finding& finding : report.findings) codes.insert(finding.code);
   return codes;
 }
 
-/// A prism with a fin: floor and roof run out to a point and back, with a wall there and back.
+/// A prism with a fin: floor and roof run to a point and back, with a wall each way.
 Shell finned_prism() {
   const Ring floor{{9, 9, 0}, {6, 6, 0}, {6, 0, 0}, {3, -1, 0}, {0, 2, 0}, {1, 6, 0}, {6, 6, 0}};
   Ring roof = floor;
@@ -45,7 +45,7 @@ Shell finned_prism() {
   return shell;
 }
 
-/// A facet with a spike that is one only in projection: two of its points lie above each other.
+/// A facet whose spike has no width in projection only: two of its points lie above each other.
 Shell steep_spike() {
   return {
       {{{11, 1, 10}, {11, 0, 10}, {42, 9, 34}, {3, 36, 11}, {3, 38, 12}, {0, 37, 9}, {11, 0, 9}}}};

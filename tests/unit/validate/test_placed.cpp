@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Geometry templates judged where an instance puts them.
+// Tests geometry templates that are judged where an instance puts them.
 #include "tests/unit/validate/solids.h"
 
 using namespace watertight;
@@ -28,7 +28,7 @@ Report placed_report(const std::vector<Shell>& shells, const geometry::Placement
   return certify(solid_of(shells), nullptr, options).report;
 }
 
-/// A cube of which one corner of the top is raised.
+/// A cube with one corner of its top raised.
 Shell bent_cube(double size, double raised) {
   Shell shell = cube(size);
   for (Facet& facet : shell) {
@@ -41,25 +41,25 @@ Shell bent_cube(double size, double raised) {
 
 }  // namespace
 
-TEST_CASE("planarity is measured in metres in the instance's place") {
+TEST_CASE("planarity is measured in metres where the instance stands") {
   const std::vector<Shell> metres{bent_cube(1000, 36)};
   CHECK(error_codes(report_of(metres)) == Codes{203});
   CHECK(error_codes(placed_report(metres, scaled(0.001, 0.001, 0.001))).empty());
   const std::vector<Shell> flat{bent_cube(1000, 1)};
   CHECK(error_codes(placed_report(flat, scaled(1, 1, 0.01))).empty());
   CHECK(error_codes(placed_report(flat, scaled(1, 1, 1))) == Codes{203});
-  // A shear of 45 degrees makes the tilted top lie 1 / sqrt(2) as far from its plane.
-  const std::vector<Shell> raised{bent_cube(1000, 0.05)};  // 12.5 mm
+  // A shear of 45 degrees brings the corner of the tilted top nearer to its plane, by 1 / sqrt(2).
+  const std::vector<Shell> raised{bent_cube(1000, 0.05)};  // 12.5 mm off the plane
   CHECK(error_codes(placed_report(raised, geometry::Placement{})) == Codes{203});
   CHECK(error_codes(placed_report(raised, linear({1, 0, 0, 0, 1, 0, 1, 0, 1}))).empty());
-  // 204 depends on the shape: the roof becomes steep when z is stretched.
+  // 204 depends on the shape: the roof becomes steep where z is stretched.
   CHECK(error_codes(placed_report({bent_cube(1000, 100)}, scaled(1e-6, 1e-6, 1e-4))).count(204) ==
         1);
   CHECK(error_codes(placed_report({bent_cube(1000, 100)}, scaled(1e-6, 1e-6, 1e-6))).empty());
 }
 
 TEST_CASE("an oblique measure is that of the placed points") {
-  // The lattice's z lies along the world's x: what is raised is raised there.
+  // The z axis of the lattice lies along x of the world, so the corner is raised along x.
   const geometry::Placement turned = linear({0, 0, 0.001, 1, 0, 0, 0, 1, 0});
   CHECK(error_codes(placed_report({bent_cube(1000, 36)}, turned)).empty());
   CHECK(error_codes(placed_report({bent_cube(1000, 36)}, linear({0, 0, 1, 1, 0, 0, 0, 1, 0}))) ==
@@ -85,7 +85,7 @@ TEST_CASE("a determinant of zero is 306 and 806, whatever the template") {
   CHECK(error_codes(placed_report({}, scaled(1, 1, 0))) == Codes{902});
 }
 
-TEST_CASE("snapping, warnings, measures and witnesses are of the place") {
+TEST_CASE("snapping, warnings, measures and witnesses are those of the placed solid") {
   Shell gap = cube(1000);
   gap[1][0][2].x = 1001;
   CertifyOptions options;
@@ -112,15 +112,15 @@ TEST_CASE("snapping, warnings, measures and witnesses are of the place") {
   CHECK(large.measures->area == 2 * (8 * 12 + 8 * 20 + 12 * 20));
 }
 
-TEST_CASE("the units of the place count: feet and degrees") {
+TEST_CASE("the units where the instance stands count: feet and degrees") {
   geometry::Placement placement;
-  placement.srid = 2229;  // US survey feet
+  placement.srid = 2229;  // a system in US survey feet
   const std::vector<Shell> shells{bent_cube(1000, 0.1)};
-  CHECK(error_codes(placed_report(shells, placement)).empty());  // 25 mm in feet: 7.6 mm
+  CHECK(error_codes(placed_report(shells, placement)).empty());  // 0.025 feet are 7.6 mm
   CHECK(error_codes(report_of(shells)) == Codes{203});
 }
 
-TEST_CASE("a template that is proven in one place needs the exact tests in others only") {
+TEST_CASE("a template that is proven at one placement needs only the exact tests at others") {
   CertifyOptions options;
   options.is_proven = true;
   const Report valid = placed_report({cube(4)}, scaled(2, 2, 2), options);

@@ -27,7 +27,7 @@ TEST_CASE("a finding's pointer leads to its place in the document") {
   Place place;
   place.shell = 1;
   CHECK(validate::place_pointer(place, solid, options) == options.pointer_prefix + "/1");
-  place.facet = 8;  // the third of shell 1
+  place.facet = 8;  // the third facet of shell 1
   CHECK(validate::place_pointer(place, solid, options) == options.pointer_prefix + "/1/2");
   place.ring = 0;
   place.vertex = solid.ring(8)[3];
@@ -37,7 +37,7 @@ TEST_CASE("a finding's pointer leads to its place in the document") {
   CHECK(validate::place_pointer(Place{}, solid, options) == options.pointer_prefix);
 }
 
-TEST_CASE("the JSON report says what val3dity's says and more") {
+TEST_CASE("the JSON report has val3dity's members and more") {
   Shell shell = cube(4);
   shell.pop_back();
   const Solid solid = solid_of({shell});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rules on solids made for them: one-sided shells, other diagonals, shells without volume, open
-// rings, units, and inputs that make a careless search quadratic.
+// Tests rules on solids made for them: one-sided shells, other diagonals, shells without volume,
+// open rings, units, and inputs that would make a simple search quadratic.
 #include <cmath>
 
 #include "tests/unit/validate/solids.h"
@@ -16,7 +16,7 @@ using Codes = std::set<int>;
 namespace {
 
 /// A slab whose top is a quadrilateral between heights `low` and `high`, over a bottom that rises
-/// to `middle`. Its canonical diagonal runs between the corners of height `high`.
+/// to `middle`. The canonical diagonal of the top runs between the corners of height `high`.
 Shell slab(double low, double high, double middle) {
   const Point a{0, 0, 0};
   const Point b{4000, 0, 0};
@@ -35,7 +35,7 @@ Report slab_report(double low, double high, double middle) {
   return certify(solid_of({slab(low, high, middle)}, lattice_of(0.001)), nullptr).report;
 }
 
-/// The projective plane in ten triangles.
+/// The projective plane as ten triangles.
 Shell one_sided() {
   const std::vector<Point> p{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {4, 4, 1}, {1, 4, 4}};
   Shell shell;
@@ -65,7 +65,7 @@ TEST_CASE("a closed surface with one side is 300, not 303, and 303 in val3dity's
 }
 
 TEST_CASE("a Moebius band is open and has one side") {
-  // Three squares in a ring, the last joined with a twist.
+  // Three squares form a ring; the last is joined to the first with a twist.
   const std::vector<Point> low{{0, 0, 0}, {9, 0, 0}, {4, 9, 0}};
   const std::vector<Point> high{{0, 0, 4}, {9, 0, 4}, {4, 9, 4}};
   const Shell band{{{low[0], low[1], high[1]}}, {{low[0], high[1], high[0]}},
@@ -73,7 +73,7 @@ TEST_CASE("a Moebius band is open and has one side") {
                    {{low[2], high[0], low[0]}}, {{low[2], high[2], high[0]}}};
   const Codes codes = error_codes(report_of({band}));
   CHECK(codes.count(302) == 1);
-  // The last two triangles join low to high: no turn of facets gives the band two sides.
+  // The last two triangles join low to high: no reversal of facets gives the band two sides.
   CHECK(codes.count(307) == 1);
   CHECK(codes.count(300) == 0);
 }
@@ -101,10 +101,10 @@ TEST_CASE("an intersection that another diagonal would undo is named") {
 }
 
 TEST_CASE("diagonals that change nothing are not named") {
-  CHECK_FALSE(first_finding(slab_report(6, 8, 5), 804));  // both above
-  CHECK_FALSE(first_finding(slab_report(8, 8, 5), 804));  // exactly planar
-  CHECK_FALSE(first_finding(report_of({cube(4)}), 804));  // the same
-  const Report through = slab_report(2, 4, 5);            // both run through the bottom
+  CHECK_FALSE(first_finding(slab_report(6, 8, 5), 804));  // both diagonals are above the bottom
+  CHECK_FALSE(first_finding(slab_report(8, 8, 5), 804));  // the top is exactly planar
+  CHECK_FALSE(first_finding(report_of({cube(4)}), 804));  // the facets are planar
+  const Report through = slab_report(2, 4, 5);            // both diagonals run through the bottom
   CHECK(error_codes(through) == Codes{306});
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("a diagonal that would only touch the bottom is named too") {
   CHECK(first_finding(slab_report(5, 8, 5), 804));
 }
 
-TEST_CASE("a closed shell without volume is 806 beside the error that flattened it") {
+TEST_CASE("a closed shell without volume is reported as 806, beside the error that flattened it") {
   const Point a{0, 0, 0};
   const Point b{4, 0, 0};
   const Point c{4, 4, 0};
@@ -124,7 +124,8 @@ TEST_CASE("a closed shell without volume is 806 beside the error that flattened 
   CHECK(first_finding(report, 806));
 }
 
-TEST_CASE("a ring that its source left open is 103, and the rest is judged as if it were closed") {
+TEST_CASE(
+    "a ring that its source left open is 103, and the rest is judged as if the ring were closed") {
   const std::vector<Index> unclosed{2, 4};
   CertifyOptions options;
   options.unclosed_rings = unclosed;
@@ -135,7 +136,7 @@ TEST_CASE("a ring that its source left open is 103, and the rest is judged as if
   CHECK(report.findings[0].place.ring == 0);
   CHECK(report.findings[1].place.facet == 4);
   CHECK(report.first_level == std::vector<int>{103});
-  const std::vector<Index> beyond{99};  // a reader's slip is no crash
+  const std::vector<Index> beyond{99};  // an index out of range must not cause a crash
   options.unclosed_rings = beyond;
   CHECK(report_of({cube(4)}, options).verdict == Verdict::valid);
 }
@@ -173,7 +174,7 @@ TEST_CASE("a fold of 45 degrees is measured at every size that can be read") {
     }
     const Report report = report_of({shell});
     INFO(scale);
-    // Small folds are within 0.01 m of a plane; the angle has no size.
+    // Small folds are within 0.01 m of a plane; the angle does not depend on the size.
     const Finding* finding = first_finding(report, scale < 0.01 ? 204 : 203);
     REQUIRE(finding);
     if (scale < 0.01) CHECK(std::abs(*finding->measured - 54.7) < 0.1);
@@ -196,8 +197,8 @@ TEST_CASE("a solid of a size that underflows when it is squared is valid") {
   }
 }
 
-/// A roof of 10 x 10 m with one corner 36 mm up and points along one edge, which pull the plane
-/// that least squares fit towards that edge.
+/// A roof of 10 x 10 m with one corner 36 mm up and points along one edge, which pull the plane of
+/// least squares towards that edge.
 Shell roof_with_points(int count) {
   Shell shell = cube(10000);
   for (Facet& facet : shell) {
@@ -220,9 +221,9 @@ Shell roof_with_points(int count) {
   return shell;
 }
 
-TEST_CASE("203 is the distance to the plane of least squares, and no smaller one") {
+TEST_CASE("203 measures the distance to the plane of least squares, and no smaller one") {
   const Report none = certify(solid_of({roof_with_points(0)}, lattice_of(0.001)), nullptr).report;
-  CHECK(error_codes(none).empty());  // 9 mm
+  CHECK(error_codes(none).empty());  // 9 mm off the plane
   const Report many = certify(solid_of({roof_with_points(49)}, lattice_of(0.001)), nullptr).report;
   const Finding* finding = first_finding(many, 203);
   REQUIRE(finding);
@@ -230,7 +231,9 @@ TEST_CASE("203 is the distance to the plane of least squares, and no smaller one
   CHECK(*finding->measured < 0.0170);
 }
 
-TEST_CASE("a cube of half a millimetre is valid, and collapses under the tolerant snap") {
+TEST_CASE(
+    "a cube of half a millimetre is valid, and collapses when it is snapped for the tolerant "
+    "verdict") {
   CertifyOptions options;
   options.also_tolerant = true;
   const Report report = certify(solid_of({cube(5)}, lattice_of(0.0001)), nullptr, options).report;
@@ -242,7 +245,7 @@ TEST_CASE("a cube of half a millimetre is valid, and collapses under the toleran
 }
 
 TEST_CASE("tolerances are metres in degrees and in feet") {
-  // 7.5 units off the fitted plane at one corner lifted by 30.
+  // One corner is lifted by 30 units, which is 7.5 units off the fitted plane.
   Shell shell = cube(1000);
   for (Facet& facet : shell) {
     for (Point& p : facet[0]) {
@@ -259,15 +262,15 @@ TEST_CASE("tolerances are metres in degrees and in feet") {
   };
   for (const std::uint32_t srid : {4326U, 4979U, 6697U}) {
     INFO(srid);
-    CHECK(codes(srid, 1e-7, 0.001).empty());        // a house 0.0001 degrees wide: 7.5 mm
-    CHECK(codes(srid, 1e-7, 0.002) == Codes{203});  // 15 mm
+    CHECK(codes(srid, 1e-7, 0.001).empty());        // a house 0.0001 degrees wide: 7.5 mm off
+    CHECK(codes(srid, 1e-7, 0.002) == Codes{203});  // 15 mm off
   }
-  CHECK(codes(2263, 0.0033, 0.0033).empty());      // US feet: 7.5 mm
-  CHECK(codes(2263, 0.005, 0.005) == Codes{203});  // 11.4 mm
+  CHECK(codes(2263, 0.0033, 0.0033).empty());      // US feet: 7.5 mm off
+  CHECK(codes(2263, 0.005, 0.005) == Codes{203});  // 11.4 mm off
 }
 
 TEST_CASE("a notch a hundred-thousandth of a micrometre from a wall is no contact") {
-  // A notch from above that ends one step from the wall x = 0 of a model of 2^52 steps.
+  // A notch from above ends one step from the wall x = 0 of a model of 2^52 steps.
   const double size = 4503599627370496.0;
   const auto prism = [&](double gap) {
     const std::vector<std::array<double, 2>> outline{
@@ -294,7 +297,7 @@ TEST_CASE("a notch a hundred-thousandth of a micrometre from a wall is no contac
   CHECK_FALSE(error_codes(report_of({prism(0)}, options)).empty());
 }
 
-TEST_CASE("a vertex far away that nothing uses is a warning") {
+TEST_CASE("a vertex far away that no facet uses is a warning") {
   SolidArrays arrays = solid_of({cube(4)}).arrays();
   arrays.vertices.push_back({-1e16, 0, 0});
   const auto solid = Solid::make(std::move(arrays), Lattice{}, 0);
@@ -309,7 +312,8 @@ TEST_CASE("a vertex far away that nothing uses is a warning") {
 TEST_CASE("dents whose tip lies exactly on the facet across are found, every one") {
   std::mt19937 random(11);
   for (int round = 0; round < 60; ++round) {
-    // A tetrahedron-shaped dent from the bottom of a slanted block, tip at the middle of the top.
+    // A dent in the shape of a tetrahedron goes from the bottom of a slanted block to the middle of
+    // the top.
     const double s = 2 * (1 + double(random() % 500'000));
     const double z = 2 * (1 + double(random() % 500'000));
     const double lift = 2 * double(random() % 100'000);
@@ -335,7 +339,8 @@ TEST_CASE("dents whose tip lies exactly on the facet across are found, every one
 
 TEST_CASE("planarity is measured where rings bound no region, as val3dity does first") {
   Shell shell = cube(8);
-  shell[1] = {Ring{{0, 0, 8}, {8, 8, 20}, {8, 0, 8}, {0, 8, 8}}};  // a bow tie, and far off
+  // A bow tie with one corner far off its plane.
+  shell[1] = {Ring{{0, 0, 8}, {8, 8, 20}, {8, 0, 8}, {0, 8, 8}}};
   const Report report = report_of({shell});
   CHECK(error_codes(report).count(104) == 1);
   CHECK(error_codes(report).count(203) == 1);
@@ -360,7 +365,8 @@ TEST_CASE("first_level looks at each shell by itself, and 405 ends the tests of 
 }
 
 TEST_CASE("the farthest pair of normals is found among thousands of triangles") {
-  // A disc of 6,000 corners waving within the tolerance; one corner makes a steep sliver.
+  // A disc of 6,000 corners is uneven within the tolerance; one corner makes a steep, thin
+  // triangle.
   Ring ring;
   const int n = 6000;
   for (int i = 0; i < n; ++i) {
@@ -385,7 +391,7 @@ TEST_CASE("the farthest pair of normals is found among thousands of triangles") 
 
 TEST_CASE("a thousand vertices at nearly one place are counted, and the closest two are named") {
   std::vector<Shell> shells{cube(100'000)};
-  for (int i = 1; i <= 250; ++i) {  // tetrahedra of 4 to 8 steps side by side
+  for (int i = 1; i <= 250; ++i) {  // tetrahedra of 4 to 8 steps, side by side
     shells.push_back(inside_out(corner({1000.0 + 10 * i, 1000, 1000}, 4 + i % 5)));
   }
   const Report report = certify(solid_of(shells, lattice_of(1e-6)), nullptr).report;
@@ -393,7 +399,8 @@ TEST_CASE("a thousand vertices at nearly one place are counted, and the closest 
   REQUIRE(finding);
   CHECK(finding->detail.find("1000 vertices") == 0);
   REQUIRE(finding->measured);
-  CHECK(std::fabs(*finding->measured - 2e-6) < 1e-12);  // from one of 8 steps to the next
+  // The distance from a tetrahedron of 8 steps to the next one.
+  CHECK(std::fabs(*finding->measured - 2e-6) < 1e-12);
 }
 
 TEST_CASE("many cavities are located, and the one that is nested is found") {
@@ -424,7 +431,7 @@ TEST_CASE("T-junctions are found along edges with thousands of vertices") {
 }
 
 TEST_CASE("the search for the problems of one large ring can be cancelled") {
-  Ring ring;  // a comb, whose teeth overlap in one axis, and a loop in its back
+  Ring ring;  // a comb whose teeth overlap in one axis, with a loop in its back
   for (int i = 0; i < 2000; ++i) {
     ring.push_back({0.0, 2.0 * i, 0});
     ring.push_back({1000.0, 2.0 * i + 1, 0});
@@ -446,12 +453,12 @@ TEST_CASE("the search for the problems of one large ring can be cancelled") {
                                 std::count(rule.codes.begin(), rule.codes.end(), 104) == 1;
                        });
   };
-  CHECK(skips_104(0));  // asked before the search
-  CHECK(skips_104(1));  // asked in the search
+  CHECK(skips_104(0));  // cancelled before the search
+  CHECK(skips_104(1));  // cancelled in the search
   CHECK_FALSE(skips_104(1000000));
 }
 
-TEST_CASE("a cancelled validation is undecided whatever rule is at work") {
+TEST_CASE("a cancelled validation is undecided whichever rule is running") {
   std::vector<Shell> shells{cube(100)};
   for (int i = 0; i < 9; ++i) {
     const Point low{10.0 * i + 1, 10, 10};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Truth by construction: space is cut into tetrahedra by the planes x = k, y = k, z = k and
-// x - y = k, y - z = k, x - z = k (Freudenthal 1942). The same cut with cubes of size 2 or 3 is a
-// coarsening of the cut with cubes of size 1. A solid is a set of tetrahedra of one size, connected
-// over faces; what two solids have in common is counted in tetrahedra of size 1.
+// Solids whose relation is known by construction: space is cut into tetrahedra by the planes x = k,
+// y = k, z = k and x - y = k, y - z = k, x - z = k (Freudenthal 1942). The cut with cubes of size 2
+// or 3 is a coarsening of the cut with cubes of size 1. A solid is a set of tetrahedra of one size,
+// connected over faces; the common part of two solids is counted in tetrahedra of size 1.
 #include <algorithm>
 #include <array>
 #include <catch2/catch_test_macros.hpp>
@@ -17,15 +17,17 @@
 namespace watertight {
 namespace {
 
-/// A step of the grid is a metre along each axis.
+/// The length of a step of the grid: a metre along each axis.
 constexpr validate::StepMetres kMetres{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-using Cell = std::array<int, 4>;  // corner of a cube, and which of its six tetrahedra
+// The corner of a cube, and the number of one of its six tetrahedra.
+using Cell = std::array<int, 4>;
 using Corner = std::array<int, 3>;
 constexpr std::array<std::array<int, 3>, 6> kWays{
     {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
-/// From the corner of the cube along the axes in one of six orders.
+/// The corners of a tetrahedron: a way from the corner of the cube along the axes, in one of six
+/// orders.
 std::array<Corner, 4> corners_of(const Cell& cell, int size) {
   std::array<Corner, 4> corners{};
   corners[0] = {cell[0] * size, cell[1] * size, cell[2] * size};
@@ -34,7 +36,7 @@ std::array<Corner, 4> corners_of(const Cell& cell, int size) {
     const int axis = kWays[static_cast<std::size_t>(cell[3])][i];
     corners[i + 1][static_cast<std::size_t>(axis)] += size;
   }
-  // Odd permutations are mirrored.
+  // The ways with odd permutations give mirrored tetrahedra.
   const bool is_odd = cell[3] == 1 || cell[3] == 2 || cell[3] == 5;
   if (is_odd) std::swap(corners[2], corners[3]);
   return corners;
@@ -89,12 +91,13 @@ Body random_body(std::mt19937& random, int count) {
   return body;
 }
 
-/// Tetrahedra of size 1, by four times their centres.
+/// The tetrahedra of size 1 in a body, each given by four times its centre.
 std::set<Corner> fine_cells(const Body& body) {
   std::set<Corner> fine;
   for (const Cell& cell : body.cells) {
     const auto coarse = corners_of(cell, body.size);
-    // A point is inside if its coordinates, along the axes in the order of the way, descend.
+    // A point is inside if its coordinates, along the axes in the order of the way, do not
+    // increase.
     const auto& way = kWays[static_cast<std::size_t>(cell[3])];
     for (int x = 0; x < body.size; ++x) {
       for (int y = 0; y < body.size; ++y) {
@@ -117,8 +120,8 @@ std::set<Corner> fine_cells(const Body& body) {
   return fine;
 }
 
-/// The faces that one tetrahedron alone has, cut into those of size 1 for comparison: twelve times
-/// the centre of each, and the turn.
+/// The faces that belong to one tetrahedron only, cut into faces of size 1 for comparison: for each
+/// face, twelve times its centre, and its turn.
 std::vector<std::array<Corner, 3>> boundary_of(const Body& body) {
   std::map<std::set<Corner>, std::vector<std::array<Corner, 3>>> faces;
   for (const Cell& cell : body.cells) {
@@ -131,7 +134,7 @@ std::vector<std::array<Corner, 3>> boundary_of(const Body& body) {
   return boundary;
 }
 
-/// Faces of size 1 of a body's fine cells that one cell alone has.
+/// The faces of the tetrahedra of size 1 in a body that belong to one of them only.
 std::set<std::set<Corner>> fine_boundary(const Body& body) {
   const std::set<Corner> inside = fine_cells(body);
   std::map<std::set<Corner>, int> uses;
@@ -157,8 +160,8 @@ std::set<std::set<Corner>> fine_boundary(const Body& body) {
   return boundary;
 }
 
-/// An affine map of integers with determinant 1 makes all planes oblique. With `scale` the
-/// coordinates are no integers of few digits, so that rationals decide.
+/// The boundary of a body. For `is_oblique`, an affine map of integers with determinant 1 makes all
+/// planes oblique. With `scale` the coordinates are no short integers, so that rationals decide.
 validate::RegionSurface surface_of(const Body& body, bool is_oblique, double scale) {
   std::map<Corner, Index> number;
   std::vector<Point> points;
@@ -249,7 +252,7 @@ TEST_CASE("a solid and what is left of a block around it share areas and never o
   Counts counts;
   for (int i = 0; i < 120; ++i) {
     const Body a = random_body(random, 1 + i % 60);
-    // The largest part, connected over faces, of what is left.
+    // The largest part of the rest that is connected over faces.
     Body rest = a;
     rest.cells.clear();
     const int reach = a.size == 1 ? 4 : 2;
@@ -306,7 +309,7 @@ TEST_CASE(
     }
     REQUIRE(fine.cells.size() == centres.size());
     check_pair(coarse, fine, i % 2 == 1, 1, counts);
-    // A corner cell less may leave the rest in two parts; as the second solid that is allowed for.
+    // Removing a corner cell may leave two parts; the second solid of a pair may have them.
     Body less = fine;
     less.cells.erase(less.cells.begin());
     const validate::RegionRelation relation = validate::relate_regions(
@@ -324,7 +327,7 @@ TEST_CASE("coordinates that no lattice of integers holds are compared in rationa
   for (int i = 0; i < 150; ++i) {
     const Body a = random_body(random, 1 + i % 10);
     const Body b = random_body(random, 1 + i % 7);
-    // Odd multiples of 2^-30 of 31 bits: sums and products of small numbers with it are exact.
+    // The factor is 1 + 2^-30: its sums and products with small numbers are exact.
     check_pair(a, b, true, 1.0 + 1.0 / 1073741824.0, counts);
   }
   CHECK(counts.overlapping > 30);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A worker that misbehaves on demand. The request names the fault; anything else comes back
+// A worker that misbehaves on demand: the request names the fault. Any other request is returned
 // unchanged.
 #include <fcntl.h>
 #include <signal.h>
@@ -42,7 +42,7 @@ Bytes text_bytes(const std::string& text) {
   return {view.begin(), view.end()};
 }
 
-/// Everything a test wants to know about where the worker lives, one item a line.
+/// The environment of the worker that tests examine, one item on each line.
 Bytes surroundings() {
   std::string text;
   rlimit core{};
@@ -78,7 +78,7 @@ void send_header(std::uint32_t length, std::uint32_t checksum, std::uint8_t stat
   send_raw(header.bytes());
 }
 
-/// Never returns: each call keeps a page.
+/// Overflows the stack: each call takes a page, and the function never returns.
 int overflow_the_stack(int depth) {
   volatile char page[4096];
   page[depth % 4096] = static_cast<char>(depth);
@@ -127,7 +127,7 @@ void misbehave_on_the_wire(const std::string& fault) {
     sleep_for_ever();
   }
   if (fault == "second-reply") {
-    // The job itself is answered as usual; another answer follows that nobody asked for.
+    // The job gets its answer; another answer follows without a request.
     send_header(0, 0, 0);
     send_header(0, 0, 0);
     sleep_for_ever();
@@ -160,7 +160,8 @@ Bytes handle(ByteView request) {
     return text_bytes("burnt");
   }
   if (fault == "orphan") {
-    // The child keeps the socket open and lives on, unless the whole group is killed.
+    // The child process keeps the socket open and lives on, unless the whole process group is
+    // killed.
     if (fork() == 0) sleep_for_ever();
     _exit(5);
   }

@@ -44,7 +44,7 @@ std::string reply(const workers::JobResult& result) { return std::string(as_text
 
 bool exists(pid_t process) { return kill(process, 0) == 0; }
 
-/// True if the process is gone, or a zombie, within two seconds.
+/// True if, within two seconds, the process has ended or is a zombie.
 bool disappears(pid_t process) {
   for (int i = 0; i < 400 && exists(process); ++i) {
     std::ifstream file("/proc/" + std::to_string(process) + "/stat");
@@ -80,7 +80,7 @@ TEST_CASE("empty and large requests come back unchanged") {
   CHECK(reply(result) == large);
 }
 
-TEST_CASE("every fault of a worker has its own outcome and costs only its job") {
+TEST_CASE("every fault of a worker has its own outcome and affects only its job") {
   workers::WorkerPool pool(faulty());
   const workers::WorkerLimits limits = seconds(0.3);
   const auto check = [&](const std::string& fault, workers::JobOutcome outcome,
@@ -132,7 +132,7 @@ TEST_CASE("the CPU time of a job is counted, also when it is stopped or crashes"
   CHECK(spun.detail == "CPU limit");
   CHECK(spun.cpu_seconds >= 0.3);
   CHECK(run(pool, "next").outcome == workers::JobOutcome::ok);
-  // A process's second job does not pay for its first: the limit is for each job.
+  // The CPU limit is for each job: the time of the first job does not count for the second.
   limits.cpu_seconds = 0.5;
   for (int i = 0; i < 8; ++i) {
     const workers::JobResult result = run(pool, "burn", limits);
@@ -201,7 +201,7 @@ TEST_CASE("a worker that is killed between two jobs is replaced") {
     const std::string first = reply(run(pool, "process"));
     const pid_t process = std::stoi(first);
     kill(process, signal);
-    siginfo_t info{};  // waits until it has ended, and leaves it to the pool to reap
+    siginfo_t info{};  // waits until the process has ended, and leaves it to the pool to reap
     REQUIRE(waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOWAIT) == 0);
     const workers::JobResult next = run(pool, "process");
     CHECK(next.outcome == workers::JobOutcome::ok);
@@ -224,7 +224,7 @@ TEST_CASE("a worker sees nothing of its host") {
   sigemptyset(&blocked);
   sigaddset(&blocked, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
-  const int leaked = open("/dev/null", O_RDONLY);  // without O_CLOEXEC
+  const int leaked = open("/dev/null", O_RDONLY);  // opened without O_CLOEXEC
   workers::WorkerPool pool(faulty());
   const std::string text = reply(run(pool, "surroundings"));
   close(leaked);
@@ -308,7 +308,7 @@ std::size_t open_descriptors() {
   return count;
 }
 
-/// A fault, what becomes of the job, and its limits.
+/// A fault, the expected outcome of its job, and the limits of the job.
 struct Fault {
   std::string request;
   workers::JobOutcome outcome = workers::JobOutcome::ok;
@@ -342,7 +342,7 @@ std::vector<Fault> faults() {
 }
 
 /// Runs jobs from several threads, every second one with a random fault, until `goes_on` is false.
-/// Returns what went otherwise than it must. `done` counts jobs.
+/// Returns messages about wrong outcomes. `done` counts the jobs.
 std::vector<std::string> run_random_faults(unsigned seed,
                                            const std::function<bool(std::size_t)>& goes_on,
                                            std::atomic<std::size_t>& done) {
@@ -375,7 +375,7 @@ std::vector<std::string> run_random_faults(unsigned seed,
   return wrong;
 }
 
-/// Returns how many jobs there were.
+/// Checks random faults; returns the number of jobs.
 std::size_t check_random_faults(unsigned seed, const std::function<bool(std::size_t)>& goes_on) {
   std::atomic<std::size_t> done = 0;
   run_random_faults(
@@ -388,14 +388,14 @@ std::size_t check_random_faults(unsigned seed, const std::function<bool(std::siz
   }
   CHECK(open_descriptors() == before);
   CHECK_FALSE(has_children());
-  return done - 6;  // each thread counts one more when it ends
+  return done - 6;  // each thread counts one job more when it ends
 }
 
-TEST_CASE("random faults of concurrent jobs cost their own jobs only and leak nothing") {
+TEST_CASE("random faults of concurrent jobs affect their own jobs only and leak nothing") {
   CHECK(check_random_faults(1, [](std::size_t number) { return number < 250; }) == 250);
 }
 
-// Not run by default: WATERTIGHT_SOAK_SECONDS=180 test_workers "[soak]".
+// The test does not run by default: WATERTIGHT_SOAK_SECONDS=180 test_workers "[soak]".
 TEST_CASE("random faults for a long time", "[.soak]") {
   const char* text = std::getenv("WATERTIGHT_SOAK_SECONDS");
   const auto end = std::chrono::steady_clock::now() +
@@ -406,7 +406,7 @@ TEST_CASE("random faults for a long time", "[.soak]") {
   WARN(jobs << " jobs, seed " << seed);
 }
 
-/// Tells the worker's number through the pipe, then waits for ever with a job running.
+/// Writes the id of the worker's process to the pipe, then waits for ever with a running job.
 void be_a_host(int pipe_end) {
   workers::WorkerPool pool(faulty());
   const std::string process = reply(run(pool, "process"));

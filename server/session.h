@@ -38,6 +38,13 @@ class BudgetShare {
       : budget_(budget),
         amount_(budget.take(amount) ? amount : 0),
         is_granted_(amount_ == amount) {}
+  /// Makes the share at least `amount`. False when the budget has not so much left.
+  bool grow_to(std::uint64_t amount) {
+    if (amount <= amount_) return true;
+    if (!budget_.take(amount - amount_)) return false;
+    amount_ = amount;
+    return true;
+  }
   ~BudgetShare() { budget_.give_back(amount_); }
   BudgetShare(const BudgetShare&) = delete;
   BudgetShare& operator=(const BudgetShare&) = delete;

@@ -124,8 +124,8 @@ class Server {
   std::atomic<int> slow_ = 0;
 };
 
-const std::string kGet = "GET / HTTP/1.1\r\nHost: x\r\n\r\n";
-const std::string kGetSlow = "GET /slow HTTP/1.1\r\nHost: x\r\n\r\n";
+const std::string kGet = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
+const std::string kGetSlow = "GET /slow HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 bool starts(const std::string& answer, const std::string& status) {
   INFO(answer);
@@ -141,7 +141,7 @@ TEST_CASE("a connection serves several requests") {
     client.send(kGet);
     starts(client.receive_answer(), "200");
   }
-  client.send("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   starts(client.receive_all(), "200");
 }
 
@@ -149,8 +149,8 @@ TEST_CASE("pipelined requests are answered in order") {
   const Server server;
   const Client client(server.server->port());
   client.send(
-      "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\n\r\nabc"
-      "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+      "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 3\r\n\r\nabc"
+      "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const std::string answers = client.receive_all();
   starts(answers, "200");
   CHECK(answers.find("\r\n\r\n3HTTP/1.1 200") != std::string::npos);
@@ -165,23 +165,24 @@ TEST_CASE("limits of header and body are answered as problems") {
     CHECK(answer.find("application/problem+json") != std::string::npos);
     return answer;
   };
-  starts(ask("GET / HTTP/1.1\r\nHost: x\r\nX: " + std::string(2000, 'a') + "\r\n\r\n"), "431");
-  starts(ask("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 20000\r\n\r\n"), "413");
-  starts(ask("POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n4e20\r\n" +
+  starts(ask("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(2000, 'a') + "\r\n\r\n"),
+         "431");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 20000\r\n\r\n"), "413");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n4e20\r\n" +
              std::string(20000, 'a') + "\r\n0\r\n\r\n"),
          "413");
-  starts(ask("POST / HTTP/1.1\r\nHost: x\r\n\r\n"), "411");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\n\r\n"), "411");
   starts(ask("GET / HTTP/1.1\r\n\r\n"), "400");
   starts(ask("rubbish\r\n\r\n"), "400");
-  starts(
-      ask("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nContent-Encoding: gzip\r\n\r\nabc"),
-      "415");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 3\r\nContent-Encoding: "
+             "gzip\r\n\r\nabc"),
+         "415");
 }
 
 TEST_CASE("senders that never finish are cut off") {
   const Server server;
   for (const char* part :
-       {"", "GET / HT", "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\na"}) {
+       {"", "GET / HT", "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\na"}) {
     const Client client(server.server->port());
     client.send(part);
     CHECK(client.receive_all().empty());
@@ -191,17 +192,18 @@ TEST_CASE("senders that never finish are cut off") {
 TEST_CASE("bodies together have a limit of their own") {
   const Server server;
   const Client first(server.server->port());
-  first.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\na");
+  first.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9000\r\n\r\na");
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const Client second(server.server->port());
-  second.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\n");
+  second.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9000\r\n\r\n");
   starts(second.receive_all(), "503");
 }
 
 TEST_CASE("a client that expects 100 Continue gets it") {
   const Server server;
   const Client client(server.server->port());
-  client.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nExpect: 100-continue\r\n\r\n");
+  client.send(
+      "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 3\r\nExpect: 100-continue\r\n\r\n");
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   client.send("abc");
   const std::string answer = client.receive_answer();
@@ -212,7 +214,7 @@ TEST_CASE("a client that expects 100 Continue gets it") {
 TEST_CASE("HEAD has the length of the body but not the body") {
   const Server server;
   const Client client(server.server->port());
-  client.send("HEAD / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  client.send("HEAD / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const std::string answer = client.receive_all();
   CHECK(answer.find("Content-Length: 1\r\n") != std::string::npos);
   CHECK(answer.ends_with("\r\n\r\n"));
@@ -340,12 +342,12 @@ struct Parts {
   std::unique_ptr<server::HttpServer> server;
 };
 
-const std::string kGetParts = "GET /parts HTTP/1.1\r\nHost: x\r\n\r\n";
+const std::string kGetParts = "GET /parts HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 TEST_CASE("an answer in parts comes in chunks, and the connection goes on") {
   Parts parts(3);
   const Client client(parts.server->port());
-  client.send(kGetParts + "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  client.send(kGetParts + "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const std::string answers = client.receive_all();
   const std::size_t body = answers.find("\r\n\r\n") + 4;
   CHECK(answers.substr(0, body).find("Transfer-Encoding: chunked\r\n") != std::string::npos);
@@ -364,7 +366,7 @@ TEST_CASE("HTTP 1.0 gets the parts without chunks, and HEAD none") {
   CHECK(answer.ends_with("\r\n\r\naaaaacccccbbbbb"));
   const std::size_t made = parts.made;
   const Client head(parts.server->port());
-  head.send("HEAD /parts HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  head.send("HEAD /parts HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   CHECK(head.receive_all().ends_with("\r\n\r\n"));
   CHECK(parts.made == made);
 }

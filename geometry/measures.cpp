@@ -15,6 +15,7 @@
 
 #include "geometry/lattice/grid_number.h"
 #include "geometry/predicates/exact_quotient.h"
+#include "geometry/vector3.h"
 
 namespace watertight::geometry {
 namespace {

@@ -243,7 +243,8 @@ Response get_health(const RoutedRequest& /*request*/) {
 }
 
 Response get_readiness(const RoutedRequest& request) {
-  const Status status = request.service.store->ping();
+  const Service& service = request.service;
+  const Status status = service.readiness ? service.readiness() : service.store->ping();
   if (status) return json_response(Json{{"status", "ready"}});
   Problem problem = to_problem(status.error());
   problem.status = 503;

@@ -25,6 +25,8 @@ enum class Lane : std::uint8_t { quick, reading, computing };
 struct Application {
   std::function<Lane(const Request&)> lane;
   std::function<Response(const Request&, const CancelPoll&)> respond;
+  /// Called when a stop has waited long enough: what respond() is doing should fail soon.
+  std::function<void()> interrupt = nullptr;
 };
 
 /// One line about an answered request or an event, already formatted as key=value pairs.

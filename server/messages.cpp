@@ -2,6 +2,7 @@
 #include "server/messages.h"
 
 #include <array>
+#include <boost/asio/ip/address.hpp>
 #include <cstdio>
 #include <ctime>
 
@@ -16,6 +17,41 @@ using boost::system::error_code;
 
 std::string lower(boost::beast::string_view text) {
   return lower_case(std::string_view(text.data(), text.size()));
+}
+
+bool is_loopback(std::string_view address) {
+  boost::system::error_code error;
+  const auto parsed = boost::asio::ip::make_address(std::string(address), error);
+  return !error && parsed.is_loopback();
+}
+
+/// Whether the host of a Host field is this machine, by a name or address that no other machine
+/// has.
+bool is_this_machine(std::string_view host) {
+  const bool is_v6 = host.starts_with('[');
+  const std::size_t end = is_v6 ? host.find(']') : host.find(':');
+  const std::string name = lower_case(host.substr(is_v6 ? 1 : 0, is_v6 ? end - 1 : end));
+  return name == "localhost" || is_loopback(name);
+}
+
+/// The refusal of what a page of another site has a browser send: it could write, or, under a name
+/// of its own for this address, read.
+std::optional<Response> refusal_of_origin(const RequestParser& parser,
+                                          const ServerOptions& options) {
+  const auto& request = parser.get();
+  const std::string host = lower(request[http::field::host]);
+  if (is_loopback(options.address) && request.count(http::field::host) > 0 &&
+      !is_this_machine(host)) {
+    return problem(421, "host",
+                   "this service listens on the loopback address and answers for localhost only");
+  }
+  const bool is_safe = request.method() == http::verb::get ||
+                       request.method() == http::verb::head ||
+                       request.method() == http::verb::options;
+  if (is_safe || request.count(http::field::origin) == 0) return std::nullopt;
+  const std::string origin = lower(request[http::field::origin]);
+  if (origin == "http://" + host || origin == "https://" + host) return std::nullopt;
+  return problem(403, "origin", "a page of another site cannot change what is stored here");
 }
 
 /// The time as RFC 9110, section 5.6.7 writes it: "Sun, 22 Nov 2026 16:45:00 GMT".
@@ -66,11 +102,12 @@ std::optional<Response> answer_to(const error_code& error, const ServerOptions& 
   return problem(400, "malformed", "not an HTTP request: " + error.message());
 }
 
-std::optional<Response> refusal_of(const RequestParser& parser) {
+std::optional<Response> refusal_of(const RequestParser& parser, const ServerOptions& options) {
   const auto& request = parser.get();
   if (request.version() >= 11 && request.count(http::field::host) != 1) {
     return problem(400, "malformed", "the request needs exactly one Host field");
   }
+  if (auto refusal = refusal_of_origin(parser, options)) return refusal;
   if (request.count(http::field::transfer_encoding) > 0) {
     // Any other coding could end elsewhere for a proxy before this service (RFC 9112, section 6.1).
     const bool is_chunked = request.version() >= 11 &&

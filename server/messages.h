@@ -32,7 +32,7 @@ std::optional<Response> answer_to(const boost::system::error_code& error,
                                   const ServerOptions& options);
 
 /// The refusal of a header before its body is read; nothing when the header is fine.
-std::optional<Response> refusal_of(const RequestParser& parser);
+std::optional<Response> refusal_of(const RequestParser& parser, const ServerOptions& options);
 
 /// The request whose header was read, without its body.
 Request to_request(const RequestParser& parser);

@@ -176,15 +176,18 @@ awaitable<void> Session::run() {
 
 /// Waits for the first byte. False when the connection is over.
 awaitable<bool> Session::wait_for_request() {
-  if (buffer_.size() > 0) co_return true;
-  connection_->is_idle = true;
+  if (buffer_.size() > 0) {
+    connection_->enter(Connection::State::receiving);
+    co_return true;
+  }
+  connection_->enter(Connection::State::idle);
   if (environment_.is_draining) co_return false;
   stream_.expires_after(seconds(options_.idle_seconds));
   error_code error;
   const auto space = buffer_.prepare(kReadBytes);
   const std::size_t count =
       co_await stream_.async_read_some(space, redirect_error(use_awaitable, error));
-  connection_->is_idle = false;
+  connection_->enter(Connection::State::receiving);
   buffer_.commit(count);
   co_return !error && count > 0;
 }
@@ -194,14 +197,21 @@ awaitable<bool> Session::wait_for_request() {
 awaitable<std::optional<Response>> Session::receive(RequestParser& parser) {
   const Response silence{0, "", "", {}};
   error_code error;
-  stream_.expires_after(seconds(options_.header_seconds));
-  co_await http::async_read_header(stream_, buffer_, parser, redirect_error(use_awaitable, error));
+  stream_.expires_never();
+  bool is_late = false;
+  {
+    const TimeLimit limit(connection_, Clock::now() + seconds(options_.header_seconds));
+    co_await http::async_read_header(stream_, buffer_, parser,
+                                     redirect_error(use_awaitable, error));
+    is_late = limit.is_over();
+  }
   method_ = std::string(parser.get().method_string());
   target_ = std::string(parser.get().target());
   is_head_ = parser.get().method() == http::verb::head;
   version_ = parser.get().version() == 10 ? 10 : 11;
+  if (is_late) co_return problem(408, "request-timeout", "the header came too slowly");
   if (error) co_return answer_to(error, options_).value_or(silence);
-  auto refusal = refusal_of(parser);
+  auto refusal = refusal_of(parser, options_);
   if (refusal) co_return refusal;
   if (lower_case(std::string(parser.get()[http::field::expect])) == "100-continue" &&
       buffer_.size() == 0 && !parser.is_done()) {
@@ -280,6 +290,7 @@ awaitable<bool> Session::serve_one() {
     co_return false;
   }
   const bool keep_alive = parser.get().keep_alive();
+  connection_->enter(Connection::State::answering);
   Request request = to_request(parser);
   request.body = std::move(body_);
   stream_.expires_never();

@@ -156,6 +156,18 @@ constexpr Migration kMigrations[] = {
          // For the documents of a collection, found by one probe each.
          R"(CREATE INDEX feature_document ON watertight.feature (collection, format, header))",
      }},
+    {"ids that URLs can name",
+     {
+         // Clients of HTTP take "." and ".." out of a path, even when they are encoded.
+         R"(INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton,
+                solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)
+              SELECT collection, replace(id, '.', '%2E'), type, format, srid, header, skeleton,
+                solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place
+              FROM watertight.feature WHERE id IN ('.', '..'))",
+         R"(UPDATE watertight.solid SET feature = replace(feature, '.', '%2E')
+              WHERE feature IN ('.', '..'))",
+         R"(DELETE FROM watertight.feature WHERE id IN ('.', '..'))",
+     }},
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);
 

@@ -102,7 +102,10 @@ class SolidStore {
  public:
   virtual ~SolidStore() = default;
   /// Ok when the database answers and its schema is current.
+  /// While it says that the database is away, other calls fail at once.
   virtual Status ping() = 0;
+  /// Makes running and later calls fail within moments. For a process that is about to end.
+  virtual void interrupt() {}
   /// The cost of this and the next does not depend on the number of features.
   virtual Result<std::vector<StoredCollection>> collections() = 0;
   virtual Result<StoredCollection> collection(const std::string& id) = 0;

@@ -217,6 +217,19 @@ TEST_CASE("collection ids and boxes that make no sense are refused") {
   }
 }
 
+TEST_CASE("ids that no URL can name are refused") {
+  const Database database;
+  const auto store = database.store();
+  for (const char* id : {".", ".."}) {
+    const StoredFeature feature = sample_feature(id);
+    CHECK(store->put(std::span(&feature, 1)).error().code == ErrorCode::invalid_argument);
+  }
+  for (const char* id : {"...", ".a", "%2E", "a\tb", "\x7f"}) {
+    put_one(*store, sample_feature(id));
+    CHECK(store->get("buildings", id));
+  }
+}
+
 TEST_CASE("what does not exist is not found") {
   const Database database;
   const auto store = database.store();

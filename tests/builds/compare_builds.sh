@@ -59,12 +59,29 @@ for engine in watertight-worker watertight-tetgen; do
 done
 build gxx-checked "$source_directory/build/checked" --preset checked
 
-print_fingerprint gxx-O3 "$release" "$@"
-print_fingerprint gxx-checked "$source_directory/build/checked" "$@"
+directory_of() {
+  case $1 in
+    gxx-O3) echo "$release" ;;
+    gxx-checked) echo "$source_directory/build/checked" ;;
+    *) echo "$work_directory/$1" ;;
+  esac
+}
+
+# print_two NAME NAME DOCUMENT...: at the same time, as each uses one core
+print_two() {
+  first=$1
+  second=$2
+  shift 2
+  print_fingerprint "$first" "$(directory_of "$first")" "$@" &
+  background=$!
+  print_fingerprint "$second" "$(directory_of "$second")" "$@"
+  wait "$background"
+}
+
+print_two gxx-O0 gxx-checked "$@" # those that take longest
+print_two gxx-Os gxx-LTO "$@"
+print_two clang-O3 gxx-O3 "$@"
 status=0
-for other in gxx-O0 gxx-Os gxx-LTO clang-O3; do
-  print_fingerprint "$other" "$work_directory/$other" "$@"
-done
 for other in gxx-checked gxx-O0 gxx-Os gxx-LTO clang-O3; do
   if ! diff "$work_directory/gxx-O3.txt" "$work_directory/$other.txt"; then
     echo "the fingerprints of gxx-O3 and $other differ"

@@ -53,11 +53,12 @@ Result<Paged> make_pages(const std::vector<const Bytes*>& blobs, const EncodeOpt
   return paged;
 }
 
-/// The page file, or an empty one where the blobs are smaller.
-Result<Paged> pages_if_smaller(const std::vector<const Bytes*>& blobs,
-                               const EncodeOptions& options) {
+/// The page file, or an empty one where the blobs are smaller or wanted.
+Result<Paged> pages_if_smaller(const std::vector<const Bytes*>& blobs, const EncodeOptions& options,
+                               SolidLayout layout) {
   Paged none;
   none.is_in_file.resize(blobs.size());
+  if (layout == SolidLayout::blobs) return none;
   auto paged = make_pages(blobs, options);
   if (!paged && paged.error().code != ErrorCode::not_encodable) return paged;
   if (!paged || paged->file.size() >= paged->blob_bytes) return none;
@@ -101,7 +102,8 @@ bool is_container(ByteView bytes) {
          std::equal(std::begin(kContainerMagic), std::end(kContainerMagic), bytes.begin());
 }
 
-ContainerWriter::ContainerWriter(const EncodeOptions& pages) : pages_(pages) {
+ContainerWriter::ContainerWriter(const EncodeOptions& pages, SolidLayout layout)
+    : pages_(pages), layout_(layout) {
   pages_.certificate = nullptr;
   write(kContainerMagic);
   write(ByteView(&kContainerVersion, 1));
@@ -136,7 +138,7 @@ Status ContainerWriter::close_part() {
   for (const auto& [document, feature] : features_) {
     for (const StoredSolid& solid : feature.solids) blobs.push_back(&solid.blob);
   }
-  const auto paged = pages_if_smaller(blobs, pages_);
+  const auto paged = pages_if_smaller(blobs, pages_, layout_);
   if (!paged) return paged.error();
   ByteWriter texts;
   texts.varint(new_documents_);
@@ -177,8 +179,9 @@ Result<Bytes> ContainerWriter::finish() && {
   return std::move(written_);
 }
 
-Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages) {
-  ContainerWriter writer(pages);
+Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages,
+                              SolidLayout layout) {
+  ContainerWriter writer(pages, layout);
   writer.add_document(document.format, document.header, document.framing);
   for (const EncodedFeature& feature : document.features) {
     if (feature.format != document.format || feature.header != document.header) {

@@ -15,12 +15,17 @@ namespace watertight::pipeline {
 /// True if the bytes start like a Watertight file (of any version).
 bool is_container(ByteView bytes);
 
+/// How a Watertight file keeps its solids: in pages, as small as possible, or as the blobs that the
+/// features have, which costs no encoding.
+enum class SolidLayout : std::uint8_t { pages, blobs };
+
 /// Writes a Watertight file feature by feature. Memory: one part (some thousand features), and the
 /// header of each document.
 class ContainerWriter {
  public:
   /// `pages` says how the solids are coded in pages. Solids with Steiner vertices stay blobs.
-  explicit ContainerWriter(const EncodeOptions& pages = {});
+  explicit ContainerWriter(const EncodeOptions& pages = {},
+                           SolidLayout layout = SolidLayout::pages);
 
   /// Adds the document of the features with this format and header. Without this call the first
   /// such feature adds it. Cost: linear in the number of documents.
@@ -38,6 +43,7 @@ class ContainerWriter {
   void write(ByteView bytes);
 
   EncodeOptions pages_;
+  SolidLayout layout_;
   std::map<std::pair<std::string, SharedText>, std::uint64_t> documents_;  // by format and header
   std::uint64_t new_documents_ = 0;
   ByteWriter new_document_texts_;
@@ -50,7 +56,8 @@ class ContainerWriter {
 
 /// Writes a whole document, whose features must have its format and header. Errors:
 /// invalid_argument if they do not; those of ContainerWriter::add().
-Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages = {});
+Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages = {},
+                              SolidLayout layout = SolidLayout::pages);
 
 /// The documents in a Watertight file, with all their features. The bytes may be hostile. Errors:
 /// malformed (with byte offset), unsupported (version), limit_exceeded; those of decode().

@@ -100,7 +100,7 @@ Result<Bytes> represent(StoredFeature feature, const ItemFormat& format,
     if (!encoded) return std::move(encoded).error();
     pipeline::EncodedDocument document{encoded->format, encoded->header, {}, {}};
     document.features.push_back(*std::move(encoded));
-    return pipeline::write_container(document);
+    return pipeline::write_container(document, {}, pipeline::SolidLayout::blobs);
   }
   auto document = pipeline::from_stored(std::move(feature), request.service.options.limits);
   if (!document) {

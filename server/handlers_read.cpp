@@ -176,17 +176,15 @@ std::string page_path(const RoutedRequest& request, std::string_view after) {
   return path;
 }
 
-Json feature_json(const StoredFeature& feature) {
-  std::uint64_t bytes = 0;
-  for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
+Json feature_json(const std::string& collection, const store::FeatureSummary& feature) {
   Json json{{"type", "Feature"}, {"id", feature.id}};
   if (feature.box) json["bbox"] = box_json(*feature.box);
   json["geometry"] = nullptr;
   json["properties"] = {{"type", feature.type},
-                        {"solids", feature.solids.size()},
-                        {"blobBytes", bytes},
+                        {"solids", feature.solids},
+                        {"blobBytes", feature.blob_bytes},
                         {"version", feature.version}};
-  const std::string path = item_path(feature.collection, feature.id);
+  const std::string path = item_path(collection, feature.id);
   json["links"] = Json::array({link(path + "?f=cityjson", "item", kCityJson, "CityJSON"),
                                link(path + "?f=obj", "alternate", kObj, "OBJ"),
                                link(path + "?f=wt", "alternate", kContainer, "Watertight file")});
@@ -245,7 +243,8 @@ Response get_health(const RoutedRequest& /*request*/) {
 }
 
 Response get_readiness(const RoutedRequest& request) {
-  const Status status = request.service.store->ping();
+  const Service& service = request.service;
+  const Status status = service.readiness ? service.readiness() : service.store->ping();
   if (status) return json_response(Json{{"status", "ready"}});
   Problem problem = to_problem(status.error());
   problem.status = 503;
@@ -292,11 +291,16 @@ Response get_items(const RoutedRequest& request) {
   if (!page->next.empty()) {
     json["links"].push_back(link(page_path(request, page->next), "next", kJson, "next page"));
   }
-  json["numberMatched"] = page->matched;
+  const bool is_whole = page->next.empty() && after == nullptr;
+  if (is_whole) {
+    json["numberMatched"] = page->features.size();
+  } else if (!*box) {
+    json["numberMatched"] = collection->features;
+  }
   json["numberReturned"] = page->features.size();
   json["features"] = Json::array();
-  for (const StoredFeature& feature : page->features) {
-    json["features"].push_back(feature_json(feature));
+  for (const store::FeatureSummary& feature : page->features) {
+    json["features"].push_back(feature_json(collection->id, feature));
   }
   Response response = json_response(json);
   response.headers.push_back({"Content-Crs", crs_header(collection->srid)});

@@ -47,7 +47,7 @@ struct Response {
 /// The standard phrase of a status, e.g. "Not Found".
 std::string_view reason_phrase(unsigned status);
 
-/// Decodes %XX. Errors: malformed on a broken escape, a control character or text that is not
+/// Decodes %XX. Errors: malformed on a broken escape, a NUL or text that is not
 /// UTF-8.
 Result<std::string> percent_decode(std::string_view text);
 

@@ -30,6 +30,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kRefusedAtOnce = 64;  // connections beyond the limit that get an answer
 constexpr milliseconds kPause{20};
+constexpr milliseconds kSlow{1000};  // after which a request that is not whole makes room
 
 class AsioServer final : public HttpServer {
  public:
@@ -48,6 +49,7 @@ class AsioServer final : public HttpServer {
  private:
   awaitable<void> accept();
   void begin_session(tcp::socket socket);
+  bool make_room();
   void close_idle_connections();
   bool wait_for_sessions(double seconds);
 
@@ -108,7 +110,9 @@ void AsioServer::begin_session(tcp::socket socket) {
   const auto peer = socket.remote_endpoint(error);
   auto connection = std::make_shared<Connection>(std::move(socket));
   if (!error) connection->peer = peer.address().to_string();
-  if (environment_.sessions >= environment_.options.connections) {
+  const std::size_t most = environment_.options.connections;
+  const bool is_full = environment_.sessions >= most && !make_room();
+  if (is_full || environment_.sessions >= most + kRefusedAtOnce) {
     if (refused_ >= kRefusedAtOnce) return;
     ++refused_;
     asio::co_spawn(context_, refuse_session(std::move(connection)),
@@ -125,11 +129,33 @@ void AsioServer::begin_session(tcp::socket socket) {
                  [this](std::exception_ptr) { --environment_.sessions; });
 }
 
+/// Closes the connection that has kept the service waiting longest: one without a request, else one
+/// that has not sent all of its request for kSlow. False if there is none.
+bool AsioServer::make_room() {
+  const auto now = std::chrono::steady_clock::now();
+  const std::lock_guard lock(environment_.mutex);
+  std::shared_ptr<Connection> slowest;
+  for (const auto& entry : environment_.connections) {
+    auto connection = entry.lock();
+    if (!connection || connection->state == Connection::State::answering) continue;
+    const bool is_idle = connection->state == Connection::State::idle;
+    if (!is_idle && now - connection->since < kSlow) continue;
+    const bool is_slower =
+        !slowest || std::pair(!is_idle, connection->since) <
+                        std::pair(slowest->state != Connection::State::idle, slowest->since);
+    if (is_slower) slowest = std::move(connection);
+  }
+  if (!slowest) return false;
+  slowest->enter(Connection::State::answering);  // so that it is not chosen again
+  slowest->stream.close();
+  return true;
+}
+
 void AsioServer::close_idle_connections() {
   const std::lock_guard lock(environment_.mutex);
   for (const auto& entry : environment_.connections) {
     const auto connection = entry.lock();
-    if (connection && connection->is_idle) connection->stream.close();
+    if (connection && connection->state == Connection::State::idle) connection->stream.close();
   }
 }
 
@@ -154,6 +180,7 @@ void AsioServer::stop() {
     environment_.log("event=drain-timeout sessions=" + std::to_string(environment_.sessions));
   }
   environment_.is_cancelled = true;
+  if (environment_.application.interrupt) environment_.application.interrupt();
   // Engines notice the cancellation within moments; no thread may outlive what it refers to.
   environment_.computing.join();
   environment_.reading.join();

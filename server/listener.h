@@ -25,6 +25,8 @@ enum class Lane : std::uint8_t { quick, reading, computing };
 struct Application {
   std::function<Lane(const Request&)> lane;
   std::function<Response(const Request&, const CancelPoll&)> respond;
+  /// Called when a stop has waited long enough: what respond() is doing should fail soon.
+  std::function<void()> interrupt = nullptr;
 };
 
 /// One line about an answered request or an event, already formatted as key=value pairs.
@@ -38,7 +40,8 @@ struct ServerOptions {
   std::uint64_t body_bytes_together = 1024ULL << 20;  // the most for all requests being received
   double idle_seconds = 60;                           // the longest time between requests
   double header_seconds = 10;   // the longest time from the first byte of a header to its last
-  double body_seconds = 120;    // the longest time for the whole body
+  double body_seconds = 20;     // for the body, plus one for each body_rate bytes that have arrived
+  double body_rate = 20e3;      // bytes per second
   double answer_seconds = 300;  // the longest time of computing; then engines are cancelled
   double write_seconds = 60;    // the longest time for an answer or a part, plus 1 for each 100 kB
   double drain_seconds = 30;    // the longest time for requests in flight when stopping

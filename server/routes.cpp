@@ -96,7 +96,7 @@ const std::vector<Route>& routes() {
       {"GET", "/", Lane::quick, get_landing, {"f"}},
       {"GET", "/api", Lane::quick, get_api, {"f"}},
       {"GET", "/healthz", Lane::quick, get_health, {}},
-      {"GET", "/readyz", Lane::reading, get_readiness, {}},
+      {"GET", "/readyz", Lane::quick, get_readiness, {}},
       {"GET", "/collections", Lane::reading, get_collections, {"f"}},
       {"GET", "/collections/{collectionId}", Lane::reading, get_collection, {"f"}},
       {"GET",

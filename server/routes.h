@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "base/cancel.h"
@@ -28,6 +29,8 @@ struct Service {
   SolidStore* store = nullptr;
   delaunay::EngineWorkers* workers = nullptr;  // null: rung 0 only
   RouteOptions options;
+  /// Whether the store can be used, answered at once. Null: the store is asked.
+  std::function<Status()> readiness = nullptr;
 };
 
 /// Answers a request. Never fails: every error is an application/problem+json answer.

@@ -5,6 +5,7 @@
 #include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -15,7 +16,7 @@
 #include <optional>
 
 #include "base/ascii.h"
-#include "server/problem.h"
+#include "server/messages.h"
 
 namespace watertight::server {
 namespace {
@@ -28,12 +29,12 @@ using asio::redirect_error;
 using asio::use_awaitable;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
-using Parser = http::request_parser<http::string_body>;
 
 constexpr std::size_t kReadBytes = 16 * 1024;
 constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
-constexpr double kBytesPerSecond = 100e3;  // the slowest client that gets its whole answer
+constexpr std::size_t kSmallBody = 64 * 1024;  // bytes of a body that no budget limits
+constexpr double kBytesPerSecond = 100e3;      // the slowest client that gets its whole answer
 
 Clock::duration seconds(double value) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(value));
@@ -41,108 +42,6 @@ Clock::duration seconds(double value) {
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-Response problem(unsigned status, std::string kind, std::string detail) {
-  return to_response(Problem{status, std::move(kind), std::move(detail), {}, {}, {}, {}});
-}
-
-Response busy(std::string detail) {
-  Problem answer{503, "busy", std::move(detail), {}, {}, {}, {}};
-  answer.headers.push_back({"Retry-After", "5"});
-  return to_response(answer);
-}
-
-/// The answer to a request that could not be read; nothing when the connection is simply over.
-std::optional<Response> answer_to(const error_code& error, const ServerOptions& options) {
-  if (error == http::error::header_limit) {
-    return problem(
-        431, "header-too-large",
-        "the request header is larger than " + std::to_string(options.header_bytes) + " bytes");
-  }
-  if (error == http::error::body_limit) {
-    return problem(
-        413, "limit-exceeded",
-        "the request body is larger than " + std::to_string(options.body_bytes) + " bytes");
-  }
-  if (error == http::error::bad_version) {
-    return problem(505, "http-version", "this service speaks HTTP/1.1 and HTTP/1.0");
-  }
-  const bool is_over = error == http::error::end_of_stream ||
-                       error == http::error::partial_message ||
-                       error.category() != make_error_code(http::error::end_of_stream).category();
-  if (is_over) return std::nullopt;
-  return problem(400, "malformed", "not an HTTP request: " + error.message());
-}
-
-std::string lower(beast::string_view text) {
-  return lower_case(std::string_view(text.data(), text.size()));
-}
-
-/// The refusal of a header before its body is read; nothing when the header is fine.
-std::optional<Response> refusal_of(const Parser& parser) {
-  const auto& request = parser.get();
-  if (request.version() >= 11 && request.count(http::field::host) != 1) {
-    return problem(400, "malformed", "the request needs exactly one Host field");
-  }
-  const bool takes_body = request.method() == http::verb::post;
-  if (takes_body && !parser.chunked() && !parser.content_length()) {
-    return problem(411, "length-required",
-                   "send Content-Length or Transfer-Encoding: chunked with the body");
-  }
-  const auto coding = request.find(http::field::content_encoding);
-  if (coding != request.end() && lower(coding->value()) != "identity") {
-    return problem(415, "unsupported",
-                   "this service does not accept Content-Encoding: send the body uncompressed");
-  }
-  return std::nullopt;
-}
-
-Request to_request(http::request<http::string_body>&& message) {
-  Request request;
-  request.method = std::string(message.method_string());
-  request.target = std::string(message.target());
-  for (const auto& field : message) {
-    request.headers.push_back({lower(field.name_string()), std::string(field.value())});
-  }
-  request.body = std::move(message.body());
-  return request;
-}
-
-/// Status and header fields of an answer, except those that state its length.
-template <class Body>
-http::response<Body> head_of(const Response& response, bool keep_alive, unsigned version) {
-  http::response<Body> message;
-  message.version(version);
-  message.result(response.status);
-  message.reason(std::string(reason_phrase(response.status)));
-  message.set(http::field::server, "watertight");
-  if (!response.content_type.empty()) {
-    message.set(http::field::content_type, response.content_type);
-  }
-  message.set("X-Content-Type-Options", "nosniff");
-  for (const HeaderField& field : response.headers) message.insert(field.name, field.value);
-  message.keep_alive(keep_alive);
-  return message;
-}
-
-http::response<http::string_body> to_message(Response&& response, bool is_head, bool keep_alive,
-                                             unsigned version) {
-  auto message = head_of<http::string_body>(response, keep_alive, version);
-  const bool has_no_body = response.status == 204 || response.status == 304;
-  if (!has_no_body) message.content_length(response.body.size());
-  if (!is_head && !has_no_body) message.body() = std::move(response.body);
-  return message;
-}
-
-/// The characters of a target or name as one word of a log line.
-std::string quoted(std::string_view text) {
-  std::string word = "\"";
-  for (const char c : text.substr(0, 512)) {
-    const bool is_plain = static_cast<unsigned char>(c) >= 0x20 && c != '"' && c != '\\';
-    word.push_back(is_plain ? c : '?');
-  }
-  return word + "\"";
 }
 
 Response respond_guarded(const Application& application, const Request& request,
@@ -166,6 +65,65 @@ Result<std::string> next_part_guarded(const BodyParts& parts) {
   }
 }
 
+/// Cancels what a connection's stream is doing when a moment has come, so that the client can still
+/// be answered (a time limit of the stream itself closes it). Only for the stream's executor.
+class TimeLimit {
+ public:
+  TimeLimit(const std::shared_ptr<Connection>& connection, Clock::time_point end)
+      : timer_(connection->stream.get_executor(), end), state_(std::make_shared<State>()) {
+    timer_.async_wait([connection, state = state_](const error_code&) {
+      if (!state->is_watching) return;
+      state->is_over = true;
+      connection->stream.cancel();
+    });
+  }
+  ~TimeLimit() {
+    state_->is_watching = false;
+    timer_.cancel();
+  }
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+  bool is_over() const { return state_->is_over; }
+
+ private:
+  struct State {
+    bool is_watching = true;
+    bool is_over = false;
+  };
+  asio::steady_timer timer_;
+  std::shared_ptr<State> state_;
+};
+
+/// Notices that a client has closed its side of the connection while its request is answered. Does
+/// not read: bytes that come are those of the next request. Only for the stream's executor.
+class ClientWatch {
+ public:
+  explicit ClientWatch(const std::shared_ptr<Connection>& connection)
+      : connection_(connection), has_left_(std::make_shared<std::atomic<bool>>(false)) {
+    connection_->stream.socket().async_wait(
+        asio::ip::tcp::socket::wait_read, [connection, left = has_left_](const error_code& error) {
+          if (error) return;
+          char byte = 0;
+          error_code problem_of_socket;
+          const std::size_t count = connection->stream.socket().receive(
+              asio::buffer(&byte, 1), asio::socket_base::message_peek, problem_of_socket);
+          *left = problem_of_socket || count == 0;
+        });
+  }
+  ~ClientWatch() {
+    error_code ignored;
+    connection_->stream.socket().cancel(ignored);
+  }
+  ClientWatch(const ClientWatch&) = delete;
+  ClientWatch& operator=(const ClientWatch&) = delete;
+  /// May be asked by any thread, also after the watch has ended.
+  std::shared_ptr<const std::atomic<bool>> has_left() const { return has_left_; }
+
+ private:
+  std::shared_ptr<Connection> connection_;
+  std::shared_ptr<std::atomic<bool>> has_left_;
+};
+
 /// The state of one run of run_session.
 class Session {
  public:
@@ -180,7 +138,8 @@ class Session {
  private:
   awaitable<bool> wait_for_request();
   awaitable<bool> serve_one();
-  awaitable<std::optional<Response>> receive(Parser& parser);
+  awaitable<std::optional<Response>> receive(RequestParser& parser);
+  awaitable<std::optional<Response>> receive_body(RequestParser& parser);
   awaitable<Response> answer(const Request& request);
   awaitable<bool> send(Response response, bool keep_alive);
   awaitable<Status> send_parts(Response response, bool keep_alive, std::uint64_t& sent);
@@ -197,6 +156,7 @@ class Session {
   beast::flat_buffer buffer_;
   std::string method_;
   std::string target_;
+  std::string body_;                       // of the request
   std::optional<BudgetShare> body_share_;  // held from the header to the answer
   bool is_head_ = false;
   unsigned version_ = 11;
@@ -216,47 +176,78 @@ awaitable<void> Session::run() {
 
 /// Waits for the first byte. False when the connection is over.
 awaitable<bool> Session::wait_for_request() {
-  if (buffer_.size() > 0) co_return true;
-  connection_->is_idle = true;
+  if (buffer_.size() > 0) {
+    connection_->enter(Connection::State::receiving);
+    co_return true;
+  }
+  connection_->enter(Connection::State::idle);
   if (environment_.is_draining) co_return false;
   stream_.expires_after(seconds(options_.idle_seconds));
   error_code error;
   const auto space = buffer_.prepare(kReadBytes);
   const std::size_t count =
       co_await stream_.async_read_some(space, redirect_error(use_awaitable, error));
-  connection_->is_idle = false;
+  connection_->enter(Connection::State::receiving);
   buffer_.commit(count);
   co_return !error && count > 0;
 }
 
 /// Reads the header and the body. Returns the problem that ends the connection, if any; a problem
 /// without status means that the connection is closed without an answer.
-awaitable<std::optional<Response>> Session::receive(Parser& parser) {
+awaitable<std::optional<Response>> Session::receive(RequestParser& parser) {
   const Response silence{0, "", "", {}};
   error_code error;
-  stream_.expires_after(seconds(options_.header_seconds));
-  co_await http::async_read_header(stream_, buffer_, parser, redirect_error(use_awaitable, error));
+  stream_.expires_never();
+  bool is_late = false;
+  {
+    const TimeLimit limit(connection_, Clock::now() + seconds(options_.header_seconds));
+    co_await http::async_read_header(stream_, buffer_, parser,
+                                     redirect_error(use_awaitable, error));
+    is_late = limit.is_over();
+  }
   method_ = std::string(parser.get().method_string());
   target_ = std::string(parser.get().target());
   is_head_ = parser.get().method() == http::verb::head;
   version_ = parser.get().version() == 10 ? 10 : 11;
+  if (is_late) co_return problem(408, "request-timeout", "the header came too slowly");
   if (error) co_return answer_to(error, options_).value_or(silence);
-  auto refusal = refusal_of(parser);
+  auto refusal = refusal_of(parser, options_);
   if (refusal) co_return refusal;
-  // A chunked body states no length: it may grow to the limit.
-  const std::uint64_t expected = parser.content_length()
-                                     ? std::uint64_t{*parser.content_length()}
-                                     : (parser.chunked() ? options_.body_bytes : 0);
-  body_share_.emplace(environment_.bodies, expected);
-  if (!body_share_->is_granted()) co_return busy("too many large requests are being received");
-  if (lower(parser.get()[http::field::expect]) == "100-continue" && buffer_.size() == 0) {
+  if (lower_case(std::string(parser.get()[http::field::expect])) == "100-continue" &&
+      buffer_.size() == 0 && !parser.is_done()) {
     const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
     co_await asio::async_write(stream_, asio::buffer(go_on), redirect_error(use_awaitable, error));
     if (error) co_return silence;
   }
-  stream_.expires_after(seconds(options_.body_seconds));
-  co_await http::async_read(stream_, buffer_, parser, redirect_error(use_awaitable, error));
-  if (error) co_return answer_to(error, options_).value_or(silence);
+  co_return co_await receive_body(parser);
+}
+
+/// Reads the body into body_. The bytes that have arrived, not those that were promised, are taken
+/// from the budget for bodies and buy time. Returns as receive() does.
+awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) {
+  const Clock::time_point start = Clock::now();
+  std::array<char, kReadBytes> piece{};
+  body_.clear();
+  body_share_.emplace(environment_.bodies, 0);
+  stream_.expires_never();
+  while (!parser.is_done()) {
+    const double allowed =
+        options_.body_seconds + static_cast<double>(body_.size()) / options_.body_rate;
+    const TimeLimit limit(connection_, start + seconds(allowed));
+    parser.get().body().data = piece.data();
+    parser.get().body().size = piece.size();
+    parser.get().body().more = true;
+    error_code error;
+    co_await http::async_read_some(stream_, buffer_, parser, redirect_error(use_awaitable, error));
+    if (error == http::error::need_buffer) error = {};
+    if (limit.is_over()) co_return problem(408, "request-timeout", "the body came too slowly");
+    if (error) co_return answer_to(error, options_).value_or(Response{0, "", "", {}});
+    body_.append(piece.data(), piece.size() - parser.get().body().size);
+    const bool is_small = body_.size() <= kSmallBody;
+    if (!is_small && !body_share_->grow_to(body_.size())) {
+      co_return busy("too many large requests are being received");
+    }
+  }
   co_return std::nullopt;
 }
 
@@ -264,8 +255,9 @@ awaitable<std::optional<Response>> Session::receive(Parser& parser) {
 awaitable<Response> Session::answer(const Request& request) {
   const Clock::time_point deadline = Clock::now() + seconds(options_.answer_seconds);
   const SessionEnvironment& environment = environment_;
-  const CancelPoll is_cancelled = [deadline, &environment] {
-    return environment.is_cancelled || Clock::now() > deadline;
+  const ClientWatch watch(connection_);
+  const CancelPoll is_cancelled = [deadline, &environment, left = watch.has_left()] {
+    return environment.is_cancelled || *left || Clock::now() > deadline;
   };
   const Lane lane = environment_.application.lane(request);
   if (lane == Lane::quick) {
@@ -277,6 +269,7 @@ awaitable<Response> Session::answer(const Request& request) {
   auto& threads = computes ? environment_.computing : environment_.reading;
   const Application& application = environment_.application;
   auto work = [&application, &request, &is_cancelled]() -> awaitable<Response> {
+    if (is_cancelled()) co_return busy("the request waited too long");
     co_return respond_guarded(application, request, is_cancelled);
   };
   co_return co_await asio::co_spawn(threads.get_executor(), std::move(work), use_awaitable);
@@ -285,7 +278,7 @@ awaitable<Response> Session::answer(const Request& request) {
 /// Serves one request whose first bytes are in the buffer. True when the connection goes on.
 awaitable<bool> Session::serve_one() {
   const Clock::time_point start = Clock::now();
-  Parser parser;
+  RequestParser parser;
   parser.header_limit(options_.header_bytes);
   parser.body_limit(options_.body_bytes);
   std::optional<Response> refusal = co_await receive(parser);
@@ -297,7 +290,9 @@ awaitable<bool> Session::serve_one() {
     co_return false;
   }
   const bool keep_alive = parser.get().keep_alive();
-  const Request request = to_request(parser.release());
+  connection_->enter(Connection::State::answering);
+  Request request = to_request(parser);
+  request.body = std::move(body_);
   stream_.expires_never();
   Response response = co_await answer(request);
   const bool goes_on = keep_alive && !environment_.is_draining;

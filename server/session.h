@@ -10,6 +10,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
+#include <chrono>
 #include <cstdint>
 #include <list>
 #include <memory>
@@ -38,6 +39,13 @@ class BudgetShare {
       : budget_(budget),
         amount_(budget.take(amount) ? amount : 0),
         is_granted_(amount_ == amount) {}
+  /// Makes the share at least `amount`. False when the budget has not so much left.
+  bool grow_to(std::uint64_t amount) {
+    if (amount <= amount_) return true;
+    if (!budget_.take(amount - amount_)) return false;
+    amount_ = amount;
+    return true;
+  }
   ~BudgetShare() { budget_.give_back(amount_); }
   BudgetShare(const BudgetShare&) = delete;
   BudgetShare& operator=(const BudgetShare&) = delete;
@@ -54,7 +62,14 @@ class BudgetShare {
 struct Connection {
   explicit Connection(boost::asio::ip::tcp::socket socket) : stream(std::move(socket)) {}
   boost::beast::tcp_stream stream;
-  bool is_idle = true;  // waits for the first byte of a request; for the stream's executor only
+  /// The activity of the connection and when it began; for the stream's executor only.
+  enum class State : std::uint8_t { idle, receiving, answering };
+  State state = State::idle;
+  std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+  void enter(State next) {
+    state = next;
+    since = std::chrono::steady_clock::now();
+  }
   std::string peer;
 };
 

@@ -3,8 +3,12 @@
 
 #include <libpq-fe.h>
 
+#include <poll.h>
+
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <chrono>
 
 namespace watertight::store {
@@ -14,6 +18,8 @@ namespace {
 constexpr std::uint32_t kBytea = 17, kInt8 = 20, kText = 25, kFloat8 = 701;
 constexpr std::uint32_t kByteaArray = 1001, kTextArray = 1009, kInt8Array = 1016,
                         kFloat8Array = 1022;
+constexpr std::chrono::seconds kOpening{
+    5};  // the longest time for the first statements of a session
 constexpr std::size_t kArrayFlagOffset = 4;  // the offset of "has nulls" in a binary array
 
 void append_big_endian(std::string& bytes, std::uint64_t value, int width) {
@@ -205,12 +211,20 @@ std::variant<std::unique_ptr<DatabaseSession>, DatabaseSession::OpenFailure> Dat
   // A feature counts as stored when it is on the disk, whatever the server's default; stronger
   // settings are left alone. A writer that vanished must not keep its locks, and no session of ours
   // may wait for a lock for ever.
+  PQsetnonblocking(raw, 1);
+  opened->limit(Clock::now() + kOpening, nullptr);
+  // A server that has this setting stops working for a client that has left.
+  const Result<Rows> checking = opened->run(
+      "SELECT set_config(name, '1s', false) FROM pg_settings"
+      " WHERE name = 'client_connection_check_interval'");
+  if (!checking) return OpenFailure{checking.error(), opened->is_lost()};
   const Result<Rows> durable = opened->run(
       "SELECT set_config('lock_timeout', '30s', false),"
       " set_config('idle_in_transaction_session_timeout', '60s', false),"
       " set_config('synchronous_commit',"
       "            replace(current_setting('synchronous_commit'), 'off', 'on'), false)");
   if (!durable) return OpenFailure{durable.error(), opened->is_lost()};
+  opened->limit(Clock::time_point::max(), nullptr);
   return opened;
 }
 
@@ -240,13 +254,57 @@ Result<Rows> DatabaseSession::run(const std::string& statement, const Parameters
     lengths.push_back(value ? static_cast<int>(value->size()) : 0);
   }
   const std::vector<int> formats(values.size(), 1);
-  pg_result* const result =
-      PQexecParams(connection_.get(), statement.c_str(), static_cast<int>(values.size()),
-                   parameters.types_.data(), values.data(), lengths.data(), formats.data(), 1);
-  Rows rows(result);
-  const ExecStatusType status = PQresultStatus(result);
-  if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) return failure(result);
-  return Result<Rows>(std::move(rows));
+  const int is_sent =
+      PQsendQueryParams(connection_.get(), statement.c_str(), static_cast<int>(values.size()),
+                        parameters.types_.data(), values.data(), lengths.data(), formats.data(), 1);
+  if (is_sent == 0) return failure(nullptr);
+  for (int left = PQflush(connection_.get()); left != 0; left = PQflush(connection_.get())) {
+    if (left < 0) break;  // receive() has the server's reason
+    if (!wait_for(POLLIN | POLLOUT)) return late();
+    if (PQconsumeInput(connection_.get()) == 0) break;
+  }
+  return receive();
+}
+
+/// Waits until the socket is ready. False when the time is over.
+bool DatabaseSession::wait_for(short events) const {
+  constexpr std::chrono::milliseconds kTick{100};  // how soon an interruption is noticed
+  pollfd socket{PQsocket(connection_.get()), events, 0};
+  for (;;) {
+    if (is_interrupted_ != nullptr && *is_interrupted_) return false;
+    const auto left = deadline_ - Clock::now();
+    if (left <= Clock::duration::zero()) return false;
+    const auto pause = std::min<Clock::duration>(left, kTick);
+    const int ready = ::poll(
+        &socket, 1, static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(pause).count()));
+    if (ready > 0 || (ready < 0 && errno != EINTR)) return true;
+  }
+}
+
+/// The failure of a statement whose time is over. Its session cannot be used again: closing it
+/// makes the server give up too (client_connection_check_interval).
+Result<Rows> DatabaseSession::late() {
+  state_.clear();
+  connection_.reset();
+  return Error{ErrorCode::unavailable, "the database does not answer in time"};
+}
+
+/// The result of the statement that was sent.
+Result<Rows> DatabaseSession::receive() {
+  std::optional<Rows> rows;
+  for (;;) {
+    while (PQisBusy(connection_.get()) != 0) {
+      if (!wait_for(POLLIN)) return late();
+      if (PQconsumeInput(connection_.get()) == 0) break;
+    }
+    pg_result* const next = PQgetResult(connection_.get());
+    if (next == nullptr) break;
+    rows.emplace(next);
+  }
+  if (!rows) return failure(nullptr);
+  const ExecStatusType status = PQresultStatus(rows->get());
+  if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) return failure(rows->get());
+  return Result<Rows>(*std::move(rows));
 }
 
 void DatabaseSession::roll_back() {
@@ -282,10 +340,19 @@ ConnectionPool::Lease::~Lease() {
   if (pool_ != nullptr) pool_->give_back(std::move(session));
 }
 
+void ConnectionPool::interrupt() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_interrupted_ = true;
+  }
+  freed_.notify_all();
+}
+
 Result<ConnectionPool::Lease> ConnectionPool::lease(double seconds) {
   std::unique_lock lock(mutex_);
   const bool free = freed_.wait_for(lock, std::chrono::duration<double>(seconds),
-                                    [this] { return free_slots_ > 0; });
+                                    [this] { return free_slots_ > 0 || is_interrupted_; });
+  if (is_interrupted_) return Error{ErrorCode::unavailable, "the service is stopping"};
   if (!free) return Error{ErrorCode::unavailable, "all database connections are busy"};
   --free_slots_;
   std::unique_ptr<DatabaseSession> session;

@@ -5,6 +5,8 @@
 // connection.cpp includes libpq.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -52,6 +54,7 @@ class Parameters {
 class Rows {
  public:
   explicit Rows(pg_result* result) : result_(result) {}
+  const pg_result* get() const { return result_.get(); }
   int size() const;
   bool is_null(int row, int column) const;
   /// The bytes of a text or bytea column; "" for NULL.
@@ -70,6 +73,8 @@ class Rows {
 /// A session with UTF-8 encoding and synchronous commit. Not thread-safe.
 class DatabaseSession {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// The reason why a session could not be opened. Errors: invalid_argument when the connection
   /// string cannot be parsed; limit_exceeded without memory; unavailable with the server's message.
   /// `may_come_back` says whether waiting can help.
@@ -84,6 +89,12 @@ class DatabaseSession {
   DatabaseSession(const DatabaseSession&) = delete;
   DatabaseSession& operator=(const DatabaseSession&) = delete;
 
+  /// Statements that are not done at `deadline`, or when `is_interrupted` has become true, fail and
+  /// the session is lost then. `is_interrupted` must outlive the session.
+  void limit(Clock::time_point deadline, const std::atomic<bool>* is_interrupted) {
+    deadline_ = deadline;
+    is_interrupted_ = is_interrupted;
+  }
   /// Runs one statement. Errors: the server's message, with a code that follows from its SQLSTATE;
   /// limit_exceeded for parameters of more than 1 GiB. state() and is_lost() say more.
   Result<Rows> run(const std::string& statement, const Parameters& parameters = {});
@@ -100,9 +111,14 @@ class DatabaseSession {
     void operator()(pg_conn* connection) const;
   };
   Error failure(const pg_result* result);
+  bool wait_for(short events) const;
+  Result<Rows> late();
+  Result<Rows> receive();
 
   std::unique_ptr<pg_conn, Finish> connection_;
   std::string state_;
+  Clock::time_point deadline_ = Clock::time_point::max();
+  const std::atomic<bool>* is_interrupted_ = nullptr;
 };
 
 /// Whether a server takes connections now; no password is needed to ask.
@@ -136,6 +152,9 @@ class ConnectionPool {
 
   /// Errors: unavailable when every session stays busy for `seconds`.
   Result<Lease> lease(double seconds);
+  /// Makes all leases, running and later ones, fail soon.
+  void interrupt();
+  const std::atomic<bool>& is_interrupted() const { return is_interrupted_; }
   const std::string& connection() const { return connection_; }
 
  private:
@@ -145,6 +164,7 @@ class ConnectionPool {
   std::mutex mutex_;
   std::condition_variable freed_;
   std::size_t free_slots_;
+  std::atomic<bool> is_interrupted_ = false;
   std::vector<std::unique_ptr<DatabaseSession>> idle_;
 };
 

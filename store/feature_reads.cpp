@@ -13,17 +13,6 @@ namespace {
 constexpr std::uint64_t kLargestPage = 10'000;
 constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
-std::string collections_where(const char* condition) {
-  return std::string(
-             "SELECT c.id, c.srid, h.content, count(f.id), coalesce(sum(f.solids), 0)::int8,"
-             " coalesce(sum(f.blob_bytes), 0)::int8, min(f.min_x), min(f.min_y), min(f.min_z),"
-             " max(f.max_x), max(f.max_y), max(f.max_z)"
-             " FROM watertight.collection c"
-             " JOIN watertight.document_header h ON h.digest = c.header"
-             " LEFT JOIN watertight.feature f ON f.collection = c.id WHERE ") +
-         condition + " GROUP BY c.id, h.digest ORDER BY c.id";
-}
-
 /// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
 /// are its smallest and largest coordinates. The index finds candidates in x and y; PostgreSQL's
 /// box operator is generous by 1e-6, so none is missed. The comparison of the six numbers decides.
@@ -40,32 +29,6 @@ std::string matching(const FeatureQuery& query) {
 const char* const kFeatureColumns =
     "SELECT id, version, type, format, srid, header, skeleton,"
     " min_x, min_y, min_z, max_x, max_y, max_z";
-
-std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
-  if (rows.is_null(row, first_column)) return std::nullopt;
-  StoredBox box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.min[static_cast<std::size_t>(axis)] = rows.float8(row, first_column + axis);
-    box.max[static_cast<std::size_t>(axis)] = rows.float8(row, first_column + 3 + axis);
-  }
-  return box;
-}
-
-StoredCollection collection_of(const Rows& rows, int row) {
-  StoredCollection found;
-  found.id = rows.text(row, 0);
-  found.srid = static_cast<std::uint32_t>(rows.int8(row, 1));
-  found.header = rows.text(row, 2);
-  found.features = static_cast<std::uint64_t>(rows.int8(row, 3));
-  found.solids = static_cast<std::uint64_t>(rows.int8(row, 4));
-  found.blob_bytes = static_cast<std::uint64_t>(rows.int8(row, 5));
-  found.box = box_of(rows, row, 6);
-  return found;
-}
-
-Error no_collection(const std::string& id) {
-  return {ErrorCode::not_found, "there is no collection '" + id + "'"};
-}
 
 /// The features in `rows`, whose columns are kFeatureColumns. The features have no solids yet, and
 /// fill_headers() has still to replace the digests of their headers.
@@ -157,12 +120,27 @@ Parameters filter_parameters(const FeatureQuery& query) {
   return parameters;
 }
 
-Result<Rows> page_rows(DatabaseSession& connection, const FeatureQuery& query, std::int64_t limit) {
+Result<Rows> summary_rows(DatabaseSession& connection, const FeatureQuery& query,
+                          std::int64_t limit) {
   Parameters parameters = filter_parameters(query);
   parameters.text(query.after).int8(limit);
   const char* const rest =
       query.box ? " AND id > $8 ORDER BY id LIMIT $9" : " AND id > $2 ORDER BY id LIMIT $3";
-  return connection.run(kFeatureColumns + matching(query) + rest, parameters);
+  return connection.run(
+      "SELECT id, type, version, solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z" +
+          matching(query) + rest,
+      parameters);
+}
+
+FeatureSummary summary_of(const Rows& rows, int row) {
+  FeatureSummary summary;
+  summary.id = rows.text(row, 0);
+  summary.type = rows.text(row, 1);
+  summary.version = static_cast<std::uint64_t>(rows.int8(row, 2));
+  summary.solids = static_cast<std::uint64_t>(rows.int8(row, 3));
+  summary.blob_bytes = static_cast<std::uint64_t>(rows.int8(row, 4));
+  summary.box = box_of(rows, row, 5);
+  return summary;
 }
 
 /// The place number and the id after which the next batch of features begins.
@@ -228,28 +206,16 @@ Status check_collection_exists(DatabaseSession& connection, const std::string& i
   return Done{};
 }
 
-Result<std::uint64_t> count_matched(DatabaseSession& connection, const FeatureQuery& query) {
-  const Result<Rows> rows =
-      connection.run("SELECT count(*)" + matching(query), filter_parameters(query));
-  if (!rows) return rows.error();
-  return static_cast<std::uint64_t>(rows->int8(0, 0));
-}
-
 }  // namespace
 
-Result<std::vector<StoredCollection>> read_collections(DatabaseSession& connection) {
-  const Result<Rows> rows = connection.run(collections_where("true"));
-  if (!rows) return rows.error();
-  std::vector<StoredCollection> found;
-  for (int row = 0; row < rows->size(); ++row) found.push_back(collection_of(*rows, row));
-  return found;
-}
-
-Result<StoredCollection> read_collection(DatabaseSession& connection, const std::string& id) {
-  const Result<Rows> rows = connection.run(collections_where("c.id = $1"), Parameters().text(id));
-  if (!rows) return rows.error();
-  if (rows->size() == 0) return no_collection(id);
-  return collection_of(*rows, 0);
+std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
+  if (rows.is_null(row, first_column)) return std::nullopt;
+  StoredBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[static_cast<std::size_t>(axis)] = rows.float8(row, first_column + axis);
+    box.max[static_cast<std::size_t>(axis)] = rows.float8(row, first_column + 3 + axis);
+  }
+  return box;
 }
 
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
@@ -270,27 +236,18 @@ Result<StoredFeature> read_feature(DatabaseSession& connection, const std::strin
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query) {
   const std::uint64_t limit = std::min(query.limit, kLargestPage);
   FeaturePage page;
-  const Result<std::uint64_t> matched = count_matched(connection, query);
-  if (!matched) return matched.error();
-  page.matched = *matched;
-  if (page.matched == 0) {
+  // One feature more than asked for shows whether there is a next page.
+  const Result<Rows> rows = summary_rows(connection, query, static_cast<std::int64_t>(limit) + 1);
+  if (!rows) return rows.error();
+  for (int row = 0; row < rows->size(); ++row) page.features.push_back(summary_of(*rows, row));
+  if (page.features.empty()) {
     if (Status exists = check_collection_exists(connection, query.collection); !exists) {
       return std::move(exists).error();
     }
-    return page;
   }
-  if (limit == 0) return page;
-  // One feature more than asked for shows whether there is a next page.
-  const Result<Rows> rows = page_rows(connection, query, static_cast<std::int64_t>(limit) + 1);
-  if (!rows) return rows.error();
-  page.features = features_of(*rows, query.collection);
-  if (page.features.size() > limit) {
-    page.features.resize(limit);
-    page.next = page.features.back().id;
-  }
-  if (Status done = fill(connection, query.collection, page.features); !done) {
-    return std::move(done).error();
-  }
+  const bool has_more = page.features.size() > limit;
+  if (has_more) page.features.resize(limit);
+  if (has_more && limit > 0) page.next = page.features.back().id;
   return page;
 }
 
@@ -325,9 +282,13 @@ Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit) {
   const Result<Rows> rows = connection.run(
-      "SELECT f.format, h.content FROM (SELECT DISTINCT format, header FROM watertight.feature"
-      " WHERE collection = $1) f JOIN watertight.document_header h ON h.digest = f.header"
-      " ORDER BY f.format, f.header LIMIT $2",
+      "WITH RECURSIVE document AS ((SELECT format, header FROM watertight.feature"
+      " WHERE collection = $1 ORDER BY format, header LIMIT 1)"
+      " UNION ALL SELECT next.* FROM document d, LATERAL (SELECT format, header"
+      " FROM watertight.feature WHERE collection = $1 AND (format, header) > (d.format, d.header)"
+      " ORDER BY format, header LIMIT 1) next)"
+      " SELECT d.format, h.content FROM (SELECT * FROM document LIMIT $2) d"
+      " JOIN watertight.document_header h ON h.digest = d.header ORDER BY d.format, d.header",
       Parameters().text(collection).int8(static_cast<std::int64_t>(std::min(limit, kLargestPage))));
   if (!rows) return rows.error();
   std::vector<StoredHeader> found;

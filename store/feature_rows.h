@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,8 +33,19 @@ Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
 Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
                             const std::string& id);
 
+/// The error for a collection that does not exist.
+Error no_collection(const std::string& id);
+/// The box in six columns: the minima on x, y and z, then the maxima. Nothing where they are NULL.
+std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column);
+
 Result<std::vector<StoredCollection>> read_collections(DatabaseSession& connection);
 Result<StoredCollection> read_collection(DatabaseSession& connection, const std::string& id);
+/// Brings the counts and boxes of all collections up to date with their changes. Does nothing while
+/// another session does it.
+Result<Done> fold_changes(DatabaseSession& connection);
+/// Counts a collection from its features. Errors: not_found.
+Result<StoredCollection> recount_collection(DatabaseSession& connection, const std::string& id);
+
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id);
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query);

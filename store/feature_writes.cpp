@@ -80,6 +80,9 @@ Status check_solids(const StoredFeature& feature) {
 Status check_feature(const StoredFeature& feature) {
   if (Status checked = check_collection_id(feature.collection); !checked) return checked;
   if (feature.id.empty()) return bad("a feature has no id");
+  if (feature.id == "." || feature.id == "..") {
+    return bad("a feature cannot have the id '" + feature.id + "', which no URL can name");
+  }
   if (Status checked = check_id(feature.id, "a feature id"); !checked) return checked;
   if (!is_plain_utf8(feature.type) || !is_plain_utf8(feature.format)) {
     return bad("the type or format of feature '" + feature.id + "' is not UTF-8 text without NUL");

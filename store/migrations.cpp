@@ -104,6 +104,70 @@ constexpr Migration kMigrations[] = {
               'Number of the box''s centre along a Hilbert curve: the order of exports')",
          R"(CREATE INDEX feature_place ON watertight.feature (collection, place, id))",
      }},
+    {"counts of collections, kept by every write",
+     {
+         R"(ALTER TABLE watertight.collection
+              ADD COLUMN features bigint NOT NULL DEFAULT 0,
+              ADD COLUMN solids bigint NOT NULL DEFAULT 0,
+              ADD COLUMN blob_bytes bigint NOT NULL DEFAULT 0,
+              ADD COLUMN min_x double precision, ADD COLUMN min_y double precision,
+              ADD COLUMN min_z double precision, ADD COLUMN max_x double precision,
+              ADD COLUMN max_y double precision, ADD COLUMN max_z double precision)",
+         // Writers add rows here instead of updating one row of the collection, for which they
+         // would wait until the writer before has committed.
+         R"(CREATE TABLE watertight.collection_change (
+              collection text COLLATE "C" NOT NULL,
+              features bigint NOT NULL,
+              solids bigint NOT NULL,
+              blob_bytes bigint NOT NULL,
+              min_x double precision, min_y double precision, min_z double precision,
+              max_x double precision, max_y double precision, max_z double precision))",
+         R"(COMMENT ON TABLE watertight.collection_change IS
+              'What writes have added to the counts and boxes of collections since these were last brought up to date')",
+         R"(CREATE INDEX collection_change_collection
+              ON watertight.collection_change (collection))",
+         R"(CREATE FUNCTION watertight.note_added() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN
+              INSERT INTO watertight.collection_change
+                SELECT collection, count(*), sum(solids), sum(blob_bytes),
+                       min(min_x), min(min_y), min(min_z), max(max_x), max(max_y), max(max_z)
+                FROM added GROUP BY collection;
+              RETURN NULL; END $$)",
+         R"(CREATE FUNCTION watertight.note_removed() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN
+              INSERT INTO watertight.collection_change
+                SELECT collection, -count(*), -sum(solids), -sum(blob_bytes)
+                FROM removed GROUP BY collection;
+              RETURN NULL; END $$)",
+         R"(CREATE TRIGGER feature_added AFTER INSERT ON watertight.feature
+              REFERENCING NEW TABLE AS added FOR EACH STATEMENT
+              EXECUTE FUNCTION watertight.note_added())",
+         R"(CREATE TRIGGER feature_replaced_by AFTER UPDATE ON watertight.feature
+              REFERENCING NEW TABLE AS added FOR EACH STATEMENT
+              EXECUTE FUNCTION watertight.note_added())",
+         R"(CREATE TRIGGER feature_replaced AFTER UPDATE ON watertight.feature
+              REFERENCING OLD TABLE AS removed FOR EACH STATEMENT
+              EXECUTE FUNCTION watertight.note_removed())",
+         R"(CREATE TRIGGER feature_removed AFTER DELETE ON watertight.feature
+              REFERENCING OLD TABLE AS removed FOR EACH STATEMENT
+              EXECUTE FUNCTION watertight.note_removed())",
+         R"(INSERT INTO watertight.collection_change
+              SELECT collection, count(*), sum(solids), sum(blob_bytes),
+                     min(min_x), min(min_y), min(min_z), max(max_x), max(max_y), max(max_z)
+              FROM watertight.feature GROUP BY collection)",
+         // For the documents of a collection, found by one probe each.
+         R"(CREATE INDEX feature_document ON watertight.feature (collection, format, header))",
+     }},
+    {"ids that URLs can name",
+     {
+         // Clients of HTTP take "." and ".." out of a path, even when they are encoded.
+         R"(INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton,
+                solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)
+              SELECT collection, replace(id, '.', '%2E'), type, format, srid, header, skeleton,
+                solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place
+              FROM watertight.feature WHERE id IN ('.', '..'))",
+         R"(UPDATE watertight.solid SET feature = replace(feature, '.', '%2E')
+              WHERE feature IN ('.', '..'))",
+         R"(DELETE FROM watertight.feature WHERE id IN ('.', '..'))",
+     }},
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);
 

@@ -26,9 +26,19 @@ constexpr std::chrono::seconds kPatience{10};
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
 constexpr double kLeaseSeconds = 30;
+// The longest times for one attempt of a transaction.
+constexpr std::chrono::seconds kPinging{2};
+constexpr std::chrono::seconds kReading{10};
+constexpr std::chrono::seconds kWriting{120};
+constexpr std::chrono::seconds kCounting{600};
+constexpr std::chrono::seconds kMigrating{3600};
+// A ping that failed speaks for all calls of the next moments.
+constexpr std::chrono::seconds kAway{2};
 constexpr double kPingLeaseSeconds = 2;
 // Old receipts are removed after the first write and then once in this many writes.
 constexpr std::uint64_t kWritesPerSweep = 1000;
+// The changes of collections' counts are summed up at the start and after this many writes.
+constexpr std::uint64_t kWritesPerFold = 100;
 
 /// Pauses between attempts, each pause longer than the one before, until kPatience is used up.
 class Backoff {
@@ -71,10 +81,19 @@ class PostgresStore final : public SolidStore {
       : pool_(connection, connections) {}
 
   Status open() {
-    return with_session<Done>([](DatabaseSession& session) { return migrate(session); });
+    return with_session<Done>([](DatabaseSession& session) { return migrate(session); },
+                              kMigrating);
   }
 
   Status ping() override {
+    const Status status = try_ping();
+    away_until_ = status ? Clock::time_point::min() : Clock::now() + kAway;
+    return status;
+  }
+
+  void interrupt() override { pool_.interrupt(); }
+
+  Status try_ping() {
     Result<ConnectionPool::Lease> lease = pool_.lease(kPingLeaseSeconds);
     if (!lease) return lease.error();
     // A session of the pool is lost if the server restarted. Then one new session is tried at once.
@@ -86,6 +105,7 @@ class PostgresStore final : public SolidStore {
         }
         lease->session = std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
       }
+      lease->session->limit(Clock::now() + kPinging, &pool_.is_interrupted());
       Status current = check_schema(*lease->session);
       if (current || !lease->session->is_lost()) return current;
       lease->session.reset();
@@ -102,6 +122,12 @@ class PostgresStore final : public SolidStore {
     if (!check_collection_id(id)) return no_such_collection();
     return read<StoredCollection>(
         [&](DatabaseSession& session) { return read_collection(session, id); });
+  }
+
+  Result<StoredCollection> recount(const std::string& id) override {
+    if (!check_collection_id(id)) return no_such_collection();
+    return write<StoredCollection>(
+        [&](DatabaseSession& session) { return recount_collection(session, id); }, kCounting);
   }
 
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
@@ -166,18 +192,22 @@ class PostgresStore final : public SolidStore {
   /// Runs `work` with a session, and runs it again when transactions collided or the session was
   /// lost, then with a new session. Requires work that may be run again.
   template <class Value>
-  Result<Value> with_session(const Work<Value>& work) {
+  Result<Value> with_session(const Work<Value>& work, std::chrono::seconds longest) {
+    if (Clock::now() < away_until_.load()) {
+      return Error{ErrorCode::unavailable, "the database is away"};
+    }
     Result<ConnectionPool::Lease> lease = pool_.lease(kLeaseSeconds);
     if (!lease) return lease.error();
     for (Backoff backoff;;) {
       if (!lease->session) {
         auto opened = DatabaseSession::open(pool_.connection());
         if (const auto* failed = std::get_if<DatabaseSession::OpenFailure>(&opened)) {
-          if (failed->may_come_back && backoff.pause()) continue;
+          if (failed->may_come_back && !pool_.is_interrupted() && backoff.pause()) continue;
           return failed->error;
         }
         lease->session = std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
       }
+      lease->session->limit(Clock::now() + longest, &pool_.is_interrupted());
       Result<Value> result = work(*lease->session);
       if (result) return result;
       const bool lost = lease->session->is_lost();
@@ -187,14 +217,14 @@ class PostgresStore final : public SolidStore {
       } else {
         lease->session->roll_back();
       }
-      if ((!lost && !collided) || !backoff.pause()) return result;
+      if ((!lost && !collided) || pool_.is_interrupted() || !backoff.pause()) return result;
     }
   }
 
   /// Runs `work` in a transaction in which all statements see one state of the database.
   template <class Value>
   Result<Value> read(const Work<Value>& work) {
-    return with_session<Value>([&](DatabaseSession& session) -> Result<Value> {
+    const Work<Value> transaction = [&](DatabaseSession& session) -> Result<Value> {
       const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
       if (!begun) return begun.error();
       Result<Value> result = work(session);
@@ -202,18 +232,19 @@ class PostgresStore final : public SolidStore {
       const Result<Rows> ended = session.run("COMMIT");
       if (!ended) return ended.error();
       return result;
-    });
+    };
+    return with_session<Value>(transaction, kReading);
   }
 
   /// Runs `work` in one durable transaction, exactly once. The transaction also inserts a token: if
   /// the connection breaks during COMMIT, the insert of the token in the next attempt waits for the
   /// end of the first attempt, and fails exactly when the first attempt was committed.
   template <class Value>
-  Result<Value> write(const Work<Value>& work) {
+  Result<Value> write(const Work<Value>& work, std::chrono::seconds longest = kWriting) {
     const Result<Token> token = new_token();
     if (!token) return token.error();
     std::optional<Value> in_doubt;  // the result of an attempt whose COMMIT was not answered
-    Result<Value> result = with_session<Value>([&](DatabaseSession& session) -> Result<Value> {
+    const Work<Value> transaction = [&](DatabaseSession& session) -> Result<Value> {
       const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE");
       if (!begun) return begun.error();
       const Result<Rows> marked = session.run(
@@ -231,20 +262,35 @@ class PostgresStore final : public SolidStore {
       if (ended) return value;
       if (session.is_lost()) in_doubt = *value;
       return ended.error();
-    });
+    };
+    Result<Value> result = with_session<Value>(transaction, longest);
     if (!result && in_doubt && result.error().code == ErrorCode::unavailable) {
       return Error{
           ErrorCode::unavailable,
           "the database went away while it committed; whether this was stored is not known (" +
               result.error().message + ")"};
     }
-    if (result && ++writes_ % kWritesPerSweep == 1) sweep();
+    if (!result) return result;
+    const std::uint64_t writes = ++writes_;
+    if (writes % kWritesPerFold == 1) fold();
+    if (writes % kWritesPerSweep == 1) sweep();
     return result;
+  }
+
+  /// Keeps the changes few that a reader of a collection's counts sums up.
+  void fold() {
+    const Work<Done> work = [](DatabaseSession& session) -> Status {
+      if (const Result<Rows> begun = session.run("BEGIN"); !begun) return begun.error();
+      if (Status done = fold_changes(session); !done) return done;
+      if (const Result<Rows> ended = session.run("COMMIT"); !ended) return ended.error();
+      return Done{};
+    };
+    static_cast<void>(with_session(work, kWriting));  // the next one takes what this one left
   }
 
   /// Removes old receipts, and headers that no feature uses any more.
   void sweep() {
-    const Result<Done> swept = with_session<Done>([](DatabaseSession& session) -> Status {
+    const Work<Done> work = [](DatabaseSession& session) -> Status {
       for (const char* statement :
            {"DELETE FROM watertight.write_receipt WHERE written < now() - interval '1 day'",
             "DELETE FROM watertight.document_header h WHERE NOT EXISTS"
@@ -253,11 +299,13 @@ class PostgresStore final : public SolidStore {
         if (const Result<Rows> gone = session.run(statement); !gone) return gone.error();
       }
       return Done{};
-    });
-    static_cast<void>(swept);  // after a failure the next sweep removes the rest
+    };
+    static_cast<void>(
+        with_session(work, kWriting));  // after a failure the next sweep removes the rest
   }
 
   ConnectionPool pool_;
+  std::atomic<Clock::time_point> away_until_ = Clock::time_point::min();
   std::atomic<std::uint64_t> writes_{0};
 };
 

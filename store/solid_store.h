@@ -32,6 +32,8 @@ struct StoredCollection {
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t blob_bytes = 0;
+  /// Contains all features. After features were removed or replaced it may be larger than needed,
+  /// until recount().
   std::optional<StoredBox> box;
 };
 
@@ -70,10 +72,19 @@ struct FeatureQuery {
   std::optional<StoredBox> box;
 };
 
+/// The facts about a feature that lists show.
+struct FeatureSummary {
+  std::string id;
+  std::string type;
+  std::uint64_t version = 0;
+  std::uint64_t solids = 0;
+  std::uint64_t blob_bytes = 0;
+  std::optional<StoredBox> box;
+};
+
 struct FeaturePage {
-  std::vector<StoredFeature> features;  // ordered by id, bytewise
-  std::uint64_t matched = 0;            // the number of features that match, on all pages
-  std::string next;                     // `after` of the next page; "" = this page is the last
+  std::vector<FeatureSummary> features;  // ordered by id, bytewise
+  std::string next;                      // `after` of the next page; "" = this page is the last
 };
 
 /// The format and header that the features of one document share.
@@ -91,9 +102,16 @@ class SolidStore {
  public:
   virtual ~SolidStore() = default;
   /// Ok when the database answers and its schema is current.
+  /// While it says that the database is away, other calls fail at once.
   virtual Status ping() = 0;
+  /// Makes running and later calls fail within moments. For a process that is about to end.
+  virtual void interrupt() {}
+  /// The cost of this and the next does not depend on the number of features.
   virtual Result<std::vector<StoredCollection>> collections() = 0;
   virtual Result<StoredCollection> collection(const std::string& id) = 0;
+  /// Counts a collection again and makes its box as small as it can be. Reads all its features.
+  /// Errors: not_found.
+  virtual Result<StoredCollection> recount(const std::string& id) = 0;
   /// Stores all features or none, durably. Creates the collection when it does not exist; replaces
   /// a feature whose id exists, under a higher version. Sends the rows of a table together. Returns
   /// the new version of each feature. Errors: invalid_argument for a feature that the database

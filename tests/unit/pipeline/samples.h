@@ -67,6 +67,7 @@ class MemoryStore final : public SolidStore {
     if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
     return summary(id);
   }
+  Result<store::StoredCollection> recount(const std::string& id) override { return collection(id); }
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
@@ -94,21 +95,32 @@ class MemoryStore final : public SolidStore {
     store::FeaturePage page;
     for (const auto& [id, feature] : features_[query.collection]) {
       if (query.box && !(feature.box && overlap(*query.box, *feature.box))) continue;
-      ++page.matched;
       if (id <= query.after) continue;
       if (page.features.size() == query.limit) {
         page.next = page.features.back().id;
-        continue;
+        break;
       }
-      page.features.push_back(feature);
+      std::uint64_t bytes = 0;
+      for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
+      page.features.push_back(
+          {id, feature.type, feature.version, feature.solids.size(), bytes, feature.box});
     }
     return page;
   }
   Result<store::FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                                    const std::string& after) override {
-    const auto page = list({collection, limit, after, {}});
-    if (!page) return page.error();
-    return store::FeatureBatch{page->features, page->next};
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    store::FeatureBatch batch;
+    for (const auto& [id, feature] : features_[collection]) {
+      if (id <= after) continue;
+      if (batch.features.size() == limit) {
+        batch.next = batch.features.back().id;
+        break;
+      }
+      batch.features.push_back(feature);
+    }
+    return batch;
   }
   Result<std::vector<store::StoredHeader>> documents(const std::string& collection,
                                                      std::uint64_t limit) override {

@@ -125,6 +125,21 @@ ByteWriter texts_of_one(std::uint64_t document, std::uint64_t blob_size) {
 
 }  // namespace
 
+TEST_CASE("a file of blobs keeps the bytes of each blob, and returns the same document") {
+  const std::string text = row_of_boxes(20);
+  const pipeline::EncodedDocument document = encoded(text);
+  const auto file = pipeline::write_container(document, {}, pipeline::SolidLayout::blobs);
+  REQUIRE(file);
+  for (const pipeline::EncodedFeature& feature : document.features) {
+    const Bytes& blob = feature.solids[0].blob;
+    CHECK(std::search(file->begin(), file->end(), blob.begin(), blob.end()) != file->end());
+  }
+  const auto decoded = pipeline::decode_container(*file);
+  REQUIRE(decoded);
+  CHECK(text_of(decoded->at(0)) == text);
+  CHECK(pipeline::describe_container(*file)->pages == 0);
+}
+
 TEST_CASE("a Watertight file returns its document") {
   const std::string text = samples::sequence({samples::feature("a"), samples::feature("b")});
   const Bytes container = container_of(text);

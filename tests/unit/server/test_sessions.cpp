@@ -12,6 +12,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "server/listener.h"
 
@@ -124,8 +125,8 @@ class Server {
   std::atomic<int> slow_ = 0;
 };
 
-const std::string kGet = "GET / HTTP/1.1\r\nHost: x\r\n\r\n";
-const std::string kGetSlow = "GET /slow HTTP/1.1\r\nHost: x\r\n\r\n";
+const std::string kGet = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
+const std::string kGetSlow = "GET /slow HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 bool starts(const std::string& answer, const std::string& status) {
   INFO(answer);
@@ -141,7 +142,7 @@ TEST_CASE("a connection serves several requests") {
     client.send(kGet);
     starts(client.receive_answer(), "200");
   }
-  client.send("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   starts(client.receive_all(), "200");
 }
 
@@ -149,8 +150,8 @@ TEST_CASE("pipelined requests are answered in order") {
   const Server server;
   const Client client(server.server->port());
   client.send(
-      "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\n\r\nabc"
-      "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+      "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 3\r\n\r\nabc"
+      "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const std::string answers = client.receive_all();
   starts(answers, "200");
   CHECK(answers.find("\r\n\r\n3HTTP/1.1 200") != std::string::npos);
@@ -165,43 +166,182 @@ TEST_CASE("limits of header and body are answered as problems") {
     CHECK(answer.find("application/problem+json") != std::string::npos);
     return answer;
   };
-  starts(ask("GET / HTTP/1.1\r\nHost: x\r\nX: " + std::string(2000, 'a') + "\r\n\r\n"), "431");
-  starts(ask("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 20000\r\n\r\n"), "413");
-  starts(ask("POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n4e20\r\n" +
+  starts(ask("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(2000, 'a') + "\r\n\r\n"),
+         "431");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 20000\r\n\r\n"), "413");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n4e20\r\n" +
              std::string(20000, 'a') + "\r\n0\r\n\r\n"),
          "413");
-  starts(ask("POST / HTTP/1.1\r\nHost: x\r\n\r\n"), "411");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\n\r\n"), "411");
   starts(ask("GET / HTTP/1.1\r\n\r\n"), "400");
   starts(ask("rubbish\r\n\r\n"), "400");
-  starts(
-      ask("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nContent-Encoding: gzip\r\n\r\nabc"),
-      "415");
+  starts(ask("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 3\r\nContent-Encoding: "
+             "gzip\r\n\r\nabc"),
+         "415");
 }
 
 TEST_CASE("senders that never finish are cut off") {
   const Server server;
+  const Client silent(server.server->port());
+  CHECK(silent.receive_all().empty());
   for (const char* part :
-       {"", "GET / HT", "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\na"}) {
+       {"GET / HT", "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\na"}) {
     const Client client(server.server->port());
     client.send(part);
-    CHECK(client.receive_all().empty());
+    starts(client.receive_all(), "408");
   }
 }
 
+TEST_CASE("a body that arrives fast enough may take longer than the time for a short one") {
+  server::ServerOptions options = Server::small();
+  options.body_seconds = 0.2;
+  options.body_rate = 1000;
+  const Server server(options);
+  const Client client(server.server->port());
+  client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000\r\n\r\n");
+  for (int i = 0; i < 10; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    client.send(std::string(100, 'a'));
+  }
+  starts(client.receive_answer(), "200");
+}
+
 TEST_CASE("bodies together have a limit of their own") {
-  const Server server;
+  server::ServerOptions options = Server::small();
+  options.body_bytes = 200'000;
+  options.body_bytes_together = 150'000;
+  options.body_seconds = 5;
+  const Server server(options);
+  const std::string header = "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 110000\r\n\r\n";
   const Client first(server.server->port());
-  first.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\na");
+  first.send(header + std::string(100'000, 'a'));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const Client second(server.server->port());
-  second.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\n");
+  second.send(header + std::string(100'000, 'a'));
   starts(second.receive_all(), "503");
+  const Client small(server.server->port());
+  small.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 60000\r\n\r\n" +
+             std::string(60'000, 'a'));
+  starts(small.receive_answer(), "200");
+  first.send(std::string(10'000, 'a'));
+  starts(first.receive_answer(), "200");
+}
+
+TEST_CASE("bodies that are only promised take nothing from others") {
+  server::ServerOptions options = Server::small();
+  options.body_bytes_together = 10'000;
+  const Server server(options);
+  std::vector<std::unique_ptr<Client>> promising;
+  for (int i = 0; i < 5; ++i) {
+    promising.push_back(std::make_unique<Client>(server.server->port()));
+    promising.back()->send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10000\r\n\r\n");
+  }
+  const Client chunked(server.server->port());
+  chunked.send(
+      "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n"
+      "3\r\nabc\r\n2\r\nde\r\n0\r\n\r\n");
+  const std::string answer = chunked.receive_answer();
+  starts(answer, "200");
+  CHECK(answer.ends_with("5"));
+}
+
+TEST_CASE("a body that a proxy could frame in another way is refused, and the connection closed") {
+  const Server server;
+  for (const char* fields :
+       {"Transfer-Encoding: xchunked\r\nContent-Length: 2", "Transfer-Encoding: identity",
+        "Transfer-Encoding: chunked, identity\r\nContent-Length: 2",
+        "Transfer-Encoding: gzip, chunked", "Transfer-Encoding:", "Transfer-Encoding: \"chunked\"",
+        "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"}) {
+    INFO(fields);
+    const Client client(server.server->port());
+    client.send(std::string("POST / HTTP/1.1\r\nHost: localhost\r\n") + fields +
+                "\r\n\r\n0\r\n\r\n" + kGet);
+    const std::string answer = client.receive_all();
+    const bool is_refused =
+        answer.starts_with("HTTP/1.1 501") || answer.starts_with("HTTP/1.1 400");
+    CHECK(is_refused);
+    CHECK(answer.find("HTTP/1.1 200") == std::string::npos);
+  }
+  const Client old(server.server->port());
+  old.send("POST / HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n");
+  CHECK(old.receive_all().find(" 501 ") != std::string::npos);
+}
+
+TEST_CASE("pages of other sites can neither write to a local service nor name it") {
+  const Server server;
+  const auto status = [&](const std::string& line, const std::string& fields) {
+    const Client client(server.server->port());
+    client.send(line + " HTTP/1.1\r\n" + fields + "Content-Length: 0\r\nConnection: close\r\n\r\n");
+    return client.receive_all().substr(9, 3);
+  };
+  CHECK(status("GET /", "Host: evil.example\r\n") == "421");
+  CHECK(status("GET /", "Host: localhost.evil.example\r\n") == "421");
+  for (const char* host :
+       {"localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:8080", "127.9.9.9"}) {
+    INFO(host);
+    CHECK(status("GET /", std::string("Host: ") + host + "\r\n") == "200");
+  }
+  const std::string host = "Host: localhost:80\r\n";
+  CHECK(status("POST /", host + "Origin: http://evil.example\r\n") == "403");
+  CHECK(status("DELETE /", host + "Origin: null\r\n") == "403");
+  CHECK(status("POST /", host + "Origin: http://localhost:80\r\n") == "200");
+  CHECK(status("GET /", host + "Origin: http://evil.example\r\n") == "200");
+}
+
+TEST_CASE("work for a client that has left is cancelled") {
+  Server server;
+  {
+    const Client client(server.server->port());
+    client.send(kGetSlow);
+    server.wait_for_slow(1);
+  }
+  const Client next(server.server->port());
+  next.send(kGetSlow);
+  server.wait_for_slow(2);  // the only computing thread is free again
+  server.release = true;
+  starts(next.receive_answer(), "200");
+}
+
+TEST_CASE("the next request may come while one is answered") {
+  Server server;
+  const Client client(server.server->port());
+  client.send(kGetSlow);
+  server.wait_for_slow(1);
+  client.send(kGet);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  server.release = true;
+  std::string answers;
+  CHECK(client.receive_at_least(2 * 100, answers));
+  CHECK(answers.find("cancelled") == std::string::npos);
+}
+
+TEST_CASE("idle clients make room for others") {
+  server::ServerOptions options = Server::small();
+  options.idle_seconds = 60;
+  const Server server(options);
+  std::vector<std::unique_ptr<Client>> idle;
+  for (int i = 0; i < 20; ++i) idle.push_back(std::make_unique<Client>(server.server->port()));
+  const Client client(server.server->port());
+  client.send(kGet);
+  starts(client.receive_answer(), "200");
+  idle.back()->send(kGet);  // the youngest was left alone
+  starts(idle.back()->receive_answer(), "200");
+}
+
+TEST_CASE("every answer has the time") {
+  const Server server;
+  const Client client(server.server->port());
+  client.send(kGet);
+  const std::string answer = client.receive_answer();
+  CHECK(answer.find("\r\nDate: ") != std::string::npos);
+  CHECK(answer.find(" GMT\r\n") != std::string::npos);
 }
 
 TEST_CASE("a client that expects 100 Continue gets it") {
   const Server server;
   const Client client(server.server->port());
-  client.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nExpect: 100-continue\r\n\r\n");
+  client.send(
+      "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 3\r\nExpect: 100-continue\r\n\r\n");
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   client.send("abc");
   const std::string answer = client.receive_answer();
@@ -212,7 +352,7 @@ TEST_CASE("a client that expects 100 Continue gets it") {
 TEST_CASE("HEAD has the length of the body but not the body") {
   const Server server;
   const Client client(server.server->port());
-  client.send("HEAD / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  client.send("HEAD / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const std::string answer = client.receive_all();
   CHECK(answer.find("Content-Length: 1\r\n") != std::string::npos);
   CHECK(answer.ends_with("\r\n\r\n"));
@@ -340,12 +480,12 @@ struct Parts {
   std::unique_ptr<server::HttpServer> server;
 };
 
-const std::string kGetParts = "GET /parts HTTP/1.1\r\nHost: x\r\n\r\n";
+const std::string kGetParts = "GET /parts HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 TEST_CASE("an answer in parts comes in chunks, and the connection goes on") {
   Parts parts(3);
   const Client client(parts.server->port());
-  client.send(kGetParts + "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  client.send(kGetParts + "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const std::string answers = client.receive_all();
   const std::size_t body = answers.find("\r\n\r\n") + 4;
   CHECK(answers.substr(0, body).find("Transfer-Encoding: chunked\r\n") != std::string::npos);
@@ -364,7 +504,7 @@ TEST_CASE("HTTP 1.0 gets the parts without chunks, and HEAD none") {
   CHECK(answer.ends_with("\r\n\r\naaaaacccccbbbbb"));
   const std::size_t made = parts.made;
   const Client head(parts.server->port());
-  head.send("HEAD /parts HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  head.send("HEAD /parts HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   CHECK(head.receive_all().ends_with("\r\n\r\n"));
   CHECK(parts.made == made);
 }

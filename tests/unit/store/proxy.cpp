@@ -8,6 +8,7 @@
 
 #include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <chrono>
 #include <cstring>
 #include <string_view>
 
@@ -69,6 +70,10 @@ void Proxy::pass(int client) {
   std::array<pollfd, 2> ends{pollfd{client, POLLIN, 0}, pollfd{server, POLLIN, 0}};
   for (bool open = true; open && !stop_;) {
     if (poll(ends.data(), ends.size(), 20) <= 0) continue;
+    if (is_held_) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      continue;
+    }
     for (std::size_t from = 0; open && from < 2; ++from) {
       if (ends[from].revents == 0) continue;
       const ssize_t count = read(ends[from].fd, buffer.data(), buffer.size());

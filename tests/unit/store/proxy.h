@@ -27,6 +27,8 @@ class Proxy {
   /// Breaks the connection at the next COMMIT, once.
   void cut_next(Cut cut) { cut_ = cut; }
   bool has_cut() const { return cut_ == Cut::none; }
+  /// Passes nothing on while held, so that the server seems to hang.
+  void hold(bool is_held) { is_held_ = is_held; }
 
  private:
   void serve();
@@ -35,6 +37,7 @@ class Proxy {
   std::string server_;
   int listener_ = -1;
   std::atomic<Cut> cut_{Cut::none};
+  std::atomic<bool> is_held_{false};
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -181,6 +181,51 @@ TEST_CASE("a store reports that the server stays away, and works when it is back
   CHECK((*store)->get("buildings", "a").error().code == ErrorCode::not_found);
 }
 
+TEST_CASE("a database that hangs fails a read in time, and an interruption fails it at once") {
+  const Database database;
+  const TemporaryFolder folder;
+  Proxy proxy(folder.path, database.socket());
+  const auto store =
+      store::open_postgres_store(database.connection() + " host='" + folder.path + "'", 1);
+  REQUIRE(store);
+  const StoredFeature feature = sample_feature("a");
+  REQUIRE((*store)->put(std::span(&feature, 1)));
+  const auto seconds_of_get = [&] {
+    const auto start = std::chrono::steady_clock::now();
+    const auto got = (*store)->get("buildings", "a");
+    REQUIRE(!got);
+    CHECK(got.error().code == ErrorCode::unavailable);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  proxy.hold(true);
+  CHECK(seconds_of_get() < 12);
+  proxy.hold(false);
+  CHECK((*store)->get("buildings", "a"));
+  proxy.hold(true);
+  std::thread stopping([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    (*store)->interrupt();
+  });
+  CHECK(seconds_of_get() < 2);
+  stopping.join();
+  proxy.hold(false);
+  CHECK(!(*store)->get("buildings", "a"));  // an interruption is for good
+}
+
+TEST_CASE("while a ping has found the database away, other calls fail at once") {
+  const TemporaryFolder folder;
+  Result<std::unique_ptr<store::PrivateCluster>> cluster =
+      store::PrivateCluster::start({folder.path});
+  REQUIRE(cluster);
+  const auto store = store::open_postgres_store((*cluster)->connection(), 1);
+  REQUIRE(store);
+  (*cluster).reset();
+  CHECK(!(*store)->ping());
+  const auto start = std::chrono::steady_clock::now();
+  CHECK(!(*store)->get("buildings", "a"));
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(1));
+}
+
 TEST_CASE("a connection string that leads nowhere is an error at once") {
   CHECK(store::open_postgres_store("host='unclosed").error().code == ErrorCode::invalid_argument);
   const Database database;

@@ -118,9 +118,8 @@ void measure_reads(SolidStore& store, const std::string& name, int threads, doub
     random.discard(2);
     return "box-" + std::to_string(random() % kKept);
   };
-  measure("get", threads, seconds, 1, [&](int thread, int i) {
-    return status_of(store.get(name, random_id(thread, i)));
-  });
+  measure("get", threads, seconds, 1,
+          [&](int thread, int i) { return status_of(store.get(name, random_id(thread, i))); });
   measure("list of 10", threads, seconds, 10, [&](int thread, int i) {
     return status_of(store.list({name, 10, random_id(thread, i), {}}));
   });

@@ -3,6 +3,8 @@
 // Runs the service until SIGTERM or SIGINT: store, engines, routes and listener together.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 
 #include "server/routes.h"
@@ -12,8 +14,13 @@ namespace watertight::server {
 
 struct ServeOptions {
   ServerOptions server;
-  std::string connection;  // libpq connection string or URL of the database
-  std::size_t database_connections = 8;
+  /// A second address that answers /healthz and /readyz only, with a thread and connections of its
+  /// own.
+  std::optional<ServerOptions> probes = {};
+  bool requires_preconditions = false;    // with every write of features
+  std::size_t cache_bytes = 64ULL << 20;  // of the answers for items that are kept
+  std::string connection;                 // libpq connection string or URL of the database
+  std::size_t database_connections = 24;
   Limits limits;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/transport/session.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/asio/co_spawn.hpp>
@@ -41,6 +43,14 @@ Clock::duration seconds(double value) {
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Makes the scheduler prefer other threads to this one, so that long computing does not delay
+/// short requests when there are more threads than cores.
+void step_back() {
+  constexpr int kNice = 10;
+  thread_local const bool has_stepped_back = setpriority(PRIO_PROCESS, 0, kNice) == 0;
+  static_cast<void>(has_stepped_back);  // without success the thread computes as any other does
 }
 
 Response made_guarded(const std::function<Response()>& make) {
@@ -307,7 +317,8 @@ awaitable<Response> Session::run(Lane lane, std::function<Response()> make,
   const AddressShare share(environment_.works_of, connection_->peer,
                            is_limited ? options_.works_per_address : 0);
   if (!share.is_granted()) co_return too_many("this address has too many requests in work");
-  auto work = [&make, &cancel]() -> awaitable<Response> {
+  auto work = [&make, &cancel, lane]() -> awaitable<Response> {
+    if (lane == Lane::computing) step_back();
     if (cancel()) co_return busy("the request waited too long");
     co_return made_guarded(make);
   };
@@ -407,7 +418,10 @@ awaitable<Status> Session::send(Response response, bool keep_alive) {
 awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
   if (environment_.is_cancelled) co_return Error{ErrorCode::cancelled, "the server is stopping"};
   using Made = std::optional<Result<std::string>>;  // co_spawn needs a type with a default value
-  auto work = [&parts]() -> awaitable<Made> { co_return next_part_guarded(parts); };
+  auto work = [&parts]() -> awaitable<Made> {
+    step_back();
+    co_return next_part_guarded(parts);
+  };
   Made made = co_await asio::co_spawn(environment_.computing.threads.get_executor(),
                                       std::move(work), use_awaitable);
   if (!made) co_return Error{ErrorCode::unavailable, "there is no next part"};

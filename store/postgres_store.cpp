@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "store/connection.h"
+#include "store/group_commit.h"
 #include "store/migrations.h"
 #include "store/rows/feature_rows.h"
 #include "store/solid_store.h"
@@ -34,6 +35,9 @@ constexpr std::chrono::seconds kCounting{600};
 constexpr std::chrono::seconds kMigrating{3600};
 // A ping that failed speaks for all calls of the next moments.
 constexpr std::chrono::seconds kAway{2};
+// Calls that put at most so many features share a transaction with others (store/group_commit.h).
+// Larger ones are written at the same time as others, each in a session of its own.
+constexpr std::size_t kGrouped = 16;
 // PostgreSQL's name for the primary key of the receipts.
 constexpr std::string_view kReceiptConstraint = "write_receipt_pkey";
 constexpr double kPingLeaseSeconds = 2;
@@ -82,7 +86,8 @@ Result<Token> new_token() {
 class PostgresStore final : public SolidStore {
  public:
   PostgresStore(const std::string& connection, std::size_t connections)
-      : pool_(connection, connections) {}
+      : pool_(connection, connections),
+        group_([this](FeatureRefs features) { return write_all(features, {}); }) {}
 
   Status open() {
     return with_session<Done>([](DatabaseSession& session) { return migrate(session); },
@@ -164,6 +169,9 @@ class PostgresStore final : public SolidStore {
                                          const WriteCondition& condition) override {
     if (features.empty()) return std::vector<std::uint64_t>{};
     if (Status checked = check_features(features); !checked) return std::move(checked).error();
+    if (condition.kind == WriteCondition::Kind::none && features.size() <= kGrouped) {
+      return group_.put(features);
+    }
     std::vector<const StoredFeature*> all;
     for (const StoredFeature& feature : features) all.push_back(&feature);
     return write_all(all, condition);
@@ -385,6 +393,7 @@ class PostgresStore final : public SolidStore {
 
   ConnectionPool pool_;
   HeaderDigests digests_;
+  GroupCommit group_;
   std::atomic<Clock::time_point> away_until_ = Clock::time_point::min();
   std::atomic<std::uint64_t> writes_{0};
 };

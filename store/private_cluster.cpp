@@ -180,7 +180,7 @@ class Cluster {
     Condition seen = look();
     for (; Clock::now() < deadline; seen = look()) {
       if (seen == Condition::accepting) return Done{};
-      waiting.mention(to_string(seen) + " (" + data_ + ")");
+      if (seen != Condition::absent) waiting.mention(to_string(seen) + " (" + data_ + ")");
       if (waiting.is_cancelled()) {
         return Error{ErrorCode::cancelled, "stopped while " + to_string(seen)};
       }

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <thread>
 
-#include "server/listener.h"
 #include "server/routes.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
 

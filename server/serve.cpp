@@ -47,10 +47,12 @@ std::shared_ptr<spdlog::logger> make_logger() {
   return logger;
 }
 
-/// Asks the store again and again whether it can be used, so that probes are answered at once.
+/// Asks the store again and again whether it can be used, so that probes are answered at once, and
+/// reaps helper processes that ended.
 class ReadinessMonitor {
  public:
-  explicit ReadinessMonitor(SolidStore& store) : store_(store), thread_([this] { run(); }) {}
+  ReadinessMonitor(SolidStore& store, delaunay::EngineWorkers& workers)
+      : store_(store), workers_(workers), thread_([this] { run(); }) {}
   ~ReadinessMonitor() {
     {
       const std::lock_guard lock(mutex_);
@@ -75,6 +77,7 @@ class ReadinessMonitor {
 
   void run() {
     for (;;) {
+      workers_.reap();
       Status status = store_.ping();
       std::unique_lock lock(mutex_);
       const auto pause = status ? kPause : kPauseWhileAway;
@@ -85,6 +88,7 @@ class ReadinessMonitor {
   }
 
   SolidStore& store_;
+  delaunay::EngineWorkers& workers_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_stopping_ = false;
@@ -158,7 +162,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   if (is_stopping()) return Error{ErrorCode::cancelled, "stopped before the service listened"};
   if (!store) return std::move(store).error();
   delaunay::EngineWorkers workers;
-  ReadinessMonitor monitor(**store);
+  ReadinessMonitor monitor(**store, workers);
   Service service{store->get(), &workers, {}, [&options, &monitor] {
                     Status health = options.database_health ? options.database_health() : Done{};
                     return health ? monitor.status() : health;

@@ -169,11 +169,40 @@ class Cluster {
            (seen == Condition::silent && silence() > continue_after_);
   }
 
-  /// Brings the server from any state to accepting connections: creates or recovers the cluster,
-  /// ends a server that shuts down (a smart shutdown waits for its clients for ever), continues or
-  /// kills one that does not answer, starts one. Errors: unavailable, cancelled.
+  /// Creates the cluster unless it exists. Errors: unavailable, cancelled.
+  Status ensure_created(Waiting& waiting) {
+    std::error_code failure;
+    if (fs::exists(pgdata() + "/PG_VERSION", failure)) return Done{};
+    if (fs::exists(pgdata(), failure)) {
+      return refused(pgdata() + " exists and is not a PostgreSQL cluster");
+    }
+    // The cluster is made in another folder and moved, so that PGDATA is always whole.
+    const std::string fresh = data_ + "/postgres.new";
+    fs::remove_all(fresh, failure);
+    const Result<pid_t> child =
+        spawn({programs_ + "/initdb", "-D", fresh, "-U", user_, "--auth=peer", "--encoding=UTF8",
+               "--no-locale", "--data-checksums", "--no-instructions"},
+              {data_, log()});
+    if (!child) return child.error();
+    Status made = wait_for(*child, kInitdbPatience, "initdb",
+                           waiting.waiting_for("PostgreSQL makes a new cluster in " + data_));
+    if (!made) {
+      fs::remove_all(fresh, failure);
+      if (made.error().code == ErrorCode::cancelled) return made;
+      return refused(made.error().message + ":\n" + last_lines(log(), kLogLines));
+    }
+    std::ofstream(fresh + "/postgresql.conf", std::ios::app) << "\ninclude 'watertight.conf'\n";
+    if (Status written = write_file(fresh + "/watertight.conf", ""); !written) return written;
+    if (Status synced = sync_folder(fresh); !synced) return synced;
+    fs::rename(fresh, pgdata(), failure);
+    if (failure) return refused("cannot create " + pgdata() + ": " + failure.message());
+    return sync_folder(data_);
+  }
+
+  /// Brings the server from any state to accepting connections: recovers the cluster, ends a server
+  /// that shuts down (a smart shutdown waits for its clients for ever), continues or kills one that
+  /// does not answer, starts one. Errors: unavailable, cancelled.
   Status ensure_running(Waiting& waiting) {
-    if (Status created = ensure_created(waiting); !created) return created;
     const Clock::time_point deadline = Clock::now() + kRecoveryPatience;
     milliseconds pause = kPoll;
     bool has_started = false;
@@ -265,35 +294,6 @@ class Cluster {
     }
   }
 
-  Status ensure_created(Waiting& waiting) {
-    std::error_code failure;
-    if (fs::exists(pgdata() + "/PG_VERSION", failure)) return Done{};
-    if (fs::exists(pgdata(), failure)) {
-      return refused(pgdata() + " exists and is not a PostgreSQL cluster");
-    }
-    // The cluster is made in another folder and moved, so that PGDATA is always whole.
-    const std::string fresh = data_ + "/postgres.new";
-    fs::remove_all(fresh, failure);
-    const Result<pid_t> child =
-        spawn({programs_ + "/initdb", "-D", fresh, "-U", user_, "--auth=peer", "--encoding=UTF8",
-               "--no-locale", "--data-checksums", "--no-instructions"},
-              {data_, log()});
-    if (!child) return child.error();
-    Status made = wait_for(*child, kInitdbPatience, "initdb",
-                           waiting.waiting_for("PostgreSQL makes a new cluster in " + data_));
-    if (!made) {
-      fs::remove_all(fresh, failure);
-      if (made.error().code == ErrorCode::cancelled) return made;
-      return refused(made.error().message + ":\n" + last_lines(log(), kLogLines));
-    }
-    std::ofstream(fresh + "/postgresql.conf", std::ios::app) << "\ninclude 'watertight.conf'\n";
-    if (Status written = write_file(fresh + "/watertight.conf", ""); !written) return written;
-    if (Status synced = sync_folder(fresh); !synced) return synced;
-    fs::rename(fresh, pgdata(), failure);
-    if (failure) return refused("cannot create " + pgdata() + ": " + failure.message());
-    return sync_folder(data_);
-  }
-
   /// After a crash: waits for backends that outlived their postmaster (a new postmaster beside them
   /// would destroy data), then removes lock files that name a process that is not a postmaster.
   Status clear_remains(Waiting& waiting) {
@@ -325,7 +325,8 @@ class Cluster {
   Status start_postmaster() {
     const Result<std::string> socket = prepare_socket_folder(data_);
     if (!socket) return socket.error();
-    // The settings let only processes of this user on this machine connect.
+    // The settings let only processes of this user on this machine connect. To synchronize the file
+    // system at once, before a recovery, takes a tenth of the time that its files take one by one.
     if (Status written = write_file(
             pgdata() + "/watertight.conf",
             "# Written at each start.\n"
@@ -334,7 +335,8 @@ class Cluster {
                 quoted_setting(quoted_name(*socket)) +
                 "\nmax_connections = 64\nfsync = on\nfull_page_writes = on\n"
                 "synchronous_commit = on\nlogging_collector = off\nlog_destination = 'stderr'\n"
-                "log_checkpoints = off\nlog_min_error_statement = panic\n"
+                "recovery_init_sync_method = syncfs\nlog_checkpoints = "
+                "off\nlog_min_error_statement = panic\n"
                 "log_line_prefix = '%m [%p] '\n");
         !written) {
       return written;
@@ -516,7 +518,8 @@ Result<std::unique_ptr<PrivateCluster>> PrivateCluster::start(const ClusterOptio
   Result<std::string> user = user_name();
   if (!user) return user.error();
   Cluster cluster(*data, std::move(*programs), std::move(*user), options);
-  Status ready = cluster.ensure_running(waiting);
+  Status ready = cluster.ensure_created(waiting);
+  if (ready) ready = cluster.ensure_running(waiting);
   if (ready) ready = ensure_database(cluster);
   if (ready) ready = ensure_extension(cluster);
   if (!ready) {

@@ -172,6 +172,10 @@ TEST_CASE(
   const Result<store::Rows> backend = session->run("SELECT pg_backend_pid()::text");
   REQUIRE(backend);
   REQUIRE(kill(std::stoi(std::string(backend->text(0, 0))), SIGKILL) == 0);
+  // The postmaster answers for a moment, until it notices.
+  CHECK(soon(seconds(5), [&] {
+    return text_of(folder.path + "/server.log").find("reinitializing") != std::string::npos;
+  }));
   CHECK(soon(seconds(5), is_back));
 
   // The backends of a killed server that are stopped cannot notice its end.
@@ -180,6 +184,19 @@ TEST_CASE(
   signal_all(folder.path, SIGSTOP);
   REQUIRE(kill(last, SIGKILL) == 0);
   CHECK(soon(seconds(10), [&] { return postmaster_of(folder.path) != last && is_back(); }));
+}
+
+TEST_CASE("a running cluster whose directory disappears is not replaced by an empty one") {
+  const TemporaryFolder folder;
+  const auto cluster = started({folder.path});
+  const pid_t before = postmaster_of(folder.path);
+  std::filesystem::rename(folder.path + "/postgres", folder.path + "/elsewhere");
+  kill(before, SIGKILL);
+  CHECK(soon(seconds(5), [&] { return !cluster->health().has_value(); }));
+  std::this_thread::sleep_for(seconds(2));
+  CHECK(!std::filesystem::exists(folder.path + "/postgres"));
+  std::filesystem::rename(folder.path + "/elsewhere", folder.path + "/postgres");
+  CHECK(soon(seconds(10), [&] { return cluster->health().has_value(); }));
 }
 
 TEST_CASE("the log of a running server stays small") {

@@ -48,8 +48,8 @@ answers() { [ "$(status_of "$1")" = "$2" ]; }
 is_new() { [ -e data/postgres/postmaster.pid ] && [ "$(postmaster)" != "$server" ]; }
 start_service() {
   rm -f listening said
-  "${as[@]}" env WATERTIGHT_DATABASE_URL= TOKEN=a-secret "$program" serve "${store[@]}" \
-    --listen 127.0.0.1:0 >listening 2>said &
+  (ulimit -Sn 256 && exec "${as[@]}" env WATERTIGHT_DATABASE_URL= TOKEN=a-secret "$program" serve "${store[@]}" \
+    --listen 127.0.0.1:0 >listening 2>said) &
   service=$!
   until_true 60 grep -qs http listening || fail "$(cat said)"
   url=$(sed -n 's/^listening on //p' listening)
@@ -96,14 +96,15 @@ until_true 5 answers /readyz 200 || fail "not ready: $(cat answer)"
 
 # What children see, and what nobody can get.
 server=$(postmaster)
-! run cat "/proc/$server/environ" | grep -q a-secret || fail "PostgreSQL sees the service's secrets"
+run cat "/proc/$server/environ" | tr '\0' '\n' >environment
+grep -qx LC_ALL=C environment || fail "PostgreSQL has another environment: $(cat environment)"
+! grep -q a-secret environment || fail "PostgreSQL sees the service's secrets"
 for process in "$service" "$server"; do
   grep -Eq '^NoNewPrivs:.1$' "/proc/$process/status" || fail "$(cat "/proc/$process/comm") can gain privileges"
 done
-[ "$(run sh -c 'ulimit -Sn')" = "$(run sh -c 'ulimit -Hn')" ] ||
-  run cat "/proc/$service/limits" | awk '/^Max open files/ { exit $4 != $5 }' || fail "few files may be open"
+run cat "/proc/$service/limits" | awk '/^Max open files/ { exit $4 != $5 }' || fail "few files may be open"
 
-# Signals without a meaning do nothing; the log of an interrupted terminal neither.
+# Signals without a meaning do nothing.
 kill -USR1 "$service"
 kill -USR2 "$service"
 sleep 0.2
@@ -152,6 +153,29 @@ kill -TERM "$service"
 ends 10 "$service"
 service=
 [ "$ended" -eq 0 ] || fail "SIGTERM ended the service with $ended: $(cat said)"
+
+# A second signal ends a start at once. This start waits for a server that a killed service left.
+start_service
+kill -KILL "$service"
+wait "$service" 2>/dev/null || true
+server=$(postmaster)
+kill -STOP "$server"
+rm said
+"${as[@]}" "$program" serve "${store[@]}" --listen 127.0.0.1:0 >listening 2>said &
+service=$!
+until_true 10 grep -qs 'waiting: the private database does not answer' said || fail "$(cat said)"
+kill -TERM "$service"
+sleep 0.3
+kill -TERM "$service"
+ends 1 "$service"
+service=
+[ "$ended" -eq 1 ] || fail "a second signal ended the start with $ended: $(cat said)"
+kill -CONT "$server"
+start_service
+! is_new || fail "the server that was left is not used"
+kill -TERM "$service"
+ends 10 "$service"
+service=
 
 # As root, too few files are no missing user.
 if [ "$(id -u)" -eq 0 ]; then

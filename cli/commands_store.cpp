@@ -80,6 +80,18 @@ Result<OpenedStore> open_store(const StoreChoice& choice) {
   return OpenedStore{std::move(database->cluster), *std::move(store)};
 }
 
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+/// The limits of one client's address: four connections for each request that it has in work.
+void limit_addresses(const ServeCommand& command, server::ServerOptions& options) {
+  constexpr std::size_t kUsual = 128;
+  options.connections_per_address =
+      command.connections_per_address.value_or(is_loopback(options.address) ? 0 : kUsual);
+  options.works_per_address = (options.connections_per_address + 3) / 4;
+}
+
 /// Reads "127.0.0.1:8080", "[::1]:8080" or ":8080".
 Status read_listen(const std::string& text, server::ServerOptions& options) {
   const Error wrong{ErrorCode::invalid_argument,
@@ -181,6 +193,15 @@ Exit run(const ServeCommand& command) {
     // A service that was stopped before it listened has done what it was told.
     return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
   };
+  limit_addresses(command, options.server);
+  options.requires_preconditions = command.requires_preconditions;
+  if (!command.probes.empty()) {
+    const Status read = read_listen(command.probes, options.probes.emplace());
+    if (!read) {
+      complain("--probes", read.error());
+      return Exit::error;
+    }
+  }
   if (const Status given_up = give_up_rights(command.store); !given_up) {
     return fail("store", given_up.error());
   }

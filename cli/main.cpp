@@ -155,6 +155,13 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("serve", "Run the HTTP service until SIGTERM or SIGINT");
   add_store(*sub, command.store);
   sub->add_option("--listen", command.listen, "ADDRESS:PORT")->capture_default_str();
+  sub->add_option("--probes", command.probes,
+                  "ADDRESS:PORT that answers /healthz and /readyz only, whatever the clients do");
+  sub->add_option("--connections-per-address", command.connections_per_address,
+                  "the most connections of one client's address; 0 for no limit (default: 128, and "
+                  "no limit on a loopback address, where a proxy may speak for many)");
+  sub->add_flag("--require-preconditions", command.requires_preconditions,
+                "refuse writes of features without If-Match or If-None-Match");
   sub->callback([&] {
     require_store(command.store);
     chosen = [&] { return run(command); };

@@ -15,6 +15,8 @@
 #include <mutex>
 #include <thread>
 
+#include "server/items/representation_cache.h"
+
 namespace watertight::server {
 namespace {
 
@@ -163,16 +165,26 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   if (!store) return std::move(store).error();
   delaunay::EngineWorkers workers;
   ReadinessMonitor monitor(**store, workers);
-  Service service{store->get(), &workers, {}, [&options, &monitor] {
-                    Status health = options.database_health ? options.database_health() : Done{};
-                    return health ? monitor.status() : health;
-                  }};
+  const auto readiness = [&options, &monitor] {
+    Status health = options.database_health ? options.database_health() : Done{};
+    return health ? monitor.status() : health;
+  };
+  RepresentationCache cache(options.cache_bytes);
+  Service service{store->get(), &workers, {}, readiness, &cache};
   service.options.limits = options.limits;
+  service.options.requires_preconditions = options.requires_preconditions;
   const auto logger = make_logger();
+  const LogLine log = [logger](const std::string& line) { logger->info(line); };
+  std::unique_ptr<HttpServer> probes;
+  if (options.probes) {
+    auto started = HttpServer::start(*options.probes, probe_application(service), log);
+    if (!started) return std::move(started).error();
+    probes = *std::move(started);
+    logger->info("event=probes url=" + url_of(*options.probes, probes->port()));
+  }
   Application application = make_application(service);
   application.interrupt = [&store] { (*store)->interrupt(); };
-  auto server = HttpServer::start(options.server, std::move(application),
-                                  [logger](const std::string& line) { logger->info(line); });
+  auto server = HttpServer::start(options.server, std::move(application), log);
   if (!server) return std::move(server).error();
 
   const std::string url = url_of(options.server, (*server)->port());

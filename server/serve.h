@@ -7,7 +7,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -19,8 +21,13 @@ namespace watertight::server {
 
 struct ServeOptions {
   ServerOptions server;
-  std::string connection;  // libpq connection string or URL of the database
-  std::size_t database_connections = 8;
+  /// A second address that answers /healthz and /readyz only, with a thread and connections of its
+  /// own.
+  std::optional<ServerOptions> probes = {};
+  bool requires_preconditions = false;    // with every write of features
+  std::size_t cache_bytes = 64ULL << 20;  // of the answers for items that are kept
+  std::string connection;                 // libpq connection string or URL of the database
+  std::size_t database_connections = 24;
   Limits limits;
   /// Whether the database can be used, answered at once; beside the answer of the store. Null:
   /// Done.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // `watertight COMMAND ...`: reads the command line and runs the command (docs/cli.md).
+#include <sys/resource.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -208,7 +210,16 @@ void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
   });
 }
 
+/// Raises the number of files that may be open to what the system allows this process.
+void allow_many_files() {
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &files);  // a failure leaves the limit as it was
+}
+
 int run_command_line(int argc, char** argv) {
+  allow_many_files();
   CLI::App app("Validates, stores and compresses 3D solids", "watertight");
   app.set_version_flag("--version", WATERTIGHT_VERSION);
   app.require_subcommand(1);

@@ -24,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 // The longest time to wait for the server. A restarted server replays its log within seconds.
 constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::milliseconds kCancelPoll{20};
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
 constexpr double kLeaseSeconds = 30;
@@ -401,8 +402,15 @@ class PostgresStore final : public SolidStore {
 }  // namespace
 
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
-                                                        std::size_t connections) {
+                                                        std::size_t connections,
+                                                        const CancelPoll& is_cancelled) {
   auto store = std::make_unique<PostgresStore>(connection, connections);
+  const std::jthread watch([&is_cancelled, opening = store.get()](const std::stop_token& stop) {
+    while (is_cancelled && !stop.stop_requested()) {
+      if (is_cancelled()) return opening->interrupt();
+      std::this_thread::sleep_for(kCancelPoll);
+    }
+  });
   if (Status opened = store->open(); !opened) return std::move(opened).error();
   return std::unique_ptr<SolidStore>(std::move(store));
 }

@@ -175,9 +175,11 @@ class SolidStore {
 
 /// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
 /// Reconnects after a lost connection; an interrupted operation is tried again only when it is
-/// idempotent or known not to have been committed. Errors: unavailable with the server's message.
+/// idempotent or known not to have been committed. `is_cancelled` ends the opening; a thread asks
+/// it. Errors: unavailable with the server's message.
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
-                                                        std::size_t connections = 4);
+                                                        std::size_t connections = 4,
+                                                        const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::store
 

@@ -99,8 +99,7 @@ void complain(const std::string& file, const Error& error);
 
 /// The findings of a feature's solids and groups, as lines on standard output.
 void print_findings(const std::string& file, const pipeline::InspectedFeature& feature);
-/// The findings of all features of a document, as lines on `out`.
-void print_findings(const std::string& file, const pipeline::IngestOutcome& outcome,
+void print_findings(const std::string& file, const pipeline::FeatureOutcome& feature,
                     std::FILE* out = stdout);
 
 }  // namespace watertight::cli

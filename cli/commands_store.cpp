@@ -1,50 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The commands serve, ingest and export, which use a store.
+// The commands serve and export.
 #include <charconv>
-#include <chrono>
 #include <cstdio>
-#include <filesystem>
-#include <map>
 
 #include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
-#include "cli/printable.h"
-#include "cli/progress.h"
+#include "cli/opened_store.h"
 #include "pipeline/export.h"
-#include "pipeline/outcome_json.h"
 #include "server/serve.h"
-#include "store/private_cluster.h"
 
 namespace watertight::cli {
 namespace {
-
-/// A connection string, with the private cluster behind it if there is one.
-struct OpenedStore {
-  std::unique_ptr<store::PrivateCluster> cluster;
-  std::string connection;
-};
-
-Result<OpenedStore> open_store(const StoreChoice& choice) {
-  OpenedStore opened;
-  if (!choice.database_url.empty()) {
-    opened.connection = choice.database_url;
-    return opened;
-  }
-  std::error_code error;
-  const std::string directory = std::filesystem::absolute(choice.data_directory, error).string();
-  const Status status = store::drop_root_privileges(directory);
-  if (!status) return status.error();
-  store::ClusterOptions options;
-  options.data_directory = directory;
-  auto cluster = store::PrivateCluster::start(options);
-  if (!cluster) return std::move(cluster).error();
-  opened.connection = (*cluster)->connection();
-  opened.cluster = *std::move(cluster);
-  return opened;
-}
 
 /// Reads "127.0.0.1:8080", "[::1]:8080" or ":8080".
 Status read_listen(const std::string& text, server::ServerOptions& options) {
@@ -60,77 +29,6 @@ Status read_listen(const std::string& text, server::ServerOptions& options) {
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, options.port);
   return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
-}
-
-/// The file of each feature that this run has stored, by the feature's id.
-using FilesOfFeatures = std::map<std::string, std::string>;
-
-/// Names features without ids after their file: house, house-2, ... Errors: conflict if another
-/// file of this run has given that name already, as such features would replace each other.
-Status name_features(Document& document, const std::string& file, const FilesOfFeatures& files) {
-  const std::string stem = std::filesystem::path(file).stem().string();
-  std::size_t unnamed = 0;
-  for (Feature& feature : document.features) {
-    if (!feature.id.empty()) continue;
-    feature.id = ++unnamed == 1 ? stem : stem + '-' + std::to_string(unnamed);
-    const auto other = files.find(feature.id);
-    if (other == files.end()) continue;
-    return Error{ErrorCode::conflict, "its features have no ids and would be called '" +
-                                          feature.id + "', as one of '" + other->second + "' is"};
-  }
-  return Done{};
-}
-
-/// Remembers which features this file stored, and prints which features of earlier files of the run
-/// they replaced.
-void tell_replaced(const pipeline::IngestOutcome& outcome, const std::string& file,
-                   FilesOfFeatures& files) {
-  for (const pipeline::FeatureOutcome& feature : outcome.features) {
-    if (!feature.is_stored) continue;
-    const auto [known, is_new] = files.try_emplace(feature.id, file);
-    if (is_new) continue;
-    const std::string text =
-        "feature '" + feature.id + "' replaces the one from '" + known->second + "'";
-    std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(text).c_str());
-    known->second = file;
-  }
-}
-
-/// The document of a file, with names for features that have none.
-Result<Document> read_named(const std::string& file, const Bytes& bytes, formats::Contract contract,
-                            const FilesOfFeatures& files) {
-  formats::ReadOptions options;
-  options.keep_text = contract == formats::Contract::exact;
-  auto input = load_input(file, bytes, options);
-  if (!input) return std::move(input).error();
-  if (Status named = name_features(input->document, file, files); !named) return named.error();
-  return std::move(input->document);
-}
-
-pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Contract contract) {
-  pipeline::IngestOptions options;
-  options.collection = command.collection;
-  options.threads = command.jobs;
-  options.contract = contract;
-  options.invalid_features = command.invalid == "skip" ? pipeline::InvalidFeatures::skip
-                                                       : pipeline::InvalidFeatures::refuse_document;
-  return options;
-}
-
-Result<pipeline::IngestOutcome> ingest_file(const std::string& file, Result<Document> document,
-                                            SolidStore& store, delaunay::EngineWorkers& workers,
-                                            pipeline::IngestOptions options) {
-  if (!document) return std::move(document).error();
-  ProgressBar bar(file);
-  options.progress = [&bar](std::size_t done, std::size_t total) {
-    bar.show(done, static_cast<double>(done) / static_cast<double>(total));
-  };
-  return pipeline::ingest(*std::move(document), store, &workers, options);
-}
-
-Result<Bytes> read_and_close(Result<OpenedFile> file) {
-  if (!file) return file.error();
-  return read_all(file->source, {});
 }
 
 }  // namespace
@@ -153,54 +51,6 @@ Exit run(const ServeCommand& command) {
   if (served) return Exit::valid;
   complain("serve", served.error());
   return Exit::error;
-}
-
-Exit run(const IngestCommand& command) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto contract = formats::contract_named(command.contract);
-  if (!contract) {
-    complain("--contract", contract.error());
-    return Exit::error;
-  }
-  const pipeline::IngestOptions options = ingest_options(command, *contract);
-  // The files are opened before the store: as root, opening the store gives up the right to open
-  // other users' files.
-  auto opened_files = open_files(command.files);
-  auto opened = open_store(command.store);
-  auto store = opened ? store::open_postgres_store(opened->connection)
-                      : Result<std::unique_ptr<SolidStore>>(opened.error());
-  if (!store) {
-    complain("store", store.error());
-    return Exit::error;
-  }
-  delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
-  Summary summary;
-  FilesOfFeatures files;
-  Exit exit = Exit::valid;
-  for (std::size_t i = 0; i < command.files.size(); ++i) {
-    const std::string& file = command.files[i];
-    const auto bytes = read_and_close(std::move(opened_files[i]));
-    auto document = bytes ? read_named(file, *bytes, *contract, files) : bytes.error();
-    const auto outcome = ingest_file(file, std::move(document), **store, workers, options);
-    if (!outcome) {
-      complain(file, outcome.error());
-      exit = Exit::error;
-      continue;
-    }
-    if (!command.is_quiet && !command.is_json) print_findings(file, *outcome);
-    if (outcome->verdict != Verdict::valid) {
-      std::fprintf(stderr, "watertight: %s: not all features are valid; %zu of %zu were stored\n",
-                   printable(file).c_str(), outcome->stored, outcome->features.size());
-    }
-    tell_replaced(*outcome, file, files);
-    summary.add(*outcome, bytes->size());
-    exit = worse(exit, exit_of(outcome->verdict));
-  }
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const std::string text = command.is_json ? summary.json(seconds) + "\n" : summary.table(seconds);
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  return exit;
 }
 
 Exit run(const ExportCommand& command) {

@@ -137,6 +137,11 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return write_features(session, features); });
   }
 
+  Result<std::vector<std::uint64_t>> put_all(FeatureBatches& batches) override {
+    return write<std::vector<std::uint64_t>>(
+        [&](DatabaseSession& session) { return write_batches(session, batches); });
+  }
+
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
     return read<StoredFeature>(
@@ -177,6 +182,22 @@ class PostgresStore final : public SolidStore {
  private:
   template <class Value>
   using Work = std::function<Result<Value>(DatabaseSession&)>;
+
+  Result<std::vector<std::uint64_t>> write_batches(DatabaseSession& session,
+                                                   FeatureBatches& batches) {
+    std::vector<std::uint64_t> versions;
+    if (Status rewound = batches.rewind(); !rewound) return std::move(rewound).error();
+    for (;;) {
+      const auto batch = batches.next();
+      if (!batch) return batch.error();
+      if (batch->empty()) return versions;
+      if (Status checked = check_features(*batch); !checked) return std::move(checked).error();
+      session.limit(Clock::now() + kWriting, &pool_.is_interrupted());
+      const auto written = write_features(session, *batch);
+      if (!written) return written.error();
+      versions.insert(versions.end(), written->begin(), written->end());
+    }
+  }
 
   static Error no_such_collection() {
     return {ErrorCode::not_found, "there is no such collection"};

@@ -98,6 +98,16 @@ struct FeatureBatch {
   std::string next;  // `after` of the next batch; "" = this batch is the last
 };
 
+/// Features in batches, for SolidStore::put_all(), which may read them more than once.
+class FeatureBatches {
+ public:
+  virtual ~FeatureBatches() = default;
+  /// Goes back to the first batch.
+  virtual Status rewind() = 0;
+  /// The next batch, empty after the last. Valid until the next call.
+  virtual Result<std::span<const StoredFeature>> next() = 0;
+};
+
 class SolidStore {
  public:
   virtual ~SolidStore() = default;
@@ -119,6 +129,9 @@ class SolidStore {
   /// a solid twice); conflict when a feature is there twice or its CRS is not that of its
   /// collection; unavailable.
   virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) = 0;
+  /// Like put(), for more features than memory holds: all batches in one transaction. The limit of
+  /// time holds for each batch. Errors: those of put() and of the batches.
+  virtual Result<std::vector<std::uint64_t>> put_all(FeatureBatches& batches) = 0;
   virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;
   /// A page has at most 10,000 features. Errors: not_found when there is no such collection.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;

@@ -80,6 +80,16 @@ class MemoryStore final : public SolidStore {
     }
     return versions;
   }
+  Result<std::vector<std::uint64_t>> put_all(store::FeatureBatches& batches) override {
+    std::vector<StoredFeature> all;
+    if (Status rewound = batches.rewind(); !rewound) return std::move(rewound).error();
+    for (;;) {
+      const auto batch = batches.next();
+      if (!batch) return batch.error();
+      if (batch->empty()) return put(all);
+      all.insert(all.end(), batch->begin(), batch->end());
+    }
+  }
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
@@ -126,6 +136,7 @@ class MemoryStore final : public SolidStore {
                                                      std::uint64_t limit) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
+    if (!features_.contains(collection)) return std::vector<store::StoredHeader>{};
     std::set<std::pair<std::string, std::string>> distinct;
     for (const auto& [id, feature] : features_[collection]) {
       distinct.emplace(feature.format, feature.header);

@@ -110,6 +110,7 @@ struct IngestOptions : FeatureEncoding {
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
   /// The name of features that have no id: "house" makes house, house-2, ...; "": they are refused.
   std::string unnamed;
+  store::WriteCondition condition;  // for each feature that is stored
   std::size_t threads = 1;
   CancelPoll is_cancelled = {};
   Progress progress = {};  // of encode_document()

@@ -254,12 +254,13 @@ Response get_readiness(const RoutedRequest& request) {
 
 Response get_collections(const RoutedRequest& request) {
   if (auto refusal = json_only(request)) return *std::move(refusal);
-  const auto collections = request.service.store->collections();
-  if (!collections) return to_response(to_problem(collections.error()));
+  // The largest page: clients do not page through this list yet.
+  const auto page = request.service.store->collections(10'000, "");
+  if (!page) return to_response(to_problem(page.error()));
   Json json;
   json["links"] = Json::array({link("/collections", "self", kJson, "this list")});
   json["collections"] = Json::array();
-  for (const store::StoredCollection& collection : *collections) {
+  for (const store::StoredCollection& collection : page->collections) {
     json["collections"].push_back(collection_json(collection));
   }
   return json_response(json);

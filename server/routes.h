@@ -11,8 +11,8 @@
 
 #include "base/cancel.h"
 #include "pipeline/pipeline.h"
-#include "server/http.h"
-#include "server/listener.h"
+#include "server/transport/http.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "server/listener.h"
 #include "server/routes.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
 

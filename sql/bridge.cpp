@@ -76,6 +76,7 @@ void fail(wt_reply* reply, const Error& error) {
     case ErrorCode::not_encodable:
     case ErrorCode::not_found:
     case ErrorCode::conflict:
+    case ErrorCode::precondition_failed:
     case ErrorCode::invalid_argument:
       state = "22023";  // invalid_parameter_value
       break;

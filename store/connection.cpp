@@ -307,6 +307,11 @@ Result<Rows> DatabaseSession::receive() {
   return Result<Rows>(*std::move(rows));
 }
 
+Error DatabaseSession::collide(const char* message) {
+  state_ = "40001";
+  return {ErrorCode::unavailable, message};
+}
+
 void DatabaseSession::roll_back() {
   if (is_lost() || PQtransactionStatus(connection_.get()) == PQTRANS_IDLE) return;
   const Result<Rows> done = run("ROLLBACK");

@@ -101,6 +101,10 @@ class DatabaseSession {
   /// Ends a transaction that failed. Does nothing when no transaction is open.
   void roll_back();
 
+  /// The failure of a transaction that got into the way of another, although the server saw no
+  /// error; state() is then that of a failed serialization, so that the transaction is tried again.
+  Error collide(const char* message);
+
   /// SQLSTATE of the last failed statement; "" when the server did not answer.
   const std::string& state() const { return state_; }
   /// Whether the session is gone, so that this object is of no more use.

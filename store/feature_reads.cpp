@@ -10,14 +10,15 @@
 namespace watertight::store {
 namespace {
 
-constexpr std::uint64_t kLargestPage = 10'000;
 constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
 /// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
 /// are its smallest and largest coordinates. The index finds candidates in x and y; PostgreSQL's
 /// box operator is generous by 1e-6, so none is missed. The comparison of the six numbers decides.
 std::string matching(const FeatureQuery& query) {
-  return std::string(" FROM watertight.feature WHERE collection = $1") +
+  return std::string(
+             " FROM watertight.feature WHERE collection = "
+             "(SELECT id FROM watertight.collection WHERE name = $1)") +
          (query.box ? " AND min_x IS NOT NULL"
                       " AND watertight.index_box(min_x, min_y, max_x, max_y)"
                       "   && watertight.index_box($2, $3, $5, $6)"
@@ -80,7 +81,8 @@ Status fill_solids(DatabaseSession& connection, const std::string& collection,
   }
   const Result<Rows> rows = connection.run(
       "SELECT feature, object_id, geometry, ordinal, lod, blob, measures::text, report::text"
-      " FROM watertight.solid WHERE collection = $1 AND feature = ANY($2)"
+      " FROM watertight.solid WHERE collection ="
+      "(SELECT id FROM watertight.collection WHERE name = $1) AND feature = ANY($2)"
       " ORDER BY feature, position",
       Parameters().text(collection).text_array(ids));
   if (!rows) return rows.error();
@@ -171,7 +173,8 @@ Result<WalkPlace> walk_place(const std::string& text) {
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit) {
   return connection.run(columns +
-                            ", place FROM watertight.feature WHERE collection = $1"
+                            ", place FROM watertight.feature WHERE collection ="
+                            "(SELECT id FROM watertight.collection WHERE name = $1)"
                             " AND (place, id) > ($2, $3) ORDER BY place, id LIMIT $4",
                         Parameters().text(collection).int8(after.place).text(after.id).int8(limit));
 }
@@ -200,13 +203,17 @@ Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& col
 
 Status check_collection_exists(DatabaseSession& connection, const std::string& id) {
   const Result<Rows> exists =
-      connection.run("SELECT id FROM watertight.collection WHERE id = $1", Parameters().text(id));
+      connection.run("SELECT id FROM watertight.collection WHERE name = $1", Parameters().text(id));
   if (!exists) return exists.error();
   if (exists->size() == 0) return no_collection(id);
   return Done{};
 }
 
 }  // namespace
+
+Error no_feature(const std::string& collection, const std::string& id) {
+  return {ErrorCode::not_found, "collection '" + collection + "' has no feature '" + id + "'"};
+}
 
 std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
   if (rows.is_null(row, first_column)) return std::nullopt;
@@ -220,17 +227,27 @@ std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
 
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id) {
-  const Result<Rows> rows = connection.run(
-      std::string(kFeatureColumns) + " FROM watertight.feature WHERE collection = $1 AND id = $2",
-      Parameters().text(collection).text(id));
+  const Result<Rows> rows =
+      connection.run(std::string(kFeatureColumns) +
+                         " FROM watertight.feature WHERE collection = "
+                         "(SELECT id FROM watertight.collection WHERE name = $1) AND id = $2",
+                     Parameters().text(collection).text(id));
   if (!rows) return rows.error();
-  if (rows->size() == 0) {
-    return Error{ErrorCode::not_found,
-                 "collection '" + collection + "' has no feature '" + id + "'"};
-  }
+  if (rows->size() == 0) return no_feature(collection, id);
   std::vector<StoredFeature> found = features_of(*rows, collection);
   if (Status done = fill(connection, collection, found); !done) return std::move(done).error();
   return std::move(found.front());
+}
+
+Result<std::uint64_t> read_version(DatabaseSession& connection, const std::string& collection,
+                                   const std::string& id) {
+  const Result<Rows> rows = connection.run(
+      "SELECT version FROM watertight.feature WHERE collection ="
+      " (SELECT id FROM watertight.collection WHERE name = $1) AND id = $2",
+      Parameters().text(collection).text(id));
+  if (!rows) return rows.error();
+  if (rows->size() == 0) return no_feature(collection, id);
+  return static_cast<std::uint64_t>(rows->int8(0, 0));
 }
 
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query) {
@@ -283,9 +300,12 @@ Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  std::uint64_t limit) {
   const Result<Rows> rows = connection.run(
       "WITH RECURSIVE document AS ((SELECT format, header FROM watertight.feature"
-      " WHERE collection = $1 ORDER BY format, header LIMIT 1)"
+      " WHERE collection ="
+      "(SELECT id FROM watertight.collection WHERE name = $1) ORDER BY format, header LIMIT 1)"
       " UNION ALL SELECT next.* FROM document d, LATERAL (SELECT format, header"
-      " FROM watertight.feature WHERE collection = $1 AND (format, header) > (d.format, d.header)"
+      " FROM watertight.feature WHERE collection ="
+      "(SELECT id FROM watertight.collection WHERE name = $1) AND (format, header) > (d.format, "
+      "d.header)"
       " ORDER BY format, header LIMIT 1) next)"
       " SELECT d.format, h.content FROM (SELECT * FROM document LIMIT $2) d"
       " JOIN watertight.document_header h ON h.digest = d.header ORDER BY d.format, d.header",

@@ -27,18 +27,37 @@ bool is_possible_id(const std::string& id);
 /// Writes headers, collections, features and solids. Returns the version of each feature. Requires
 /// check_features(). Errors: conflict when the CRS of a feature is not that of its collection.
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
-                                                  std::span<const StoredFeature> features);
+                                                  std::span<const StoredFeature> features,
+                                                  const WriteCondition& condition);
 
-/// Errors: not_found.
+/// Errors: not_found, precondition_failed.
 Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
-                            const std::string& id);
+                            const std::string& id, const WriteCondition& condition);
+
+/// Makes a collection one without a name, which no reader or writer finds. Returns its key. Waits
+/// for the writers of the collection. Errors: not_found.
+Result<std::string> hide_collection(DatabaseSession& connection, const std::string& id);
+/// Errors: not_found, conflict.
+Result<Done> rename_collection(DatabaseSession& connection, const std::string& id,
+                               const std::string& new_id);
+/// The key of a collection without a name; "" when there is none.
+Result<std::string> read_hidden_collection(DatabaseSession& connection);
+/// Deletes up to 1,000 features of a collection without a name, those after `after` in order of id.
+/// Returns the last of them; or "" when there was none left, and then deletes the collection.
+Result<std::string> purge_step(DatabaseSession& connection, const std::string& key,
+                               const std::string& after);
+
+// The largest page or batch.
+constexpr std::uint64_t kLargestPage = 10'000;
 
 /// The error for a collection that does not exist.
 Error no_collection(const std::string& id);
+Error no_feature(const std::string& collection, const std::string& id);
 /// The box in six columns: the minima on x, y and z, then the maxima. Nothing where they are NULL.
 std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column);
 
-Result<std::vector<StoredCollection>> read_collections(DatabaseSession& connection);
+Result<CollectionPage> read_collections(DatabaseSession& connection, std::uint64_t limit,
+                                        const std::string& after);
 Result<StoredCollection> read_collection(DatabaseSession& connection, const std::string& id);
 /// Brings the counts and boxes of all collections up to date with their changes. Does nothing while
 /// another session does it.
@@ -47,6 +66,8 @@ Result<Done> fold_changes(DatabaseSession& connection);
 Result<StoredCollection> recount_collection(DatabaseSession& connection, const std::string& id);
 
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
+                                   const std::string& id);
+Result<std::uint64_t> read_version(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id);
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query);
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,

@@ -124,36 +124,55 @@ Result<std::map<SharedText, Bytes>> write_headers(DatabaseSession& connection,
   return digests;
 }
 
-/// Creates the collections that do not exist; returns the CRS of each.
-Result<std::map<std::string_view, std::uint32_t>> write_collections(
-    DatabaseSession& connection, std::span<const StoredFeature> features, const Order& order,
-    const std::map<SharedText, Bytes>& digests) {
-  std::map<std::string_view, std::uint32_t> srids;
+/// What the transaction knows about a collection: no other can rename or remove it meanwhile.
+struct LockedCollection {
+  std::string key;
+  std::uint32_t srid = 0;
+};
+using LockedCollections = std::map<std::string_view, LockedCollection>;
+
+// A key is never used for two collections, also while rows of a removed one are being deleted.
+constexpr const char* kAddCollection = R"(
+  INSERT INTO watertight.collection (id, name, srid, header)
+  SELECT CASE WHEN EXISTS (SELECT FROM watertight.collection WHERE id = $1)
+           THEN '#' || nextval('watertight.collection_key') ELSE $1 END, $1, $2, $3
+  WHERE NOT EXISTS (SELECT FROM watertight.collection WHERE name = $1)
+  ON CONFLICT DO NOTHING)";
+
+constexpr const char* kLockCollection =
+    "SELECT id, srid FROM watertight.collection WHERE name = $1 FOR KEY SHARE";
+
+/// Creates the collections that do not exist, and locks all.
+Result<LockedCollections> write_collections(DatabaseSession& connection,
+                                            std::span<const StoredFeature> features,
+                                            const Order& order,
+                                            const std::map<SharedText, Bytes>& digests) {
+  LockedCollections locked;
   for (const std::size_t i : order) {
     const StoredFeature& feature = features[i];
-    if (srids.contains(feature.collection)) continue;
+    if (locked.contains(feature.collection)) continue;
     const Result<Rows> added = connection.run(
-        "INSERT INTO watertight.collection (id, srid, header) VALUES ($1, $2, $3)"
-        " ON CONFLICT DO NOTHING",
+        kAddCollection,
         Parameters().text(feature.collection).int8(feature.srid).bytea(digests.at(feature.header)));
     if (!added) return added.error();
-    const Result<Rows> rows = connection.run("SELECT srid FROM watertight.collection WHERE id = $1",
-                                             Parameters().text(feature.collection));
+    const Result<Rows> rows =
+        connection.run(kLockCollection, Parameters().text(feature.collection));
     if (!rows) return rows.error();
-    if (rows->size() != 1) return Error{ErrorCode::unavailable, "a collection vanished meanwhile"};
-    srids[feature.collection] = static_cast<std::uint32_t>(rows->int8(0, 0));
+    if (rows->size() != 1)
+      return connection.collide("a collection was removed or renamed meanwhile");
+    locked[feature.collection] = {std::string(rows->text(0, 0)),
+                                  static_cast<std::uint32_t>(rows->int8(0, 1))};
   }
-  return srids;
+  return locked;
 }
 
 std::string crs_name(std::uint32_t srid) {
   return srid == 0 ? "no stated CRS" : "EPSG:" + std::to_string(srid);
 }
 
-Status check_crs(std::span<const StoredFeature> features,
-                 const std::map<std::string_view, std::uint32_t>& srids) {
+Status check_crs(std::span<const StoredFeature> features, const LockedCollections& collections) {
   for (const StoredFeature& feature : features) {
-    const std::uint32_t srid = srids.at(feature.collection);
+    const std::uint32_t srid = collections.at(feature.collection).srid;
     if (feature.srid == srid) continue;
     return Error{ErrorCode::conflict, "collection '" + feature.collection + "' has " +
                                           crs_name(srid) + ", feature '" + feature.id + "' has " +
@@ -170,8 +189,8 @@ struct FeatureColumns {
   std::array<std::vector<std::optional<double>>, 6> box;
   std::size_t bytes = 0;
 
-  void add(const StoredFeature& feature, const Bytes& digest) {
-    collection.push_back(feature.collection);
+  void add(const StoredFeature& feature, const std::string& key, const Bytes& digest) {
+    collection.push_back(key);
     id.push_back(feature.id);
     type.push_back(feature.type);
     format.push_back(feature.format);
@@ -189,13 +208,13 @@ struct FeatureColumns {
     }
     bytes += feature.id.size() + feature.skeleton.bytes.size() + 256;
   }
-  Parameters parameters() const {
+  Parameters parameters(bool may_replace) const {
     Parameters p;
     p.text_array(collection).text_array(id).text_array(type).text_array(format);
     p.int8_array(srid).bytea_array(header).bytea_array(skeleton);
     p.int8_array(solids).int8_array(blob_bytes);
     for (const auto& side : box) p.float8_array(side);
-    p.int8_array(place);
+    p.int8_array(place).int8(may_replace ? 1 : 0);
     return p;
   }
 };
@@ -214,6 +233,7 @@ constexpr const char* kPutFeatures = R"(
     skeleton = excluded.skeleton, solids = excluded.solids, blob_bytes = excluded.blob_bytes,
     min_x = excluded.min_x, min_y = excluded.min_y, min_z = excluded.min_z,
     max_x = excluded.max_x, max_y = excluded.max_y, max_z = excluded.max_z, place = excluded.place
+    WHERE $17 = 1
   RETURNING f.version, f.id)";
 
 constexpr const char* kDropSolids = R"(
@@ -221,22 +241,83 @@ constexpr const char* kDropSolids = R"(
   USING unnest($1::text[], $2::text[]) AS k (collection, feature)
   WHERE s.collection = k.collection AND s.feature = k.feature)";
 
-/// Writes the features with the indices `places`, puts the version of each at the same index of
-/// `versions`, and deletes the solids that the features had.
-Status write_feature_rows(DatabaseSession& connection, std::span<const StoredFeature> features,
-                          std::span<const std::size_t> places,
-                          const std::map<SharedText, Bytes>& digests,
-                          std::span<std::uint64_t> versions) {
-  FeatureColumns columns;
-  for (const std::size_t i : places) columns.add(features[i], digests.at(features[i].header));
-  const Result<Rows> rows = connection.run(kPutFeatures, columns.parameters());
+/// The features with the indices `places`, and all that their rows need.
+struct FeatureSlice {
+  std::span<const StoredFeature> features;
+  std::span<const std::size_t> places;
+  const LockedCollections& collections;
+  const std::map<SharedText, Bytes>& digests;
+};
+
+/// The failure of a write that found versions other than those it was to replace.
+Error failed_precondition(const std::string& id, std::uint64_t version) {
+  std::string text = "feature '" + id + "' ";
+  text += version == 0 ? "does not exist" : "has version " + std::to_string(version);
+  return {ErrorCode::precondition_failed, std::move(text)};
+}
+
+bool holds(const WriteCondition& condition, std::uint64_t version) {
+  switch (condition.kind) {
+    case WriteCondition::Kind::none:
+      return true;
+    case WriteCondition::Kind::absent:
+      return version == 0;
+    case WriteCondition::Kind::present:
+      return version != 0;
+    case WriteCondition::Kind::versions:
+      return version != 0 && std::find(condition.versions.begin(), condition.versions.end(),
+                                       version) != condition.versions.end();
+  }
+  return false;
+}
+
+constexpr const char* kLockFeature =
+    "SELECT version FROM watertight.feature WHERE collection = $1 AND id = $2 FOR UPDATE";
+
+/// Locks a feature and checks its version.
+Status check_condition(DatabaseSession& connection, const std::string& key, const std::string& id,
+                       const WriteCondition& condition) {
+  const Result<Rows> rows = connection.run(kLockFeature, Parameters().text(key).text(id));
   if (!rows) return rows.error();
-  const Error strange{ErrorCode::unavailable,
-                      "the database answered with other rows than were sent"};
-  if (static_cast<std::size_t>(rows->size()) != places.size()) return strange;
+  const std::uint64_t version =
+      rows->size() == 0 ? 0 : static_cast<std::uint64_t>(rows->int8(0, 0));
+  if (!holds(condition, version)) return failed_precondition(id, version);
+  return Done{};
+}
+
+/// The failure of a write of new features whose rows were not all added: another writer was first.
+Error exists_already(DatabaseSession& connection, const FeatureSlice& slice,
+                     const WriteCondition& condition) {
+  for (const std::size_t i : slice.places) {
+    const StoredFeature& feature = slice.features[i];
+    const std::string& key = slice.collections.at(feature.collection).key;
+    Status checked = check_condition(connection, key, feature.id, condition);
+    if (!checked) return std::move(checked).error();
+  }
+  return {ErrorCode::unavailable, "the database answered with other rows than were sent"};
+}
+
+/// Writes a slice, puts the version of each feature at its index of `versions`, and deletes the
+/// solids that the features had.
+Status write_feature_rows(DatabaseSession& connection, const FeatureSlice& slice,
+                          const WriteCondition& condition, std::span<std::uint64_t> versions) {
+  FeatureColumns columns;
+  for (const std::size_t i : slice.places) {
+    const StoredFeature& feature = slice.features[i];
+    columns.add(feature, slice.collections.at(feature.collection).key,
+                slice.digests.at(feature.header));
+  }
+  const bool may_replace = condition.kind != WriteCondition::Kind::absent;
+  const Result<Rows> rows = connection.run(kPutFeatures, columns.parameters(may_replace));
+  if (!rows) return rows.error();
+  if (static_cast<std::size_t>(rows->size()) != slice.places.size()) {
+    return exists_already(connection, slice, condition);
+  }
   for (int row = 0; row < rows->size(); ++row) {
-    const std::size_t place = places[static_cast<std::size_t>(row)];
-    if (rows->text(row, 1) != features[place].id) return strange;
+    const std::size_t place = slice.places[static_cast<std::size_t>(row)];
+    if (rows->text(row, 1) != slice.features[place].id) {
+      return Error{ErrorCode::unavailable, "the database answered with other rows than were sent"};
+    }
     versions[place] = static_cast<std::uint64_t>(rows->int8(row, 0));
   }
   const Result<Rows> dropped = connection.run(
@@ -252,9 +333,9 @@ struct SolidColumns {
   std::vector<ByteView> blob;
   std::size_t bytes = 0;
 
-  void add(const StoredFeature& owner, std::size_t place) {
+  void add(const StoredFeature& owner, const std::string& key, std::size_t place) {
     const StoredSolid& solid = owner.solids[place];
-    collection.push_back(owner.collection);
+    collection.push_back(key);
     feature.push_back(owner.id);
     object.push_back(solid.object_id);
     geometry.push_back(solid.geometry);
@@ -291,11 +372,12 @@ Status flush_solids(DatabaseSession& connection, SolidColumns& columns) {
 }
 
 Status write_solids(DatabaseSession& connection, std::span<const StoredFeature> features,
-                    const Order& order) {
+                    const Order& order, const LockedCollections& collections) {
   SolidColumns columns;
   for (const std::size_t i : order) {
+    const std::string& key = collections.at(features[i].collection).key;
     for (std::size_t place = 0; place < features[i].solids.size(); ++place) {
-      columns.add(features[i], place);
+      columns.add(features[i], key, place);
       if (columns.bytes < kStatementBytes) continue;
       if (Status done = flush_solids(connection, columns); !done) return done;
     }
@@ -340,41 +422,55 @@ Status check_features(std::span<const StoredFeature> features) {
 }
 
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
-                                                  std::span<const StoredFeature> features) {
+                                                  std::span<const StoredFeature> features,
+                                                  const WriteCondition& condition) {
   const Order order = sorted_by_key(features);
   const auto digests = write_headers(connection, features);
   if (!digests) return digests.error();
-  const auto srids = write_collections(connection, features, order, *digests);
-  if (!srids) return srids.error();
-  if (Status same = check_crs(features, *srids); !same) return std::move(same).error();
+  const auto collections = write_collections(connection, features, order, *digests);
+  if (!collections) return collections.error();
+  if (Status same = check_crs(features, *collections); !same) return std::move(same).error();
+  if (condition.kind != WriteCondition::Kind::none) {
+    for (const std::size_t i : order) {
+      const std::string& key = collections->at(features[i].collection).key;
+      Status checked = check_condition(connection, key, features[i].id, condition);
+      if (!checked) return std::move(checked).error();
+    }
+  }
   std::vector<std::uint64_t> versions(features.size());
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin;
     for (std::size_t bytes = 0; end < order.size() && bytes < kStatementBytes; ++end) {
       bytes += features[order[end]].skeleton.bytes.size() + 512;
     }
-    const auto places = std::span(order).subspan(begin, end - begin);
-    if (Status done = write_feature_rows(connection, features, places, *digests, versions); !done) {
+    const FeatureSlice slice{features, std::span(order).subspan(begin, end - begin), *collections,
+                             *digests};
+    if (Status done = write_feature_rows(connection, slice, condition, versions); !done) {
       return std::move(done).error();
     }
     begin = end;
   }
-  if (Status done = write_solids(connection, features, order); !done) {
+  if (Status done = write_solids(connection, features, order, *collections); !done) {
     return std::move(done).error();
   }
   return versions;
 }
 
 Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
-                            const std::string& id) {
-  const Result<Rows> gone = connection.run(
-      "DELETE FROM watertight.feature WHERE collection = $1 AND id = $2 RETURNING id",
-      Parameters().text(collection).text(id));
+                            const std::string& id, const WriteCondition& condition) {
+  const Result<Rows> locked = connection.run(kLockCollection, Parameters().text(collection));
+  if (!locked) return locked.error();
+  if (locked->size() == 0) return no_feature(collection, id);
+  const std::string key(locked->text(0, 0));
+  const Result<Rows> rows = connection.run(kLockFeature, Parameters().text(key).text(id));
+  if (!rows) return rows.error();
+  if (rows->size() == 0) return no_feature(collection, id);
+  const auto version = static_cast<std::uint64_t>(rows->int8(0, 0));
+  if (!holds(condition, version)) return failed_precondition(id, version);
+  const Result<Rows> gone =
+      connection.run("DELETE FROM watertight.feature WHERE collection = $1 AND id = $2",
+                     Parameters().text(key).text(id));
   if (!gone) return gone.error();
-  if (gone->size() == 0) {
-    return Error{ErrorCode::not_found,
-                 "collection '" + collection + "' has no feature '" + id + "'"};
-  }
   return Done{};
 }
 

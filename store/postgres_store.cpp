@@ -113,9 +113,12 @@ class PostgresStore final : public SolidStore {
     return Error{ErrorCode::unavailable, "the database does not answer"};
   }
 
-  Result<std::vector<StoredCollection>> collections() override {
-    return read<std::vector<StoredCollection>>(
-        [](DatabaseSession& session) { return read_collections(session); });
+  Result<CollectionPage> collections(std::uint64_t limit, const std::string& after) override {
+    if (!after.empty() && !check_collection_id(after)) {
+      return Error{ErrorCode::invalid_argument, "a page cannot start after an impossible id"};
+    }
+    return read<CollectionPage>(
+        [&](DatabaseSession& session) { return read_collections(session, limit, after); });
   }
 
   Result<StoredCollection> collection(const std::string& id) override {
@@ -130,16 +133,40 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return recount_collection(session, id); }, kCounting);
   }
 
-  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
+  Status remove_collection(const std::string& id, const CancelPoll& is_cancelled) override {
+    if (!check_collection_id(id)) return no_such_collection();
+    const auto is_over = [&] { return is_cancelled && is_cancelled(); };
+    if (is_over()) return Error{ErrorCode::cancelled, "nothing was removed"};
+    const Result<std::string> key =
+        write<std::string>([&](DatabaseSession& session) { return hide_collection(session, id); });
+    if (!key) return key.error();
+    for (std::string after; !is_over();) {
+      const Result<std::string> last = purge(*key, after);
+      if (!last || last->empty()) break;  // after a failure later writes delete the rest
+      after = *last;
+    }
+    return Done{};
+  }
+
+  Status rename_collection(const std::string& id, const std::string& new_id) override {
+    if (Status checked = check_collection_id(new_id); !checked) return checked;
+    if (!check_collection_id(id)) return no_such_collection();
+    return write<Done>(
+        [&](DatabaseSession& session) { return store::rename_collection(session, id, new_id); });
+  }
+
+  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
+                                         const WriteCondition& condition) override {
     if (features.empty()) return std::vector<std::uint64_t>{};
     if (Status checked = check_features(features); !checked) return std::move(checked).error();
     return write<std::vector<std::uint64_t>>(
-        [&](DatabaseSession& session) { return write_features(session, features); });
+        [&](DatabaseSession& session) { return write_features(session, features, condition); });
   }
 
-  Result<std::vector<std::uint64_t>> put_all(FeatureBatches& batches) override {
+  Result<std::vector<std::uint64_t>> put_all(FeatureBatches& batches,
+                                             const WriteCondition& condition) override {
     return write<std::vector<std::uint64_t>>(
-        [&](DatabaseSession& session) { return write_batches(session, batches); });
+        [&](DatabaseSession& session) { return write_batches(session, batches, condition); });
   }
 
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
@@ -173,10 +200,18 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return read_documents(session, collection, limit); });
   }
 
-  Status remove(const std::string& collection, const std::string& id) override {
+  Result<std::uint64_t> version(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
-    return write<Done>(
-        [&](DatabaseSession& session) { return delete_feature(session, collection, id); });
+    return read<std::uint64_t>(
+        [&](DatabaseSession& session) { return read_version(session, collection, id); });
+  }
+
+  Status remove(const std::string& collection, const std::string& id,
+                const WriteCondition& condition) override {
+    if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
+    return write<Done>([&](DatabaseSession& session) {
+      return delete_feature(session, collection, id, condition);
+    });
   }
 
  private:
@@ -184,7 +219,8 @@ class PostgresStore final : public SolidStore {
   using Work = std::function<Result<Value>(DatabaseSession&)>;
 
   Result<std::vector<std::uint64_t>> write_batches(DatabaseSession& session,
-                                                   FeatureBatches& batches) {
+                                                   FeatureBatches& batches,
+                                                   const WriteCondition& condition) {
     std::vector<std::uint64_t> versions;
     if (Status rewound = batches.rewind(); !rewound) return std::move(rewound).error();
     for (;;) {
@@ -193,7 +229,7 @@ class PostgresStore final : public SolidStore {
       if (batch->empty()) return versions;
       if (Status checked = check_features(*batch); !checked) return std::move(checked).error();
       session.limit(Clock::now() + kWriting, &pool_.is_interrupted());
-      const auto written = write_features(session, *batch);
+      const auto written = write_features(session, *batch, condition);
       if (!written) return written.error();
       versions.insert(versions.end(), written->begin(), written->end());
     }
@@ -293,7 +329,10 @@ class PostgresStore final : public SolidStore {
     }
     if (!result) return result;
     const std::uint64_t writes = ++writes_;
-    if (writes % kWritesPerFold == 1) fold();
+    if (writes % kWritesPerFold == 1) {
+      fold();
+      purge_one();
+    }
     if (writes % kWritesPerSweep == 1) sweep();
     return result;
   }
@@ -307,6 +346,27 @@ class PostgresStore final : public SolidStore {
       return Done{};
     };
     static_cast<void>(with_session(work, kWriting));  // the next one takes what this one left
+  }
+
+  /// One step of the deletion of a removed collection's rows: purge_step().
+  Result<std::string> purge(const std::string& key, const std::string& after) {
+    const Work<std::string> work = [&](DatabaseSession& session) -> Result<std::string> {
+      if (const Result<Rows> begun = session.run("BEGIN"); !begun) return begun.error();
+      Result<std::string> last = purge_step(session, key, after);
+      if (!last) return last;
+      if (const Result<Rows> ended = session.run("COMMIT"); !ended) return ended.error();
+      return last;
+    };
+    return with_session(work, kWriting);
+  }
+
+  /// Deletes some rows of a removed collection whose deletion was broken off.
+  void purge_one() {
+    const Work<std::string> hidden = [](DatabaseSession& session) {
+      return read_hidden_collection(session);
+    };
+    const Result<std::string> key = with_session(hidden, kWriting);
+    if (key && !key->empty()) static_cast<void>(purge(*key, ""));
   }
 
   /// Removes old receipts, and headers that no feature uses any more.

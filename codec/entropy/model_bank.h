@@ -147,7 +147,7 @@ class ModelBank {
   std::vector<std::int32_t> weights_;    // fixed-point numbers, 16.16
   std::vector<std::uint32_t> mixed_;     // set of weights -> decisions that it mixed, at most 1000
   std::vector<Change> changes_;          // all changes since the beginning of the outermost trial
-  int trials_ = 0;         // number of trials that live now and note changes; note_from_now() is one
+  int trials_ = 0;  // number of trials that live now and note changes; note_from_now() is one
   bool is_noting_ = false;  // the outermost trial is that of note_from_now()
 };
 

@@ -30,10 +30,10 @@ Result<PackedText> pack_text(std::string_view text) {
   // A new context takes longer than the compression of a small text.
   thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   Bytes packed(ZSTD_compressBound(text.size()));
-  const std::size_t size =
-      context == nullptr ? static_cast<std::size_t>(-1)
-                         : ZSTD_compressCCtx(context.get(), packed.data(), packed.size(),
-                                             text.data(), text.size(), kLevel);
+  const std::size_t size = context == nullptr
+                               ? static_cast<std::size_t>(-1)
+                               : ZSTD_compressCCtx(context.get(), packed.data(), packed.size(),
+                                                   text.data(), text.size(), kLevel);
   if (ZSTD_isError(size) != 0) {
     return Error{ErrorCode::limit_exceeded, "no memory to compress a text"};
   }

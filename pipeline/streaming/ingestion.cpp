@@ -109,7 +109,8 @@ Result<IngestCounts> Ingestion::finish() {
     return Error{ErrorCode::cancelled, "stopped before the features were stored"};
   }
   // A store can join small writes of several clients.
-  auto versions = spool_.is_one_batch() ? store_.put(spool_.open_batch()) : store_.put_all(spool_);
+  auto versions = spool_.is_one_batch() ? store_.put(spool_.open_batch(), options_.condition)
+                                        : store_.put_all(spool_, options_.condition);
   if (!versions) return std::move(versions).error();
   versions_ = *std::move(versions);
   counts_.stored = spool_.size();

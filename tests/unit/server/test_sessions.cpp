@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/listener.h"
+#include "server/transport/listener.h"
 
 namespace watertight {
 namespace {

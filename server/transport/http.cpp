@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/http.h"
+#include "server/transport/http.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/session.h"
+#include "server/transport/session.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #include <optional>
 
 #include "base/ascii.h"
-#include "server/messages.h"
+#include "server/transport/messages.h"
 
 namespace watertight::server {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/listener.h"
+#include "server/transport/listener.h"
 
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
@@ -15,7 +15,7 @@
 #include <future>
 #include <thread>
 
-#include "server/session.h"
+#include "server/transport/session.h"
 
 namespace watertight::server {
 namespace {

@@ -17,7 +17,7 @@
 #include <mutex>
 #include <string>
 
-#include "server/listener.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/messages.h"
+#include "server/transport/messages.h"
 
 #include <array>
 #include <boost/asio/ip/address.hpp>

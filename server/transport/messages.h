@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
-#include "server/http.h"
-#include "server/listener.h"
+#include "server/transport/http.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
 

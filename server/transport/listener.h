@@ -12,7 +12,7 @@
 
 #include "base/cancel.h"
 #include "base/result.h"
-#include "server/http.h"
+#include "server/transport/http.h"
 
 namespace watertight::server {
 

@@ -4,6 +4,7 @@
 // output, messages to standard error.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -93,6 +94,16 @@ struct ExportCommand {
   std::string output;
 };
 Exit run(const ExportCommand& command);
+
+struct CollectionsCommand {
+  enum class Action : std::uint8_t { list, remove, rename, recount };
+  StoreChoice store;
+  Action action = Action::list;
+  std::string id;
+  std::string new_id;    // of rename
+  bool is_json = false;  // of list and recount
+};
+Exit run(const CollectionsCommand& command);
 
 /// "watertight: <file>: <what> (at <place>)" on standard error.
 void complain(const std::string& file, const Error& error);

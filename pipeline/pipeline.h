@@ -111,6 +111,8 @@ struct IngestOptions : FeatureEncoding {
   /// The name of features that have no id: "house" makes house, house-2, ...; "": they are refused.
   std::string unnamed;
   store::WriteCondition condition;  // for each feature that is stored
+  /// The bytes of encoded features that wait in memory; more wait in a temporary file.
+  std::size_t batch_bytes = std::size_t{8} << 20U;
   std::size_t threads = 1;
   CancelPoll is_cancelled = {};
   Progress progress = {};  // of encode_document()

@@ -17,9 +17,7 @@ namespace watertight::pipeline {
 class FeatureSpool final : public store::FeatureBatches {
  public:
   /// A batch is full with this many bytes, or with 5,000 features.
-  static constexpr std::size_t kBatchBytes = std::size_t{8} << 20U;
-
-  explicit FeatureSpool(std::size_t batch_bytes = kBatchBytes) : batch_bytes_(batch_bytes) {}
+  explicit FeatureSpool(std::size_t batch_bytes) : batch_bytes_(batch_bytes) {}
 
   /// Adds a feature, in memory if it fits the first batch. Errors: unavailable when the folder for
   /// temporary files (TMPDIR, else /tmp) cannot take it.

@@ -26,7 +26,8 @@ Ingestion::Ingestion(SolidStore& store, delaunay::EngineWorkers* workers, Ingest
       workers_(workers),
       options_(std::move(options)),
       on_feature_(std::move(on_feature)),
-      progress_(std::move(progress)) {}
+      progress_(std::move(progress)),
+      spool_(options_.batch_bytes) {}
 
 Status Ingestion::add(formats::FeatureReader& reader) {
   auto shared = shared_part(reader.document(), options_.contract);

@@ -47,7 +47,7 @@ inline std::string sequence(const std::vector<std::string>& features) {
 }
 
 /// A store in memory that keeps the promises of a store, and can be made unavailable.
-class MemoryStore final : public SolidStore {
+class MemoryStore : public SolidStore {
  public:
   bool is_away = false;
 

@@ -33,8 +33,8 @@ std::string json_of(const store::StoredCollection& collection) {
 
 std::string line_of(const store::StoredCollection& collection) {
   return printable(collection.id) + ": " + quantity(collection.features, "feature") + ", " +
-         quantity(collection.solids, "solid") + ", " +
-         quantity(collection.blob_bytes, "byte") + " of blobs, " + crs_of(collection);
+         quantity(collection.solids, "solid") + ", " + quantity(collection.blob_bytes, "byte") +
+         " of blobs, " + crs_of(collection);
 }
 
 void print(const CollectionsCommand& command, const store::StoredCollection& collection) {

@@ -207,8 +207,8 @@ TEST_CASE("the answer to a long document keeps the outcomes of features that are
 TEST_CASE("features without ids are named, or refused without a name") {
   Document document;
   document.format = Format::obj;
-  const auto box = formats::read_document(
-      as_bytes(samples::sequence({samples::feature("a")})), Format::city_json_seq);
+  const auto box = formats::read_document(as_bytes(samples::sequence({samples::feature("a")})),
+                                          Format::city_json_seq);
   REQUIRE(box);
   Feature feature = box->features[0];
   feature.id.clear();
@@ -231,8 +231,8 @@ TEST_CASE("a collection of several documents comes back from its export") {
   samples::MemoryStore store;
   std::string coarse = samples::sequence({samples::feature("c1"), samples::feature("c2")});
   coarse.replace(coarse.find("0.001,0.001,0.001"), 17, "0.002,0.002,0.002");
-  const std::string spaced = samples::sequence({samples::feature("s 1"), "  " +
-                                                samples::feature("s2")});
+  const std::string spaced =
+      samples::sequence({samples::feature("s 1"), "  " + samples::feature("s2")});
   REQUIRE(ingest_text(samples::sequence({samples::feature("a"), samples::feature("b")}), store,
                       into("town")));
   REQUIRE(ingest_text(coarse, store, into("town")));

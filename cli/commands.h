@@ -4,6 +4,7 @@
 // output, messages to standard error.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -97,13 +98,22 @@ struct ExportCommand {
 };
 Exit run(const ExportCommand& command);
 
+struct CollectionsCommand {
+  enum class Action : std::uint8_t { list, remove, rename, recount };
+  StoreChoice store;
+  Action action = Action::list;
+  std::string id;
+  std::string new_id;    // of rename
+  bool is_json = false;  // of list and recount
+};
+Exit run(const CollectionsCommand& command);
+
 /// "watertight: <file>: <what> (at <place>)" on standard error.
 void complain(const std::string& file, const Error& error);
 
 /// The findings of a feature's solids and groups, as lines on standard output.
 void print_findings(const std::string& file, const pipeline::InspectedFeature& feature);
-/// The findings of all features of a document, as lines on `out`.
-void print_findings(const std::string& file, const pipeline::IngestOutcome& outcome,
+void print_findings(const std::string& file, const pipeline::FeatureOutcome& feature,
                     std::FILE* out = stdout);
 
 }  // namespace watertight::cli

@@ -281,7 +281,9 @@ Exit run(const EncodeCommand& command) {
   if (!encoded) return fail(command.input, encoded.error());
   const Exit exit = exit_of(encoded->outcome.verdict);
   if (exit != Exit::valid) {
-    print_findings(command.input, encoded->outcome, command.output == "-" ? stderr : stdout);
+    for (const pipeline::FeatureOutcome& feature : encoded->outcome.features) {
+      print_findings(command.input, feature, command.output == "-" ? stderr : stdout);
+    }
     std::fprintf(stderr, "watertight: %s: not all solids are valid; nothing was written\n",
                  printable(command.input).c_str());
     return exit;

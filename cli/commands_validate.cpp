@@ -233,13 +233,7 @@ Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, Open
   ProgressBar bar(file);
   const auto count = input.reader.feature_count();
   options_.progress = [&](std::uint64_t features, std::uint64_t bytes) {
-    std::optional<double> share;
-    if (count && *count > 0) {
-      share = static_cast<double>(features) / static_cast<double>(*count);
-    } else if (!count && input.bytes && *input.bytes > 0) {
-      share = static_cast<double>(bytes) / static_cast<double>(*input.bytes);
-    }
-    bar.show(features, share);
+    bar.show(features, share_done(features, count, bytes, input.bytes));
   };
   return pipeline::validate_stream(
       input.reader, &workers_, options_,
@@ -324,15 +318,13 @@ void print_findings(const std::string& file, const pipeline::InspectedFeature& f
   print_groups(file, feature.groups, source_of, stdout);
 }
 
-void print_findings(const std::string& file, const pipeline::IngestOutcome& outcome,
+void print_findings(const std::string& file, const pipeline::FeatureOutcome& feature,
                     std::FILE* out) {
-  for (const pipeline::FeatureOutcome& feature : outcome.features) {
-    for (const pipeline::SolidOutcome& solid : feature.solids) {
-      print_solid(file, solid.source, solid.report, out);
-    }
-    const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
-    print_groups(file, feature.groups, source_of, out);
+  for (const pipeline::SolidOutcome& solid : feature.solids) {
+    print_solid(file, solid.source, solid.report, out);
   }
+  const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
+  print_groups(file, feature.groups, source_of, out);
 }
 
 Exit run(const ValidateCommand& command) { return Validation(command).run(); }

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace watertight::cli {
 namespace {
@@ -142,16 +143,34 @@ Result<OpenedFile> open_file(const std::string& path) {
   return opened;
 }
 
-std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths) {
+EarlyFiles::EarlyFiles(std::span<const std::string> paths, bool opens_early)
+    : paths_(paths), opens_early_(opens_early) {
+  if (!opens_early) return;
+  constexpr rlim_t kOthers = 256;  // descriptors of the store and the workers
   rlimit most{};
-  constexpr std::size_t kOthers = 256;  // descriptors of the store and the workers
-  if (::getrlimit(RLIMIT_NOFILE, &most) == 0 && most.rlim_cur < paths.size() + kOthers) {
+  if (::getrlimit(RLIMIT_NOFILE, &most) != 0) return;
+  if (most.rlim_cur < paths.size() + kOthers) {
     most.rlim_cur = std::min<rlim_t>(most.rlim_max, paths.size() + kOthers);
-    ::setrlimit(RLIMIT_NOFILE, &most);  // after a failure, opening a file beyond the limit fails
+    ::setrlimit(RLIMIT_NOFILE, &most);
+    ::getrlimit(RLIMIT_NOFILE, &most);
   }
-  std::vector<Result<OpenedFile>> files;
-  for (const std::string& path : paths) files.push_back(open_file(path));
-  return files;
+  const rlim_t room = most.rlim_cur > kOthers ? most.rlim_cur - kOthers : 0;
+  for (const std::string& path : paths) {
+    if (early_.size() < room) early_.push_back(open_file(path));
+  }
+}
+
+Result<OpenedFile> EarlyFiles::take(std::size_t number) {
+  if (number < early_.size()) {
+    return std::exchange(early_[number], Error{ErrorCode::unavailable, "used already"});
+  }
+  auto file = open_file(paths_[number]);
+  if (file || !opens_early_) return file;
+  Error error = std::move(file).error();
+  error.message += "; it was opened without root's rights, as only " +
+                   std::to_string(early_.size()) +
+                   " files could be opened before (ulimit -n sets how many)";
+  return error;
 }
 
 Result<Bytes> read_all(const formats::ByteSource& source, const Limits& limits) {

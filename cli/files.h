@@ -28,8 +28,23 @@ struct OpenedFile {
 /// Opens a file for reading. Errors: unavailable with the system's reason.
 Result<OpenedFile> open_file(const std::string& path);
 
-/// Opens all files at once, also more than a process usually may have open.
-std::vector<Result<OpenedFile>> open_files(std::span<const std::string> paths);
+/// Files of which each is opened when its turn comes, or, for a program that gives up its rights
+/// meanwhile, as many as it may have open at once beforehand.
+class EarlyFiles {
+ public:
+  EarlyFiles() = default;
+  /// `paths` must outlive the object.
+  EarlyFiles(std::span<const std::string> paths, bool opens_early);
+
+  /// The file of this number; call once. Errors: those of open_file(), and that there were too many
+  /// files to open this one beforehand.
+  Result<OpenedFile> take(std::size_t number);
+
+ private:
+  std::span<const std::string> paths_;
+  std::vector<Result<OpenedFile>> early_;
+  bool opens_early_ = false;
+};
 
 /// Reads a source to its end. Errors: those of the source; limit_exceeded.
 Result<Bytes> read_all(const formats::ByteSource& source, const Limits& limits);

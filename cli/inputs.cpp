@@ -5,7 +5,6 @@
 #include <array>
 #include <utility>
 
-#include "cli/files.h"
 #include "codec/page_file.h"
 #include "pipeline/container.h"
 
@@ -102,23 +101,34 @@ Result<Input> load_input(const std::string& path, ByteView bytes,
   return Input{InputKind::document, *std::move(document)};
 }
 
+Result<FoundInput> find_input(OpenedFile file) {
+  auto first = first_bytes(file.source);
+  if (!first) return std::move(first).error();
+  const InputKind kind = kind_of_input(*first);
+  return FoundInput{kind, source_of(*std::move(first), std::move(file.source)), file.bytes};
+}
+
+Result<OpenedInput> open_input(const std::string& path, FoundInput input,
+                               const formats::ReadOptions& options) {
+  if (input.kind == InputKind::document) {
+    auto reader =
+        formats::FeatureReader::open(std::move(input.source), path == "-" ? "" : path, options);
+    if (!reader) return std::move(reader).error();
+    return OpenedInput{*std::move(reader), input.bytes};
+  }
+  const auto bytes = read_all(input.source, options.limits);
+  if (!bytes) return bytes.error();
+  auto loaded = load_input(path, *bytes, options);
+  if (!loaded) return std::move(loaded).error();
+  return OpenedInput{formats::FeatureReader::of(std::move(loaded->document)), input.bytes};
+}
+
 Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptions& options) {
   auto file = open_file(path);
   if (!file) return std::move(file).error();
-  auto first = first_bytes(file->source);
-  if (!first) return std::move(first).error();
-  const InputKind kind = kind_of_input(*first);
-  formats::ByteSource source = source_of(*std::move(first), std::move(file->source));
-  if (kind == InputKind::document) {
-    auto reader = formats::FeatureReader::open(std::move(source), path == "-" ? "" : path, options);
-    if (!reader) return std::move(reader).error();
-    return OpenedInput{*std::move(reader), file->bytes};
-  }
-  const auto bytes = read_all(source, options.limits);
-  if (!bytes) return bytes.error();
-  auto input = load_input(path, *bytes, options);
+  auto input = find_input(*std::move(file));
   if (!input) return std::move(input).error();
-  return OpenedInput{formats::FeatureReader::of(std::move(input->document)), file->bytes};
+  return open_input(path, *std::move(input), options);
 }
 
 Result<Format> format_of_name(const std::string& path) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/bytes.h"
+#include "cli/files.h"
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
 
@@ -41,8 +42,20 @@ struct OpenedInput {
   std::optional<std::uint64_t> bytes;  // the size of the file, if it has one
 };
 
+/// A file of which only the kind is known.
+struct FoundInput {
+  InputKind kind = InputKind::document;
+  formats::ByteSource source;          // all bytes of the file
+  std::optional<std::uint64_t> bytes;  // the size of the file, if it has one
+};
+
+/// Finds the kind of an opened file. Errors: those of its source.
+Result<FoundInput> find_input(OpenedFile file);
+
 /// Opens an input. Errors: unavailable with the reason; those of the readers.
 Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptions& options);
+Result<OpenedInput> open_input(const std::string& path, FoundInput input,
+                               const formats::ReadOptions& options);
 
 /// The format that an output file's name asks for. Errors: unsupported naming the known endings.
 Result<Format> format_of_name(const std::string& path);

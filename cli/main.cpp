@@ -168,20 +168,21 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   });
 }
 
+std::string is_collection_id(const std::string& id) {
+  const bool is_id =
+      !id.empty() && id.size() <= 64 && id != "." && id != ".." &&
+      id.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-") ==
+          std::string::npos;
+  return is_id ? std::string() : "a collection id is 1 to 64 of A-Z a-z 0-9 _ . -";
+}
+
 void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("ingest", "Validate documents and store them");
   sub->add_option("FILE", command.files, "documents; each is stored whole or not at all")
       ->required();
   sub->add_option("--collection", command.collection, "collection, made when missing")
       ->required()
-      ->check([](const std::string& id) {
-        const bool is_id = !id.empty() && id.size() <= 64 && id != "." && id != ".." &&
-                           id.find_first_not_of(
-                               "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
-                               "_.-") == std::string::npos;
-        return is_id ? std::string()
-                     : std::string("a collection id is 1 to 64 of A-Z a-z 0-9 _ . -");
-      });
+      ->check(is_collection_id);
   add_store(*sub, command.store);
   sub->add_option("--invalid", command.invalid,
                   "documents with invalid features: refuse them, or skip those features")
@@ -218,6 +219,40 @@ void allow_many_files() {
   setrlimit(RLIMIT_NOFILE, &files);  // a failure leaves the limit as it was
 }
 
+/// Adds the action `name` to the command collections. Options of the command may follow it.
+CLI::App* add_action(CLI::App& collections, const std::string& name, const std::string& help,
+                     CollectionsCommand& command, CollectionsCommand::Action action) {
+  CLI::App* sub = collections.add_subcommand(name, help)->fallthrough();
+  sub->callback([&command, action] { command.action = action; });
+  if (action == CollectionsCommand::Action::list) return sub;
+  sub->add_option("ID", command.id, "collection")->required()->check(is_collection_id);
+  return sub;
+}
+
+void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen) {
+  using Action = CollectionsCommand::Action;
+  CLI::App* sub =
+      app.add_subcommand("collections", "List, delete, rename or count collections of a store");
+  sub->require_subcommand(1);
+  add_store(*sub, command.store);
+  CLI::App* list =
+      add_action(*sub, "list", "Print a line for each collection", command, Action::list);
+  add_action(*sub, "delete", "Delete a collection with all its features", command, Action::remove);
+  add_action(*sub, "rename", "Give a collection another id", command, Action::rename)
+      ->add_option("NEW", command.new_id, "the new id")
+      ->required()
+      ->check(is_collection_id);
+  CLI::App* recount = add_action(*sub, "recount", "Count the features again, print the line",
+                                 command, Action::recount);
+  for (CLI::App* action : {list, recount}) {
+    action->add_flag("--json", command.is_json, "a line of JSON for each collection");
+  }
+  sub->callback([&] {
+    require_store(command.store);
+    chosen = [&] { return run(command); };
+  });
+}
+
 int run_command_line(int argc, char** argv) {
   allow_many_files();
   CLI::App app("Validates, stores and compresses 3D solids", "watertight");
@@ -233,6 +268,7 @@ int run_command_line(int argc, char** argv) {
   ServeCommand serve_command;
   IngestCommand ingest_command;
   ExportCommand export_command;
+  CollectionsCommand collections_command;
   Chosen chosen;
   add_validate(app, validate_command, chosen);
   add_encode(app, encode_command, chosen);
@@ -242,6 +278,7 @@ int run_command_line(int argc, char** argv) {
   add_serve(app, serve_command, chosen);
   add_ingest(app, ingest_command, chosen);
   add_export(app, export_command, chosen);
+  add_collections(app, collections_command, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -37,6 +37,16 @@ void ProgressBar::show(std::uint64_t features, std::optional<double> share) {
   std::fprintf(stderr, "\r\033[K%s", progress_line(label_, features, share, seconds).c_str());
 }
 
+std::optional<double> share_done(std::uint64_t features, std::optional<std::uint64_t> all_features,
+                                 std::uint64_t bytes, std::optional<std::uint64_t> all_bytes) {
+  const auto share = [](std::uint64_t part, std::uint64_t whole) -> std::optional<double> {
+    if (whole == 0) return std::nullopt;
+    return static_cast<double>(part) / static_cast<double>(whole);
+  };
+  if (all_features) return share(features, *all_features);
+  return all_bytes ? share(bytes, *all_bytes) : std::nullopt;
+}
+
 std::string progress_line(const std::string& label, std::uint64_t features,
                           std::optional<double> share, double seconds) {
   std::array<char, 96> text{};

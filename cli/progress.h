@@ -29,6 +29,10 @@ class ProgressBar {
   std::chrono::steady_clock::time_point drawn_;
 };
 
+/// The share of a document that is done: by the number of its features if known, else by bytes.
+std::optional<double> share_done(std::uint64_t features, std::optional<std::uint64_t> all_features,
+                                 std::uint64_t bytes, std::optional<std::uint64_t> all_bytes);
+
 /// The line that is shown, e.g. "x.jsonl [###...] 12000 features  850/s  2:05 left".
 std::string progress_line(const std::string& label, std::uint64_t features,
                           std::optional<double> share, double seconds);

@@ -49,19 +49,31 @@ Exit exit_of(Verdict verdict) {
   return verdict == Verdict::invalid ? Exit::invalid : Exit::undecided;
 }
 
-void Summary::add(const pipeline::IngestOutcome& outcome, std::uint64_t file_bytes) {
-  file_bytes_ += file_bytes;
-  features_ += outcome.features.size();
-  stored_ += outcome.stored;
-  for (const pipeline::FeatureOutcome& feature : outcome.features) {
-    for (const pipeline::SolidOutcome& solid : feature.solids) {
-      add(solid.report);
-      if (solid.blob_bytes == 0) continue;
-      plain_bytes_ += solid.source_bytes;
-      blob_bytes_ += solid.blob_bytes;
-    }
-    add(feature.groups);
+void Summary::add(const Summary& part) {
+  valid_ += part.valid_;
+  with_warnings_ += part.with_warnings_;
+  invalid_ += part.invalid_;
+  undecided_ += part.undecided_;
+  features_ += part.features_;
+  unreadable_ += part.unreadable_;
+  stored_ += part.stored_;
+  file_bytes_ += part.file_bytes_;
+  plain_bytes_ += part.plain_bytes_;
+  blob_bytes_ += part.blob_bytes_;
+  for (const auto& [code, count] : part.by_code_) by_code_[code] += count;
+  for (const auto& [code, count] : part.groups_by_code_) groups_by_code_[code] += count;
+  for (const auto& [rung, count] : part.by_rung_) by_rung_[rung] += count;
+}
+
+void Summary::add(const pipeline::FeatureOutcome& feature) {
+  ++features_;
+  for (const pipeline::SolidOutcome& solid : feature.solids) {
+    add(solid.report);
+    if (solid.blob_bytes == 0) continue;
+    plain_bytes_ += solid.source_bytes;
+    blob_bytes_ += solid.blob_bytes;
   }
+  add(feature.groups);
 }
 
 void Summary::add(const pipeline::InspectedFeature& feature) {

@@ -21,9 +21,12 @@ Exit exit_of(Verdict verdict);
 /// Counts over all files of a run.
 class Summary {
  public:
-  void add(const pipeline::IngestOutcome& outcome, std::uint64_t file_bytes);
+  /// Adds the counts of a part of the run.
+  void add(const Summary& part);
+  void add(const pipeline::FeatureOutcome& feature);
   void add(const pipeline::InspectedFeature& feature);
   void add_file_bytes(std::uint64_t bytes) { file_bytes_ += bytes; }
+  void add_stored(std::uint64_t features) { stored_ += features; }
   void add_unreadable() { ++unreadable_; }
 
   /// The table as text.

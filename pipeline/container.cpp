@@ -83,18 +83,6 @@ void write_feature(ByteWriter& writer, std::uint64_t document, const EncodedFeat
   }
 }
 
-/// The feature as it was before encoding. Its solids have been decoded and are moved out of
-/// `feature`.
-Result<Feature> restored(ContainerFeature& feature, const std::string& format,
-                         const Limits& limits) {
-  feature.encoded.format = format;
-  std::vector<Solid> solids;
-  for (Decoded& decoded : feature.solids) solids.push_back(std::move(decoded.solid));
-  auto document = decode_feature(feature.encoded, std::move(solids), limits);
-  if (!document) return std::move(document).error();
-  return std::move(document->features.front());
-}
-
 }  // namespace
 
 bool is_container(ByteView bytes) {
@@ -210,7 +198,7 @@ Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& lim
     }
     for (ContainerFeature& feature : (*part)->features) {
       Document& document = documents[feature.document];
-      auto whole = restored(feature, std::string(formats::to_string(document.format)), limits);
+      auto whole = restored(std::move(feature), document.format, limits);
       if (!whole) return std::move(whole).error();
       document.features.push_back(*std::move(whole));
     }

@@ -104,6 +104,15 @@ Result<std::vector<Decoded>> decode_pages(ByteView file, const Limits& limits,
 
 }  // namespace
 
+Result<Feature> restored(ContainerFeature feature, Format format, const Limits& limits) {
+  feature.encoded.format = std::string(formats::to_string(format));
+  std::vector<Solid> solids;
+  for (Decoded& decoded : feature.solids) solids.push_back(std::move(decoded.solid));
+  auto document = decode_feature(feature.encoded, std::move(solids), limits);
+  if (!document) return std::move(document).error();
+  return std::move(document->features.front());
+}
+
 Result<ContainerReader> ContainerReader::open(ByteView bytes, const Limits& limits) {
   if (bytes.size() > limits.bytes) {
     return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +

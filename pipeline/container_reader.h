@@ -31,6 +31,9 @@ struct ContainerFeature {
   std::vector<Decoded> solids;  // one for each of encoded.solids
 };
 
+/// The feature as it was before encoding. Errors: those of decode_feature().
+Result<Feature> restored(ContainerFeature feature, Format format, const Limits& limits);
+
 struct ContainerPart {
   std::vector<ContainerDocument> new_documents;
   std::vector<ContainerFeature> features;

@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
-#include <set>
 
 #include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
 #include "pipeline/groups.h"
 #include "pipeline/instances.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/streaming/process.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {
@@ -29,131 +28,49 @@ Error cancelled() {
   return Error{ErrorCode::cancelled, "stopped before all features were validated"};
 }
 
-/// A feature that was validated, and encoded if it is valid.
-struct Processed {
-  FeatureOutcome outcome;
-  std::optional<EncodedFeature> encoded;
-  std::optional<Error> error;
-};
-
-Processed process(Feature feature, const Document& document, delaunay::EngineWorkers* workers,
-                  const IngestOptions& options, TemplateInspector& templates) {
-  Processed processed;
-  InspectedFeature inspected =
-      inspect(std::move(feature), workers, options.certify, options.groups, &templates);
-  processed.outcome.id = inspected.feature.id;
-  processed.outcome.verdict = inspected.verdict();
-  if (processed.outcome.verdict == Verdict::valid) {
-    auto encoded = encode_feature(inspected, document, options);
-    if (encoded) {
-      processed.encoded = *std::move(encoded);
-    } else {
-      processed.error = std::move(encoded).error();
-    }
+/// The outcome of a solid; `encoded` is the solid after encoding, or null.
+SolidOutcome outcome_of(InspectedSolid& inspected, const Solid& solid, const StoredSolid* encoded) {
+  SolidOutcome outcome;
+  outcome.source = std::move(inspected.source);
+  outcome.report = std::move(inspected.inspection.report);
+  outcome.source_bytes = plain_bytes(solid);
+  if (encoded != nullptr) {
+    outcome.report_json = encoded->report;
+    outcome.blob_bytes = encoded->blob.size();
+    return outcome;
   }
-  for (std::size_t i = 0; i < inspected.solids.size(); ++i) {
-    SolidOutcome outcome;
-    outcome.source = std::move(inspected.solids[i].source);
-    outcome.report = std::move(inspected.solids[i].inspection.report);
-    validate::ReportJsonOptions json;
-    json.pointer_prefix = outcome.source.pointer;
-    json.include_times = false;
-    outcome.report_json =
-        validate::report_json(outcome.report, inspected.feature.solids[i].solid, json);
-    outcome.source_bytes = plain_bytes(inspected.feature.solids[i].solid);
-    if (processed.encoded) outcome.blob_bytes = processed.encoded->solids[i].blob.size();
-    processed.outcome.solids.push_back(std::move(outcome));
-  }
-  processed.outcome.groups = std::move(inspected.groups);
-  return processed;
+  validate::ReportJsonOptions json;
+  json.pointer_prefix = outcome.source.pointer;
+  json.include_times = false;
+  outcome.report_json = validate::report_json(outcome.report, solid, json);
+  return outcome;
 }
 
-Result<std::vector<Processed>> process_all(Document& document, delaunay::EngineWorkers* workers,
-                                           const IngestOptions& options) {
-  std::vector<Feature> features = std::move(document.features);
-  std::vector<Processed> processed(features.size());
-  TemplateInspector templates(document.templates, workers, options.certify,
+Result<std::vector<ProcessedFeature>> process_all(std::vector<Feature> features,
+                                                  std::span<const SubmittedSolid> template_solids,
+                                                  const Document& shared,
+                                                  delaunay::EngineWorkers* workers,
+                                                  const IngestOptions& options) {
+  std::vector<std::optional<Result<ProcessedFeature>>> processed(features.size());
+  TemplateInspector templates(template_solids, workers, options.certify,
                               group_options(options.groups, options.certify));
   std::size_t done = 0;
   std::mutex mutex;
   geometry::for_each_piece(
       features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
         if (is_cancelled(options)) return;
-        processed[i] = process(std::move(features[i]), document, workers, options, templates);
+        processed[i] = process(std::move(features[i]), shared, workers, options, templates);
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(done, features.size());
       });
   if (done < features.size()) return cancelled();
-  return processed;
-}
-
-IngestOutcome summarize(std::vector<Processed>& processed) {
-  IngestOutcome outcome;
-  for (Processed& feature : processed) {
-    outcome.verdict = worse(outcome.verdict, feature.outcome.verdict);
-    outcome.features.push_back(std::move(feature.outcome));
+  std::vector<ProcessedFeature> all;
+  for (auto& feature : processed) {
+    if (!*feature) return std::move(*feature).error();
+    all.push_back(**std::move(feature));
   }
-  return outcome;
-}
-
-Status check_ids(const Document& document) {
-  std::set<std::string_view> ids;
-  for (const Feature& feature : document.features) {
-    if (feature.id.empty()) return Error{ErrorCode::malformed, "a feature has no id"};
-    if (!ids.insert(feature.id).second) {
-      return Error{ErrorCode::malformed, "two features have the id '" + feature.id + "'"};
-    }
-  }
-  return Done{};
-}
-
-/// Checks that the document and the collection have one CRS.
-Status check_crs(const Document& document, SolidStore& store, const std::string& collection) {
-  if (document.features.empty()) return Done{};
-  auto existing = store.collection(collection);
-  if (!existing && existing.error().code != ErrorCode::not_found) return existing.error();
-  const std::uint32_t srid = existing ? existing->srid : document.features.front().srid;
-  for (const Feature& feature : document.features) {
-    if (feature.srid == srid) continue;
-    return Error{ErrorCode::conflict, "feature '" + feature.id + "' is in CRS " +
-                                          std::to_string(feature.srid) + ", the collection in " +
-                                          std::to_string(srid)};
-  }
-  return Done{};
-}
-
-/// Reduces header and framing, which the features share, to what the contract promises.
-Status reduce_to(formats::Contract contract, Document& document) {
-  if (contract == formats::Contract::exact) return Done{};
-  document.framing.clear();
-  if (contract == formats::Contract::lattice || document.header.empty()) return Done{};
-  auto header = formats::boundary_header(document.header);
-  if (!header) return std::move(header).error();
-  document.header = *std::move(header);
-  return Done{};
-}
-
-/// Stores the encoded features. `outcome` has a feature per entry of `processed`.
-Status store_all(std::vector<Processed>& processed, SolidStore& store, IngestOutcome& outcome) {
-  std::vector<StoredFeature> features;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < processed.size(); ++i) {
-    if (!processed[i].encoded) continue;
-    auto packed = pack(*std::move(processed[i].encoded));
-    if (!packed) return std::move(packed).error();
-    features.push_back(*std::move(packed));
-    places.push_back(i);
-  }
-  if (features.empty()) return Done{};
-  auto versions = store.put(features);
-  if (!versions) return std::move(versions).error();
-  for (std::size_t i = 0; i < places.size() && i < versions->size(); ++i) {
-    outcome.features[places[i]].is_stored = true;
-    outcome.features[places[i]].version = (*versions)[i];
-  }
-  outcome.stored = places.size();
-  return Done{};
+  return all;
 }
 
 }  // namespace
@@ -209,46 +126,65 @@ CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions
   return own;
 }
 
-Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers* workers,
-                                      const IngestOptions& options) {
-  Status status = reduce_to(options.contract, document);
-  if (!status) return std::move(status).error();
-  auto processed = process_all(document, workers, options);
-  if (!processed) return std::move(processed).error();
-  EncodeOutcome encoded;
-  encoded.document.format = std::string(formats::to_string(document.format));
-  encoded.document.header = std::move(document.header);
-  encoded.document.framing = std::move(document.framing);
-  for (Processed& feature : *processed) {
-    if (feature.error) return *std::move(feature.error);
-    if (feature.encoded) encoded.document.features.push_back(*std::move(feature.encoded));
-  }
-  encoded.outcome = summarize(*processed);
-  if (encoded.outcome.verdict != Verdict::valid) encoded.document.features.clear();
-  return encoded;
+void IngestCounts::add(Verdict of_feature) {
+  ++total;
+  if (of_feature == Verdict::invalid) ++invalid;
+  if (of_feature == Verdict::undecided) ++undecided;
+  verdict = worse(verdict, of_feature);
 }
 
-Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
-                             const IngestOptions& options) {
-  Status status = check_ids(document);
-  if (status) status = check_crs(document, store, options.collection);
-  if (status) status = reduce_to(options.contract, document);
-  if (!status) return std::move(status).error();
-  auto processed = process_all(document, workers, options);
+Result<Document> shared_part(const Document& document, formats::Contract contract) {
+  Document shared;
+  shared.format = document.format;
+  shared.header = document.header;
+  if (contract == formats::Contract::exact) shared.framing = document.framing;
+  if (contract != formats::Contract::boundary || document.header.empty()) return shared;
+  auto header = formats::boundary_header(document.header);
+  if (!header) return std::move(header).error();
+  shared.header = *std::move(header);
+  return shared;
+}
+
+Result<ProcessedFeature> process(Feature feature, const Document& shared,
+                                 delaunay::EngineWorkers* workers, const IngestOptions& options,
+                                 TemplateInspector& templates) {
+  ProcessedFeature processed;
+  InspectedFeature inspected =
+      inspect(std::move(feature), workers, options.certify, options.groups, &templates);
+  processed.outcome.id = inspected.feature.id;
+  processed.outcome.verdict = inspected.verdict();
+  if (processed.outcome.verdict == Verdict::valid) {
+    auto encoded = encode_feature(inspected, shared, options);
+    if (!encoded) return std::move(encoded).error();
+    processed.encoded = *std::move(encoded);
+  }
+  for (std::size_t i = 0; i < inspected.solids.size(); ++i) {
+    processed.outcome.solids.push_back(
+        outcome_of(inspected.solids[i], inspected.feature.solids[i].solid,
+                   processed.encoded ? &processed.encoded->solids[i] : nullptr));
+  }
+  processed.outcome.groups = std::move(inspected.groups);
+  return processed;
+}
+
+Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers* workers,
+                                      const IngestOptions& options) {
+  auto shared = shared_part(document, options.contract);
+  if (!shared) return std::move(shared).error();
+  auto processed =
+      process_all(std::move(document.features), document.templates, *shared, workers, options);
   if (!processed) return std::move(processed).error();
-  for (Processed& feature : *processed) {
-    if (feature.error) return *std::move(feature.error);
+  EncodeOutcome encoded;
+  encoded.document.format = std::string(formats::to_string(shared->format));
+  encoded.document.header = std::move(shared->header);
+  encoded.document.framing = std::move(shared->framing);
+  for (ProcessedFeature& feature : *processed) {
+    encoded.outcome.add(feature.outcome.verdict);
+    if (feature.encoded) encoded.document.features.push_back(*std::move(feature.encoded));
+    encoded.outcome.features.push_back(std::move(feature.outcome));
   }
-  IngestOutcome outcome = summarize(*processed);
-  const bool stores =
-      outcome.verdict == Verdict::valid || options.invalid_features == InvalidFeatures::skip;
-  if (!stores || is_cancelled(options)) {
-    if (stores) return cancelled();
-    return outcome;
-  }
-  status = store_all(*processed, store, outcome);
-  if (!status) return std::move(status).error();
-  return outcome;
+  if (encoded.outcome.verdict != Verdict::valid) encoded.document.features.clear();
+  return encoded;
 }
 
 }  // namespace watertight::pipeline

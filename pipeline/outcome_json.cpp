@@ -77,7 +77,11 @@ std::string measures_json(const geometry::Measures& measures) {
 std::string outcome_json(const IngestOutcome& outcome) {
   JsonText json;
   json.open('{').key("verdict").value(validate::to_string(outcome.verdict));
-  json.key("stored").value(std::uint64_t{outcome.stored});
+  json.key("stored").value(outcome.stored);
+  json.key("counts").open('{').key("features").value(outcome.total);
+  json.key("valid").value(outcome.total - outcome.invalid - outcome.undecided);
+  json.key("invalid").value(outcome.invalid).key("undecided").value(outcome.undecided).close('}');
+  json.key("featuresOmitted").value(outcome.total - outcome.features.size());
   json.key("features").open('[');
   for (const FeatureOutcome& feature : outcome.features) {
     json.open('{').key("id").value(feature.id);

@@ -15,7 +15,8 @@ namespace watertight::pipeline {
 /// "shells"}.
 std::string measures_json(const geometry::Measures& measures);
 
-/// The text {"verdict", "stored", "features": [{"id", "verdict", "stored", "solids": [{"object",
+/// The text {"verdict", "stored", "counts": {"features", "valid", "invalid", "undecided"},
+/// "featuresOmitted", "features": [{"id", "verdict", "stored", "solids": [{"object",
 /// "geometryType", "lod", "geometry", "ordinal", "pointer", "blobBytes", "report"}], "groups":
 /// [{"kind", "object", "lod", "solids", "verdict", "findings", "findingsOmitted", "notRun"}]}]}.
 /// Features without groups have no "groups"; "solid" in a finding of a group is an index into the

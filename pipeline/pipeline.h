@@ -79,6 +79,7 @@ struct SolidOutcome {
 /// The outcome of one feature of a document.
 struct FeatureOutcome {
   std::string id;
+  bool has_own_id = true;  // false: named by IngestOptions::unnamed
   Verdict verdict = Verdict::undecided;
   std::vector<SolidOutcome> solids;
   std::vector<InspectedGroup> groups;
@@ -107,9 +108,14 @@ struct IngestOptions : FeatureEncoding {
   CertifyOptions certify;
   validate::GroupOptions groups;
   InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
+  /// The name of features that have no id: "house" makes house, house-2, ...; "": they are refused.
+  std::string unnamed;
+  store::WriteCondition condition;  // for each feature that is stored
+  /// The bytes of encoded features that wait in memory; more wait in a temporary file.
+  std::size_t batch_bytes = std::size_t{8} << 20U;
   std::size_t threads = 1;
   CancelPoll is_cancelled = {};
-  Progress progress = {};
+  Progress progress = {};  // of encode_document()
 };
 
 /// A feature with its solids encoded.
@@ -148,10 +154,19 @@ Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {});
 /// The document of a stored feature: unpack(), then decode_feature().
 Result<Document> from_stored(StoredFeature stored, const Limits& limits = {});
 
-struct IngestOutcome {
-  std::vector<FeatureOutcome> features;  // in document order
-  Verdict verdict = Verdict::valid;      // the worst of all features
-  std::size_t stored = 0;                // the number of features that were stored
+/// The result of a document in numbers.
+struct IngestCounts {
+  std::uint64_t total = 0;  // the number of features
+  std::uint64_t invalid = 0;
+  std::uint64_t undecided = 0;
+  std::uint64_t stored = 0;
+  Verdict verdict = Verdict::valid;  // the worst of all features
+
+  void add(Verdict of_feature);
+};
+
+struct IngestOutcome : IngestCounts {
+  std::vector<FeatureOutcome> features;  // in document order; all, or those that were kept
 };
 
 /// A document encoded feature by feature, but not stored.
@@ -164,10 +179,8 @@ struct EncodeOutcome {
 Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers* workers,
                                       const IngestOptions& options);
 
-/// Validates, encodes and stores a document in one transaction: all features if all are valid, else
-/// none (refuse_document) or the valid ones (skip). Nothing is stored after an error. Errors:
-/// malformed (two features of one id, an empty id); conflict (another CRS than the collection's);
-/// cancelled; those of SolidStore::put() and encode().
+/// Validates, encodes and stores a document that is in memory (pipeline/streaming/ingestion.h).
+/// Errors: those of Ingestion.
 Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options);
 

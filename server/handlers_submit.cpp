@@ -8,9 +8,11 @@
 #include <optional>
 
 #include "pipeline/outcome_json.h"
+#include "pipeline/streaming/ingestion.h"
 #include "pipeline/validate_stream.h"
 #include "report/feature_report.h"
 #include "server/handlers.h"
+#include "server/items/preconditions.h"
 #include "server/submission.h"
 
 namespace watertight::server {
@@ -99,7 +101,7 @@ std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::Tex
 
 /// Validates a document and answers with its report; `kind` is 0 for JSON, 1 for GeoJSON, 2 for
 /// HTML. Equal documents get equal answers, so the report has no times.
-Response report_of(Document document, const RoutedRequest& request,
+Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
                    const pipeline::IngestOptions& options, std::size_t kind) {
   constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};
   Response response{200, std::string(kTypes[kind]), {}, {}};
@@ -120,30 +122,79 @@ Response report_of(Document document, const RoutedRequest& request,
   stream.groups.cancel = options.certify.ladder.cancel;
   stream.threads = options.threads;
   stream.is_cancelled = options.is_cancelled;
-  Status status = report->begin_document({"request body", document.format});
-  formats::FeatureReader reader = formats::FeatureReader::of(std::move(document));
+  Status status = report->begin_document({"request body", reader.document().format});
   const auto outcome = pipeline::validate_stream(
       reader, request.service.workers, stream,
       [&](pipeline::ValidatedFeature&& feature) { return report->add(feature); },
-      [&](const Error& error) { return report->add_error(error); });
-  if (!outcome) return to_response(to_problem(outcome.error()));
+      [](const Error& error) -> Status { return error; });
+  if (!outcome) return to_response(problem_of_body(outcome.error()));
   if (status) status = report->end_document({reader.document().notes, 0});
   if (status) status = report->finish();
   return status ? std::move(response) : to_response(to_problem(status.error()));
 }
 
-/// The header of the collection if the body is a bare feature, which needs one; else "".
+/// The header of the collection if the body is a bare feature, which needs one; else "". Errors:
+/// conflict when its features have several headers, as the feature would be read wrongly.
 Result<std::string> header_for(const RoutedRequest& request) {
+  // So many that there is another header among them if there is one: each format may come once.
+  constexpr std::uint64_t kFormats = 16;
   if (!is_bare_feature(request)) return std::string();
-  const auto collection = request.service.store->collection(request.target.segments[1]);
+  const std::string& id = request.target.segments[1];
+  const auto documents = request.service.store->documents(id, kFormats);
+  if (!documents) return documents.error();
+  std::string header;
+  for (const store::StoredHeader& document : *documents) {
+    if (document.header.empty() || document.header == header) continue;
+    if (header.empty()) {
+      header = document.header;
+      continue;
+    }
+    return Error{ErrorCode::conflict,
+                 "collection '" + id +
+                     "' has features under several headers, so the transform of a CityJSONFeature "
+                     "alone is not known: send a CityJSONSeq whose first line is the header"};
+  }
+  if (!header.empty()) return header;
+  const auto collection = request.service.store->collection(id);
   if (collection) return collection->header;
   if (collection.error().code == ErrorCode::not_found) return std::string();
   return collection.error();
 }
 
+/// The most features of which the answer has the outcomes, valid or not.
+constexpr std::size_t kMostOutcomes = 1000;
+
+Response answer_of(const pipeline::IngestOutcome& outcome, const std::string& collection) {
+  // With invalid=skip some features may be stored; the report says which.
+  Response response{outcome.stored > 0 ? 201U : 200U,
+                    std::string(kJson),
+                    pipeline::outcome_json(outcome) + "\n",
+                    {}};
+  if (outcome.total == 1 && outcome.stored == 1) {
+    response.headers.push_back({"Location", item_path(collection, outcome.features.front().id)});
+  }
+  return response;
+}
+
+/// Passes the documents of the body to the ingestion. Returns the problem with them, if any.
+std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedRequest& request) {
+  if (is_container_body(request)) {
+    const Status added =
+        ingestion.add_container(as_bytes(request.request.body), request.service.options.limits);
+    return added ? std::nullopt : std::optional(problem_of_body(added.error()));
+  }
+  const auto header = header_for(request);
+  if (!header) return to_problem(header.error());
+  Submission submission = read_submission(request, AcceptedFormats::city_models, *header);
+  if (submission.problem) return submission.problem;
+  const Status added = ingestion.add(*submission.reader);
+  return added ? std::nullopt : std::optional(problem_of_body(added.error()));
+}
+
 }  // namespace
 
 Response post_items(const RoutedRequest& request) {
+  if (auto refusal = unless_conditional(request)) return *std::move(refusal);
   pipeline::IngestOptions options = ingest_options(request);
   options.collection = request.target.segments[1];
   const std::string* invalid = request.target.parameter("invalid");
@@ -152,26 +203,22 @@ Response post_items(const RoutedRequest& request) {
   }
   if (invalid != nullptr && *invalid == "skip")
     options.invalid_features = pipeline::InvalidFeatures::skip;
-  const auto header = header_for(request);
-  if (!header) return to_response(to_problem(header.error()));
-  Submission submission = read_submission(request, AcceptedFormats::city_models, *header);
-  if (submission.problem) return to_response(*submission.problem);
-  auto outcome = pipeline::ingest(*std::move(submission.document), *request.service.store,
-                                  request.service.workers, options);
-  if (!outcome) return to_response(to_problem(outcome.error()));
-  const bool is_refused = outcome->verdict != Verdict::valid &&
+  auto condition = write_condition(request.request);
+  if (!condition) return to_response(to_problem(condition.error()));
+  options.condition = *std::move(condition);
+  pipeline::OutcomeKeeper keeper(kMostOutcomes);
+  pipeline::Ingestion ingestion(*request.service.store, request.service.workers, options,
+                                [&](pipeline::FeatureOutcome&& feature) -> Status {
+                                  keeper.add(std::move(feature));
+                                  return Done{};
+                                });
+  if (const auto problem = read_into(ingestion, request)) return to_response(*problem);
+  const auto counts = ingestion.finish();
+  if (!counts) return to_response(to_problem(counts.error()));
+  const auto outcome = std::move(keeper).outcome(*counts, ingestion.versions());
+  const bool is_refused = outcome.verdict != Verdict::valid &&
                           options.invalid_features == pipeline::InvalidFeatures::refuse_document;
-  if (is_refused) return refused_document(*outcome);
-  // With invalid=skip some features may be stored; the report says which.
-  Response response{outcome->stored > 0 ? 201U : 200U,
-                    std::string(kJson),
-                    pipeline::outcome_json(*outcome) + "\n",
-                    {}};
-  if (outcome->features.size() == 1 && outcome->stored == 1) {
-    response.headers.push_back(
-        {"Location", item_path(options.collection, outcome->features.front().id)});
-  }
-  return response;
+  return is_refused ? refused_document(outcome) : answer_of(outcome, options.collection);
 }
 
 Response post_validate(const RoutedRequest& request) {
@@ -186,7 +233,7 @@ Response post_validate(const RoutedRequest& request) {
   }
   Submission submission = read_submission(request, AcceptedFormats::all, "");
   if (submission.problem) return to_response(*submission.problem);
-  return report_of(*std::move(submission.document), request, options, *kind);
+  return report_of(*submission.reader, request, options, *kind);
 }
 
 }  // namespace watertight::server

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/city_json/city_json.h"
+#include "pipeline/container.h"
 
 namespace watertight::server {
 namespace {
@@ -89,22 +90,28 @@ Problem unsupported_type(AcceptedFormats accepted) {
     if (!is_allowed(name.format, accepted) || name.type.empty()) continue;
     known += (known.empty() ? "" : ", ") + std::string(name.type);
   }
+  if (accepted == AcceptedFormats::city_models) known.append(", ").append(kContainer);
   return Problem{415, "unsupported", "send a body of one of these types: " + known, {}, {}, {}, {}};
+}
+
+/// The media type that a request states for its body; "" when it leaves that to the content.
+std::string stated_type(const RoutedRequest& request) {
+  const std::string* content_type = request.request.header("content-type");
+  std::string type = content_type == nullptr ? "" : media_type(*content_type);
+  return type == "application/octet-stream" ? "" : type;
 }
 
 /// The format of a body; nullopt when f= and Content-Type name no accepted format. Without both,
 /// the body's first bytes decide.
 std::optional<Format> stated_format(const RoutedRequest& request, AcceptedFormats accepted) {
   const std::string* parameter = request.target.parameter("f");
-  const std::string* content_type = request.request.header("content-type");
-  const std::string type = content_type == nullptr ? "" : media_type(*content_type);
+  const std::string type = stated_type(request);
   for (const FormatName& name : kNames) {
     const bool is_named =
         parameter != nullptr ? name.parameter == *parameter : !type.empty() && name.type == type;
     if (is_named && is_allowed(name.format, accepted)) return name.format;
   }
-  const bool says_nothing = type.empty() || type == "application/octet-stream";
-  if (parameter != nullptr || !says_nothing) return std::nullopt;
+  if (parameter != nullptr || !type.empty()) return std::nullopt;
   const auto detected = formats::detect_format("", as_bytes(request.request.body));
   if (!detected || !is_allowed(*detected, accepted)) return std::nullopt;
   return *detected;
@@ -145,6 +152,30 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
   return document;
 }
 
+/// A source of the bytes of a text, which must outlive it.
+formats::ByteSource source_of(std::string_view text) {
+  return [text](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
+    const std::size_t count = std::min(text.size(), bytes.size());
+    std::copy_n(text.begin(), count, bytes.begin());
+    text.remove_prefix(count);
+    return count;
+  };
+}
+
+Result<formats::FeatureReader> open_body(const RoutedRequest& request, Format format,
+                                         const std::string& header,
+                                         const formats::ReadOptions& options) {
+  const std::string& body = request.request.body;
+  if (format == Format::city_json_seq) {
+    return formats::FeatureReader::open(source_of(body), ".jsonl", options);
+  }
+  auto document = format == Format::city_json && is_bare_feature(request)
+                      ? read_bare_feature(body, header, options)
+                      : formats::read_document(as_bytes(body), format, options);
+  if (!document) return std::move(document).error();
+  return formats::FeatureReader::of(*std::move(document));
+}
+
 }  // namespace
 
 std::string top_level_type(std::string_view json) {
@@ -158,6 +189,20 @@ bool is_bare_feature(const RoutedRequest& request) {
   return format == Format::city_json && top_level_type(request.request.body) == "CityJSONFeature";
 }
 
+bool is_container_body(const RoutedRequest& request) {
+  if (const std::string* parameter = request.target.parameter("f")) return *parameter == "wt";
+  const std::string type = stated_type(request);
+  if (!type.empty()) return type == kContainer;
+  return pipeline::is_container(as_bytes(request.request.body));
+}
+
+Problem problem_of_body(const Error& error) {
+  Problem problem = to_problem(error);
+  // An accepted format whose content the reader does not support is the body's fault.
+  if (error.code == ErrorCode::unsupported) problem.status = 422;
+  return problem;
+}
+
 Submission read_submission(const RoutedRequest& request, AcceptedFormats accepted,
                            const std::string& header) {
   Submission submission;
@@ -167,20 +212,15 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
     return submission;
   }
   const std::string& body = request.request.body;
-  const RouteOptions& options = request.service.options;
-  formats::ReadOptions read_options;
-  read_options.limits = options.limits;
-  read_options.keep_text = true;
+  formats::ReadOptions options;
+  options.limits = request.service.options.limits;
+  options.keep_text = true;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
-  auto document = *format == Format::city_json && is_bare_feature(request)
-                      ? read_bare_feature(body, header, read_options)
-                      : formats::read_document(as_bytes(body), *format, read_options);
-  if (document) {
-    submission.document = *std::move(document);
+  auto reader = open_body(request, *format, header, options);
+  if (reader) {
+    submission.reader = *std::move(reader);
   } else {
-    submission.problem = to_problem(document.error());
-    // An accepted format whose content the reader does not support is the body's fault.
-    if (document.error().code == ErrorCode::unsupported) submission.problem->status = 422;
+    submission.problem = problem_of_body(reader.error());
   }
   return submission;
 }

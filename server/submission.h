@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "formats/feature_reader.h"
 #include "server/handlers.h"
 
 namespace watertight::server {
@@ -18,14 +19,21 @@ std::string top_level_type(std::string_view json);
 enum class AcceptedFormats : std::uint8_t { city_models, all };
 
 /// The document in a body, or the problem with it: 400 malformed, 413, 415, 422. The format follows
-/// from f=, else from Content-Type. `header` is the document header that a bare CityJSONFeature
-/// needs (that of the collection), "" when there is none.
+/// from f=, else from Content-Type. A CityJSONSeq is read while it is used, so the request must
+/// outlive the reader; other documents are read whole. `header` is the document header that a bare
+/// CityJSONFeature needs (that of the collection), "" when there is none.
 struct Submission {
-  std::optional<Document> document;
+  std::optional<formats::FeatureReader> reader;
   std::optional<Problem> problem;
 };
 Submission read_submission(const RoutedRequest& request, AcceptedFormats accepted,
                            const std::string& header);
+
+/// The problem with a body that could not be read.
+Problem problem_of_body(const Error& error);
+
+/// True if the body is a Watertight file.
+bool is_container_body(const RoutedRequest& request);
 
 /// True if the body is a single CityJSONFeature, which needs a header from elsewhere.
 bool is_bare_feature(const RoutedRequest& request);

@@ -87,7 +87,7 @@ Result<Token> new_token() {
 class PostgresStore final : public SolidStore {
  public:
   PostgresStore(const std::string& connection, std::size_t connections)
-      : pool_(connection, connections),
+      : pool_(connection, connections), pings_(connection, 1),
         group_([this](FeatureRefs features) { return write_all(features, {}); }) {}
 
   Status open() {
@@ -101,16 +101,19 @@ class PostgresStore final : public SolidStore {
     return status;
   }
 
-  void interrupt() override { pool_.interrupt(); }
+  void interrupt() override {
+    pool_.interrupt();
+    pings_.interrupt();
+  }
 
   Status try_ping() {
-    Result<ConnectionPool::Lease> lease = pool_.lease(kPingLeaseSeconds);
+    Result<ConnectionPool::Lease> lease = pings_.lease(kPingLeaseSeconds);
     if (!lease) return lease.error();
     const DatabaseSession::Limit limit = limit_of(kPinging);
     // A session of the pool is lost if the server restarted. Then one new session is tried at once.
     for (int attempt = 0; attempt < 2; ++attempt) {
       if (!lease->session) {
-        auto opened = DatabaseSession::open(pool_.connection(), limit);
+        auto opened = DatabaseSession::open(pings_.connection(), limit);
         if (const auto* failed = std::get_if<DatabaseSession::OpenFailure>(&opened)) {
           return failed->error;
         }
@@ -178,6 +181,12 @@ class PostgresStore final : public SolidStore {
     return write_all(all, condition);
   }
 
+  Result<std::vector<std::uint64_t>> put_all(FeatureBatches& batches,
+                                             const WriteCondition& condition) override {
+    return write<std::vector<std::uint64_t>>(
+        [&](DatabaseSession& session) { return write_batches(session, batches, condition); });
+  }
+
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
     return read<StoredFeature>(
@@ -237,6 +246,25 @@ class PostgresStore final : public SolidStore {
 
   template <class Value>
   using Work = std::function<Result<Value>(DatabaseSession&)>;
+
+  Result<std::vector<std::uint64_t>> write_batches(DatabaseSession& session,
+                                                   FeatureBatches& batches,
+                                                   const WriteCondition& condition) {
+    std::vector<std::uint64_t> versions;
+    if (Status rewound = batches.rewind(); !rewound) return std::move(rewound).error();
+    for (;;) {
+      const auto batch = batches.next();
+      if (!batch) return batch.error();
+      if (batch->empty()) return versions;
+      if (Status checked = check_features(*batch); !checked) return std::move(checked).error();
+      session.limit(limit_of(kWriting));
+      std::vector<const StoredFeature*> features;
+      for (const StoredFeature& feature : *batch) features.push_back(&feature);
+      const auto written = write_features(session, features, condition, digests_);
+      if (!written) return written.error();
+      versions.insert(versions.end(), written->begin(), written->end());
+    }
+  }
 
   static Error no_such_collection() {
     return {ErrorCode::not_found, "there is no such collection"};
@@ -393,6 +421,7 @@ class PostgresStore final : public SolidStore {
   }
 
   ConnectionPool pool_;
+  ConnectionPool pings_;  // apart, so that no other call delays a ping
   HeaderDigests digests_;
   GroupCommit group_;
   std::atomic<Clock::time_point> away_until_ = Clock::time_point::min();

@@ -116,6 +116,16 @@ struct FeatureBatch {
   std::string next;  // `after` of the next batch; "" = this batch is the last
 };
 
+/// Features in batches, for SolidStore::put_all(), which may read them more than once.
+class FeatureBatches {
+ public:
+  virtual ~FeatureBatches() = default;
+  /// Goes back to the first batch.
+  virtual Status rewind() = 0;
+  /// The next batch, empty after the last. Valid until the next call.
+  virtual Result<std::span<const StoredFeature>> next() = 0;
+};
+
 class SolidStore {
  public:
   virtual ~SolidStore() = default;
@@ -151,6 +161,10 @@ class SolidStore {
   /// and its version; unavailable.
   virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
                                                  const WriteCondition& condition = {}) = 0;
+  /// Like put(), for more features than memory holds: all batches in one transaction. The limit of
+  /// time holds for each batch. Errors: those of put() and of the batches.
+  virtual Result<std::vector<std::uint64_t>> put_all(FeatureBatches& batches,
+                                                     const WriteCondition& condition = {}) = 0;
   /// The current version of a feature, by one short question to the database. Errors: not_found.
   virtual Result<std::uint64_t> version(const std::string& collection, const std::string& id) = 0;
   virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;

@@ -178,17 +178,39 @@ bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32
   return bit;
 }
 
+void ModelBank::note_from_now() {
+  WATERTIGHT_ASSERT(trials_ == 0);
+  is_noting_ = true;
+  trials_ = 1;
+}
+
+bool ModelBank::take_back() {
+  if (!is_noting_) return false;
+  for (; !changes_.empty(); changes_.pop_back()) undo(changes_.back());
+  return true;
+}
+
 void ModelBank::note_changes(const Family& family, std::uint32_t selector, const Mix& mixed) {
+  // To note and undo a change takes several times as long as to copy a value.
+  if (is_noting_ && trials_ == 1 && changes_.size() > counters_.size() / 4) {
+    changes_ = {};
+    trials_ = 0;
+    is_noting_ = false;
+    return;
+  }
   const auto weights = static_cast<std::uint32_t>(counters_.size());
   const auto seen = static_cast<std::uint32_t>(weights + weights_.size());
+  const std::size_t noted = changes_.size();
+  changes_.resize(noted + 2 * std::size_t{family.inputs} + 2);
+  Change* change = &changes_[noted];
   for (std::uint32_t i = 0; i < family.inputs; ++i) {
-    changes_.push_back({mixed.counter[i], counters_[mixed.counter[i]]});
+    *change++ = {mixed.counter[i], counters_[mixed.counter[i]]};
   }
   const std::uint32_t first = family.first_weight + selector * (family.inputs + 1);
   for (std::uint32_t i = first; i <= first + family.inputs; ++i) {
-    changes_.push_back({weights + i, static_cast<std::uint32_t>(weights_[i])});
+    *change++ = {weights + i, static_cast<std::uint32_t>(weights_[i])};
   }
-  changes_.push_back({seen + family.first_rate + selector, mixed_[family.first_rate + selector]});
+  *change = {seen + family.first_rate + selector, mixed_[family.first_rate + selector]};
 }
 
 void ModelBank::undo(const Change& change) {

@@ -94,6 +94,13 @@ class ModelBank {
                            std::span<const std::uint32_t> contexts, std::int64_t value,
                            int max_length = 62);
 
+  /// Notes all changes from now on, so that take_back() can undo them, until they are so many that
+  /// a copy of the bank costs less. Requires a bank in no trial.
+  void note_from_now();
+  /// Undoes all changes since note_from_now(). Returns false, and undoes nothing, if they were too
+  /// many.
+  bool take_back();
+
   /// save() returns the state of the bank as bytes, load() sets it. load() returns false and
   /// changes nothing if the bytes are no state of this layout.
   Bytes save(const PriorShape& shape) const;
@@ -140,7 +147,8 @@ class ModelBank {
   std::vector<std::int32_t> weights_;    // fixed-point numbers, 16.16
   std::vector<std::uint32_t> mixed_;     // set of weights -> decisions that it mixed, at most 1000
   std::vector<Change> changes_;          // all changes since the beginning of the outermost trial
-  int trials_ = 0;                       // number of trials that live now and note changes
+  int trials_ = 0;  // number of trials that live now and note changes; note_from_now() is one
+  bool is_noting_ = false;  // the outermost trial is that of note_from_now()
 };
 
 }  // namespace watertight::codec

@@ -29,6 +29,14 @@ const Priors* priors_of(std::uint8_t number) {
   return number == 1 && one ? &*one : nullptr;
 }
 
+constexpr std::size_t kSets = 2;
+
+/// The banks that this thread keeps for the next set with a number; null where there is none.
+std::array<std::unique_ptr<ModelBank>, kModelParts>& kept_banks(std::uint8_t number) {
+  thread_local std::array<std::array<std::unique_ptr<ModelBank>, kModelParts>, kSets> kept;
+  return kept[number];
+}
+
 }  // namespace
 
 const ModelLayout& layout_of(ModelPart part) {
@@ -64,8 +72,19 @@ Result<ModelSet> ModelSet::make(std::uint8_t number) {
 
 ModelBank& ModelSet::operator[](ModelPart part) {
   const auto i = static_cast<std::size_t>(part);
-  if (!banks_[i]) banks_[i] = (*priors_)[i];
+  if (banks_[i]) return *banks_[i];
+  if (number_) banks_[i] = std::move(kept_banks(*number_)[i]);
+  if (!banks_[i]) {
+    banks_[i] = std::make_unique<ModelBank>((*priors_)[i]);
+    if (number_) banks_[i]->note_from_now();
+  }
   return *banks_[i];
+}
+
+ModelSet::~ModelSet() {
+  for (std::size_t i = 0; number_ && i < kModelParts; ++i) {
+    if (banks_[i] && banks_[i]->take_back()) kept_banks(*number_)[i] = std::move(banks_[i]);
+  }
 }
 
 Bytes write_models(const Priors& banks, std::uint8_t number,

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "base/bytes.h"
@@ -21,7 +22,9 @@ inline constexpr std::size_t kModelParts = 5;
 
 const ModelLayout& layout_of(ModelPart part);
 
-/// One bank for each part, copied from its prior when it is first asked for.
+/// One bank for each part, copied from its prior when it is first asked for. Copies take longer
+/// than the coding of a small solid, so each thread keeps the banks of a numbered set that is done
+/// with, with their changes undone, for the next one.
 class ModelSet {
  public:
   /// Makes the set with this number. Errors: unsupported if there is none.
@@ -29,14 +32,17 @@ class ModelSet {
   /// Makes a set of other priors, for training; `priors` must outlive it.
   explicit ModelSet(const std::array<ModelBank, kModelParts>& priors) : priors_(&priors) {}
   explicit ModelSet(std::array<ModelBank, kModelParts>&& priors) = delete;
+  ModelSet(ModelSet&&) = default;
+  ModelSet& operator=(ModelSet&&) = delete;
+  ~ModelSet();
 
   ModelBank& operator[](ModelPart part);
-  std::uint8_t number() const { return number_; }
+  std::uint8_t number() const { return number_.value_or(0); }
 
  private:
   const std::array<ModelBank, kModelParts>* priors_;
-  std::uint8_t number_ = 0;
-  std::array<std::optional<ModelBank>, kModelParts> banks_;
+  std::optional<std::uint8_t> number_;
+  std::array<std::unique_ptr<ModelBank>, kModelParts> banks_;
 };
 
 /// The neutral priors of all parts.

@@ -16,6 +16,7 @@ constexpr int kWindowLog = 27;  // 128 MiB, the default limit of the zstd tool
 constexpr std::array<std::uint8_t, 4> kMagic{0x28, 0xB5, 0x2F, 0xFD};
 
 struct FreeContext {
+  void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
@@ -26,9 +27,13 @@ Error malformed(std::string message) {
 }  // namespace
 
 Result<PackedText> pack_text(std::string_view text) {
+  // A new context takes longer than the compression of a small text.
+  thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   Bytes packed(ZSTD_compressBound(text.size()));
-  const std::size_t size =
-      ZSTD_compress(packed.data(), packed.size(), text.data(), text.size(), kLevel);
+  const std::size_t size = context == nullptr
+                               ? static_cast<std::size_t>(-1)
+                               : ZSTD_compressCCtx(context.get(), packed.data(), packed.size(),
+                                                   text.data(), text.size(), kLevel);
   if (ZSTD_isError(size) != 0) {
     return Error{ErrorCode::limit_exceeded, "no memory to compress a text"};
   }

@@ -433,6 +433,55 @@ TEST_CASE_METHOD(Fixture, "encode reports coordinates that had to be rounded") {
   CHECK(run("encode cube.obj -o cube.wt").output.empty());
 }
 
+// The user `watertight`, which root becomes, must be able to enter the folder.
+class StoreFixture : public Fixture {
+ public:
+  StoreFixture() { fs::permissions(folder, fs::perms::all); }
+  Ran on_store(const std::string& arguments) const { return run(arguments + " --data-dir data"); }
+};
+
+TEST_CASE_METHOD(StoreFixture, "ingest takes more files than may be open, and exports come back") {
+  constexpr int kFiles = 300;
+  std::string names;
+  for (int i = 0; i < kFiles; ++i) {
+    const std::string id = std::string("f").append(std::to_string(i));
+    std::string text = samples::sequence({samples::feature(id)});
+    // Three documents: each has a header of its own.
+    if (i % 3 != 0)
+      text.replace(text.find("0.001,0.001"), 11, i % 3 == 1 ? "0.002,0.001" : "0.003,0.001");
+    write(id + ".jsonl", text);
+    names += " " + id + ".jsonl";
+  }
+  const Ran stored = run("--version >/dev/null; ulimit -n 280; " WATERTIGHT_EXECUTABLE
+                         " ingest -q --collection town --data-dir data" +
+                         names);
+  INFO(stored.output);
+  REQUIRE(stored.status == 0);
+  CHECK(stored.output.find("features stored                                      300") !=
+        std::string::npos);
+  fs::create_directory(folder / "out");
+  fs::permissions(folder / "out", fs::perms::all);
+  REQUIRE(on_store("export town -o out/town.wt").status == 0);
+  const Ran back = on_store("ingest -q --collection copy out/town.wt");
+  INFO(back.output);
+  REQUIRE(back.status == 0);
+  REQUIRE(on_store("export copy -o out/copy.wt").status == 0);
+  CHECK(read("out/copy.wt") == read("out/town.wt"));
+
+  CHECK(on_store("collections list").output.find("copy: 300 features, 300 solids, ") == 0);
+  CHECK(on_store("collections rename copy town").status == 2);
+  CHECK(on_store("collections rename copy other").status == 0);
+  const Ran counted = on_store("collections recount other --json");
+  CHECK(nlohmann::json::parse(counted.output)["features"] == kFiles);
+  CHECK(on_store("collections delete other").status == 0);
+  CHECK(on_store("collections delete other").status == 2);
+  const Ran left = on_store("collections list");
+  CHECK(left.output.find("other") == std::string::npos);
+  CHECK(left.output.find("town: 300 features") == 0);
+  CHECK(run("collections delete --data-dir data").status == 2);
+  CHECK(run("collections list").status == 2);
+}
+
 TEST_CASE_METHOD(Fixture, "damaged Watertight files are refused") {
   write("in.city.jsonl", kValid);
   REQUIRE(run("encode in.city.jsonl -o x.wt").status == 0);

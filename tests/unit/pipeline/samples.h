@@ -47,7 +47,7 @@ inline std::string sequence(const std::vector<std::string>& features) {
 }
 
 /// A store in memory that keeps the promises of a store, and can be made unavailable.
-class MemoryStore final : public SolidStore {
+class MemoryStore : public SolidStore {
  public:
   bool is_away = false;
   std::size_t gets = 0;  // how often get() was called
@@ -113,6 +113,17 @@ class MemoryStore final : public SolidStore {
     }
     return versions;
   }
+  Result<std::vector<std::uint64_t>> put_all(store::FeatureBatches& batches,
+                                             const store::WriteCondition& condition = {}) override {
+    std::vector<StoredFeature> all;
+    if (Status rewound = batches.rewind(); !rewound) return std::move(rewound).error();
+    for (;;) {
+      const auto batch = batches.next();
+      if (!batch) return batch.error();
+      if (batch->empty()) return put(all, condition);
+      all.insert(all.end(), batch->begin(), batch->end());
+    }
+  }
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);
     ++gets;
@@ -160,6 +171,7 @@ class MemoryStore final : public SolidStore {
                                                      std::uint64_t limit) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
+    if (!features_.contains(collection)) return std::vector<store::StoredHeader>{};
     std::set<std::pair<std::string, std::string>> distinct;
     for (const auto& [id, feature] : features_[collection]) {
       distinct.emplace(feature.format, feature.header);

@@ -101,6 +101,20 @@ TEST_CASE_METHOD(Items, "a write is done only if its precondition holds") {
   CHECK(item().status == 404);
 }
 
+TEST_CASE_METHOD(Items,
+                 "a document is stored only if its features have the versions that were seen") {
+  const auto store_a = [&](std::vector<server::HeaderField> fields) {
+    return send({"POST", "/collections/town/items", std::move(fields), kA}).status;
+  };
+  const std::string first = field(item(), "ETag");
+  CHECK(store_a({{"if-none-match", "*"}}) == 412);
+  CHECK(store_a({{"if-match", first}}) == 201);
+  CHECK(store_a({{"if-match", first}}) == 412);
+  REQUIRE(send({"DELETE", "/collections/town/items/a", {}, ""}).status == 204);
+  CHECK(store_a({{"if-match", "*"}}) == 412);
+  CHECK(store_a({{"if-none-match", "*"}}) == 201);
+}
+
 TEST_CASE_METHOD(Items, "a service that wants preconditions refuses writes without") {
   const server::Request blind{"DELETE", "/collections/town/items/a", {}, ""};
   CHECK(send(blind, true).status == 428);

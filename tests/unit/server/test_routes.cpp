@@ -148,6 +148,38 @@ TEST_CASE_METHOD(Fixture, "a single feature takes the transform of its collectio
   CHECK(get("/collections/town/items/c").status == 200);
 }
 
+TEST_CASE_METHOD(Fixture, "a single feature is refused where the collection has two transforms") {
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  std::string coarse = samples::sequence({samples::feature("coarse")});
+  coarse.replace(coarse.find("0.001,0.001,0.001"), 17, "0.002,0.002,0.002");
+  REQUIRE(post("/collections/town/items", coarse).status == 201);
+  const server::Response posted =
+      post("/collections/town/items", samples::feature("c"), "application/city+json");
+  CHECK(posted.status == 409);
+  CHECK(problem_of(posted)["detail"].get<std::string>().find("several headers") !=
+        std::string::npos);
+  CHECK(get("/collections/town/items/c").status == 404);
+}
+
+TEST_CASE_METHOD(Fixture, "the export of a collection of two documents can be posted") {
+  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+  std::string coarse = samples::sequence({samples::feature("coarse")});
+  coarse.replace(coarse.find("0.001,0.001,0.001"), 17, "0.002,0.002,0.002");
+  REQUIRE(post("/collections/town/items", coarse).status == 201);
+  const server::Response file = get("/collections/town/export?f=wt");
+  REQUIRE(file.status == 200);
+  for (const std::string& type : {std::string("application/vnd.watertight"), std::string()}) {
+    const server::Response posted = post("/collections/copy/items", file.body, type);
+    INFO(posted.body);
+    REQUIRE(posted.status == 201);
+    CHECK(Json::parse(posted.body)["stored"] == 3);
+  }
+  CHECK(get("/collections/copy/export?f=wt").body == file.body);
+  CHECK(post("/collections/copy/items", file.body.substr(0, file.body.size() / 2),
+             "application/vnd.watertight")
+            .status == 400);
+}
+
 TEST_CASE_METHOD(Fixture, "an invalid solid is refused with the report and nothing is stored") {
   const server::Response response = post("/collections/town/items", kOneOpen);
   REQUIRE(response.status == 422);

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The command collections: lists, deletes, renames and counts the collections of a store.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/quantity.h"
+#include "cli/commands.h"
+#include "cli/opened_store.h"
+#include "cli/printable.h"
+
+namespace watertight::cli {
+namespace {
+
+constexpr std::uint64_t kPage = 1000;
+
+std::string crs_of(const store::StoredCollection& collection) {
+  return collection.srid == 0 ? "no stated CRS" : "EPSG:" + std::to_string(collection.srid);
+}
+
+std::string json_of(const store::StoredCollection& collection) {
+  nlohmann::ordered_json json{{"id", collection.id},
+                              {"features", collection.features},
+                              {"solids", collection.solids},
+                              {"blobBytes", collection.blob_bytes},
+                              {"srid", collection.srid}};
+  if (collection.box) {
+    json["boxMin"] = collection.box->min;
+    json["boxMax"] = collection.box->max;
+  }
+  return json.dump();
+}
+
+std::string line_of(const store::StoredCollection& collection) {
+  return printable(collection.id) + ": " + quantity(collection.features, "feature") + ", " +
+         quantity(collection.solids, "solid") + ", " + quantity(collection.blob_bytes, "byte") +
+         " of blobs, " + crs_of(collection);
+}
+
+void print(const CollectionsCommand& command, const store::StoredCollection& collection) {
+  std::puts((command.is_json ? json_of(collection) : line_of(collection)).c_str());
+}
+
+Status list(const CollectionsCommand& command, SolidStore& store) {
+  std::string after;
+  do {
+    auto page = store.collections(kPage, after);
+    if (!page) return std::move(page).error();
+    for (const store::StoredCollection& collection : page->collections) print(command, collection);
+    after = std::move(page->next);
+  } while (!after.empty());
+  return Done{};
+}
+
+Status recount(const CollectionsCommand& command, SolidStore& store) {
+  const auto counted = store.recount(command.id);
+  if (!counted) return counted.error();
+  print(command, *counted);
+  return Done{};
+}
+
+Status act(const CollectionsCommand& command, SolidStore& store) {
+  switch (command.action) {
+    case CollectionsCommand::Action::list:
+      return list(command, store);
+    case CollectionsCommand::Action::remove:
+      return store.remove_collection(command.id, [] { return false; });
+    case CollectionsCommand::Action::rename:
+      return store.rename_collection(command.id, command.new_id);
+    case CollectionsCommand::Action::recount:
+      return recount(command, store);
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Exit run(const CollectionsCommand& command) {
+  const auto opened = open_store(command.store);
+  if (!opened) {
+    complain("store", opened.error());
+    return Exit::error;
+  }
+  const Status status = act(command, *opened->store);
+  if (status) return Exit::valid;
+  complain(command.id.empty() ? "store" : command.id, status.error());
+  return Exit::error;
+}
+
+}  // namespace watertight::cli

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The command ingest: files of any length into a collection of a store.
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <unordered_map>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/inputs.h"
+#include "cli/opened_store.h"
+#include "cli/printable.h"
+#include "cli/progress.h"
+#include "pipeline/streaming/ingestion.h"
+
+namespace watertight::cli {
+namespace {
+
+pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Contract contract) {
+  pipeline::IngestOptions options;
+  options.collection = command.collection;
+  options.threads = command.jobs;
+  options.contract = contract;
+  options.invalid_features = command.invalid == "skip" ? pipeline::InvalidFeatures::skip
+                                                       : pipeline::InvalidFeatures::refuse_document;
+  return options;
+}
+
+/// A run of `watertight ingest`: all files, one after the other.
+class IngestRun {
+ public:
+  IngestRun(const IngestCommand& command, formats::Contract contract)
+      : command_(command),
+        options_(ingest_options(command, contract)),
+        workers_(delaunay::EngineWorkers::Options{{}, {}, command.jobs}) {}
+
+  Exit run();
+
+ private:
+  /// The file of each feature that this run has stored, as an index, by the feature's id. Empty in
+  /// a run over one file.
+  using FilesOfFeatures = std::unordered_map<std::string, std::size_t>;
+
+  /// What is known of a file before all of it is stored.
+  struct FileRun {
+    Summary summary;
+    std::vector<std::string> valid;  // ids; none in a run over one file
+  };
+
+  Result<pipeline::IngestCounts> ingest(std::size_t number, SolidStore& store, FileRun& run);
+  Status take(std::size_t number, pipeline::FeatureOutcome&& outcome, FileRun& run);
+  void tell_replaced(std::size_t number, const FileRun& run);
+  bool has_several_files() const { return command_.files.size() > 1; }
+
+  const IngestCommand& command_;
+  const pipeline::IngestOptions options_;
+  delaunay::EngineWorkers workers_;
+  EarlyFiles early_;
+  FilesOfFeatures files_;
+  Summary summary_;
+};
+
+Status IngestRun::take(std::size_t number, pipeline::FeatureOutcome&& outcome, FileRun& run) {
+  const auto other = files_.find(outcome.id);
+  if (!outcome.has_own_id && other != files_.end()) {
+    return Error{ErrorCode::conflict, "its features have no ids and would be called '" +
+                                          outcome.id + "', as one of '" +
+                                          command_.files[other->second] + "' is"};
+  }
+  if (!command_.is_quiet && !command_.is_json) print_findings(command_.files[number], outcome);
+  run.summary.add(outcome);
+  if (has_several_files() && outcome.verdict == Verdict::valid) {
+    run.valid.push_back(std::move(outcome.id));
+  }
+  return Done{};
+}
+
+Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore& store,
+                                                 FileRun& run) {
+  const std::string& name = command_.files[number];
+  auto file = early_.take(number);
+  if (!file) return std::move(file).error();
+  auto input = find_input(*std::move(file));
+  if (!input) return std::move(input).error();
+  ProgressBar bar(name);
+  std::optional<std::uint64_t> whole = input->bytes;
+  std::optional<std::size_t> count;
+  pipeline::IngestOptions options = options_;
+  options.unnamed = std::filesystem::path(name).stem().string();
+  pipeline::Ingestion ingestion(
+      store, &workers_, options,
+      [&](pipeline::FeatureOutcome&& outcome) { return take(number, std::move(outcome), run); },
+      [&](std::uint64_t features, std::uint64_t bytes) {
+        bar.show(features, share_done(features, count, bytes, whole));
+      });
+  if (input->kind == InputKind::container) {
+    whole.reset();
+    const auto bytes = read_all(input->source, {});
+    if (!bytes) return bytes.error();
+    run.summary.add_file_bytes(bytes->size());
+    if (Status added = ingestion.add_container(*bytes); !added) return std::move(added).error();
+    return ingestion.finish();
+  }
+  formats::ReadOptions read;
+  read.keep_text = options.contract == formats::Contract::exact;
+  auto opened = open_input(name, *std::move(input), read);
+  if (!opened) return std::move(opened).error();
+  count = opened->reader.feature_count();
+  if (Status added = ingestion.add(opened->reader); !added) return std::move(added).error();
+  run.summary.add_file_bytes(opened->reader.bytes_read());
+  return ingestion.finish();
+}
+
+/// Remembers which features this file stored, and prints which features of earlier files of the run
+/// they replaced.
+void IngestRun::tell_replaced(std::size_t number, const FileRun& run) {
+  const std::string& file = command_.files[number];
+  for (const std::string& id : run.valid) {
+    const auto [known, is_new] = files_.try_emplace(id, number);
+    if (is_new) continue;
+    const std::string text =
+        "feature '" + id + "' replaces the one from '" + command_.files[known->second] + "'";
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(text).c_str());
+    known->second = number;
+  }
+}
+
+Exit IngestRun::run() {
+  const auto start = std::chrono::steady_clock::now();
+  // As root, opening a private cluster gives up the right to open other users' files.
+  const bool gives_up_rights = ::geteuid() == 0 && command_.store.database_url.empty();
+  early_ = EarlyFiles(command_.files, gives_up_rights);
+  const auto opened = open_store(command_.store);
+  if (!opened) {
+    complain("store", opened.error());
+    return Exit::error;
+  }
+  Exit exit = Exit::valid;
+  for (std::size_t i = 0; i < command_.files.size(); ++i) {
+    const std::string& file = command_.files[i];
+    FileRun run;
+    const auto counts = ingest(i, *opened->store, run);
+    if (!counts) {
+      complain(file, counts.error());
+      exit = Exit::error;
+      continue;
+    }
+    if (counts->verdict != Verdict::valid) {
+      std::fprintf(stderr, "watertight: %s: not all features are valid; %s of %s were stored\n",
+                   printable(file).c_str(), std::to_string(counts->stored).c_str(),
+                   std::to_string(counts->total).c_str());
+    }
+    if (counts->stored > 0) tell_replaced(i, run);
+    run.summary.add_stored(counts->stored);
+    summary_.add(run.summary);
+    exit = worse(exit, exit_of(counts->verdict));
+  }
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::string text =
+      command_.is_json ? summary_.json(seconds) + "\n" : summary_.table(seconds);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return exit;
+}
+
+}  // namespace
+
+Exit run(const IngestCommand& command) {
+  const auto contract = formats::contract_named(command.contract);
+  if (!contract) {
+    complain("--contract", contract.error());
+    return Exit::error;
+  }
+  return IngestRun(command, *contract).run();
+}
+
+}  // namespace watertight::cli

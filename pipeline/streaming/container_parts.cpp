@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/streaming/container_parts.h"
+
+#include <map>
+#include <utility>
+
+namespace watertight::pipeline {
+namespace {
+
+/// The solids and instances of a city model's feature as a reader of its text finds them. A stored
+/// solid does not say where in the text it stands.
+Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
+                           const Limits& limits) {
+  const auto line = formats::write_city_json_feature(header, feature);
+  if (!line) return line.error();
+  formats::ReadOptions options;
+  options.limits = limits;
+  auto read = formats::read_city_json_feature(header, *line, options);
+  if (!read) return std::move(read).error();
+  if (read->solids.size() != feature.solids.size()) {
+    return Error{ErrorCode::malformed,
+                 "feature '" + feature.id + "' has other solids than its text"};
+  }
+  feature.solids = std::move(read->solids);
+  feature.instances = std::move(read->instances);
+  return feature;
+}
+
+}  // namespace
+
+Result<ContainerParts> ContainerParts::open(ByteView bytes, const Limits& limits) {
+  auto reader = ContainerReader::open(bytes, limits);
+  if (!reader) return std::move(reader).error();
+  return ContainerParts(*std::move(reader), limits);
+}
+
+Status ContainerParts::add(ContainerDocument added) {
+  const auto format = formats::format_named(added.format);
+  if (!format) return format.error();
+  Shared& shared = documents_.emplace_back();
+  shared.document.format = *format;
+  shared.document.header = std::move(added.header);
+  const bool is_city_model = *format == Format::city_json || *format == Format::city_json_seq;
+  if (!is_city_model || shared.document.header.empty()) return Done{};
+  auto header = formats::read_city_json_header(shared.document.header, limits_);
+  if (!header) return std::move(header).error();
+  auto templates = formats::read_geometry_templates(*header, limits_);
+  if (!templates) return std::move(templates).error();
+  shared.document.templates = *std::move(templates);
+  shared.header = *std::move(header);
+  return Done{};
+}
+
+Result<Feature> ContainerParts::whole(ContainerFeature feature) const {
+  const Shared& shared = documents_[feature.document];
+  auto decoded = restored(std::move(feature), shared.document.format, limits_);
+  if (!decoded || !shared.header) return decoded;
+  return read_again(*shared.header, *std::move(decoded), limits_);
+}
+
+Result<std::optional<std::vector<Document>>> ContainerParts::next() {
+  auto part = reader_.next();
+  if (!part) return std::move(part).error();
+  if (!*part) return std::optional<std::vector<Document>>();
+  for (ContainerDocument& added : (*part)->new_documents) {
+    if (Status status = add(std::move(added)); !status) return std::move(status).error();
+  }
+  std::map<std::uint64_t, Document> found;
+  for (ContainerFeature& feature : (*part)->features) {
+    const std::uint64_t number = feature.document;
+    auto [document, is_new] = found.try_emplace(number);
+    if (is_new) document->second = documents_[number].document;
+    auto complete = whole(std::move(feature));
+    if (!complete) return std::move(complete).error();
+    document->second.features.push_back(*std::move(complete));
+  }
+  std::vector<Document> documents;
+  for (auto& [number, document] : found) documents.push_back(std::move(document));
+  return std::optional(std::move(documents));
+}
+
+}  // namespace watertight::pipeline

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/streaming/feature_spool.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace watertight::pipeline {
+namespace {
+
+constexpr std::size_t kBatchFeatures = 5000;
+constexpr std::size_t kSolidOverhead = sizeof(StoredSolid);
+constexpr std::size_t kFeatureOverhead = sizeof(StoredFeature);
+
+Error file_error(int error) {
+  return {ErrorCode::unavailable,
+          std::string("the temporary file for encoded features: ").append(std::strerror(error))};
+}
+
+/// Opens a temporary file that vanishes with the process. Returns -1 with errno.
+int open_temporary() {
+  std::error_code error;
+  std::string folder = std::filesystem::temp_directory_path(error).string();
+  if (error) folder = "/tmp";
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (descriptor >= 0) return descriptor;
+  std::string name = folder + "/watertight-XXXXXX";
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+std::size_t bytes_of(const StoredFeature& feature) {
+  std::size_t bytes = kFeatureOverhead + feature.id.size() + feature.skeleton.bytes.size();
+  for (const StoredSolid& solid : feature.solids) {
+    bytes += kSolidOverhead + solid.object_id.size() + solid.blob.size() + solid.measures.size() +
+             solid.report.size();
+  }
+  return bytes;
+}
+
+void write(ByteWriter& writer, ByteView bytes) {
+  writer.varint(bytes.size());
+  writer.append(bytes);
+}
+
+void write(ByteWriter& writer, std::string_view text) { write(writer, as_bytes(text)); }
+
+ByteView read_bytes(ByteReader& reader) {
+  return reader.take(static_cast<std::size_t>(reader.varint()));
+}
+
+std::string read_text(ByteReader& reader) { return std::string(as_text(read_bytes(reader))); }
+
+Bytes read_copy(ByteReader& reader) {
+  const ByteView bytes = read_bytes(reader);
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64_t header) {
+  write(writer, feature.collection);
+  write(writer, feature.id);
+  write(writer, feature.type);
+  writer.varint(feature.srid);
+  write(writer, feature.format);
+  writer.varint(header);
+  writer.u8(feature.box ? 1 : 0);
+  for (std::size_t axis = 0; feature.box && axis < 3; ++axis) {
+    writer.f64(feature.box->min[axis]);
+    writer.f64(feature.box->max[axis]);
+  }
+  write(writer, feature.skeleton.bytes);
+  writer.varint(feature.solids.size());
+  for (const StoredSolid& solid : feature.solids) {
+    write(writer, solid.object_id);
+    writer.varint(solid.geometry);
+    writer.varint(solid.ordinal);
+    write(writer, solid.lod);
+    write(writer, solid.blob);
+    write(writer, solid.measures);
+    write(writer, solid.report);
+  }
+}
+
+/// Reads what write_feature() wrote; the caller checks reader.failed().
+StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& headers) {
+  StoredFeature feature;
+  feature.collection = read_text(reader);
+  feature.id = read_text(reader);
+  feature.type = read_text(reader);
+  feature.srid = static_cast<std::uint32_t>(reader.varint());
+  feature.format = read_text(reader);
+  const std::uint64_t header = reader.varint();
+  if (header < headers.size()) feature.header = headers[header];
+  if (reader.u8() != 0) feature.box.emplace();
+  for (std::size_t axis = 0; feature.box && axis < 3; ++axis) {
+    feature.box->min[axis] = reader.f64();
+    feature.box->max[axis] = reader.f64();
+  }
+  feature.skeleton.bytes = read_copy(reader);
+  const std::uint64_t solids = reader.varint();
+  for (std::uint64_t i = 0; i < solids && !reader.failed(); ++i) {
+    StoredSolid& solid = feature.solids.emplace_back();
+    solid.object_id = read_text(reader);
+    solid.geometry = static_cast<std::uint32_t>(reader.varint());
+    solid.ordinal = static_cast<std::uint32_t>(reader.varint());
+    solid.lod = read_text(reader);
+    solid.blob = read_copy(reader);
+    solid.measures = read_text(reader);
+    solid.report = read_text(reader);
+  }
+  return feature;
+}
+
+}  // namespace
+
+Status FeatureSpool::add(StoredFeature feature) {
+  const std::size_t bytes = bytes_of(feature);
+  const bool is_full = open_bytes_ + bytes > batch_bytes_ || open_.size() == kBatchFeatures;
+  if (is_full && !open_.empty()) {
+    if (Status written = write_batch(); !written) return written;
+  }
+  open_bytes_ += bytes;
+  open_.push_back(std::move(feature));
+  ++size_;
+  return Done{};
+}
+
+void FeatureSpool::clear() { *this = FeatureSpool(batch_bytes_); }
+
+std::uint64_t FeatureSpool::number_of(const SharedText& header) {
+  const auto [number, is_new] = header_numbers_.try_emplace(header, headers_.size());
+  if (is_new) headers_.push_back(header);
+  return number->second;
+}
+
+Status FeatureSpool::write_batch() {
+  if (!file_) {
+    const int descriptor = open_temporary();
+    if (descriptor < 0) return file_error(errno);
+    file_.reset(::fdopen(descriptor, "w+b"));
+    if (!file_) return file_error(errno);
+  }
+  ByteWriter writer;
+  for (const StoredFeature& feature : open_) {
+    write_feature(writer, feature, number_of(feature.header));
+  }
+  const bool is_written =
+      std::fwrite(writer.bytes().data(), 1, writer.size(), file_.get()) == writer.size() &&
+      std::fflush(file_.get()) == 0;
+  if (!is_written) return file_error(errno);
+  batches_.push_back({open_.size(), writer.size()});
+  open_.clear();
+  open_bytes_ = 0;
+  return Done{};
+}
+
+Status FeatureSpool::rewind() {
+  given_ = 0;
+  if (file_ && std::fseek(file_.get(), 0, SEEK_SET) != 0) return file_error(errno);
+  return Done{};
+}
+
+Result<std::span<const StoredFeature>> FeatureSpool::next() {
+  const std::size_t number = given_++;
+  read_.clear();
+  if (number > batches_.size()) return std::span<const StoredFeature>();
+  if (number == batches_.size()) return std::span<const StoredFeature>(open_);
+  if (Status status = read_batch(batches_[number]); !status) return std::move(status).error();
+  return std::span<const StoredFeature>(read_);
+}
+
+Status FeatureSpool::read_batch(const Batch& batch) {
+  Bytes bytes(batch.bytes);
+  if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
+    return file_error(std::ferror(file_.get()) != 0 ? errno : EIO);
+  }
+  ByteReader reader(bytes);
+  for (std::uint64_t i = 0; i < batch.features; ++i) {
+    read_.push_back(read_feature(reader, headers_));
+  }
+  if (reader.failed() || reader.remaining() > 0) return file_error(EIO);
+  return Done{};
+}
+
+}  // namespace watertight::pipeline

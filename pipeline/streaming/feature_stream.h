@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Reads features one at a time, works on them on several threads, and hands the results on in the
+// order of the document. For validate_stream() and Ingestion.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "base/cancel.h"
+#include "formats/feature_reader.h"
+
+namespace watertight::pipeline {
+
+/// Hands the result of one feature on. Called in document order, from one thread at a time.
+using Delivery = std::function<Status()>;
+/// Works on a feature, or on the error of a feature or of the rest of the document that could not
+/// be read. `number` is the number in the document, from 0. Called from several threads at once.
+using FeatureWork = std::function<Delivery(std::uint64_t number, Result<Feature> feature)>;
+
+struct FeatureStreamOptions {
+  std::size_t threads = 1;
+  CancelPoll is_cancelled = {};
+  /// Called with the number of bytes read, after each delivery, from one thread at a time.
+  std::function<void(std::uint64_t)> progress = {};
+};
+
+/// Works on all features of a reader; returns their number, unreadable ones included. At most a few
+/// features per thread are in memory at once. Errors: cancelled; those of the deliveries, the first
+/// of which ends the run.
+Result<std::uint64_t> stream_features(formats::FeatureReader& reader,
+                                      const FeatureStreamOptions& options, const FeatureWork& work);
+
+}  // namespace watertight::pipeline

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/streaming/ingestion.h"
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "formats/city_json/city_json.h"
+#include "pipeline/instances.h"
+#include "pipeline/streaming/container_parts.h"
+#include "pipeline/streaming/feature_stream.h"
+#include "pipeline/streaming/process.h"
+
+namespace watertight::pipeline {
+
+/// A feature after validation; `packed` if it is valid.
+struct Ingestion::Processed {
+  FeatureOutcome outcome;
+  std::uint32_t srid = 0;
+  std::optional<StoredFeature> packed;
+};
+
+Ingestion::Ingestion(SolidStore& store, delaunay::EngineWorkers* workers, IngestOptions options,
+                     OutcomeSink on_feature, IngestProgress progress)
+    : store_(store),
+      workers_(workers),
+      options_(std::move(options)),
+      on_feature_(std::move(on_feature)),
+      progress_(std::move(progress)),
+      spool_(options_.batch_bytes) {}
+
+Status Ingestion::add(formats::FeatureReader& reader) {
+  auto shared = shared_part(reader.document(), options_.contract);
+  if (!shared) return std::move(shared).error();
+  TemplateInspector templates(reader.document().templates, workers_, options_.certify,
+                              group_options(options_.groups, options_.certify));
+  const FeatureWork work = [&](std::uint64_t, Result<Feature> feature) -> Delivery {
+    if (!feature) return [error = std::move(feature).error()]() -> Status { return error; };
+    const std::uint32_t srid = feature->srid;
+    auto processed = process(*std::move(feature), *shared, workers_, options_, templates);
+    if (!processed) return [error = std::move(processed).error()]() -> Status { return error; };
+    const auto taken =
+        std::make_shared<Processed>(Processed{std::move(processed->outcome), srid, {}});
+    if (processed->encoded) {
+      auto packed = pack(*std::move(processed->encoded));
+      if (!packed) return [error = std::move(packed).error()]() -> Status { return error; };
+      taken->packed = *std::move(packed);
+    }
+    return [this, taken] { return take(std::move(*taken)); };
+  };
+  FeatureStreamOptions stream{options_.threads, options_.is_cancelled, {}};
+  if (progress_) stream.progress = [this](std::uint64_t bytes) { progress_(counts_.total, bytes); };
+  const auto count = stream_features(reader, stream, work);
+  if (!count) return count.error();
+  return Done{};
+}
+
+Status Ingestion::add_container(ByteView bytes, const Limits& limits) {
+  auto parts = ContainerParts::open(bytes, limits);
+  if (!parts) return std::move(parts).error();
+  for (;;) {
+    auto documents = parts->next();
+    if (!documents) return std::move(documents).error();
+    if (!*documents) return Done{};
+    for (Document& document : **documents) {
+      auto reader = formats::FeatureReader::of(std::move(document));
+      if (Status added = add(reader); !added) return added;
+    }
+  }
+}
+
+/// Names a feature that has no id; checks its id, and that document and collection have one CRS.
+Status Ingestion::check(FeatureOutcome& outcome, std::uint32_t srid) {
+  if (outcome.id.empty()) {
+    if (options_.unnamed.empty()) return Error{ErrorCode::malformed, "a feature has no id"};
+    outcome.has_own_id = false;
+    outcome.id = options_.unnamed;
+    if (++unnamed_ > 1) outcome.id.append("-").append(std::to_string(unnamed_));
+  }
+  if (!ids_.insert(outcome.id).second) {
+    return Error{ErrorCode::malformed, "two features have the id '" + outcome.id + "'"};
+  }
+  if (!srid_) {
+    const auto existing = store_.collection(options_.collection);
+    if (!existing && existing.error().code != ErrorCode::not_found) return existing.error();
+    srid_ = existing ? existing->srid : srid;
+  }
+  if (srid == *srid_) return Done{};
+  return Error{ErrorCode::conflict, "feature '" + outcome.id + "' is in CRS " +
+                                        std::to_string(srid) + ", the collection in " +
+                                        std::to_string(*srid_)};
+}
+
+Status Ingestion::take(Processed processed) {
+  FeatureOutcome& outcome = processed.outcome;
+  if (Status checked = check(outcome, processed.srid); !checked) return checked;
+  counts_.add(outcome.verdict);
+  if (is_refused()) {
+    spool_.clear();
+  } else if (processed.packed) {
+    processed.packed->id = outcome.id;
+    if (Status added = spool_.add(*std::move(processed.packed)); !added) return added;
+  }
+  return on_feature_(std::move(outcome));
+}
+
+Result<IngestCounts> Ingestion::finish() {
+  if (is_refused() || spool_.size() == 0) return counts_;
+  if (options_.is_cancelled && options_.is_cancelled()) {
+    return Error{ErrorCode::cancelled, "stopped before the features were stored"};
+  }
+  // A store can join small writes of several clients.
+  auto versions = spool_.is_one_batch() ? store_.put(spool_.open_batch(), options_.condition)
+                                        : store_.put_all(spool_, options_.condition);
+  if (!versions) return std::move(versions).error();
+  versions_ = *std::move(versions);
+  counts_.stored = spool_.size();
+  spool_.clear();
+  return counts_;
+}
+
+void OutcomeKeeper::add(FeatureOutcome&& outcome) {
+  const bool is_valid = outcome.verdict == Verdict::valid;
+  const std::uint64_t rank = is_valid ? valid_++ : valid_;
+  if (has_all_ && kept_.size() == most_) {
+    has_all_ = false;
+    std::erase_if(kept_, [](const Kept& kept) { return kept.outcome.verdict == Verdict::valid; });
+  }
+  if ((is_valid && !has_all_) || kept_.size() == most_) return;
+  kept_.push_back({std::move(outcome), rank});
+}
+
+IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
+                                     const std::vector<std::uint64_t>& versions) && {
+  IngestOutcome all{counts, {}};
+  for (Kept& kept : kept_) {
+    kept.outcome.is_stored = kept.outcome.verdict == Verdict::valid && kept.rank < versions.size();
+    if (kept.outcome.is_stored) kept.outcome.version = versions[kept.rank];
+    all.features.push_back(std::move(kept.outcome));
+  }
+  return all;
+}
+
+Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
+                             const IngestOptions& options) {
+  OutcomeKeeper keeper(std::numeric_limits<std::size_t>::max());
+  Ingestion ingestion(store, workers, options, [&](FeatureOutcome&& outcome) -> Status {
+    keeper.add(std::move(outcome));
+    return Done{};
+  });
+  auto reader = formats::FeatureReader::of(std::move(document));
+  if (Status added = ingestion.add(reader); !added) return std::move(added).error();
+  const auto counts = ingestion.finish();
+  if (!counts) return counts.error();
+  return std::move(keeper).outcome(*counts, ingestion.versions());
+}
+
+}  // namespace watertight::pipeline

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Stores documents of any length: features are read, validated and encoded one at a time, wait in a
+// spool until all are known to be good, and are stored in one transaction. Memory: a few features
+// per thread, a batch of the spool, and the ids.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "formats/feature_reader.h"
+#include "pipeline/pipeline.h"
+#include "pipeline/streaming/feature_spool.h"
+
+namespace watertight::pipeline {
+
+/// Takes the outcomes of features in document order, from one thread at a time, before anything is
+/// stored. An error ends the run.
+using OutcomeSink = std::function<Status(FeatureOutcome&&)>;
+/// Called with the numbers of features done and of bytes of the reader, from one thread at a time.
+using IngestProgress = std::function<void(std::uint64_t, std::uint64_t)>;
+
+/// One document, or the documents of one Watertight file, on the way into a store: all features are
+/// stored if all are valid, else none (refuse_document) or the valid ones (skip).
+class Ingestion {
+ public:
+  /// The store must outlive the ingestion.
+  Ingestion(SolidStore& store, delaunay::EngineWorkers* workers, IngestOptions options,
+            OutcomeSink on_feature, IngestProgress progress = {});
+
+  /// Validates and encodes all features of a reader; may be called for several readers, whose
+  /// features then count as one document. Nothing is stored yet, and nothing may be stored after an
+  /// error. Errors: those of the reader and of encode(); malformed (two features of one id, an
+  /// empty id); conflict (another CRS than the collection's); cancelled; those of the sink;
+  /// unavailable (the spool).
+  Status add(formats::FeatureReader& reader);
+  /// The same for all documents of a Watertight file. City models are checked as their texts would
+  /// be. Memory: one part of the file. Errors: those of add() and of ContainerParts.
+  Status add_container(ByteView bytes, const Limits& limits = {});
+
+  /// Stores the features in one transaction. Nothing is stored after an error. Errors: cancelled;
+  /// those of SolidStore::put().
+  Result<IngestCounts> finish();
+  /// The versions of the stored features in their order; empty before finish().
+  const std::vector<std::uint64_t>& versions() const { return versions_; }
+
+ private:
+  struct Processed;
+  Status take(Processed processed);
+  Status check(FeatureOutcome& outcome, std::uint32_t srid);
+  bool is_refused() const {
+    return counts_.verdict != Verdict::valid &&
+           options_.invalid_features == InvalidFeatures::refuse_document;
+  }
+
+  SolidStore& store_;
+  delaunay::EngineWorkers* workers_;
+  IngestOptions options_;
+  OutcomeSink on_feature_;
+  IngestProgress progress_;
+  FeatureSpool spool_;
+  std::unordered_set<std::string> ids_;
+  std::optional<std::uint32_t> srid_;  // that of the collection, or of the first feature
+  std::uint64_t unnamed_ = 0;          // the number of features without an id
+  IngestCounts counts_;
+  std::vector<std::uint64_t> versions_;
+};
+
+/// Keeps the outcomes of features for an answer: all while they are few, else the first of those
+/// that are not valid.
+class OutcomeKeeper {
+ public:
+  explicit OutcomeKeeper(std::size_t most) : most_(most) {}
+  void add(FeatureOutcome&& outcome);
+  /// The outcomes with what finish() of the ingestion has made of them.
+  IngestOutcome outcome(const IngestCounts& counts, const std::vector<std::uint64_t>& versions) &&;
+
+ private:
+  struct Kept {
+    FeatureOutcome outcome;
+    std::uint64_t rank = 0;  // the number of valid features before it
+  };
+  std::size_t most_;
+  bool has_all_ = true;
+  std::uint64_t valid_ = 0;
+  std::vector<Kept> kept_;
+};
+
+}  // namespace watertight::pipeline

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One feature through validation and encoding. Internal to pipeline/.
+#pragma once
+
+#include <optional>
+
+#include "pipeline/instances.h"
+#include "pipeline/pipeline.h"
+
+namespace watertight::pipeline {
+
+/// A feature that was validated, and encoded if it is valid.
+struct ProcessedFeature {
+  FeatureOutcome outcome;
+  std::optional<EncodedFeature> encoded;
+};
+
+/// Format, header and framing of a document, reduced to what the contract promises; no features.
+/// Errors: malformed header.
+Result<Document> shared_part(const Document& document, formats::Contract contract);
+
+/// Validates a feature of the document that `shared` is a part of, and encodes it if it is valid.
+/// Errors: those of encode_feature().
+Result<ProcessedFeature> process(Feature feature, const Document& shared,
+                                 delaunay::EngineWorkers* workers, const IngestOptions& options,
+                                 TemplateInspector& templates);
+
+}  // namespace watertight::pipeline

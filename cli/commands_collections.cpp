@@ -77,13 +77,11 @@ Status act(const CollectionsCommand& command, SolidStore& store) {
 
 Exit run(const CollectionsCommand& command) {
   const auto opened = open_store(command.store);
-  auto store = opened ? store::open_postgres_store(opened->connection)
-                      : Result<std::unique_ptr<SolidStore>>(opened.error());
-  if (!store) {
-    complain("store", store.error());
+  if (!opened) {
+    complain("store", opened.error());
     return Exit::error;
   }
-  const Status status = act(command, **store);
+  const Status status = act(command, *opened->store);
   if (status) return Exit::valid;
   complain(command.id.empty() ? "store" : command.id, status.error());
   return Exit::error;

@@ -15,6 +15,18 @@
 namespace watertight::cli {
 namespace {
 
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+/// The limits of one client's address: four connections for each request that it has in work.
+void limit_addresses(const ServeCommand& command, server::ServerOptions& options) {
+  constexpr std::size_t kUsual = 128;
+  options.connections_per_address =
+      command.connections_per_address.value_or(is_loopback(options.address) ? 0 : kUsual);
+  options.works_per_address = (options.connections_per_address + 3) / 4;
+}
+
 /// Reads "127.0.0.1:8080", "[::1]:8080" or ":8080".
 Status read_listen(const std::string& text, server::ServerOptions& options) {
   const Error wrong{ErrorCode::invalid_argument,
@@ -40,17 +52,32 @@ Exit run(const ServeCommand& command) {
     complain("--listen", status.error());
     return Exit::error;
   }
-  server::hold_stop_signals();
-  auto opened = open_store(command.store);
-  if (!opened) {
-    complain("store", opened.error());
-    return Exit::error;
+  const auto fail = [](const std::string& what, const Error& error) {
+    complain(what, error);
+    // A service that was stopped before it listened has done what it was told.
+    return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
+  };
+  limit_addresses(command, options.server);
+  options.requires_preconditions = command.requires_preconditions;
+  if (!command.probes.empty()) {
+    const Status read = read_listen(command.probes, options.probes.emplace());
+    if (!read) {
+      complain("--probes", read.error());
+      return Exit::error;
+    }
   }
+  if (const Status given_up = give_up_rights(command.store); !given_up) {
+    return fail("store", given_up.error());
+  }
+  server::StopSignals signals;
+  auto opened = open_database(command.store, signals);
+  if (!opened) return fail("store", opened.error());
   options.connection = opened->connection;
-  const Status served = server::serve(options);
-  if (served) return Exit::valid;
-  complain("serve", served.error());
-  return Exit::error;
+  if (opened->cluster) {
+    options.database_health = [&opened] { return opened->cluster->health(); };
+  }
+  const Status served = server::serve(options, signals);
+  return served ? Exit::valid : fail("serve", served.error());
 }
 
 Exit run(const ExportCommand& command) {
@@ -67,12 +94,10 @@ Exit run(const ExportCommand& command) {
                    "export writes Watertight files (.wt) and CityJSONSeq (.jsonl)"});
     }
   }
-  auto opened = open_store(command.store);
-  auto store = opened ? store::open_postgres_store(opened->connection)
-                      : Result<std::unique_ptr<SolidStore>>(opened.error());
-  if (!store) return fail("store", store.error());
+  const auto opened = open_store(command.store);
+  if (!opened) return fail("store", opened.error());
   auto exporting = pipeline::CollectionExport::start(
-      **store, command.collection,
+      *opened->store, command.collection,
       is_container ? pipeline::ExportFormat::container : pipeline::ExportFormat::sequence);
   if (!exporting) return fail(command.collection, exporting.error());
   const std::string output = command.output == "-" ? "standard output" : command.output;

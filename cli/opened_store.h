@@ -8,18 +8,33 @@
 
 #include "base/result.h"
 #include "cli/commands.h"
+#include "server/serve.h"
 #include "store/private_cluster.h"
+#include "store/solid_store.h"
 
 namespace watertight::cli {
 
-/// A connection string, with the private cluster behind it if there is one.
-struct OpenedStore {
+/// A database, with the private cluster behind it if there is one.
+struct OpenedDatabase {
   std::unique_ptr<store::PrivateCluster> cluster;
   std::string connection;
 };
 
-/// Starts the private cluster if one is chosen; root becomes the system user `watertight` before.
-/// Errors: those of drop_root_privileges() and PrivateCluster::start().
+/// Gives up the rights that only root has, and those that the program never needs. To be called
+/// before the first thread starts.
+Status give_up_rights(const StoreChoice& choice);
+
+/// Starts the private cluster if one is chosen. Errors: those of PrivateCluster::start().
+Result<OpenedDatabase> open_database(const StoreChoice& choice, const server::StopSignals& signals);
+
+/// A store for a command that ends by itself. The cluster must outlive the store.
+struct OpenedStore {
+  std::unique_ptr<store::PrivateCluster> cluster;
+  std::unique_ptr<SolidStore> store;
+};
+
+/// Gives up rights, then opens the store. Errors: those of give_up_rights(), open_database() and
+/// open_postgres_store(); cancelled when a signal came meanwhile.
 Result<OpenedStore> open_store(const StoreChoice& choice);
 
 }  // namespace watertight::cli

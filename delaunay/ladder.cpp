@@ -482,6 +482,12 @@ workers::WorkerPool* EngineWorkers::cgal() { return cgal_.get(); }
 
 workers::WorkerPool* EngineWorkers::tetgen() { return tetgen_.get(); }
 
+void EngineWorkers::reap() {
+  for (workers::WorkerPool* pool : {cgal(), tetgen()}) {
+    if (pool != nullptr) pool->reap();
+  }
+}
+
 LadderResult climb_ladder(const Solid& solid, const tessellate::FacetTriangles& facets,
                           EngineWorkers* workers, const LadderOptions& options) {
   return Climb(solid, facets, workers, options).run();

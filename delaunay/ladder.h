@@ -38,6 +38,8 @@ class EngineWorkers {
   EngineWorkers& operator=(EngineWorkers&&) noexcept;
   workers::WorkerPool* cgal();    // null when the executable does not exist
   workers::WorkerPool* tetgen();  // null when the executable does not exist
+  /// Reaps processes that ended from idleness.
+  void reap();
 
  private:
   std::unique_ptr<workers::WorkerPool> cgal_;

@@ -96,8 +96,8 @@ constexpr Migration kMigrations[] = {
      }},
     {"an index of features by place",
      {
-         // store/place.h defines the place number. Features that were stored before this step get
-         // the place number of features without a box.
+         // store/rows/place.h defines the place number. Features that were stored before this step
+         // get the place number of features without a box.
          R"(ALTER TABLE watertight.feature ADD COLUMN place bigint NOT NULL
               DEFAULT 9223372036854775807)",
          R"(COMMENT ON COLUMN watertight.feature.place IS

@@ -144,9 +144,9 @@ class SolidStore {
   virtual Result<StoredCollection> recount(const std::string& id) = 0;
   /// Removes a collection with all its features, its CRS and its header. It is gone for all readers
   /// at one moment; a writer of that moment gets the old collection or a new one, as a whole. Waits
-  /// for the writers that have begun. Its rows are deleted after that, some at a time (about 30 s
-  /// for 1,000,000 features); when `is_cancelled` ends this, later writes delete the rest. Errors:
-  /// not_found; cancelled when nothing was removed; unavailable.
+  /// for the writers that have begun. Its rows are deleted after that, some at a time (about a
+  /// minute for 1,000,000 features); when `is_cancelled` ends this, later writes delete the rest.
+  /// Errors: not_found; cancelled when nothing was removed; unavailable.
   virtual Status remove_collection(const std::string& id, const CancelPoll& is_cancelled) = 0;
   /// Gives a collection another id, at one moment. Waits for the writers that have begun. The cost
   /// does not depend on the number of features. Errors: not_found; conflict when `new_id` exists;
@@ -171,10 +171,11 @@ class SolidStore {
   /// A page has at most 10,000 features. Errors: not_found when there is no such collection.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
   /// The next batch of the features of a collection, in order of their place numbers
-  /// (store/place.h: along a Hilbert curve through the centres of their boxes), features without a
-  /// box last, ties by id, bytewise. A batch has at most `limit` (10,000) features, fewer when they
-  /// are large (16 MiB). `after` is FeatureBatch::next, "" at the start. Errors: not_found when
-  /// there is no such collection; invalid_argument for an `after` that no batch returned.
+  /// (store/rows/place.h: along a Hilbert curve through the centres of their boxes), features
+  /// without a box last, ties by id, bytewise. A batch has at most `limit` (10,000) features, fewer
+  /// when they are large (16 MiB). `after` is FeatureBatch::next, "" at the start. Errors:
+  /// not_found when there is no such collection; invalid_argument for an `after` that no batch
+  /// returned.
   virtual Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                                     const std::string& after) = 0;
   /// The formats and headers of the documents that the features of a collection came in, at most
@@ -188,9 +189,11 @@ class SolidStore {
 
 /// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
 /// Reconnects after a lost connection; an interrupted operation is tried again only when it is
-/// idempotent or known not to have been committed. Errors: unavailable with the server's message.
+/// idempotent or known not to have been committed. `is_cancelled` ends the opening; a thread asks
+/// it. Errors: unavailable with the server's message.
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
-                                                        std::size_t connections = 4);
+                                                        std::size_t connections = 4,
+                                                        const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::store
 

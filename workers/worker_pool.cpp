@@ -267,16 +267,21 @@ struct WorkerPool::State {
     returned.notify_one();
   }
 
-  /// A waiting process of the pool, or a new one. Also reaps idle processes that ended or that
-  /// wrote without a request.
+  /// Reaps idle processes that ended or that wrote without a request.
+  void reap() {
+    std::vector<WorkerProcess> ended;  // is destroyed, which may take a moment, without the mutex
+    const std::lock_guard lock(mutex);
+    const auto gone = std::stable_partition(idle.begin(), idle.end(),
+                                            [](const WorkerProcess& p) { return p.is_waiting(); });
+    std::move(gone, idle.end(), std::back_inserter(ended));
+    idle.erase(gone, idle.end());
+  }
+
+  /// A waiting process of the pool, or a new one.
   Result<WorkerProcess> take() {
-    std::vector<WorkerProcess> ended;
+    reap();
     {
       const std::lock_guard lock(mutex);
-      const auto gone = std::stable_partition(
-          idle.begin(), idle.end(), [](const WorkerProcess& p) { return p.is_waiting(); });
-      std::move(gone, idle.end(), std::back_inserter(ended));
-      idle.erase(gone, idle.end());
       if (!idle.empty()) {
         WorkerProcess process = std::move(idle.back());
         idle.pop_back();
@@ -318,6 +323,8 @@ struct WorkerPool::State {
 WorkerPool::WorkerPool(Options options) : state_(std::make_unique<State>(std::move(options))) {}
 
 WorkerPool::~WorkerPool() = default;
+
+void WorkerPool::reap() { state_->reap(); }
 
 JobResult WorkerPool::run(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel) {
   JobResult result;

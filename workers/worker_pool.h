@@ -63,6 +63,9 @@ class WorkerPool {
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   JobResult run(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel = {});
+  /// Reaps processes that ended by themselves, as idle ones do. run() does so too; a program that
+  /// may run no job for long calls this now and then.
+  void reap();
 
  private:
   struct State;

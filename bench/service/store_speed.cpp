@@ -2,7 +2,7 @@
 //
 // Measures calls of the store in any PostgreSQL database (libpq connection string):
 //
-//     store_speed CONNECTION [SECONDS]
+//     store_speed CONNECTION [SECONDS [puts|reads]]
 //
 // Writes boxes to new collections "speed-..." and reads them. Prints calls and features a second,
 // and the processor time of this process for each call; the server's time is not in it.
@@ -120,6 +120,8 @@ void measure_reads(SolidStore& store, const std::string& name, int threads, doub
   };
   measure("get", threads, seconds, 1,
           [&](int thread, int i) { return status_of(store.get(name, random_id(thread, i))); });
+  measure("version", threads, seconds, 1,
+          [&](int thread, int i) { return status_of(store.version(name, random_id(thread, i))); });
   measure("list of 10", threads, seconds, 10, [&](int thread, int i) {
     return status_of(store.list({name, 10, random_id(thread, i), {}}));
   });
@@ -131,7 +133,7 @@ void measure_reads(SolidStore& store, const std::string& name, int threads, doub
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fputs("usage: store_speed CONNECTION [SECONDS]\n", stderr);
+    std::fputs("usage: store_speed CONNECTION [SECONDS [puts|reads]]\n", stderr);
     return 2;
   }
   const double seconds = argc > 2 ? std::atof(argv[2]) : 3;
@@ -141,6 +143,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   SolidStore& store = **opened;
+  const std::string only = argc > 3 ? argv[3] : "";
   const std::string name = "speed-" + std::to_string(getpid());
   for (int first = 0; first < kKept; first += 1000) {
     if (const Status done = status_of(store.put(boxes(name, first, 1000))); !done) {
@@ -149,7 +152,10 @@ int main(int argc, char** argv) {
     }
   }
   std::puts("| call | threads | calls/s | features/s | client ms/call |\n|---|---|---|---|---|");
-  for (const int threads : {1, 4}) measure_reads(store, name, threads, seconds);
+  if (only != "puts") {
+    for (const int threads : {1, 4}) measure_reads(store, name, threads, seconds);
+  }
+  if (only == "reads") return 0;
   measure_puts(store, name + "-w1", 1, 1, seconds);
   measure_puts(store, name + "-w8", 8, 1, seconds);
   measure_puts(store, name + "-w100", 4, 100, seconds);

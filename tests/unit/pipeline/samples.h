@@ -50,6 +50,7 @@ inline std::string sequence(const std::vector<std::string>& features) {
 class MemoryStore : public SolidStore {
  public:
   bool is_away = false;
+  std::size_t gets = 0;  // how often get() was called
 
   Status ping() override {
     if (is_away) return away();
@@ -88,6 +89,7 @@ class MemoryStore : public SolidStore {
     if (is_away) return away();
     if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
     if (features_.contains(new_id)) return Error{ErrorCode::conflict, "there is a " + new_id};
+    if (new_id.find('/') != std::string::npos) return Error{ErrorCode::invalid_argument, new_id};
     auto moved = features_.extract(id);
     moved.key() = new_id;
     for (auto& [key, feature] : moved.mapped()) feature.collection = new_id;
@@ -124,6 +126,7 @@ class MemoryStore : public SolidStore {
   }
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);
+    ++gets;
     if (is_away) return away();
     const auto features = features_.find(collection);
     if (features == features_.end() || !features->second.contains(id)) {

@@ -255,6 +255,17 @@ TEST_CASE("an idle worker ends itself and the next job gets another") {
   CHECK(reply(next) != first);
 }
 
+TEST_CASE("a pool that is asked to reaps the workers that ended from idleness") {
+  workers::WorkerPool::Options options = faulty();
+  options.idle_seconds = 0.05;
+  workers::WorkerPool pool(options);
+  const pid_t process = std::stoi(reply(run(pool, "process")));
+  CHECK(disappears(process));
+  CHECK(kill(process, 0) == 0);  // a zombie has its number still
+  pool.reap();
+  CHECK(kill(process, 0) != 0);
+}
+
 TEST_CASE("jobs that arrive just as a worker ends from idleness are run all the same") {
   workers::WorkerPool::Options options = faulty();
   options.idle_seconds = 0.004;

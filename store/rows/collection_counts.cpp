@@ -5,7 +5,7 @@
 // these changes. So no reader counts features, and no writer waits for another's commit.
 #include <algorithm>
 
-#include "store/feature_rows.h"
+#include "store/rows/feature_rows.h"
 
 namespace watertight::store {
 namespace {
@@ -63,7 +63,7 @@ Result<CollectionPage> read_collections(DatabaseSession& connection, std::uint64
   const std::uint64_t at_most = std::min(limit, kLargestPage);
   // One collection more than asked for shows whether there is a next page.
   const Result<Rows> rows =
-      connection.run(collections_from("(SELECT * FROM watertight.collection WHERE name > $1"
+      connection.ask(collections_from("(SELECT * FROM watertight.collection WHERE name > $1"
                                       " ORDER BY name LIMIT $2)"),
                      Parameters().text(after).int8(static_cast<std::int64_t>(at_most) + 1));
   if (!rows) return rows.error();
@@ -80,7 +80,7 @@ Result<CollectionPage> read_collections(DatabaseSession& connection, std::uint64
 
 Result<StoredCollection> read_collection(DatabaseSession& connection, const std::string& id) {
   const Result<Rows> rows =
-      connection.run(collections_from("(SELECT * FROM watertight.collection WHERE name = $1)"),
+      connection.ask(collections_from("(SELECT * FROM watertight.collection WHERE name = $1)"),
                      Parameters().text(id));
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_collection(id);
@@ -88,14 +88,14 @@ Result<StoredCollection> read_collection(DatabaseSession& connection, const std:
 }
 
 Result<Done> fold_changes(DatabaseSession& connection) {
-  const Result<Rows> lock = connection.run(std::string("SELECT 1::int8 WHERE"
+  const Result<Rows> lock = connection.ask(std::string("SELECT 1::int8 WHERE"
                                                        " pg_try_advisory_xact_lock(") +
                                            kCountsLock + ")");
   if (!lock) return lock.error();
   if (lock->size() == 0) return Done{};
   // All changes that are visible: those of a feature's removal are never without those of its
   // storing, so that counts of 0 mean an empty collection.
-  const Result<Rows> folded = connection.run(
+  const Result<Rows> folded = connection.ask(
       "WITH gone AS (DELETE FROM watertight.collection_change RETURNING *), d AS (" +
       summed("gone") +
       " GROUP BY collection) UPDATE watertight.collection c SET features = c.features + d.features,"
@@ -112,11 +112,9 @@ Result<Done> fold_changes(DatabaseSession& connection) {
 }
 
 Result<StoredCollection> recount_collection(DatabaseSession& connection, const std::string& id) {
-  const Result<Rows> lock =
-      connection.run(std::string("SELECT pg_advisory_xact_lock(") + kCountsLock + ")");
-  if (!lock) return lock.error();
+  connection.send(std::string("SELECT pg_advisory_xact_lock(") + kCountsLock + ")");
   // One statement, so that the features that it counts are those whose changes it removes.
-  const Result<Rows> counted = connection.run(
+  const Result<Rows> counted = connection.ask(
       std::string(
           "WITH k AS (SELECT id FROM watertight.collection WHERE name = $1), gone AS"
           " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)),"

@@ -4,12 +4,17 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/bytes.h"
 #include "base/result.h"
+#include "base/shared_text.h"
 #include "store/connection.h"
 #include "store/solid_store.h"
 
@@ -24,15 +29,37 @@ Status check_box(const StoredBox& box);
 /// False for an id that no stored feature can have.
 bool is_possible_id(const std::string& id);
 
+using FeatureRefs = std::span<const StoredFeature* const>;
+
+/// The SHA-256 of headers that were stored lately: so a write need not ask for them. Holds some
+/// 8 MiB. Thread-safe.
+class HeaderDigests {
+ public:
+  /// Empty for an unknown header.
+  Bytes find(const SharedText& header) const;
+  void add(const SharedText& header, const Bytes& digest);
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<SharedText, Bytes> digests_;
+  std::size_t bytes_ = 0;
+};
+
 /// Writes headers, collections, features and solids. Returns the version of each feature. Requires
 /// check_features(). Errors: conflict when the CRS of a feature is not that of its collection.
-Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection,
-                                                  std::span<const StoredFeature> features,
-                                                  const WriteCondition& condition);
+Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, FeatureRefs features,
+                                                  const WriteCondition& condition,
+                                                  HeaderDigests& known);
 
 /// Errors: not_found, precondition_failed.
 Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
                             const std::string& id, const WriteCondition& condition);
+
+/// Writers of a collection share its gate until they end; who changes its name has the gate alone.
+/// The gate is fair, which the lock of the collection's row is not: without it, new writers would
+/// keep a change of the name waiting for ever.
+enum class Gate : std::uint8_t { shared, alone };
+void send_gate(DatabaseSession& connection, std::string_view collection, Gate gate);
 
 /// Makes a collection one without a name, which no reader or writer finds. Returns its key. Waits
 /// for the writers of the collection. Errors: not_found.

@@ -254,8 +254,10 @@ class PostgresStore final : public SolidStore {
       if (!batch) return batch.error();
       if (batch->empty()) return versions;
       if (Status checked = check_features(*batch); !checked) return std::move(checked).error();
-      session.limit(Clock::now() + kWriting, &pool_.is_interrupted());
-      const auto written = write_features(session, *batch, condition);
+      std::vector<const StoredFeature*> features;
+      for (const StoredFeature& feature : *batch) features.push_back(&feature);
+      session.limit(limit_of(kWriting));
+      const auto written = write_features(session, features, condition, digests_);
       if (!written) return written.error();
       versions.insert(versions.end(), written->begin(), written->end());
     }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <unordered_map>
 
 #include "cli/commands.h"
@@ -33,9 +34,7 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
 class IngestRun {
  public:
   IngestRun(const IngestCommand& command, formats::Contract contract)
-      : command_(command),
-        options_(ingest_options(command, contract)),
-        workers_(delaunay::EngineWorkers::Options{{}, {}, command.jobs}) {}
+      : command_(command), options_(ingest_options(command, contract)) {}
 
   Exit run();
 
@@ -57,7 +56,7 @@ class IngestRun {
 
   const IngestCommand& command_;
   const pipeline::IngestOptions options_;
-  delaunay::EngineWorkers workers_;
+  std::optional<delaunay::EngineWorkers> workers_;
   EarlyFiles early_;
   FilesOfFeatures files_;
   Summary summary_;
@@ -91,7 +90,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   pipeline::IngestOptions options = options_;
   options.unnamed = std::filesystem::path(name).stem().string();
   pipeline::Ingestion ingestion(
-      store, &workers_, options,
+      store, &*workers_, options,
       [&](pipeline::FeatureOutcome&& outcome) { return take(number, std::move(outcome), run); },
       [&](std::uint64_t features, std::uint64_t bytes) {
         bar.show(features, share_done(features, count, bytes, whole));
@@ -138,6 +137,7 @@ Exit IngestRun::run() {
     complain("store", opened.error());
     return Exit::error;
   }
+  workers_.emplace(delaunay::EngineWorkers::Options{{}, {}, command_.jobs});
   Exit exit = Exit::valid;
   for (std::size_t i = 0; i < command_.files.size(); ++i) {
     const std::string& file = command_.files[i];

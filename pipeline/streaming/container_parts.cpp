@@ -21,7 +21,14 @@ Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
     return Error{ErrorCode::malformed,
                  "feature '" + feature.id + "' has other solids than its text"};
   }
-  feature.solids = std::move(read->solids);
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    // Texts of contract lattice and boundary number the vertices in another order.
+    Solid stored = std::move(feature.solids[i].solid);
+    const bool is_same_order = stored == read->solids[i].solid;
+    SubmittedSolid& found = read->solids[i];
+    feature.solids[i] = is_same_order ? std::move(found)
+                                      : SubmittedSolid{std::move(stored), std::move(found.source)};
+  }
   feature.instances = std::move(read->instances);
   return feature;
 }

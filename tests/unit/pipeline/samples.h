@@ -120,7 +120,7 @@ class MemoryStore : public SolidStore {
     for (;;) {
       const auto batch = batches.next();
       if (!batch) return batch.error();
-      if (batch->empty()) return put(all, condition);
+      if (batch->empty()) return MemoryStore::put(all, condition);
       all.insert(all.end(), batch->begin(), batch->end());
     }
   }

@@ -231,8 +231,8 @@ TEST_CASE("a collection of several documents comes back from its export") {
   samples::MemoryStore store;
   std::string coarse = samples::sequence({samples::feature("c1"), samples::feature("c2")});
   coarse.replace(coarse.find("0.001,0.001,0.001"), 17, "0.002,0.002,0.002");
-  const std::string spaced =
-      samples::sequence({samples::feature("s 1"), "  " + samples::feature("s2")});
+  std::string spaced = samples::sequence({samples::feature("s 1"), "  " + samples::feature("s2")});
+  spaced.replace(spaced.find("0.001,0.001,0.001"), 17, "0.005,0.005,0.005");
   REQUIRE(ingest_text(samples::sequence({samples::feature("a"), samples::feature("b")}), store,
                       into("town")));
   REQUIRE(ingest_text(coarse, store, into("town")));

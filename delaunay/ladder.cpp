@@ -441,6 +441,9 @@ class Climb {
     limits.cpu_seconds = seconds;
     limits.wall_seconds = options_.seconds_per_rung > 0 ? seconds : 20 * seconds + 10;
     limits.memory_bytes = (std::uint64_t{512} << 20) + canonical_.triangles.size() * (16U << 10);
+    if (options_.memory_in_engine > 0) {
+      limits.memory_bytes = std::min(limits.memory_bytes, options_.memory_in_engine);
+    }
     return limits;
   }
 

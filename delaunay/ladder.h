@@ -57,6 +57,8 @@ struct LadderOptions {
   /// CPU time of all engines on one solid together; 0: by size (20 s and more, see
   /// default_ladder_seconds()). A rung gets the time that those before it left.
   double seconds_in_all = 0;
+  /// The most bytes of address space of an engine; 0: by size only (0.5 GiB and 16 KiB a triangle).
+  std::uint64_t memory_in_engine = 0;
   CancelPoll cancel = {};
   /// The result of divide_at_contacts() for the solid, or null: the ladder calls it.
   const ContactTriangles* contacts = nullptr;

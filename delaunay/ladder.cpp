@@ -497,7 +497,8 @@ class Climb {
 };
 
 std::unique_ptr<workers::WorkerPool> make_pool(const std::string& executable,
-                                               const std::string& name, std::size_t processes,
+                                               const std::string& name,
+                                               const EngineWorkers::Options& engines,
                                                std::size_t jobs_per_process) {
   workers::WorkerPool::Options options;
   options.executable = executable;
@@ -506,7 +507,8 @@ std::unique_ptr<workers::WorkerPool> make_pool(const std::string& executable,
     if (!found) return nullptr;
     options.executable = *found;
   }
-  options.size = processes;
+  options.size = engines.processes;
+  options.reaps_idle = engines.reaps_idle;
   options.jobs_per_process = jobs_per_process;
   return std::make_unique<workers::WorkerPool>(std::move(options));
 }
@@ -518,9 +520,9 @@ double default_ladder_seconds(std::size_t triangles) {
 }
 
 EngineWorkers::EngineWorkers(const Options& options)
-    : cgal_(make_pool(options.cgal_executable, "watertight-worker", options.processes, 500)),
+    : cgal_(make_pool(options.cgal_executable, "watertight-worker", options, 500)),
       // TetGen keeps tables in globals and frees twice on errors: a process runs one job.
-      tetgen_(make_pool(options.tetgen_executable, "watertight-tetgen", options.processes, 1)) {}
+      tetgen_(make_pool(options.tetgen_executable, "watertight-tetgen", options, 1)) {}
 
 EngineWorkers::EngineWorkers() : EngineWorkers(Options{}) {}
 

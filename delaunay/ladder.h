@@ -30,6 +30,7 @@ class EngineWorkers {
     std::string cgal_executable;    // "" = find_helper("watertight-worker")
     std::string tetgen_executable;  // "" = find_helper("watertight-tetgen")
     std::size_t processes = 2;
+    bool reaps_idle = true;  // WorkerPool::Options::reaps_idle
   };
   explicit EngineWorkers(const Options& options);
   EngineWorkers();

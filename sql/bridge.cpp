@@ -284,6 +284,7 @@ wt_engine* wt_engine_make(const char* libexec) noexcept {
   guarded(&ignored, [&] {
     watertight::delaunay::EngineWorkers::Options options;
     options.processes = 1;
+    options.reaps_idle = false;
     if (libexec != nullptr && *libexec != '\0') {
       options.cgal_executable = std::string(libexec) + "/watertight-worker";
       options.tetgen_executable = std::string(libexec) + "/watertight-tetgen";

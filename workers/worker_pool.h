@@ -48,7 +48,8 @@ struct JobResult {
 /// processes, at most `size` at a time. Processes start on first use, serve many jobs, and are
 /// replaced after `jobs_per_process` jobs and after every outcome but ok. A process has its own
 /// group, an empty private directory, all descriptors but the socket closed, stdout and stderr to
-/// /dev/null, no core dumps, a parent-death signal, and the limits of its job.
+/// /dev/null, no core dumps, a parent-death signal, no new privileges, and the limits of its job,
+/// soft and hard.
 class WorkerPool {
  public:
   struct Options {
@@ -56,6 +57,9 @@ class WorkerPool {
     std::size_t size = 2;
     std::size_t jobs_per_process = 500;
     double idle_seconds = 60;  // a process without a job for this long ends itself
+    /// True: a thread of the pool, with all signals blocked, reaps such a process at once. False:
+    /// it stays a zombie until the next job (a PostgreSQL backend has no threads).
+    bool reaps_idle = true;
   };
   explicit WorkerPool(Options options);
   ~WorkerPool();  // kills every process group and reaps it

@@ -230,7 +230,8 @@ TEST_CASE("a worker sees nothing of its host") {
   close(leaked);
   pthread_sigmask(SIG_UNBLOCK, &blocked, nullptr);
   CHECK(text ==
-        "core=0\nleader=yes\ndescriptors=0,1,2,3,\n/dev/null\n/dev/null\n/dev/null\nwritable=no\n"
+        "core=0\nhard=yes\nprivileges=no\nleader=yes\ndescriptors=0,1,2,3,\n/dev/null\n/dev/null\n/"
+        "dev/null\nwritable=no\n"
         "blocked=no\nsecret=no\n");
 }
 
@@ -253,6 +254,31 @@ TEST_CASE("an idle worker ends itself and the next job gets another") {
   const workers::JobResult next = run(pool, "process");
   CHECK(next.outcome == workers::JobOutcome::ok);
   CHECK(reply(next) != first);
+}
+
+TEST_CASE("an idle worker that ended is no zombie") {
+  workers::WorkerPool::Options options = faulty();
+  options.idle_seconds = 0.05;
+  workers::WorkerPool pool(options);
+  const pid_t process = std::stoi(reply(run(pool, "process")));
+  for (int i = 0; i < 400 && exists(process); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  CHECK_FALSE(exists(process));
+  CHECK_FALSE(has_children());
+}
+
+TEST_CASE("a job that needs more memory than the one before gets another process") {
+  workers::WorkerPool pool(faulty());
+  workers::WorkerLimits little;
+  little.memory_bytes = 1ULL << 30;
+  workers::WorkerLimits more;
+  more.memory_bytes = 2ULL << 30;
+  const std::string first = reply(run(pool, "process", little));
+  CHECK(reply(run(pool, "process", little)) == first);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  CHECK(reply(run(pool, "process", more)) != first);
+#endif
 }
 
 TEST_CASE("jobs that arrive just as a worker ends from idleness are run all the same") {

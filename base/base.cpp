@@ -23,6 +23,8 @@ std::string_view to_string(ErrorCode code) {
       return "not-found";
     case ErrorCode::conflict:
       return "conflict";
+    case ErrorCode::precondition_failed:
+      return "precondition-failed";
     case ErrorCode::unavailable:
       return "unavailable";
     case ErrorCode::invalid_argument:
@@ -35,6 +37,7 @@ std::string to_string(const Error& error) {
   std::string text{to_string(error.code)};
   text += ": " + error.message;
   if (error.byte_offset) text += " (at byte " + std::to_string(*error.byte_offset) + ")";
+  if (!error.detail.empty()) text += " (" + error.detail + ")";
   if (!error.pointer.empty()) text += " (at " + error.pointer + ")";
   return text;
 }

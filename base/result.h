@@ -17,15 +17,16 @@
 namespace watertight {
 
 enum class ErrorCode : std::uint8_t {
-  malformed,        // the bytes are not what they claim to be
-  unsupported,      // well formed, but a feature or version this program does not know
-  limit_exceeded,   // larger, deeper or slower than the caller allows
-  not_encodable,    // a correct solid that a mode of the format cannot hold
-  cancelled,        // the caller asked to stop
-  not_found,        // a named thing does not exist
-  conflict,         // a named thing exists already, or changed meanwhile
-  unavailable,      // a file, process or server cannot be used now; trying again can help
-  invalid_argument  // an option or parameter has a value that is not allowed
+  malformed,            // the bytes are not what they claim to be
+  unsupported,          // well formed, but a feature or version this program does not know
+  limit_exceeded,       // larger, deeper or slower than the caller allows
+  not_encodable,        // a correct solid that a mode of the format cannot hold
+  cancelled,            // the caller asked to stop
+  not_found,            // a named thing does not exist
+  conflict,             // a named thing exists already, or changed meanwhile
+  precondition_failed,  // a condition of the caller on what is stored does not hold
+  unavailable,          // a file, process or server cannot be used now; trying again can help
+  invalid_argument      // an option or parameter has a value that is not allowed
 };
 
 /// The code as the lower-case word used in every report, e.g. "limit-exceeded".
@@ -37,9 +38,11 @@ struct Error {
   std::string message;                            // one sentence for the person who sent the input
   std::optional<std::uint64_t> byte_offset = {};  // offset into the bytes that were read
   std::string pointer = {};                       // JSON Pointer (RFC 6901) into the document
+  std::string detail =
+      {};  // for the log and the command line, never for a client: it may name files
 };
 
-/// The error on one line: "malformed: <message> (at byte 17)".
+/// The error on one line, with its detail: "malformed: <message> (at byte 17)".
 std::string to_string(const Error& error);
 
 /// A value or an error. Member names are those of std::expected (C++23).

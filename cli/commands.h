@@ -72,6 +72,9 @@ struct StoreChoice {
 struct ServeCommand {
   StoreChoice store;
   std::string listen = "127.0.0.1:8080";
+  std::string probes;  // "" for no address of their own
+  std::optional<std::size_t> connections_per_address;
+  bool requires_preconditions = false;
 };
 Exit run(const ServeCommand& command);
 

@@ -21,29 +21,75 @@
 namespace watertight::cli {
 namespace {
 
-/// A connection string, with the private cluster behind it if there is one.
-struct OpenedStore {
+/// A database, with the private cluster behind it if there is one.
+struct OpenedDatabase {
   std::unique_ptr<store::PrivateCluster> cluster;
   std::string connection;
 };
 
-Result<OpenedStore> open_store(const StoreChoice& choice) {
-  OpenedStore opened;
+std::string directory_of(const StoreChoice& choice) {
+  std::error_code error;
+  return std::filesystem::absolute(choice.data_directory, error).string();
+}
+
+/// Gives up the rights that only root has, and those that the program never needs. To be called
+/// before the first thread starts.
+Status give_up_rights(const StoreChoice& choice) {
+  if (choice.database_url.empty()) {
+    if (Status dropped = store::drop_root_privileges(directory_of(choice)); !dropped)
+      return dropped;
+  }
+  return store::forbid_new_privileges();
+}
+
+Result<OpenedDatabase> open_database(const StoreChoice& choice,
+                                     const server::StopSignals& signals) {
+  OpenedDatabase opened;
   if (!choice.database_url.empty()) {
     opened.connection = choice.database_url;
     return opened;
   }
-  std::error_code error;
-  const std::string directory = std::filesystem::absolute(choice.data_directory, error).string();
-  const Status status = store::drop_root_privileges(directory);
-  if (!status) return status.error();
   store::ClusterOptions options;
-  options.data_directory = directory;
+  options.data_directory = directory_of(choice);
+  options.is_cancelled = [&signals] { return signals.is_requested(); };
+  options.tell = [](const std::string& sentence) {
+    server::write_unless_full("watertight: store: " + printable(sentence) + "\n");
+  };
   auto cluster = store::PrivateCluster::start(options);
   if (!cluster) return std::move(cluster).error();
   opened.connection = (*cluster)->connection();
   opened.cluster = *std::move(cluster);
   return opened;
+}
+
+/// A store for a command that ends by itself. The cluster must outlive the store.
+struct OpenedStore {
+  std::unique_ptr<store::PrivateCluster> cluster;
+  std::unique_ptr<SolidStore> store;
+};
+
+Result<OpenedStore> open_store(const StoreChoice& choice) {
+  if (Status given_up = give_up_rights(choice); !given_up) return std::move(given_up).error();
+  const server::StopSignals signals;
+  auto database = open_database(choice, signals);
+  if (!database) return std::move(database).error();
+  auto store = store::open_postgres_store(database->connection, 4,
+                                          [&signals] { return signals.is_requested(); });
+  if (signals.is_requested()) return Error{ErrorCode::cancelled, "stopped before the work began"};
+  if (!store) return std::move(store).error();
+  return OpenedStore{std::move(database->cluster), *std::move(store)};
+}
+
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+/// The limits of one client's address: four connections for each request that it has in work.
+void limit_addresses(const ServeCommand& command, server::ServerOptions& options) {
+  constexpr std::size_t kUsual = 128;
+  options.connections_per_address =
+      command.connections_per_address.value_or(is_loopback(options.address) ? 0 : kUsual);
+  options.works_per_address = (options.connections_per_address + 3) / 4;
 }
 
 /// Reads "127.0.0.1:8080", "[::1]:8080" or ":8080".
@@ -142,17 +188,32 @@ Exit run(const ServeCommand& command) {
     complain("--listen", status.error());
     return Exit::error;
   }
-  server::hold_stop_signals();
-  auto opened = open_store(command.store);
-  if (!opened) {
-    complain("store", opened.error());
-    return Exit::error;
+  const auto fail = [](const std::string& what, const Error& error) {
+    complain(what, error);
+    // A service that was stopped before it listened has done what it was told.
+    return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
+  };
+  limit_addresses(command, options.server);
+  options.requires_preconditions = command.requires_preconditions;
+  if (!command.probes.empty()) {
+    const Status read = read_listen(command.probes, options.probes.emplace());
+    if (!read) {
+      complain("--probes", read.error());
+      return Exit::error;
+    }
   }
+  if (const Status given_up = give_up_rights(command.store); !given_up) {
+    return fail("store", given_up.error());
+  }
+  server::StopSignals signals;
+  auto opened = open_database(command.store, signals);
+  if (!opened) return fail("store", opened.error());
   options.connection = opened->connection;
-  const Status served = server::serve(options);
-  if (served) return Exit::valid;
-  complain("serve", served.error());
-  return Exit::error;
+  if (opened->cluster) {
+    options.database_health = [&opened] { return opened->cluster->health(); };
+  }
+  const Status served = server::serve(options, signals);
+  return served ? Exit::valid : fail("serve", served.error());
 }
 
 Exit run(const IngestCommand& command) {
@@ -166,11 +227,9 @@ Exit run(const IngestCommand& command) {
   // The files are opened before the store: as root, opening the store gives up the right to open
   // other users' files.
   auto opened_files = open_files(command.files);
-  auto opened = open_store(command.store);
-  auto store = opened ? store::open_postgres_store(opened->connection)
-                      : Result<std::unique_ptr<SolidStore>>(opened.error());
-  if (!store) {
-    complain("store", store.error());
+  const auto opened = open_store(command.store);
+  if (!opened) {
+    complain("store", opened.error());
     return Exit::error;
   }
   delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
@@ -181,7 +240,7 @@ Exit run(const IngestCommand& command) {
     const std::string& file = command.files[i];
     const auto bytes = read_and_close(std::move(opened_files[i]));
     auto document = bytes ? read_named(file, *bytes, *contract, files) : bytes.error();
-    const auto outcome = ingest_file(file, std::move(document), **store, workers, options);
+    const auto outcome = ingest_file(file, std::move(document), *opened->store, workers, options);
     if (!outcome) {
       complain(file, outcome.error());
       exit = Exit::error;
@@ -217,12 +276,10 @@ Exit run(const ExportCommand& command) {
                    "export writes Watertight files (.wt) and CityJSONSeq (.jsonl)"});
     }
   }
-  auto opened = open_store(command.store);
-  auto store = opened ? store::open_postgres_store(opened->connection)
-                      : Result<std::unique_ptr<SolidStore>>(opened.error());
-  if (!store) return fail("store", store.error());
+  const auto opened = open_store(command.store);
+  if (!opened) return fail("store", opened.error());
   auto exporting = pipeline::CollectionExport::start(
-      **store, command.collection,
+      *opened->store, command.collection,
       is_container ? pipeline::ExportFormat::container : pipeline::ExportFormat::sequence);
   if (!exporting) return fail(command.collection, exporting.error());
   const std::string output = command.output == "-" ? "standard output" : command.output;

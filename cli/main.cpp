@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // `watertight COMMAND ...`: reads the command line and runs the command (docs/cli.md).
+#include <sys/resource.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -153,6 +155,13 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("serve", "Run the HTTP service until SIGTERM or SIGINT");
   add_store(*sub, command.store);
   sub->add_option("--listen", command.listen, "ADDRESS:PORT")->capture_default_str();
+  sub->add_option("--probes", command.probes,
+                  "ADDRESS:PORT that answers /healthz and /readyz only, whatever the clients do");
+  sub->add_option("--connections-per-address", command.connections_per_address,
+                  "the most connections of one client's address; 0 for no limit (default: 128, and "
+                  "no limit on a loopback address, where a proxy may speak for many)");
+  sub->add_flag("--require-preconditions", command.requires_preconditions,
+                "refuse writes of features without If-Match or If-None-Match");
   sub->callback([&] {
     require_store(command.store);
     chosen = [&] { return run(command); };
@@ -201,7 +210,16 @@ void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
   });
 }
 
+/// Raises the number of files that may be open to what the system allows this process.
+void allow_many_files() {
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &files);  // a failure leaves the limit as it was
+}
+
 int run_command_line(int argc, char** argv) {
+  allow_many_files();
   CLI::App app("Validates, stores and compresses 3D solids", "watertight");
   app.set_version_flag("--version", WATERTIGHT_VERSION);
   app.require_subcommand(1);

@@ -508,7 +508,6 @@ std::unique_ptr<workers::WorkerPool> make_pool(const std::string& executable,
     options.executable = *found;
   }
   options.size = engines.processes;
-  options.reaps_idle = engines.reaps_idle;
   options.jobs_per_process = jobs_per_process;
   return std::make_unique<workers::WorkerPool>(std::move(options));
 }
@@ -533,6 +532,12 @@ EngineWorkers& EngineWorkers::operator=(EngineWorkers&&) noexcept = default;
 workers::WorkerPool* EngineWorkers::cgal() { return cgal_.get(); }
 
 workers::WorkerPool* EngineWorkers::tetgen() { return tetgen_.get(); }
+
+void EngineWorkers::reap() {
+  for (workers::WorkerPool* pool : {cgal(), tetgen()}) {
+    if (pool != nullptr) pool->reap();
+  }
+}
 
 LadderResult climb_ladder(const Solid& solid, const tessellate::FacetTriangles& facets,
                           EngineWorkers* workers, const LadderOptions& options) {

@@ -30,7 +30,6 @@ class EngineWorkers {
     std::string cgal_executable;    // "" = find_helper("watertight-worker")
     std::string tetgen_executable;  // "" = find_helper("watertight-tetgen")
     std::size_t processes = 2;
-    bool reaps_idle = true;  // WorkerPool::Options::reaps_idle
   };
   explicit EngineWorkers(const Options& options);
   EngineWorkers();
@@ -39,6 +38,8 @@ class EngineWorkers {
   EngineWorkers& operator=(EngineWorkers&&) noexcept;
   workers::WorkerPool* cgal();    // null when the executable does not exist
   workers::WorkerPool* tetgen();  // null when the executable does not exist
+  /// Reaps processes that ended from idleness.
+  void reap();
 
  private:
   std::unique_ptr<workers::WorkerPool> cgal_;

@@ -93,6 +93,7 @@ int code_of(const Error& error) {
     case ErrorCode::cancelled:
     case ErrorCode::not_found:
     case ErrorCode::conflict:
+    case ErrorCode::precondition_failed:
     case ErrorCode::unavailable:
       break;
   }

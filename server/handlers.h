@@ -21,6 +21,9 @@ inline constexpr std::string_view kObj = "model/obj";
 inline constexpr std::string_view kBlob = "application/vnd.watertight.blob";
 inline constexpr std::string_view kContainer = "application/vnd.watertight";
 
+/// The bytes of a body, or of what is stored of a feature, that take a moment to compute with.
+inline constexpr std::size_t kSmallBody = 64 * 1024;
+
 /// A request that matched a route.
 struct RoutedRequest {
   const Service& service;
@@ -34,7 +37,8 @@ using Handler = Response (*)(const RoutedRequest&);
 struct Route {
   std::string_view method;
   std::string_view path;  // "/collections/{collectionId}": as in the OpenAPI document
-  Lane lane;
+  Lane lane;  // POST requests of the computing lane with at most kSmallBody bytes go to the small
+              // one
   Handler handler;
   std::vector<std::string_view> parameters;  // the query parameters that the route knows
 };
@@ -48,6 +52,9 @@ Response get_health(const RoutedRequest& request);
 Response get_readiness(const RoutedRequest& request);
 Response get_collections(const RoutedRequest& request);
 Response get_collection(const RoutedRequest& request);
+Response patch_collection(const RoutedRequest& request);
+Response post_recount(const RoutedRequest& request);
+Response delete_collection(const RoutedRequest& request);
 Response get_items(const RoutedRequest& request);
 Response get_item(const RoutedRequest& request);
 Response post_items(const RoutedRequest& request);

@@ -1,41 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Handlers that only read: landing, health, collections, lists of items.
+// Handlers that only read: landing, health, lists of items.
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "server/handlers.h"
+#include "server/json_answers.h"
 
 namespace watertight::server {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::string_view kUnknownCrs = "http://www.opengis.net/def/nil/OGC/0/unknown";
-
-Response json_response(const Json& json, std::string_view type = kJson) {
-  return Response{
-      200, std::string(type), json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n", {}};
-}
-
-Json link(std::string href, std::string_view relation, std::string_view type,
-          std::string_view title) {
-  return {{"href", std::move(href)}, {"rel", relation}, {"type", type}, {"title", title}};
-}
-
-/// The refusal of a client that does not accept JSON, for resources that have JSON only.
-std::optional<Response> json_only(const RoutedRequest& request) {
-  const std::string* format = request.target.parameter("f");
-  if (format != nullptr) {
-    if (*format == "json") return std::nullopt;
-    return refuse(406, "not-acceptable", "this resource is available as JSON only (f=json)");
-  }
-  if (negotiate(request.request.header("accept"), {kJson})) return std::nullopt;
-  return refuse(406, "not-acceptable", "this resource is available as application/json only");
-}
 
 constexpr std::string_view kHtml = "text/html";
 constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
@@ -68,31 +44,6 @@ std::optional<std::string_view> landing_type(const RoutedRequest& request) {
   const auto offer = negotiate(request.request.header("accept"), {kJson, kHtml});
   if (!offer) return std::nullopt;
   return *offer == 0 ? std::string_view(kJson) : kHtml;
-}
-
-Json box_json(const store::StoredBox& box) {
-  return Json::array({box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]});
-}
-
-Json collection_json(const store::StoredCollection& collection) {
-  const std::string self = "/collections/" + percent_encode(collection.id);
-  Json json{{"id", collection.id}, {"itemType", "feature"}};
-  json["crs"] = Json::array({crs_uri(collection.srid)});
-  json["storageCrs"] = crs_uri(collection.srid);
-  if (collection.box) {
-    json["extent"]["spatial"] = {{"bbox", Json::array({box_json(*collection.box)})},
-                                 {"crs", crs_uri(collection.srid)}};
-  }
-  json["features"] = collection.features;
-  json["solids"] = collection.solids;
-  json["blobBytes"] = collection.blob_bytes;
-  json["links"] = Json::array(
-      {link(self, "self", kJson, "this collection"),
-       link(self + "/items", "items", kJson, "its features"),
-       link(self + "/export?f=wt", "enclosure", kContainer, "all of it as a Watertight file"),
-       link(self + "/export?f=cityjsonseq", "enclosure", kCityJsonSeq,
-            "all of it as a CityJSONSeq, if its features share a header")});
-  return json;
 }
 
 std::optional<double> parse_number(std::string_view text) {
@@ -149,19 +100,6 @@ Result<std::optional<store::StoredBox>> box_of_request(const Target& target,
   auto parsed = parse_box(*box);
   if (!parsed) return std::move(parsed).error();
   return std::optional<store::StoredBox>(*parsed);
-}
-
-Result<std::uint64_t> limit_of_request(const Target& target, const RouteOptions& options) {
-  const std::string* text = target.parameter("limit");
-  if (text == nullptr) return options.default_page;
-  std::uint64_t limit = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), limit);
-  if (error == std::errc::result_out_of_range) return options.largest_page;
-  if (error != std::errc{} || end != text->data() + text->size() || limit == 0) {
-    return Error{ErrorCode::invalid_argument,
-                 "limit is a whole number from 1 to " + std::to_string(options.largest_page)};
-  }
-  return std::min(limit, options.largest_page);
 }
 
 std::string page_path(const RoutedRequest& request, std::string_view after) {
@@ -250,26 +188,6 @@ Response get_readiness(const RoutedRequest& request) {
   problem.status = 503;
   problem.headers = {{"Retry-After", "5"}};
   return to_response(problem);
-}
-
-Response get_collections(const RoutedRequest& request) {
-  if (auto refusal = json_only(request)) return *std::move(refusal);
-  const auto collections = request.service.store->collections();
-  if (!collections) return to_response(to_problem(collections.error()));
-  Json json;
-  json["links"] = Json::array({link("/collections", "self", kJson, "this list")});
-  json["collections"] = Json::array();
-  for (const store::StoredCollection& collection : *collections) {
-    json["collections"].push_back(collection_json(collection));
-  }
-  return json_response(json);
-}
-
-Response get_collection(const RoutedRequest& request) {
-  if (auto refusal = json_only(request)) return *std::move(refusal);
-  const auto collection = request.service.store->collection(request.target.segments[1]);
-  if (!collection) return to_response(to_problem(collection.error()));
-  return json_response(collection_json(*collection));
 }
 
 Response get_items(const RoutedRequest& request) {

@@ -35,6 +35,8 @@ unsigned status_of(ErrorCode code) {
       return 404;
     case ErrorCode::conflict:
       return 409;
+    case ErrorCode::precondition_failed:
+      return 412;
     case ErrorCode::cancelled:
     case ErrorCode::unavailable:
       return 503;

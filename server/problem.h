@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "base/result.h"
-#include "server/http.h"
+#include "server/transport/http.h"
 
 namespace watertight::server {
 

@@ -97,8 +97,11 @@ const std::vector<Route>& routes() {
       {"GET", "/api", Lane::quick, get_api, {"f"}},
       {"GET", "/healthz", Lane::quick, get_health, {}},
       {"GET", "/readyz", Lane::quick, get_readiness, {}},
-      {"GET", "/collections", Lane::reading, get_collections, {"f"}},
+      {"GET", "/collections", Lane::reading, get_collections, {"f", "limit", "after"}},
       {"GET", "/collections/{collectionId}", Lane::reading, get_collection, {"f"}},
+      {"PATCH", "/collections/{collectionId}", Lane::small, patch_collection, {}},
+      {"DELETE", "/collections/{collectionId}", Lane::small, delete_collection, {}},
+      {"POST", "/collections/{collectionId}/recount", Lane::small, post_recount, {}},
       {"GET",
        "/collections/{collectionId}/items",
        Lane::reading,
@@ -129,7 +132,9 @@ Lane lane_of(const Request& request) {
   const auto target = parse_target(request.target);
   if (!target) return Lane::quick;
   for (const Route& route : routes()) {
-    if (route.method == effective_method(request) && matches(route, *target)) return route.lane;
+    if (route.method != effective_method(request) || !matches(route, *target)) continue;
+    const bool is_small = request.method == "POST" && request.body.size() <= kSmallBody;
+    return route.lane == Lane::computing && is_small ? Lane::small : route.lane;
   }
   return Lane::quick;
 }
@@ -149,6 +154,17 @@ Response respond(const Service& service, const Request& request, const CancelPol
 Application make_application(const Service& service) {
   return Application{lane_of, [service](const Request& request, const CancelPoll& is_cancelled) {
                        return respond(service, request, is_cancelled);
+                     }};
+}
+
+Application probe_application(const Service& service) {
+  return Application{[](const Request&) { return Lane::quick; },
+                     [service](const Request& request, const CancelPoll& is_cancelled) {
+                       if (request.target == "/healthz" || request.target == "/readyz") {
+                         return respond(service, request, is_cancelled);
+                       }
+                       return refuse(404, "not-found",
+                                     "this address answers /healthz and /readyz only");
                      }};
 }
 

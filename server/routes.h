@@ -11,10 +11,12 @@
 
 #include "base/cancel.h"
 #include "pipeline/pipeline.h"
-#include "server/http.h"
-#include "server/listener.h"
+#include "server/transport/http.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
+
+class RepresentationCache;
 
 struct RouteOptions {
   Limits limits;  // limits of a submitted document
@@ -22,6 +24,7 @@ struct RouteOptions {
   std::uint64_t largest_page = 1000;  // the most features of a page
   std::uint64_t default_page = 10;
   std::uint64_t largest_findings = 1000;  // the most findings of a report in an answer
+  bool requires_preconditions = false;    // on every write; without one it gets 428
 };
 
 /// The parts that routes work with. Store and workers must outlive the service and be thread-safe.
@@ -31,6 +34,8 @@ struct Service {
   RouteOptions options;
   /// Whether the store can be used, answered at once. Null: the store is asked.
   std::function<Status()> readiness = nullptr;
+  /// Keeps answers for items. Null: none is kept. Outlives the service.
+  RepresentationCache* cache = nullptr;
 };
 
 /// Answers a request. Never fails: every error is an application/problem+json answer.
@@ -41,5 +46,8 @@ Lane lane_of(const Request& request);
 
 /// lane_of() and respond() in the form in which the server calls them.
 Application make_application(const Service& service);
+
+/// The application that answers /healthz and /readyz only.
+Application probe_application(const Service& service);
 
 }  // namespace watertight::server

@@ -15,16 +15,10 @@
 #include <mutex>
 #include <thread>
 
+#include "server/items/representation_cache.h"
+
 namespace watertight::server {
 namespace {
-
-/// The signals that stop the service, to be waited for.
-sigset_t stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
-  return signals;
-}
 
 /// Writes lines to standard error and never waits for its reader: a line that finds the pipe full
 /// is dropped, and the next line that is written says how many were.
@@ -36,18 +30,14 @@ class StandardErrorSink final : public spdlog::sinks::base_sink<std::mutex> {
   void sink_it_(const spdlog::details::log_msg& message) override {
     spdlog::memory_buf_t line;
     formatter_->format(message, line);
-    if (dropped_ > 0 && write("event=log-lines-dropped count=" + std::to_string(dropped_) + "\n")) {
+    if (dropped_ > 0 &&
+        write_unless_full("event=log-lines-dropped count=" + std::to_string(dropped_) + "\n")) {
       dropped_ = 0;
     }
-    if (dropped_ > 0 || !write({line.data(), std::min(line.size(), kLongestLine)})) ++dropped_;
+    if (dropped_ > 0 || !write_unless_full({line.data(), std::min(line.size(), kLongestLine)}))
+      ++dropped_;
   }
   void flush_() override {}
-
-  static bool write(std::string_view text) {
-    pollfd out{STDERR_FILENO, POLLOUT, 0};
-    if (::poll(&out, 1, 0) != 1 || (out.revents & POLLOUT) == 0) return false;
-    return ::write(STDERR_FILENO, text.data(), text.size()) >= 0;
-  }
 
   std::uint64_t dropped_ = 0;
 };
@@ -59,10 +49,12 @@ std::shared_ptr<spdlog::logger> make_logger() {
   return logger;
 }
 
-/// Asks the store again and again whether it can be used, so that probes are answered at once.
+/// Asks the store again and again whether it can be used, so that probes are answered at once, and
+/// reaps helper processes that ended.
 class ReadinessMonitor {
  public:
-  explicit ReadinessMonitor(SolidStore& store) : store_(store), thread_([this] { run(); }) {}
+  ReadinessMonitor(SolidStore& store, delaunay::EngineWorkers& workers)
+      : store_(store), workers_(workers), thread_([this] { run(); }) {}
   ~ReadinessMonitor() {
     {
       const std::lock_guard lock(mutex_);
@@ -87,6 +79,7 @@ class ReadinessMonitor {
 
   void run() {
     for (;;) {
+      workers_.reap();
       Status status = store_.ping();
       std::unique_lock lock(mutex_);
       const auto pause = status ? kPause : kPauseWhileAway;
@@ -97,6 +90,7 @@ class ReadinessMonitor {
   }
 
   SolidStore& store_;
+  delaunay::EngineWorkers& workers_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_stopping_ = false;
@@ -111,51 +105,95 @@ std::string url_of(const ServerOptions& options, std::uint16_t port) {
          std::to_string(port);
 }
 
-/// Ends the process when another stop signal comes or the stop takes longer than `longest`.
-void end_at_next_signal(std::chrono::seconds longest,
-                        const std::shared_ptr<spdlog::logger>& logger) {
-  std::thread([longest, logger] {
-    const sigset_t signals = stop_signals();
-    const timespec patience{longest.count(), 0};
-    const int signal = sigtimedwait(&signals, nullptr, &patience);
-    logger->info("event=ended-at-once signal=" + std::to_string(std::max(signal, 0)));
-    _exit(1);
-  }).detach();
-}
-
 }  // namespace
 
-void hold_stop_signals() {
-  const sigset_t signals = stop_signals();
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+bool write_unless_full(std::string_view line) {
+  pollfd out{STDERR_FILENO, POLLOUT, 0};
+  if (::poll(&out, 1, 0) != 1 || (out.revents & POLLOUT) == 0) return false;
+  return ::write(STDERR_FILENO, line.data(), line.size()) >= 0;
 }
 
-Status serve(const ServeOptions& options) {
-  std::signal(SIGPIPE, SIG_IGN);
-  hold_stop_signals();
-  auto store = store::open_postgres_store(options.connection, options.database_connections);
+StopSignals::StopSignals() {
+  sigemptyset(&signals_);
+  for (const int signal : {SIGTERM, SIGINT}) sigaddset(&signals_, signal);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaddset(&signals_, SIGHUP);
+  pthread_sigmask(SIG_BLOCK, &signals_, &before_);
+  thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
+}
+
+StopSignals::~StopSignals() {
+  thread_.request_stop();
+  thread_.join();
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+int StopSignals::wait() const {
+  signal_.wait(0);
+  return signal_;
+}
+
+void StopSignals::watch(const std::stop_token& stop) {
+  const int first = next(stop, std::chrono::hours(24 * 365 * 100));
+  if (first == 0) return;
+  signal_ = first;
+  signal_.notify_all();
+  const int second = next(stop, grace_.load());
+  if (stop.stop_requested()) return;
+  write_unless_full("watertight: ended at once, by signal " +
+                    std::to_string(second == 0 ? first : second) + "\n");
+  _exit(1);
+}
+
+/// The next signal; 0 after `longest` or when the object ends.
+int StopSignals::next(const std::stop_token& stop, std::chrono::seconds longest) const {
+  const auto deadline = std::chrono::steady_clock::now() + longest;
+  constexpr timespec kTick{0, 50'000'000};
+  while (!stop.stop_requested() && std::chrono::steady_clock::now() < deadline) {
+    if (const int signal = sigtimedwait(&signals_, nullptr, &kTick); signal > 0) return signal;
+  }
+  return 0;
+}
+
+Status serve(const ServeOptions& options, StopSignals& signals) {
+  for (const int signal : {SIGPIPE, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
+  const auto is_stopping = [&signals] { return signals.is_requested(); };
+  auto store =
+      store::open_postgres_store(options.connection, options.database_connections, is_stopping);
+  if (is_stopping()) return Error{ErrorCode::cancelled, "stopped before the service listened"};
   if (!store) return std::move(store).error();
   delaunay::EngineWorkers workers;
-  ReadinessMonitor monitor(**store);
-  Service service{store->get(), &workers, {}, [&monitor] { return monitor.status(); }};
+  ReadinessMonitor monitor(**store, workers);
+  const auto readiness = [&options, &monitor] {
+    Status health = options.database_health ? options.database_health() : Done{};
+    return health ? monitor.status() : health;
+  };
+  RepresentationCache cache(options.cache_bytes);
+  Service service{store->get(), &workers, {}, readiness, &cache};
   service.options.limits = options.limits;
+  service.options.requires_preconditions = options.requires_preconditions;
   const auto logger = make_logger();
+  const LogLine log = [logger](const std::string& line) { logger->info(line); };
+  std::unique_ptr<HttpServer> probes;
+  if (options.probes) {
+    auto started = HttpServer::start(*options.probes, probe_application(service), log);
+    if (!started) return std::move(started).error();
+    probes = *std::move(started);
+    logger->info("event=probes url=" + url_of(*options.probes, probes->port()));
+  }
   Application application = make_application(service);
   application.interrupt = [&store] { (*store)->interrupt(); };
-  auto server = HttpServer::start(options.server, std::move(application),
-                                  [logger](const std::string& line) { logger->info(line); });
+  auto server = HttpServer::start(options.server, std::move(application), log);
   if (!server) return std::move(server).error();
 
   const std::string url = url_of(options.server, (*server)->port());
   std::printf("listening on %s\n", url.c_str());
   std::fflush(stdout);
   logger->info("event=listening url=" + url);
-  const sigset_t signals = stop_signals();
-  int signal = 0;
-  sigwait(&signals, &signal);
-  logger->info("event=stopping signal=" + std::to_string(signal));
   const auto drain = static_cast<std::int64_t>(options.server.drain_seconds);
-  end_at_next_signal(std::chrono::seconds(drain + 30), logger);
+  signals.set_grace(std::chrono::seconds(drain + 30));
+  logger->info("event=stopping signal=" + std::to_string(signals.wait()));
   (*server)->stop();
   logger->info("event=stopped");
   return Done{};

@@ -80,6 +80,7 @@ void fail(wt_reply* reply, const Error& error) {
     case ErrorCode::not_encodable:
     case ErrorCode::not_found:
     case ErrorCode::conflict:
+    case ErrorCode::precondition_failed:
     case ErrorCode::invalid_argument:
       state = "22023";  // invalid_parameter_value
       break;
@@ -284,7 +285,6 @@ wt_engine* wt_engine_make(const char* libexec) noexcept {
   guarded(&ignored, [&] {
     watertight::delaunay::EngineWorkers::Options options;
     options.processes = 1;
-    options.reaps_idle = false;
     if (libexec != nullptr && *libexec != '\0') {
       options.cgal_executable = std::string(libexec) + "/watertight-worker";
       options.tetgen_executable = std::string(libexec) + "/watertight-tetgen";

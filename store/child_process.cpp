@@ -8,9 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <string_view>
 #include <thread>
 
 namespace watertight::store {
@@ -34,9 +35,10 @@ class SpawnSetup {
     sigfillset(&all);
     posix_spawnattr_setsigmask(&attributes_, &none);
     posix_spawnattr_setsigdefault(&attributes_, &all);
-    const int session = options.own_session ? POSIX_SPAWN_SETSID : 0;
+    // Signals to the terminal's process group do not reach a session of its own.
     posix_spawnattr_setflags(
-        &attributes_, static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | session));
+        &attributes_,
+        static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID));
   }
   ~SpawnSetup() {
     posix_spawn_file_actions_destroy(&actions_);
@@ -54,14 +56,22 @@ class SpawnSetup {
   posix_spawnattr_t attributes_;
 };
 
-std::vector<std::string> clean_environment() {
-  std::vector<std::string> kept;
-  for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable) {
-    const std::string_view text = *variable;
-    if (text.starts_with("PG") || text.starts_with("LC_") || text.starts_with("LANG")) continue;
-    kept.emplace_back(text);
+/// The variables that PostgreSQL, and the extension's helper processes, can need.
+constexpr std::array kKeptVariables{"PATH",
+                                    "HOME",
+                                    "TZ",
+                                    "TMPDIR",
+                                    "LD_LIBRARY_PATH",
+                                    "WATERTIGHT_LIBEXEC",
+                                    "ASAN_OPTIONS",
+                                    "UBSAN_OPTIONS",
+                                    "TSAN_OPTIONS"};
+
+std::vector<std::string> short_environment() {
+  std::vector<std::string> kept{"LC_ALL=C"};
+  for (const char* name : kKeptVariables) {
+    if (const char* value = std::getenv(name)) kept.push_back(std::string(name) + "=" + value);
   }
-  kept.emplace_back("LC_ALL=C");
   return kept;
 }
 
@@ -76,7 +86,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 Result<pid_t> spawn(const std::vector<std::string>& arguments, const SpawnOptions& options) {
   std::vector<std::string> own_arguments = arguments;
-  std::vector<std::string> environment = clean_environment();
+  std::vector<std::string> environment = short_environment();
   pid_t child = 0;
   const int failure =
       SpawnSetup(options).run(&child, pointers(own_arguments).data(), pointers(environment).data());
@@ -94,19 +104,24 @@ std::optional<std::string> ended(pid_t child) {
   return "exited with status " + std::to_string(WEXITSTATUS(status));
 }
 
-Status wait_for(pid_t child, std::chrono::seconds limit, const std::string& name) {
+Status wait_for(pid_t child, std::chrono::seconds limit, const std::string& name,
+                const CancelPoll& is_cancelled) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
-  for (;;) {
+  Error failure{ErrorCode::unavailable, name + " did not end in time"};
+  while (std::chrono::steady_clock::now() < deadline) {
     if (const std::optional<std::string> end = ended(child)) {
       if (*end == "exited with status 0") return Done{};
       return Error{ErrorCode::unavailable, name + " " + *end};
     }
-    if (std::chrono::steady_clock::now() > deadline) break;
+    if (is_cancelled && is_cancelled()) {
+      failure = {ErrorCode::cancelled, "stopped while " + name + " was at work"};
+      break;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  kill(child, SIGKILL);
+  kill(-child, SIGKILL);
   waitpid(child, nullptr, 0);
-  return Error{ErrorCode::unavailable, name + " did not end in time"};
+  return failure;
 }
 
 std::string last_lines(const std::string& path, int lines) {

@@ -3,6 +3,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <pwd.h>
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -31,6 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kLockPoll{20};
+constexpr std::uintmax_t kLargestLog = 16ULL << 20;
 // The length of "/.s.PGSQL.5432", the name of the socket in its folder.
 constexpr std::size_t kSocketNameBytes = 14;
 
@@ -56,6 +58,13 @@ std::string first_word_of(const std::string& path) {
   return word;
 }
 
+bool holds_programs(const std::string& folder) {
+  return access((folder + "/initdb").c_str(), X_OK) == 0 &&
+         access((folder + "/postgres").c_str(), X_OK) == 0;
+}
+
+Error unavailable(std::string message) { return {ErrorCode::unavailable, std::move(message)}; }
+
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 }  // namespace
@@ -75,7 +84,8 @@ FileLock::~FileLock() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-Result<FileLock> FileLock::take(const std::string& path, Kind kind, std::chrono::seconds patience) {
+Result<FileLock> FileLock::take(const std::string& path, Kind kind, std::chrono::seconds patience,
+                                const CancelPoll& is_cancelled) {
   FileLock lock(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   if (lock.descriptor_ < 0) return system_error("open " + path);
   const int operation = (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB;
@@ -84,6 +94,9 @@ Result<FileLock> FileLock::take(const std::string& path, Kind kind, std::chrono:
     if (errno != EWOULDBLOCK && errno != EINTR) return system_error("lock " + path);
     if (std::chrono::steady_clock::now() > deadline) {
       return Error{ErrorCode::unavailable, "another process holds " + path};
+    }
+    if (is_cancelled && is_cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped while another process held " + path};
     }
     std::this_thread::sleep_for(kLockPoll);
   }
@@ -94,13 +107,15 @@ bool FileLock::try_exclusive() { return flock(descriptor_, LOCK_EX | LOCK_NB) ==
 
 std::optional<PostmasterFile> read_postmaster_file(const std::string& pgdata) {
   std::ifstream file(pgdata + "/postmaster.pid");
-  std::array<std::string, 5> lines;  // pid, PGDATA, start time, port, socket folder
+  // pid, PGDATA, start time, port, socket folder, address, shared memory, state
+  std::array<std::string, 8> lines;
   for (std::string& line : lines) std::getline(file, line);
   PostmasterFile found;
   const char* const end = lines[0].data() + lines[0].size();
   const auto parsed = std::from_chars(lines[0].data(), end, found.pid);
   if (parsed.ec != std::errc{} || found.pid <= 0) return std::nullopt;
   found.socket_folder = lines[4];
+  found.state = lines[7].substr(0, lines[7].find(' '));
   return found;
 }
 
@@ -126,6 +141,67 @@ std::vector<pid_t> postgres_processes_in(const std::string& pgdata) {
   }
   std::sort(found.begin(), found.end());
   return found;
+}
+
+void continue_stopped_processes(const std::string& pgdata) {
+  for (const pid_t pid : postgres_processes_in(pgdata)) {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+    std::string text;
+    std::getline(file, text);
+    const std::size_t name_end = text.rfind(')');  // the state follows the program's name
+    if (name_end != std::string::npos && text.substr(name_end, 3) == ") T") kill(pid, SIGCONT);
+  }
+}
+
+Result<std::string> find_programs(const std::string& wanted, const std::string& version) {
+  std::vector<std::string> folders;
+  if (!wanted.empty()) {
+    folders.push_back(wanted);
+  } else {
+    const char* variable = std::getenv("WATERTIGHT_POSTGRES_BIN");
+    if (variable != nullptr && *variable != '\0') folders.emplace_back(variable);
+    if (!version.empty()) folders.push_back("/usr/lib/postgresql/" + version + "/bin");
+    folders.emplace_back(WATERTIGHT_POSTGRES_BINDIR);
+    for (int major = 18; major >= 14; --major) {
+      folders.push_back("/usr/lib/postgresql/" + std::to_string(major) + "/bin");
+    }
+    folders.insert(folders.end(), {"/usr/local/pgsql/bin", "/usr/local/bin", "/usr/bin"});
+  }
+  std::string tried;
+  for (const std::string& folder : folders) {
+    if (folder.empty()) continue;
+    if (holds_programs(folder)) return folder;
+    tried += (tried.empty() ? "" : ", ") + folder;
+  }
+  return unavailable("PostgreSQL's programs initdb and postgres are not in " + tried +
+                     " (Debian: apt install postgresql)");
+}
+
+Result<std::string> user_name() {
+  std::array<char, 4096> buffer{};
+  passwd entry{};
+  passwd* found = nullptr;
+  errno = getpwuid_r(geteuid(), &entry, buffer.data(), buffer.size(), &found);
+  if (errno != 0) return system_error("look up the name of the user " + std::to_string(geteuid()));
+  if (found == nullptr) {
+    return unavailable("the user with number " + std::to_string(geteuid()) +
+                       " has no name, and PostgreSQL needs one");
+  }
+  return std::string(found->pw_name);
+}
+
+bool is_large_log(const std::string& path) {
+  std::error_code failure;
+  const std::uintmax_t size = fs::file_size(path, failure);
+  return !failure && size > kLargestLog;
+}
+
+void bound_log(const std::string& path) {
+  if (!is_large_log(path)) return;
+  std::error_code failure;
+  // A failed copy, of a full disk, must not keep the log from being emptied.
+  fs::copy_file(path, path + ".old", fs::copy_options::overwrite_existing, failure);
+  fs::resize_file(path, 0, failure);
 }
 
 Result<std::string> prepare_data_directory(const std::string& folder) {

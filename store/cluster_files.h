@@ -5,7 +5,7 @@
 //
 //   DATA/cluster.lock    held exclusively while someone starts or stops the cluster
 //   DATA/cluster.users   held shared by every process that uses the cluster
-//   DATA/server.log      PostgreSQL's messages
+//   DATA/server.log      PostgreSQL's messages; server.log.old has the ones before
 //   DATA/socket/         the Unix socket (elsewhere when the path is too long for one)
 //   DATA/postgres/       PostgreSQL's own directory (PGDATA)
 #pragma once
@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "base/cancel.h"
 #include "base/result.h"
 
 namespace watertight::store {
@@ -31,8 +32,9 @@ class FileLock {
 
   enum class Kind { shared, exclusive };
   /// Opens (and creates) `path` and takes the lock. Errors: unavailable when the file cannot be
-  /// opened, or other processes hold the lock for longer than `patience`.
-  static Result<FileLock> take(const std::string& path, Kind kind, std::chrono::seconds patience);
+  /// opened, or other processes hold the lock for longer than `patience`; cancelled.
+  static Result<FileLock> take(const std::string& path, Kind kind, std::chrono::seconds patience,
+                               const CancelPoll& is_cancelled = {});
   /// Turns a shared lock into an exclusive one without waiting; false when another process holds
   /// the lock too.
   bool try_exclusive();
@@ -42,10 +44,11 @@ class FileLock {
   int descriptor_ = -1;
 };
 
-/// The process number and the socket folder in a file postmaster.pid.
+/// What a file postmaster.pid says.
 struct PostmasterFile {
   pid_t pid = 0;
   std::string socket_folder;  // "" while the server starts
+  std::string state;          // "starting", "ready", "stopping"; "" early in a start
 };
 std::optional<PostmasterFile> read_postmaster_file(const std::string& pgdata);
 
@@ -55,6 +58,21 @@ bool is_postgres_in(pid_t pid, const std::string& pgdata);
 /// All PostgreSQL processes that work in `pgdata`: postmaster, backends, and backends that a killed
 /// postmaster left.
 std::vector<pid_t> postgres_processes_in(const std::string& pgdata);
+
+/// Continues the processes in `pgdata` that a SIGSTOP has stopped; a debugger's are left alone.
+void continue_stopped_processes(const std::string& pgdata);
+
+/// The folder of PostgreSQL's programs: `wanted` unless it is "", or else the usual places, first
+/// those for `version`, the major version of an existing cluster or "". Errors: unavailable.
+Result<std::string> find_programs(const std::string& wanted, const std::string& version);
+/// The name of this process's user. Errors: unavailable.
+Result<std::string> user_name();
+
+/// Whether a log has more than 16 MiB.
+bool is_large_log(const std::string& path);
+/// Moves the content of such a log to `path`.old. Its writers, which must append, go on; the
+/// lines that they write meanwhile can be lost.
+void bound_log(const std::string& path);
 
 /// Creates `folder` with mode 0700, or accepts an existing folder of this user that is empty or
 /// holds a cluster. Returns the folder's real path. Errors: invalid_argument, unavailable.

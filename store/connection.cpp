@@ -18,8 +18,10 @@ namespace {
 constexpr std::uint32_t kBytea = 17, kInt8 = 20, kText = 25, kFloat8 = 701;
 constexpr std::uint32_t kByteaArray = 1001, kTextArray = 1009, kInt8Array = 1016,
                         kFloat8Array = 1022;
-constexpr std::chrono::seconds kOpening{
-    5};  // the longest time for the first statements of a session
+constexpr std::chrono::seconds kOpening{10};  // the longest time to open a session
+// The protocol gives lengths in bytes as signed 32-bit numbers and limits a message to 1 GiB.
+constexpr std::size_t kLargestMessage = (1ULL << 30) - (1ULL << 16);
+constexpr std::size_t kUnsent = 1 << 20;     // the bytes that may wait in memory for results()
 constexpr std::size_t kArrayFlagOffset = 4;  // the offset of "has nulls" in a binary array
 
 void append_big_endian(std::string& bytes, std::uint64_t value, int width) {
@@ -38,9 +40,20 @@ std::uint64_t from_big_endian(std::string_view bytes) {
   return value;
 }
 
-std::string trimmed(const char* message) {
-  std::string text = message == nullptr ? "" : message;
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+/// The lines of a message as one line.
+std::string one_line(const char* message) {
+  std::string text;
+  bool is_between = false;  // whether a line has ended
+  for (const char c : std::string_view(message == nullptr ? "" : message)) {
+    if (c == '\n' || c == '\r') {
+      is_between = !text.empty();
+    } else if (!is_between || (c != ' ' && c != '\t')) {
+      if (is_between) text += "; ";
+      is_between = false;
+      text += c;
+    }
+  }
+  while (!text.empty() && text.back() == ' ') text.pop_back();
   return text;
 }
 
@@ -52,6 +65,31 @@ ErrorCode code_of(std::string_view state, bool is_lost) {
   if (group == "54") return ErrorCode::limit_exceeded;
   return ErrorCode::unavailable;
 }
+
+/// What a client may know about a failure for which it is not to blame.
+const char* summary_of(std::string_view state, bool is_lost) {
+  if (state == "53100") return "the database's disk is full";
+  if (state.substr(0, 2) == "40" || state == "55P03")
+    return "the database is busy with other writes";
+  if (is_lost || state.empty() || state.substr(0, 3) == "57P")
+    return "the database does not answer";
+  return "the database cannot do this now";
+}
+
+// PQconnectStart and PQping take these. Keywords before `dbname` are defaults that the connection
+// string may override; keywords after `dbname` hold whatever the connection string says.
+struct ConnectOptions {
+  explicit ConnectOptions(const std::string& connection)
+      : values{"2", "30000", "30", "watertight", connection.c_str(), "UTF8", nullptr} {}
+  std::array<const char*, 7> keywords{"connect_timeout",
+                                      "tcp_user_timeout",
+                                      "keepalives_idle",
+                                      "fallback_application_name",
+                                      "dbname",
+                                      "client_encoding",
+                                      nullptr};
+  std::array<const char*, 7> values;
+};
 
 }  // namespace
 
@@ -168,19 +206,51 @@ void DatabaseSession::Finish::operator()(pg_conn* connection) const { PQfinish(c
 
 DatabaseSession::~DatabaseSession() = default;
 
+/// Connects within the limit.
+std::optional<Error> DatabaseSession::connect(const std::string& connection) {
+  const ConnectOptions options(connection);
+  connection_.reset(PQconnectStartParams(options.keywords.data(), options.values.data(), 1));
+  if (!connection_) return Error{ErrorCode::limit_exceeded, "no memory for a database connection"};
+  PostgresPollingStatusType next = PGRES_POLLING_WRITING;
+  while (next != PGRES_POLLING_OK) {
+    if (next == PGRES_POLLING_FAILED || PQsocket(connection_.get()) < 0) return failure(nullptr);
+    if (!wait_for(next == PGRES_POLLING_READING ? POLLIN : POLLOUT)) return late();
+    next = PQconnectPoll(connection_.get());
+  }
+  return std::nullopt;
+}
+
+/// Gives a new session its settings.
+std::optional<Error> DatabaseSession::set_up() {
+  PQsetNoticeProcessor(
+      connection_.get(), [](void*, const char*) {}, nullptr);
+  if (PQsetnonblocking(connection_.get(), 1) != 0 || PQenterPipelineMode(connection_.get()) != 1) {
+    return failure(nullptr);
+  }
+  // A server that has this setting stops working for a client that has left.
+  if (const Result<Rows> checking = run("SELECT set_config(name, '1s', false) FROM pg_settings"
+                                        " WHERE name = 'client_connection_check_interval'");
+      !checking) {
+    return checking.error();
+  }
+  // A feature counts as stored when it is on the disk, whatever the server's default; stronger
+  // settings are left alone. A writer that vanished must not keep its locks, and no session of ours
+  // may wait for a lock for ever. An index serves every frequent statement, and the plan of a
+  // prepared statement must not be one for tables that were small when it was made.
+  if (const Result<Rows> durable =
+          run("SELECT set_config('lock_timeout', '30s', false),"
+              " set_config('idle_in_transaction_session_timeout', '60s', false),"
+              " set_config('enable_seqscan', 'off', false), set_config('jit', 'off', false),"
+              " set_config('synchronous_commit',"
+              "            replace(current_setting('synchronous_commit'), 'off', 'on'), false)");
+      !durable) {
+    return durable.error();
+  }
+  return std::nullopt;
+}
+
 std::variant<std::unique_ptr<DatabaseSession>, DatabaseSession::OpenFailure> DatabaseSession::open(
-    const std::string& connection) {
-  // Keywords before `dbname` are defaults that the connection string may override; keywords after
-  // `dbname` hold whatever the connection string says.
-  const std::array<const char*, 7> keywords{"connect_timeout",
-                                            "tcp_user_timeout",
-                                            "keepalives_idle",
-                                            "fallback_application_name",
-                                            "dbname",
-                                            "client_encoding",
-                                            nullptr};
-  const std::array<const char*, 7> values{"10",   "30000", "30", "watertight", connection.c_str(),
-                                          "UTF8", nullptr};
+    const std::string& connection, const Limit& limit) {
   char* complaint = nullptr;
   PQconninfoOption* parsed = PQconninfoParse(connection.c_str(), &complaint);
   PQfreemem(complaint);  // the message is not shown, because it can quote a password
@@ -188,82 +258,134 @@ std::variant<std::unique_ptr<DatabaseSession>, DatabaseSession::OpenFailure> Dat
     return OpenFailure{{ErrorCode::invalid_argument, "the database URL cannot be understood"}};
   }
   PQconninfoFree(parsed);
-  auto opened =
-      std::make_unique<DatabaseSession>(PQconnectdbParams(keywords.data(), values.data(), 1));
-  if (!opened->connection_) {
-    return OpenFailure{{ErrorCode::limit_exceeded, "no memory for a database connection"}};
-  }
-  pg_conn* raw = opened->connection_.get();
-  PGPing ping = PQPING_OK;
-  if (PQstatus(raw) != CONNECTION_OK) {
-    ping = PQpingParams(keywords.data(), values.data(), 1);
-    if (ping == PQPING_OK) {  // a server that was starting may have become ready since
-      opened->connection_.reset(PQconnectdbParams(keywords.data(), values.data(), 1));
-      raw = opened->connection_.get();
+  auto opened = std::make_unique<DatabaseSession>(nullptr);
+  opened->limit({std::min(limit.deadline, Clock::now() + kOpening), limit.is_interrupted});
+  std::optional<Error> refused = opened->connect(connection);
+  if (refused && opened->connection_) {  // the server was not silent until the time was over
+    const ConnectOptions options(connection);
+    const PGPing ping = PQpingParams(options.keywords.data(), options.values.data(), 1);
+    // A server that was starting may have become ready since.
+    if (ping == PQPING_OK) refused = opened->connect(connection);
+    if (refused) {
+      return OpenFailure{*std::move(refused), ping == PQPING_REJECT || ping == PQPING_NO_RESPONSE};
     }
   }
-  if (PQstatus(raw) != CONNECTION_OK) {
-    return OpenFailure{{ErrorCode::unavailable, trimmed(PQerrorMessage(raw))},
-                       ping == PQPING_REJECT || ping == PQPING_NO_RESPONSE};
+  if (refused) return OpenFailure{*std::move(refused), true};
+  if (std::optional<Error> failed = opened->set_up()) {
+    return OpenFailure{*std::move(failed), opened->is_lost()};
   }
-  PQsetNoticeProcessor(
-      raw, [](void*, const char*) {}, nullptr);
-  // A feature counts as stored when it is on the disk, whatever the server's default; stronger
-  // settings are left alone. A writer that vanished must not keep its locks, and no session of ours
-  // may wait for a lock for ever.
-  PQsetnonblocking(raw, 1);
-  opened->limit(Clock::now() + kOpening, nullptr);
-  // A server that has this setting stops working for a client that has left.
-  const Result<Rows> checking = opened->run(
-      "SELECT set_config(name, '1s', false) FROM pg_settings"
-      " WHERE name = 'client_connection_check_interval'");
-  if (!checking) return OpenFailure{checking.error(), opened->is_lost()};
-  const Result<Rows> durable = opened->run(
-      "SELECT set_config('lock_timeout', '30s', false),"
-      " set_config('idle_in_transaction_session_timeout', '60s', false),"
-      " set_config('synchronous_commit',"
-      "            replace(current_setting('synchronous_commit'), 'off', 'on'), false)");
-  if (!durable) return OpenFailure{durable.error(), opened->is_lost()};
-  opened->limit(Clock::time_point::max(), nullptr);
+  opened->limit({});
   return opened;
 }
 
 Error DatabaseSession::failure(const pg_result* result) {
-  const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
-  state_ = state == nullptr ? "" : state;
-  const char* primary = PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-  std::string message =
-      primary != nullptr ? trimmed(primary) : trimmed(PQerrorMessage(connection_.get()));
-  if (message.empty()) message = "the database does not answer";
-  return {code_of(state_, is_lost()), std::move(message)};
+  const auto field = [&](int code) {
+    const char* text = PQresultErrorField(result, code);
+    return text == nullptr ? "" : text;
+  };
+  state_ = field(PG_DIAG_SQLSTATE);
+  constraint_ = field(PG_DIAG_CONSTRAINT_NAME);
+  std::string message = one_line(field(PG_DIAG_MESSAGE_PRIMARY));
+  if (message.empty()) message = one_line(PQerrorMessage(connection_.get()));
+  // The server has ended the session, although libpq may not have seen the end of it yet.
+  const std::string_view severity = field(PG_DIAG_SEVERITY_NONLOCALIZED);
+  if (severity == "FATAL" || severity == "PANIC") connection_.reset();
+  const ErrorCode code = code_of(state_, is_lost());
+  if (code != ErrorCode::unavailable) return {code, std::move(message)};
+  return {code, summary_of(state_, is_lost()), {}, {}, std::move(message)};
+}
+
+/// The parameters of a statement as libpq takes them.
+struct DatabaseSession::Arguments {
+  explicit Arguments(const Parameters& parameters) : types(parameters.types_) {
+    for (const std::optional<std::string>& value : parameters.values_) {
+      values.push_back(value ? value->data() : nullptr);
+      lengths.push_back(value ? static_cast<int>(value->size()) : 0);
+      bytes += value ? value->size() : 0;
+    }
+    formats.assign(values.size(), 1);
+  }
+  int count() const { return static_cast<int>(values.size()); }
+
+  const std::vector<std::uint32_t>& types;
+  std::vector<const char*> values;
+  std::vector<int> lengths, formats;
+  std::size_t bytes = 0;
+};
+
+/// The name under which the server knows a statement, which is prepared if it is new. Null when
+/// this cannot be sent.
+const std::string* DatabaseSession::name_of(const std::string& statement,
+                                            const Arguments& arguments) {
+  const auto [known, is_new] = prepared_.try_emplace(statement);
+  if (!is_new) return &known->second;
+  known->second.append("w").append(std::to_string(++names_));
+  if (PQsendPrepare(connection_.get(), known->second.c_str(), statement.c_str(), arguments.count(),
+                    arguments.types.data()) == 0) {
+    prepared_.erase(known);
+    return nullptr;
+  }
+  sent_.push_back({statement});
+  return &known->second;
+}
+
+/// Notes a statement that was sent, or could not be. Passes large ones on at once.
+std::size_t DatabaseSession::sent(bool is_sent, const Arguments& arguments) {
+  if (!is_sent) {
+    if (!refused_) refused_ = failure(nullptr);
+    return expected_;
+  }
+  sent_.push_back({});
+  if (arguments.bytes > kUnsent && !flush() && !refused_) refused_ = late();
+  return expected_++;
+}
+
+std::size_t DatabaseSession::send(const std::string& statement, const Parameters& parameters) {
+  const Arguments arguments(parameters);
+  if (arguments.bytes > kLargestMessage) {
+    if (!refused_) {
+      state_ = "54000";
+      constraint_.clear();
+      refused_ = Error{ErrorCode::limit_exceeded, "more than 1 GiB for one database statement"};
+    }
+  }
+  if (refused_) return expected_;
+  const std::string* const name = name_of(statement, arguments);
+  return sent(
+      name != nullptr && PQsendQueryPrepared(connection_.get(), name->c_str(), arguments.count(),
+                                             arguments.values.data(), arguments.lengths.data(),
+                                             arguments.formats.data(), 1) != 0,
+      arguments);
+}
+
+Result<Rows> DatabaseSession::ask(const std::string& statement, const Parameters& parameters) {
+  send(statement, parameters);
+  Result<std::vector<Rows>> all = results();
+  if (!all) return std::move(all).error();
+  return std::move(all->back());
 }
 
 Result<Rows> DatabaseSession::run(const std::string& statement, const Parameters& parameters) {
-  // The protocol gives lengths in bytes as signed 32-bit numbers and limits a message to 1 GiB.
-  constexpr std::size_t kLargestMessage = (1ULL << 30) - (1ULL << 16);
-  std::vector<const char*> values;
-  std::vector<int> lengths;
-  std::size_t total = 0;
-  for (const std::optional<std::string>& value : parameters.values_) {
-    values.push_back(value ? value->data() : nullptr);
-    total += value ? value->size() : 0;
-    if (total > kLargestMessage) {
-      state_ = "54000";
-      return Error{ErrorCode::limit_exceeded, "more than 1 GiB for one database statement"};
-    }
-    lengths.push_back(value ? static_cast<int>(value->size()) : 0);
+  const Arguments arguments(parameters);
+  if (!refused_) {
+    sent(PQsendQueryParams(connection_.get(), statement.c_str(), arguments.count(),
+                           arguments.types.data(), arguments.values.data(),
+                           arguments.lengths.data(), arguments.formats.data(), 1) != 0,
+         arguments);
   }
-  const std::vector<int> formats(values.size(), 1);
-  const int is_sent =
-      PQsendQueryParams(connection_.get(), statement.c_str(), static_cast<int>(values.size()),
-                        parameters.types_.data(), values.data(), lengths.data(), formats.data(), 1);
-  if (is_sent == 0) return failure(nullptr);
-  for (int left = PQflush(connection_.get()); left != 0; left = PQflush(connection_.get())) {
-    if (left < 0) break;  // receive() has the server's reason
-    if (!wait_for(POLLIN | POLLOUT)) return late();
+  Result<std::vector<Rows>> all = results();
+  if (!all) return std::move(all).error();
+  return std::move(all->back());
+}
+
+/// Passes everything to the system. False when the time is over. A broken connection shows when
+/// results are awaited, with the server's reason.
+bool DatabaseSession::flush() {
+  for (int left = PQflush(connection_.get()); left > 0; left = PQflush(connection_.get())) {
+    if (!wait_for(POLLIN | POLLOUT)) return false;
     if (PQconsumeInput(connection_.get()) == 0) break;
   }
-  return receive();
+  return true;
 }
 
 /// Waits until the socket is ready. False when the time is over.
@@ -271,8 +393,8 @@ bool DatabaseSession::wait_for(short events) const {
   constexpr std::chrono::milliseconds kTick{100};  // how soon an interruption is noticed
   pollfd socket{PQsocket(connection_.get()), events, 0};
   for (;;) {
-    if (is_interrupted_ != nullptr && *is_interrupted_) return false;
-    const auto left = deadline_ - Clock::now();
+    if (limit_.is_interrupted != nullptr && *limit_.is_interrupted) return false;
+    const auto left = limit_.deadline - Clock::now();
     if (left <= Clock::duration::zero()) return false;
     const auto pause = std::min<Clock::duration>(left, kTick);
     const int ready = ::poll(
@@ -281,33 +403,88 @@ bool DatabaseSession::wait_for(short events) const {
   }
 }
 
-/// The failure of a statement whose time is over. Its session cannot be used again: closing it
-/// makes the server give up too (client_connection_check_interval).
-Result<Rows> DatabaseSession::late() {
+/// The failure of statements whose time is over. The session cannot be used again: closing it makes
+/// the server give up too (client_connection_check_interval).
+Error DatabaseSession::late() {
   state_.clear();
+  constraint_.clear();
   connection_.reset();
-  return Error{ErrorCode::unavailable, "the database does not answer in time"};
+  return {ErrorCode::unavailable, "the database does not answer in time"};
 }
 
-/// The result of the statement that was sent.
-Result<Rows> DatabaseSession::receive() {
-  std::optional<Rows> rows;
-  for (;;) {
-    while (PQisBusy(connection_.get()) != 0) {
-      if (!wait_for(POLLIN)) return late();
-      if (PQconsumeInput(connection_.get()) == 0) break;
+Result<std::vector<Rows>> DatabaseSession::results() {
+  Result<std::vector<Rows>> all = receive();
+  sent_.clear();
+  expected_ = 0;
+  refused_.reset();
+  return all;
+}
+
+/// The next result. Null between the results of two statements, and when the time is over: then the
+/// connection is gone.
+pg_result* DatabaseSession::next_result() {
+  while (PQisBusy(connection_.get()) != 0) {
+    if (!wait_for(POLLIN)) {
+      late();
+      return nullptr;
     }
-    pg_result* const next = PQgetResult(connection_.get());
-    if (next == nullptr) break;
-    rows.emplace(next);
+    if (PQconsumeInput(connection_.get()) == 0) break;
   }
-  if (!rows) return failure(nullptr);
-  const ExecStatusType status = PQresultStatus(rows->get());
-  if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) return failure(rows->get());
-  return Result<Rows>(*std::move(rows));
+  return PQgetResult(connection_.get());
+}
+
+Result<std::vector<Rows>> DatabaseSession::receive() {
+  if (refused_ && (sent_.empty() || is_lost())) return *refused_;
+  if (PQpipelineSync(connection_.get()) == 0) return failure(nullptr);
+  if (!flush()) return late();
+  std::vector<Rows> all;
+  std::optional<Error> failed = refused_;
+  for (const Sent& sent : sent_) {
+    Rows rows(next_result());
+    if (!connection_) return late();
+    if (rows.get() == nullptr) return failure(nullptr);
+    settle(sent, std::move(rows), all, failed);
+    if (is_lost()) return failed ? *std::move(failed) : failure(nullptr);
+    Rows end(next_result());
+    if (!connection_) return late();
+  }
+  const Rows synchronized(next_result());
+  if (!connection_) return late();
+  if (PQresultStatus(synchronized.get()) != PGRES_PIPELINE_SYNC) {
+    Error strange = failure(synchronized.get());
+    connection_.reset();
+    return strange;
+  }
+  if (failed) return *std::move(failed);
+  state_.clear();
+  constraint_.clear();
+  return all;
+}
+
+/// Adds the result of what was sent to `all`, or notes the first failure.
+void DatabaseSession::settle(const Sent& sent, Rows rows, std::vector<Rows>& all,
+                             std::optional<Error>& failed) {
+  const ExecStatusType status = PQresultStatus(rows.get());
+  const bool is_done = status == PGRES_TUPLES_OK || status == PGRES_COMMAND_OK;
+  if (!is_done && !failed) failed = failure(rows.get());
+  if (sent.prepares.empty()) {
+    if (is_done) all.push_back(std::move(rows));
+  } else if (!is_done) {
+    prepared_.erase(sent.prepares);
+  }
+}
+
+Error DatabaseSession::collide(const char* message) {
+  state_ = "40001";
+  constraint_.clear();
+  return {ErrorCode::unavailable, message};
 }
 
 void DatabaseSession::roll_back() {
+  if (!is_lost() && !sent_.empty()) {
+    const Result<std::vector<Rows>> unwanted = results();
+    static_cast<void>(unwanted);
+  }
   if (is_lost() || PQtransactionStatus(connection_.get()) == PQTRANS_IDLE) return;
   const Result<Rows> done = run("ROLLBACK");
   static_cast<void>(done);  // a session that cannot roll back is lost: is_lost()

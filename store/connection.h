@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -70,39 +71,69 @@ class Rows {
   std::unique_ptr<pg_result, Clear> result_;
 };
 
-/// A session with UTF-8 encoding and synchronous commit. Not thread-safe.
+/// A session with UTF-8 encoding and synchronous commit. It keeps prepared statements and settings,
+/// so a connection pool between it and the server must give it one server session for its life
+/// (pgbouncer: session mode). Not thread-safe.
 class DatabaseSession {
  public:
   using Clock = std::chrono::steady_clock;
 
+  /// The latest moment for an answer, and a flag that ends the wait for it earlier. The flag must
+  /// outlive the session.
+  struct Limit {
+    Clock::time_point deadline = Clock::time_point::max();
+    const std::atomic<bool>* is_interrupted = nullptr;
+  };
+
   /// The reason why a session could not be opened. Errors: invalid_argument when the connection
-  /// string cannot be parsed; limit_exceeded without memory; unavailable with the server's message.
-  /// `may_come_back` says whether waiting can help.
+  /// string cannot be parsed; limit_exceeded without memory; unavailable with the server's message
+  /// as detail. `may_come_back` says whether waiting can help.
   struct OpenFailure {
     Error error;
     bool may_come_back = false;
   };
   explicit DatabaseSession(pg_conn* connection) : connection_(connection) {}  // used by open() only
+  /// Takes 10 s at most, and no longer than `limit` says. (The lookup of a host's name is not
+  /// interrupted.)
   static std::variant<std::unique_ptr<DatabaseSession>, OpenFailure> open(
-      const std::string& connection);
+      const std::string& connection, const Limit& limit);
+  static std::variant<std::unique_ptr<DatabaseSession>, OpenFailure> open(
+      const std::string& connection) {
+    return open(connection, Limit{});
+  }
   ~DatabaseSession();
   DatabaseSession(const DatabaseSession&) = delete;
   DatabaseSession& operator=(const DatabaseSession&) = delete;
 
-  /// Statements that are not done at `deadline`, or when `is_interrupted` has become true, fail and
-  /// the session is lost then. `is_interrupted` must outlive the session.
-  void limit(Clock::time_point deadline, const std::atomic<bool>* is_interrupted) {
-    deadline_ = deadline;
-    is_interrupted_ = is_interrupted;
-  }
-  /// Runs one statement. Errors: the server's message, with a code that follows from its SQLSTATE;
-  /// limit_exceeded for parameters of more than 1 GiB. state() and is_lost() say more.
+  /// Statements that are not done within the limit fail, and the session is lost then.
+  void limit(const Limit& limit) { limit_ = limit; }
+
+  /// Sends a statement and does not wait for its result: results() has it, at the index that this
+  /// returns. The session prepares the statement at its first use, so the text must not contain
+  /// values. After a statement that fails the server ignores the others up to results(). Without
+  /// BEGIN, all statements up to results() are one transaction.
+  std::size_t send(const std::string& statement, const Parameters& parameters = {});
+  /// Waits for the results of all statements that were sent since the last call. Errors: that of
+  /// the first statement that failed: unavailable with the server's message as detail, or with a
+  /// code that follows from its SQLSTATE and the server's message; limit_exceeded for parameters of
+  /// more than 1 GiB. state(), constraint() and is_lost() say more.
+  Result<std::vector<Rows>> results();
+  /// send() and results(); returns the last result.
+  Result<Rows> ask(const std::string& statement, const Parameters& parameters = {});
+  /// The same for a statement that is not worth to be prepared.
   Result<Rows> run(const std::string& statement, const Parameters& parameters = {});
   /// Ends a transaction that failed. Does nothing when no transaction is open.
   void roll_back();
 
-  /// SQLSTATE of the last failed statement; "" when the server did not answer.
+  /// The failure of a transaction that got into the way of another, although the server saw no
+  /// error; state() is then that of a failed serialization, so that the transaction is tried again.
+  Error collide(const char* message);
+
+  /// SQLSTATE of the statement that failed last; "" when the server did not answer, or when later
+  /// statements succeeded.
   const std::string& state() const { return state_; }
+  /// The name of the constraint that the last failed statement broke, or "".
+  const std::string& constraint() const { return constraint_; }
   /// Whether the session is gone, so that this object is of no more use.
   bool is_lost() const;
 
@@ -110,15 +141,32 @@ class DatabaseSession {
   struct Finish {
     void operator()(pg_conn* connection) const;
   };
+  struct Arguments;
+  /// What the server was sent and has still to answer.
+  struct Sent {
+    std::string prepares;  // the statement that this prepares; "" = it runs one
+  };
   Error failure(const pg_result* result);
+  Error late();
   bool wait_for(short events) const;
-  Result<Rows> late();
-  Result<Rows> receive();
+  std::optional<Error> connect(const std::string& connection);
+  std::optional<Error> set_up();
+  const std::string* name_of(const std::string& statement, const Arguments& arguments);
+  std::size_t sent(bool is_sent, const Arguments& arguments);
+  bool flush();
+  pg_result* next_result();
+  Result<std::vector<Rows>> receive();
+  void settle(const Sent& sent, Rows rows, std::vector<Rows>& all, std::optional<Error>& failed);
 
   std::unique_ptr<pg_conn, Finish> connection_;
+  std::unordered_map<std::string, std::string> prepared_;  // the names of statements, by their text
+  std::size_t names_ = 0;
+  std::vector<Sent> sent_;
+  std::size_t expected_ = 0;      // the number of statements in sent_ that are run
+  std::optional<Error> refused_;  // why a statement could not be sent
   std::string state_;
-  Clock::time_point deadline_ = Clock::time_point::max();
-  const std::atomic<bool>* is_interrupted_ = nullptr;
+  std::string constraint_;
+  Limit limit_;
 };
 
 /// Whether a server takes connections now; no password is needed to ask.

@@ -96,8 +96,8 @@ constexpr Migration kMigrations[] = {
      }},
     {"an index of features by place",
      {
-         // store/place.h defines the place number. Features that were stored before this step get
-         // the place number of features without a box.
+         // store/rows/place.h defines the place number. Features that were stored before this step
+         // get the place number of features without a box.
          R"(ALTER TABLE watertight.feature ADD COLUMN place bigint NOT NULL
               DEFAULT 9223372036854775807)",
          R"(COMMENT ON COLUMN watertight.feature.place IS
@@ -167,6 +167,20 @@ constexpr Migration kMigrations[] = {
          R"(UPDATE watertight.solid SET feature = replace(feature, '.', '%2E')
               WHERE feature IN ('.', '..'))",
          R"(DELETE FROM watertight.feature WHERE id IN ('.', '..'))",
+     }},
+    {"names of collections beside their keys",
+     {
+         // Features refer to the key, so that a name can change or go without a change of any
+         // feature.
+         R"(ALTER TABLE watertight.collection DROP CONSTRAINT collection_id_check,
+              ADD COLUMN name text COLLATE "C" CHECK (name ~ '^[A-Za-z0-9_.-]{1,64}$'))",
+         R"(UPDATE watertight.collection SET name = id)",
+         R"(CREATE UNIQUE INDEX collection_name ON watertight.collection (name))",
+         R"(CREATE SEQUENCE watertight.collection_key)",
+         R"(COMMENT ON COLUMN watertight.collection.id IS
+              'What features refer to: the first name of the collection, or # and a number where that was taken')",
+         R"(COMMENT ON COLUMN watertight.collection.name IS
+              'The id that clients use. NULL: the collection was removed, its rows are being deleted')",
      }},
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);

@@ -12,8 +12,9 @@
 #include <utility>
 
 #include "store/connection.h"
-#include "store/feature_rows.h"
+#include "store/group_commit.h"
 #include "store/migrations.h"
+#include "store/rows/feature_rows.h"
 #include "store/solid_store.h"
 
 namespace watertight::store {
@@ -23,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 // The longest time to wait for the server. A restarted server replays its log within seconds.
 constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::milliseconds kCancelPoll{20};
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
 constexpr double kLeaseSeconds = 30;
@@ -34,6 +36,11 @@ constexpr std::chrono::seconds kCounting{600};
 constexpr std::chrono::seconds kMigrating{3600};
 // A ping that failed speaks for all calls of the next moments.
 constexpr std::chrono::seconds kAway{2};
+// Calls that put at most so many features share a transaction with others (store/group_commit.h).
+// Larger ones are written at the same time as others, each in a session of its own.
+constexpr std::size_t kGrouped = 16;
+// PostgreSQL's name for the primary key of the receipts.
+constexpr std::string_view kReceiptConstraint = "write_receipt_pkey";
 constexpr double kPingLeaseSeconds = 2;
 // Old receipts are removed after the first write and then once in this many writes.
 constexpr std::uint64_t kWritesPerSweep = 1000;
@@ -59,9 +66,11 @@ class Backoff {
 
 /// Whether concurrent transactions got into each other's way, so that the same transaction can
 /// succeed now. A foreign key fails (23503) only when a header was removed as unused while a writer
-/// was about to use it.
+/// was about to use it, and a value is missing (23502) only when a collection was removed or
+/// renamed so that it has no key.
 bool is_collision(const std::string& state) {
-  return state == "40001" || state == "40P01" || state == "55P03" || state == "23503";
+  return state == "40001" || state == "40P01" || state == "55P03" || state == "23503" ||
+         state == "23502";
 }
 
 /// A random number that names one write, so that no two writes of any instance have the same name.
@@ -78,7 +87,8 @@ Result<Token> new_token() {
 class PostgresStore final : public SolidStore {
  public:
   PostgresStore(const std::string& connection, std::size_t connections)
-      : pool_(connection, connections) {}
+      : pool_(connection, connections),
+        group_([this](FeatureRefs features) { return write_all(features, {}); }) {}
 
   Status open() {
     return with_session<Done>([](DatabaseSession& session) { return migrate(session); },
@@ -96,16 +106,17 @@ class PostgresStore final : public SolidStore {
   Status try_ping() {
     Result<ConnectionPool::Lease> lease = pool_.lease(kPingLeaseSeconds);
     if (!lease) return lease.error();
+    const DatabaseSession::Limit limit = limit_of(kPinging);
     // A session of the pool is lost if the server restarted. Then one new session is tried at once.
     for (int attempt = 0; attempt < 2; ++attempt) {
       if (!lease->session) {
-        auto opened = DatabaseSession::open(pool_.connection());
+        auto opened = DatabaseSession::open(pool_.connection(), limit);
         if (const auto* failed = std::get_if<DatabaseSession::OpenFailure>(&opened)) {
           return failed->error;
         }
         lease->session = std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
       }
-      lease->session->limit(Clock::now() + kPinging, &pool_.is_interrupted());
+      lease->session->limit(limit);
       Status current = check_schema(*lease->session);
       if (current || !lease->session->is_lost()) return current;
       lease->session.reset();
@@ -113,9 +124,12 @@ class PostgresStore final : public SolidStore {
     return Error{ErrorCode::unavailable, "the database does not answer"};
   }
 
-  Result<std::vector<StoredCollection>> collections() override {
-    return read<std::vector<StoredCollection>>(
-        [](DatabaseSession& session) { return read_collections(session); });
+  Result<CollectionPage> collections(std::uint64_t limit, const std::string& after) override {
+    if (!after.empty() && !check_collection_id(after)) {
+      return Error{ErrorCode::invalid_argument, "a page cannot start after an impossible id"};
+    }
+    return read<CollectionPage>(
+        [&](DatabaseSession& session) { return read_collections(session, limit, after); });
   }
 
   Result<StoredCollection> collection(const std::string& id) override {
@@ -130,11 +144,38 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return recount_collection(session, id); }, kCounting);
   }
 
-  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
+  Status remove_collection(const std::string& id, const CancelPoll& is_cancelled) override {
+    if (!check_collection_id(id)) return no_such_collection();
+    const auto is_over = [&] { return is_cancelled && is_cancelled(); };
+    if (is_over()) return Error{ErrorCode::cancelled, "nothing was removed"};
+    const Result<std::string> key =
+        write<std::string>([&](DatabaseSession& session) { return hide_collection(session, id); });
+    if (!key) return key.error();
+    for (std::string after; !is_over();) {
+      const Result<std::string> last = purge(*key, after);
+      if (!last || last->empty()) break;  // after a failure later writes delete the rest
+      after = *last;
+    }
+    return Done{};
+  }
+
+  Status rename_collection(const std::string& id, const std::string& new_id) override {
+    if (Status checked = check_collection_id(new_id); !checked) return checked;
+    if (!check_collection_id(id)) return no_such_collection();
+    return write<Done>(
+        [&](DatabaseSession& session) { return store::rename_collection(session, id, new_id); });
+  }
+
+  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
+                                         const WriteCondition& condition) override {
     if (features.empty()) return std::vector<std::uint64_t>{};
     if (Status checked = check_features(features); !checked) return std::move(checked).error();
-    return write<std::vector<std::uint64_t>>(
-        [&](DatabaseSession& session) { return write_features(session, features); });
+    if (condition.kind == WriteCondition::Kind::none && features.size() <= kGrouped) {
+      return group_.put(features);
+    }
+    std::vector<const StoredFeature*> all;
+    for (const StoredFeature& feature : features) all.push_back(&feature);
+    return write_all(all, condition);
   }
 
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
@@ -157,7 +198,7 @@ class PostgresStore final : public SolidStore {
   Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                             const std::string& after) override {
     if (!check_collection_id(collection)) return no_such_collection();
-    return read<FeatureBatch>(
+    return read_at_once<FeatureBatch>(
         [&](DatabaseSession& session) { return read_batch(session, collection, limit, after); });
   }
 
@@ -168,13 +209,32 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return read_documents(session, collection, limit); });
   }
 
-  Status remove(const std::string& collection, const std::string& id) override {
+  Result<std::uint64_t> version(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
-    return write<Done>(
-        [&](DatabaseSession& session) { return delete_feature(session, collection, id); });
+    return read<std::uint64_t>(
+        [&](DatabaseSession& session) { return read_version(session, collection, id); });
+  }
+
+  Status remove(const std::string& collection, const std::string& id,
+                const WriteCondition& condition) override {
+    if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
+    return write<Done>([&](DatabaseSession& session) {
+      return delete_feature(session, collection, id, condition);
+    });
   }
 
  private:
+  DatabaseSession::Limit limit_of(std::chrono::seconds longest) const {
+    return {Clock::now() + longest, &pool_.is_interrupted()};
+  }
+
+  Result<std::vector<std::uint64_t>> write_all(FeatureRefs features,
+                                               const WriteCondition& condition) {
+    return write<std::vector<std::uint64_t>>([&](DatabaseSession& session) {
+      return write_features(session, features, condition, digests_);
+    });
+  }
+
   template <class Value>
   using Work = std::function<Result<Value>(DatabaseSession&)>;
 
@@ -200,14 +260,14 @@ class PostgresStore final : public SolidStore {
     if (!lease) return lease.error();
     for (Backoff backoff;;) {
       if (!lease->session) {
-        auto opened = DatabaseSession::open(pool_.connection());
+        auto opened = DatabaseSession::open(pool_.connection(), limit_of(longest));
         if (const auto* failed = std::get_if<DatabaseSession::OpenFailure>(&opened)) {
           if (failed->may_come_back && !pool_.is_interrupted() && backoff.pause()) continue;
           return failed->error;
         }
         lease->session = std::move(std::get<std::unique_ptr<DatabaseSession>>(opened));
       }
-      lease->session->limit(Clock::now() + longest, &pool_.is_interrupted());
+      lease->session->limit(limit_of(longest));
       Result<Value> result = work(*lease->session);
       if (result) return result;
       const bool lost = lease->session->is_lost();
@@ -221,12 +281,17 @@ class PostgresStore final : public SolidStore {
     }
   }
 
-  /// Runs `work` in a transaction in which all statements see one state of the database.
+  /// Runs `work`, each of whose statements sees a state of the database of its own.
   template <class Value>
   Result<Value> read(const Work<Value>& work) {
+    return with_session<Value>(work, kReading);
+  }
+
+  /// Runs `work` in a transaction in which all statements see one state of the database.
+  template <class Value>
+  Result<Value> read_at_once(const Work<Value>& work) {
     const Work<Value> transaction = [&](DatabaseSession& session) -> Result<Value> {
-      const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
-      if (!begun) return begun.error();
+      session.send("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
       Result<Value> result = work(session);
       if (!result) return result;
       const Result<Rows> ended = session.run("COMMIT");
@@ -238,26 +303,23 @@ class PostgresStore final : public SolidStore {
 
   /// Runs `work` in one durable transaction, exactly once. The transaction also inserts a token: if
   /// the connection breaks during COMMIT, the insert of the token in the next attempt waits for the
-  /// end of the first attempt, and fails exactly when the first attempt was committed.
+  /// end of the first attempt, and fails exactly when the first attempt was committed. `work` must
+  /// wait for a result; BEGIN and the token are sent with its first statements.
   template <class Value>
   Result<Value> write(const Work<Value>& work, std::chrono::seconds longest = kWriting) {
     const Result<Token> token = new_token();
     if (!token) return token.error();
     std::optional<Value> in_doubt;  // the result of an attempt whose COMMIT was not answered
     const Work<Value> transaction = [&](DatabaseSession& session) -> Result<Value> {
-      const Result<Rows> begun = session.run("BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE");
-      if (!begun) return begun.error();
-      const Result<Rows> marked = session.run(
-          "INSERT INTO watertight.write_receipt (token) VALUES ($1)", Parameters().bytea(*token));
-      if (!marked) {
-        if (in_doubt && session.state() == "23505") {
-          session.roll_back();
-          return *in_doubt;
-        }
-        return marked.error();
-      }
+      session.send("BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE");
+      session.send("INSERT INTO watertight.write_receipt (token) VALUES ($1)",
+                   Parameters().bytea(*token));
       Result<Value> value = work(session);
-      if (!value) return value;
+      if (!value) {
+        if (!in_doubt || session.constraint() != kReceiptConstraint) return value;
+        session.roll_back();
+        return *in_doubt;
+      }
       const Result<Rows> ended = session.run("COMMIT");
       if (ended) return value;
       if (session.is_lost()) in_doubt = *value;
@@ -267,12 +329,17 @@ class PostgresStore final : public SolidStore {
     if (!result && in_doubt && result.error().code == ErrorCode::unavailable) {
       return Error{
           ErrorCode::unavailable,
-          "the database went away while it committed; whether this was stored is not known (" +
-              result.error().message + ")"};
+          "the database went away while it committed; whether this was stored is not known",
+          {},
+          {},
+          to_string(result.error())};
     }
     if (!result) return result;
     const std::uint64_t writes = ++writes_;
-    if (writes % kWritesPerFold == 1) fold();
+    if (writes % kWritesPerFold == 1) {
+      fold();
+      purge_one();
+    }
     if (writes % kWritesPerSweep == 1) sweep();
     return result;
   }
@@ -280,12 +347,33 @@ class PostgresStore final : public SolidStore {
   /// Keeps the changes few that a reader of a collection's counts sums up.
   void fold() {
     const Work<Done> work = [](DatabaseSession& session) -> Status {
-      if (const Result<Rows> begun = session.run("BEGIN"); !begun) return begun.error();
+      session.send("BEGIN");
       if (Status done = fold_changes(session); !done) return done;
       if (const Result<Rows> ended = session.run("COMMIT"); !ended) return ended.error();
       return Done{};
     };
     static_cast<void>(with_session(work, kWriting));  // the next one takes what this one left
+  }
+
+  /// One step of the deletion of a removed collection's rows: purge_step().
+  Result<std::string> purge(const std::string& key, const std::string& after) {
+    const Work<std::string> work = [&](DatabaseSession& session) -> Result<std::string> {
+      session.send("BEGIN");
+      Result<std::string> last = purge_step(session, key, after);
+      if (!last) return last;
+      if (const Result<Rows> ended = session.run("COMMIT"); !ended) return ended.error();
+      return last;
+    };
+    return with_session(work, kWriting);
+  }
+
+  /// Deletes some rows of a removed collection whose deletion was broken off.
+  void purge_one() {
+    const Work<std::string> hidden = [](DatabaseSession& session) {
+      return read_hidden_collection(session);
+    };
+    const Result<std::string> key = with_session(hidden, kWriting);
+    if (key && !key->empty()) static_cast<void>(purge(*key, ""));
   }
 
   /// Removes old receipts, and headers that no feature uses any more.
@@ -305,6 +393,8 @@ class PostgresStore final : public SolidStore {
   }
 
   ConnectionPool pool_;
+  HeaderDigests digests_;
+  GroupCommit group_;
   std::atomic<Clock::time_point> away_until_ = Clock::time_point::min();
   std::atomic<std::uint64_t> writes_{0};
 };
@@ -312,8 +402,15 @@ class PostgresStore final : public SolidStore {
 }  // namespace
 
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
-                                                        std::size_t connections) {
+                                                        std::size_t connections,
+                                                        const CancelPoll& is_cancelled) {
   auto store = std::make_unique<PostgresStore>(connection, connections);
+  const std::jthread watch([&is_cancelled, opening = store.get()](const std::stop_token& stop) {
+    while (is_cancelled && !stop.stop_requested()) {
+      if (is_cancelled()) return opening->interrupt();
+      std::this_thread::sleep_for(kCancelPoll);
+    }
+  });
   if (Status opened = store->open(); !opened) return std::move(opened).error();
   return std::unique_ptr<SolidStore>(std::move(store));
 }

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <grp.h>
 #include <pwd.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -27,7 +28,8 @@ Result<User> find_user() {
   std::array<char, 4096> buffer{};
   passwd entry{};
   passwd* found = nullptr;
-  getpwnam_r(kUser, &entry, buffer.data(), buffer.size(), &found);
+  errno = getpwnam_r(kUser, &entry, buffer.data(), buffer.size(), &found);
+  if (errno != 0) return system_error("look up the user 'watertight'");
   if (found == nullptr || found->pw_uid == 0) {
     return Error{ErrorCode::unavailable,
                  "root may not run the database, and there is no user 'watertight' to run it as; "
@@ -61,6 +63,11 @@ Status hand_over(const std::string& directory, const User& user) {
 }
 
 }  // namespace
+
+Status forbid_new_privileges() {
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return system_error("forbid new privileges");
+  return Done{};
+}
 
 Status drop_root_privileges(const std::string& directory) {
   if (geteuid() != 0) return Done{};

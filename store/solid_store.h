@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/bytes.h"
+#include "base/cancel.h"
 #include "base/packed_text.h"
 #include "base/result.h"
 #include "base/shared_text.h"
@@ -64,6 +65,23 @@ struct StoredFeature : FeatureRecord {
   PackedText skeleton;
 };
 
+struct CollectionPage {
+  std::vector<StoredCollection> collections;  // ordered by id, bytewise
+  std::string next;  // `after` of the next page; "" = this page is the last
+};
+
+/// What must be true of each feature of a write before it is changed.
+struct WriteCondition {
+  enum class Kind : std::uint8_t {
+    none,     // nothing
+    absent,   // the feature does not exist
+    present,  // the feature exists
+    versions  // the feature exists, and its version is one of `versions`
+  };
+  Kind kind = Kind::none;
+  std::vector<std::uint64_t> versions;
+};
+
 struct FeatureQuery {
   std::string collection;
   std::uint64_t limit = 10;
@@ -106,42 +124,62 @@ class SolidStore {
   virtual Status ping() = 0;
   /// Makes running and later calls fail within moments. For a process that is about to end.
   virtual void interrupt() {}
-  /// The cost of this and the next does not depend on the number of features.
-  virtual Result<std::vector<StoredCollection>> collections() = 0;
+  /// The collections after the id `after` ("" = from the start), at most `limit` (10,000). The cost
+  /// of this and the next does not depend on the number of features. Errors: invalid_argument for
+  /// an `after` that no collection can have.
+  virtual Result<CollectionPage> collections(std::uint64_t limit, const std::string& after) = 0;
   virtual Result<StoredCollection> collection(const std::string& id) = 0;
   /// Counts a collection again and makes its box as small as it can be. Reads all its features.
   /// Errors: not_found.
   virtual Result<StoredCollection> recount(const std::string& id) = 0;
+  /// Removes a collection with all its features, its CRS and its header. It is gone for all readers
+  /// at one moment; a writer of that moment gets the old collection or a new one, as a whole. Waits
+  /// for the writers that have begun. Its rows are deleted after that, some at a time (about a
+  /// minute for 1,000,000 features); when `is_cancelled` ends this, later writes delete the rest.
+  /// Errors: not_found; cancelled when nothing was removed; unavailable.
+  virtual Status remove_collection(const std::string& id, const CancelPoll& is_cancelled) = 0;
+  /// Gives a collection another id, at one moment. Waits for the writers that have begun. The cost
+  /// does not depend on the number of features. Errors: not_found; conflict when `new_id` exists;
+  /// invalid_argument when it is not an id of a collection.
+  virtual Status rename_collection(const std::string& id, const std::string& new_id) = 0;
   /// Stores all features or none, durably. Creates the collection when it does not exist; replaces
   /// a feature whose id exists, under a higher version. Sends the rows of a table together. Returns
   /// the new version of each feature. Errors: invalid_argument for a feature that the database
   /// cannot keep as it is (ids with NUL, not UTF-8 or above 1024 bytes, boxes that are not finite,
   /// a solid twice); conflict when a feature is there twice or its CRS is not that of its
-  /// collection; unavailable.
-  virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) = 0;
+  /// collection; precondition_failed, which names a feature for which `condition` does not hold,
+  /// and its version; unavailable.
+  virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
+                                                 const WriteCondition& condition = {}) = 0;
+  /// The current version of a feature, by one short question to the database. Errors: not_found.
+  virtual Result<std::uint64_t> version(const std::string& collection, const std::string& id) = 0;
   virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;
   /// A page has at most 10,000 features. Errors: not_found when there is no such collection.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
   /// The next batch of the features of a collection, in order of their place numbers
-  /// (store/place.h: along a Hilbert curve through the centres of their boxes), features without a
-  /// box last, ties by id, bytewise. A batch has at most `limit` (10,000) features, fewer when they
-  /// are large (16 MiB). `after` is FeatureBatch::next, "" at the start. Errors: not_found when
-  /// there is no such collection; invalid_argument for an `after` that no batch returned.
+  /// (store/rows/place.h: along a Hilbert curve through the centres of their boxes), features
+  /// without a box last, ties by id, bytewise. A batch has at most `limit` (10,000) features, fewer
+  /// when they are large (16 MiB). `after` is FeatureBatch::next, "" at the start. Errors:
+  /// not_found when there is no such collection; invalid_argument for an `after` that no batch
+  /// returned.
   virtual Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                                     const std::string& after) = 0;
   /// The formats and headers of the documents that the features of a collection came in, at most
   /// `limit`; empty for a collection that does not exist.
   virtual Result<std::vector<StoredHeader>> documents(const std::string& collection,
                                                       std::uint64_t limit) = 0;
-  /// Errors: not_found.
-  virtual Status remove(const std::string& collection, const std::string& id) = 0;
+  /// Errors: not_found; precondition_failed with the version when `condition` does not hold.
+  virtual Status remove(const std::string& collection, const std::string& id,
+                        const WriteCondition& condition = {}) = 0;
 };
 
 /// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
 /// Reconnects after a lost connection; an interrupted operation is tried again only when it is
-/// idempotent or known not to have been committed. Errors: unavailable with the server's message.
+/// idempotent or known not to have been committed. `is_cancelled` ends the opening; a thread asks
+/// it. Errors: unavailable with the server's message.
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
-                                                        std::size_t connections = 4);
+                                                        std::size_t connections = 4,
+                                                        const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::store
 

@@ -15,8 +15,6 @@
 #include <limits>
 #include <mutex>
 #include <optional>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,9 +29,6 @@ using Clock = std::chrono::steady_clock;
 
 /// The time after which a waiting pool asks again whether the job is cancelled.
 constexpr std::chrono::milliseconds kPollInterval{5};
-/// The least and the most seconds between two looks for idle processes that ended.
-constexpr double kLeastReaping = 0.02;
-constexpr double kMostReaping = 5;
 /// The most bytes that are read from the socket at once.
 constexpr std::size_t kChunk = std::size_t{1} << 16;
 
@@ -249,9 +244,6 @@ struct WorkerPool::State {
   Options options;
   std::mutex mutex;
   std::condition_variable returned;
-  std::condition_variable became_idle;
-  std::thread reaper;
-  bool is_ending = false;
   std::vector<WorkerProcess> idle;
   std::size_t running = 0;
 
@@ -266,73 +258,30 @@ struct WorkerPool::State {
     return true;
   }
 
-  ~State() {
-    {
-      const std::lock_guard lock(mutex);
-      is_ending = true;
-    }
-    became_idle.notify_all();
-    if (reaper.joinable()) reaper.join();
-  }
-
   void leave(std::optional<WorkerProcess> process) {
     {
       const std::lock_guard lock(mutex);
       --running;
-      if (process) {
-        idle.push_back(std::move(*process));
-        if (options.reaps_idle && !reaper.joinable()) start_reaper();
-      }
+      if (process) idle.push_back(std::move(*process));
     }
     returned.notify_one();
-    became_idle.notify_all();
   }
 
-  /// Starts the thread that reaps idle processes; signals go to the other threads. Without it they
-  /// are reaped before the next job.
-  void start_reaper() {
-    sigset_t all;
-    sigset_t before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    try {
-      reaper = std::thread([this] { reap_idle(); });
-    } catch (const std::system_error&) {
-    }
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  }
-
-  /// Reaps processes soon after they ended from idleness; sleeps while there are none.
-  void reap_idle() {
-    const std::chrono::duration<double> interval(
-        std::clamp(options.idle_seconds / 4, kLeastReaping, kMostReaping));
-    std::unique_lock lock(mutex);
-    while (!is_ending) {
-      became_idle.wait(lock, [this] { return is_ending || !idle.empty(); });
-      became_idle.wait_for(lock, interval, [this] { return is_ending; });
-      std::vector<WorkerProcess> ended = take_ended();
-      lock.unlock();
-      ended.clear();
-      lock.lock();
-    }
-  }
-
-  /// The idle processes that ended or that wrote without a request. Requires the lock.
-  std::vector<WorkerProcess> take_ended() {
-    std::vector<WorkerProcess> ended;
+  /// Reaps idle processes that ended or that wrote without a request.
+  void reap() {
+    std::vector<WorkerProcess> ended;  // is destroyed, which may take a moment, without the mutex
+    const std::lock_guard lock(mutex);
     const auto gone = std::stable_partition(idle.begin(), idle.end(),
                                             [](const WorkerProcess& p) { return p.is_waiting(); });
     std::move(gone, idle.end(), std::back_inserter(ended));
     idle.erase(gone, idle.end());
-    return ended;
   }
 
-  /// A waiting process of the pool, or a new one. Also reaps idle processes that ended.
+  /// A waiting process of the pool, or a new one.
   Result<WorkerProcess> take() {
-    std::vector<WorkerProcess> ended;
+    reap();
     {
       const std::lock_guard lock(mutex);
-      ended = take_ended();
       if (!idle.empty()) {
         WorkerProcess process = std::move(idle.back());
         idle.pop_back();
@@ -374,6 +323,8 @@ struct WorkerPool::State {
 WorkerPool::WorkerPool(Options options) : state_(std::make_unique<State>(std::move(options))) {}
 
 WorkerPool::~WorkerPool() = default;
+
+void WorkerPool::reap() { state_->reap(); }
 
 JobResult WorkerPool::run(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel) {
   JobResult result;

@@ -57,9 +57,6 @@ class WorkerPool {
     std::size_t size = 2;
     std::size_t jobs_per_process = 500;
     double idle_seconds = 60;  // a process without a job for this long ends itself
-    /// True: a thread of the pool, with all signals blocked, reaps such a process at once. False:
-    /// it stays a zombie until the next job (a PostgreSQL backend has no threads).
-    bool reaps_idle = true;
   };
   explicit WorkerPool(Options options);
   ~WorkerPool();  // kills every process group and reaps it
@@ -67,6 +64,9 @@ class WorkerPool {
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   JobResult run(ByteView request, const WorkerLimits& limits, const CancelPoll& cancel = {});
+  /// Reaps processes that ended by themselves, as idle ones do. run() does so too; a program that
+  /// may run no job for long calls this now and then.
+  void reap();
 
  private:
   struct State;

@@ -8,7 +8,7 @@
 
 #include <boost/asio.hpp>
 
-#include "server/listener.h"
+#include "server/transport/listener.h"
 #include "store/connection.h"
 #include "tests/builds/fingerprint.h"
 

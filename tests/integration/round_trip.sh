@@ -60,3 +60,6 @@ python3 tests/integration/round_trip.py --service "http://127.0.0.1:$SERVICE_POR
   --database "postgresql://watertight:$POSTGRES_PASSWORD@127.0.0.1:$POSTGRES_PORT/watertight" \
   --kill "podman kill -s KILL ${project}_db_1" --start "podman start ${project}_db_1" \
   --tile examples/delft.city.jsonl --invalid examples/invalid.city.jsonl
+for name in db service; do
+  podman healthcheck run "${project}_${name}_1" || { echo "round_trip: $name is not healthy" >&2; exit 1; }
+done

@@ -3,6 +3,7 @@
 // Small documents and a store in memory, for the tests of pipeline, server and cli.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <set>
@@ -49,17 +50,26 @@ inline std::string sequence(const std::vector<std::string>& features) {
 class MemoryStore final : public SolidStore {
  public:
   bool is_away = false;
+  std::size_t gets = 0;  // how often get() was called
 
   Status ping() override {
     if (is_away) return away();
     return Done{};
   }
-  Result<std::vector<store::StoredCollection>> collections() override {
+  Result<store::CollectionPage> collections(std::uint64_t limit,
+                                            const std::string& after) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
-    std::vector<store::StoredCollection> all;
-    for (const auto& [id, features] : features_) all.push_back(summary(id));
-    return all;
+    store::CollectionPage page;
+    for (const auto& [id, features] : features_) {
+      if (id <= after) continue;
+      if (page.collections.size() == limit) {
+        if (limit > 0) page.next = page.collections.back().id;
+        break;
+      }
+      page.collections.push_back(summary(id));
+    }
+    return page;
   }
   Result<store::StoredCollection> collection(const std::string& id) override {
     const std::lock_guard lock(mutex_);
@@ -68,9 +78,32 @@ class MemoryStore final : public SolidStore {
     return summary(id);
   }
   Result<store::StoredCollection> recount(const std::string& id) override { return collection(id); }
-  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features) override {
+  Status remove_collection(const std::string& id, const CancelPoll& /*is_cancelled*/) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
+    if (features_.erase(id) == 0) return Error{ErrorCode::not_found, "no collection " + id};
+    return Done{};
+  }
+  Status rename_collection(const std::string& id, const std::string& new_id) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
+    if (features_.contains(new_id)) return Error{ErrorCode::conflict, "there is a " + new_id};
+    if (new_id.find('/') != std::string::npos) return Error{ErrorCode::invalid_argument, new_id};
+    auto moved = features_.extract(id);
+    moved.key() = new_id;
+    for (auto& [key, feature] : moved.mapped()) feature.collection = new_id;
+    features_.insert(std::move(moved));
+    return Done{};
+  }
+  Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
+                                         const store::WriteCondition& condition = {}) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    for (const StoredFeature& feature : features) {
+      const std::uint64_t found = version_of(feature.collection, feature.id);
+      if (!holds(condition, found)) return precondition_failed(feature.id, found);
+    }
     std::vector<std::uint64_t> versions;
     for (const StoredFeature& feature : features) {
       StoredFeature& kept = features_[feature.collection][feature.id];
@@ -82,6 +115,7 @@ class MemoryStore final : public SolidStore {
   }
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);
+    ++gets;
     if (is_away) return away();
     const auto features = features_.find(collection);
     if (features == features_.end() || !features->second.contains(id)) {
@@ -136,14 +170,44 @@ class MemoryStore final : public SolidStore {
     }
     return found;
   }
-  Status remove(const std::string& collection, const std::string& id) override {
+  Result<std::uint64_t> version(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
-    if (features_[collection].erase(id) == 0) return Error{ErrorCode::not_found, "no " + id};
+    const std::uint64_t found = version_of(collection, id);
+    if (found == 0) return Error{ErrorCode::not_found, "no feature " + id};
+    return found;
+  }
+  Status remove(const std::string& collection, const std::string& id,
+                const store::WriteCondition& condition = {}) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    const std::uint64_t found = version_of(collection, id);
+    if (found == 0) return Error{ErrorCode::not_found, "no " + id};
+    if (!holds(condition, found)) return precondition_failed(id, found);
+    features_[collection].erase(id);
     return Done{};
   }
 
  private:
+  /// The version of a feature; 0 when there is none.
+  std::uint64_t version_of(const std::string& collection, const std::string& id) const {
+    const auto features = features_.find(collection);
+    if (features == features_.end()) return 0;
+    const auto feature = features->second.find(id);
+    return feature == features->second.end() ? 0 : feature->second.version;
+  }
+  static bool holds(const store::WriteCondition& condition, std::uint64_t version) {
+    using Kind = store::WriteCondition::Kind;
+    if (condition.kind == Kind::absent) return version == 0;
+    if (condition.kind == Kind::present) return version != 0;
+    if (condition.kind == Kind::none) return true;
+    return version != 0 && std::find(condition.versions.begin(), condition.versions.end(),
+                                     version) != condition.versions.end();
+  }
+  static Error precondition_failed(const std::string& id, std::uint64_t version) {
+    return Error{ErrorCode::precondition_failed,
+                 "feature '" + id + "' has version " + std::to_string(version)};
+  }
   static Error away() { return Error{ErrorCode::unavailable, "the database is away"}; }
   static bool overlap(const store::StoredBox& a, const store::StoredBox& b) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

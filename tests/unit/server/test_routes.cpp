@@ -16,7 +16,11 @@ using Json = nlohmann::json;
 class Fixture {
  public:
   server::Response send(server::Request request) const {
-    return server::respond(server::Service{&store, nullptr, {}}, request, [] { return false; });
+    const CancelPoll never = [] { return false; };
+    server::Response response =
+        server::respond(server::Service{&store, nullptr, {}}, request, never);
+    while (response.further) response = std::shared_ptr(response.further)->make(never);
+    return response;
   }
   server::Response get(const std::string& target,
                        std::vector<server::HeaderField> headers = {}) const {

@@ -82,7 +82,7 @@ std::string Database::ask(const std::string& statement) const {
 
 void Database::add_many_features() const {
   ask("INSERT INTO watertight.document_header VALUES ('h', 'h')");
-  ask("INSERT INTO watertight.collection (id, srid, header) VALUES ('c', 0, 'h')");
+  ask("INSERT INTO watertight.collection (id, name, srid, header) VALUES ('c', 'c', 0, 'h')");
   ask("INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, "
       "solids,"
       " blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)"

@@ -212,6 +212,75 @@ TEST_CASE("a database that hangs fails a read in time, and an interruption fails
   CHECK(!(*store)->get("buildings", "a"));  // an interruption is for good
 }
 
+TEST_CASE("a server that does not answer a new session fails a ping in time, or when interrupted") {
+  const Database database;
+  const TemporaryFolder folder;
+  Proxy proxy(folder.path, database.socket());
+  const auto store =
+      store::open_postgres_store(database.connection() + " host='" + folder.path + "'", 1);
+  REQUIRE(store);
+  const auto seconds_of_ping = [&] {
+    const auto start = std::chrono::steady_clock::now();
+    const Status status = (*store)->ping();
+    REQUIRE(!status);
+    CHECK(status.error().code == ErrorCode::unavailable);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  proxy.hold(true);
+  CHECK(seconds_of_ping() < 2.5);  // the session is there
+  CHECK(seconds_of_ping() < 2.5);  // there is none now
+  std::thread stopping([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    (*store)->interrupt();
+  });
+  CHECK(seconds_of_ping() < 1.5);
+  stopping.join();
+  proxy.hold(false);
+}
+
+TEST_CASE("an error of the server names no file to a client, and no line end to anyone") {
+  const Database database;
+  const auto session = session_in(database.connection());
+  const auto failure_of = [&](const std::string& state) {
+    const auto failed =
+        session->run("DO $$ BEGIN RAISE EXCEPTION USING ERRCODE = '" + state +
+                     "', MESSAGE = E'could not extend file \"base/1/2\"\n  no space'; END $$");
+    REQUIRE(!failed);
+    CHECK(failed.error().detail == "could not extend file \"base/1/2\"; no space");
+    CHECK(failed.error().code == ErrorCode::unavailable);
+    return failed.error().message;
+  };
+  CHECK(failure_of("53100") == "the database's disk is full");
+  CHECK(failure_of("58030") == "the database cannot do this now");
+  const auto opened = store::DatabaseSession::open("host='/nowhere/at/all'");
+  const auto* missing = std::get_if<store::DatabaseSession::OpenFailure>(&opened);
+  REQUIRE(missing != nullptr);
+  CHECK(missing->error.message.find("nowhere") == std::string::npos);
+  CHECK(missing->error.detail.find("nowhere") != std::string::npos);
+  CHECK(to_string(missing->error).find('\n') == std::string::npos);
+}
+
+TEST_CASE("statements that were sent together fail together, and the session can be used again") {
+  const Database database;
+  const auto session = session_in(database.connection());
+  for (int round = 0; round < 2; ++round) {
+    session->send("BEGIN");
+    const std::size_t one = session->send("SELECT $1::int8 + 1", store::Parameters().int8(1));
+    session->send("SELECT 1 / $1::int8", store::Parameters().int8(round));
+    const std::size_t three = session->send("SELECT 3::int8");
+    const auto results = session->results();
+    CHECK(results.has_value() == (round == 1));
+    if (results) {
+      CHECK((*results)[one].int8(0, 0) == 2);
+      CHECK((*results)[three].int8(0, 0) == 3);
+    } else {
+      CHECK(session->state() == "22012");
+    }
+    session->roll_back();
+    CHECK(session->ask("SELECT 5::int8")->int8(0, 0) == 5);
+  }
+}
+
 TEST_CASE("while a ping has found the database away, other calls fail at once") {
   const TemporaryFolder folder;
   Result<std::unique_ptr<store::PrivateCluster>> cluster =
@@ -233,7 +302,7 @@ TEST_CASE("a connection string that leads nowhere is an error at once") {
       store::open_postgres_store(database.connection() + " dbname=no_such_database");
   REQUIRE(!missing);
   CHECK(missing.error().code == ErrorCode::unavailable);
-  CHECK(missing.error().message.find("no_such_database") != std::string::npos);
+  CHECK(missing.error().detail.find("no_such_database") != std::string::npos);
 }
 
 }  // namespace watertight::test

@@ -121,10 +121,11 @@ TEST_CASE("a collection counts its features, solids and bytes and spans their bo
   REQUIRE(collection->box);
   CHECK(collection->box->min == std::array<double, 3>{-5, 0, 0});
   CHECK(collection->box->max == std::array<double, 3>{1, 8, 1e9});
-  const auto all = store->collections();
+  const auto all = store->collections(10, "");
   REQUIRE(all);
-  REQUIRE(all->size() == 1);
-  CHECK(all->front().id == "buildings");
+  REQUIRE(all->collections.size() == 1);
+  CHECK(all->collections.front().id == "buildings");
+  CHECK(all->next.empty());
 }
 
 TEST_CASE("put stores all features or none") {

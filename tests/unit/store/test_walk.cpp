@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "fixture.h"
-#include "store/place.h"
+#include "store/rows/place.h"
 
 namespace watertight {
 using test::Database;

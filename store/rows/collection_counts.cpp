@@ -3,7 +3,9 @@
 // The counts and boxes of collections. Triggers (store/migrations.cpp) note the changes of every
 // write in rows of their own, in its transaction; a collection's counts are those of its row and
 // these changes. So no reader counts features, and no writer waits for another's commit.
-#include "store/feature_rows.h"
+#include <algorithm>
+
+#include "store/rows/feature_rows.h"
 
 namespace watertight::store {
 namespace {
@@ -24,16 +26,18 @@ std::string summed(const char* changes) {
          changes;
 }
 
-/// The collections that fulfil `condition` on c.id, and so on their changes' d.collection.
-std::string collections_where(const char* on_collection, const char* on_changes) {
-  return "SELECT c.id, c.srid, h.content, c.features + coalesce(d.features, 0),"
+/// Selects the collections of a FROM clause as `c`, with the sums of their own changes alone.
+std::string collections_from(const char* collections) {
+  return "SELECT c.name, c.srid, h.content, c.features + coalesce(d.features, 0),"
          " c.solids + coalesce(d.solids, 0), c.blob_bytes + coalesce(d.blob_bytes, 0),"
          " least(c.min_x, d.min_x), least(c.min_y, d.min_y), least(c.min_z, d.min_z),"
          " greatest(c.max_x, d.max_x), greatest(c.max_y, d.max_y), greatest(c.max_z, d.max_z)"
-         " FROM watertight.collection c JOIN watertight.document_header h ON h.digest = c.header"
-         " LEFT JOIN (" +
-         summed("watertight.collection_change") + on_changes +
-         " GROUP BY collection) d ON d.collection = c.id" + on_collection + " ORDER BY c.id";
+         " FROM " +
+         std::string(collections) +
+         " c JOIN watertight.document_header h ON h.digest = c.header"
+         " LEFT JOIN LATERAL (" +
+         summed("watertight.collection_change") +
+         " WHERE collection = c.id GROUP BY collection) d ON true ORDER BY c.name";
 }
 
 StoredCollection collection_of(const Rows& rows, int row) {
@@ -54,31 +58,44 @@ Error no_collection(const std::string& id) {
   return {ErrorCode::not_found, "there is no collection '" + id + "'"};
 }
 
-Result<std::vector<StoredCollection>> read_collections(DatabaseSession& connection) {
-  const Result<Rows> rows = connection.run(collections_where("", ""));
+Result<CollectionPage> read_collections(DatabaseSession& connection, std::uint64_t limit,
+                                        const std::string& after) {
+  const std::uint64_t at_most = std::min(limit, kLargestPage);
+  // One collection more than asked for shows whether there is a next page.
+  const Result<Rows> rows =
+      connection.ask(collections_from("(SELECT * FROM watertight.collection WHERE name > $1"
+                                      " ORDER BY name LIMIT $2)"),
+                     Parameters().text(after).int8(static_cast<std::int64_t>(at_most) + 1));
   if (!rows) return rows.error();
-  std::vector<StoredCollection> found;
-  for (int row = 0; row < rows->size(); ++row) found.push_back(collection_of(*rows, row));
-  return found;
+  CollectionPage page;
+  for (int row = 0; row < rows->size(); ++row) {
+    page.collections.push_back(collection_of(*rows, row));
+  }
+  if (page.collections.size() > at_most) {
+    page.collections.resize(at_most);
+    if (at_most > 0) page.next = page.collections.back().id;
+  }
+  return page;
 }
 
 Result<StoredCollection> read_collection(DatabaseSession& connection, const std::string& id) {
-  const Result<Rows> rows = connection.run(
-      collections_where(" WHERE c.id = $1", " WHERE collection = $1"), Parameters().text(id));
+  const Result<Rows> rows =
+      connection.ask(collections_from("(SELECT * FROM watertight.collection WHERE name = $1)"),
+                     Parameters().text(id));
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_collection(id);
   return collection_of(*rows, 0);
 }
 
 Result<Done> fold_changes(DatabaseSession& connection) {
-  const Result<Rows> lock = connection.run(std::string("SELECT 1::int8 WHERE"
+  const Result<Rows> lock = connection.ask(std::string("SELECT 1::int8 WHERE"
                                                        " pg_try_advisory_xact_lock(") +
                                            kCountsLock + ")");
   if (!lock) return lock.error();
   if (lock->size() == 0) return Done{};
   // All changes that are visible: those of a feature's removal are never without those of its
   // storing, so that counts of 0 mean an empty collection.
-  const Result<Rows> folded = connection.run(
+  const Result<Rows> folded = connection.ask(
       "WITH gone AS (DELETE FROM watertight.collection_change RETURNING *), d AS (" +
       summed("gone") +
       " GROUP BY collection) UPDATE watertight.collection c SET features = c.features + d.features,"
@@ -95,21 +112,21 @@ Result<Done> fold_changes(DatabaseSession& connection) {
 }
 
 Result<StoredCollection> recount_collection(DatabaseSession& connection, const std::string& id) {
-  const Result<Rows> lock =
-      connection.run(std::string("SELECT pg_advisory_xact_lock(") + kCountsLock + ")");
-  if (!lock) return lock.error();
+  connection.send(std::string("SELECT pg_advisory_xact_lock(") + kCountsLock + ")");
   // One statement, so that the features that it counts are those whose changes it removes.
-  const Result<Rows> counted = connection.run(
-      std::string("WITH gone AS (DELETE FROM watertight.collection_change WHERE collection = $1),"
-                  " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
-                  " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes, min(min_x) AS min_x,"
-                  " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
-                  " max(max_y) AS max_y, max(max_z) AS max_z"
-                  " FROM watertight.feature WHERE collection = $1)"
-                  " UPDATE watertight.collection c SET (features, solids, blob_bytes,"
-                  " min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d)"
-                  " FROM watertight.document_header h WHERE c.id = $1 AND h.digest = c.header"
-                  " RETURNING c.id, c.srid, h.content, ") +
+  const Result<Rows> counted = connection.ask(
+      std::string(
+          "WITH k AS (SELECT id FROM watertight.collection WHERE name = $1), gone AS"
+          " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)),"
+          " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
+          " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes, min(min_x) AS min_x,"
+          " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
+          " max(max_y) AS max_y, max(max_z) AS max_z"
+          " FROM watertight.feature WHERE collection = (SELECT id FROM k))"
+          " UPDATE watertight.collection c SET (features, solids, blob_bytes,"
+          " min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d)"
+          " FROM watertight.document_header h WHERE c.name = $1 AND h.digest = c.header"
+          " RETURNING c.name, c.srid, h.content, ") +
           kCounts,
       Parameters().text(id));
   if (!counted) return counted.error();

@@ -12,14 +12,9 @@
 
 #include "base/cancel.h"
 #include "base/result.h"
-#include "server/http.h"
+#include "server/transport/http.h"
 
 namespace watertight::server {
-
-/// The threads that answer a request. Quick requests are answered on the I/O thread, whatever the
-/// others do; requests that wait for the database and requests that compute each have threads of
-/// their own.
-enum class Lane : std::uint8_t { quick, reading, computing };
 
 /// The functions that answer requests. Several threads call both at once.
 struct Application {
@@ -43,12 +38,17 @@ struct ServerOptions {
   double body_seconds = 20;     // for the body, plus one for each body_rate bytes that have arrived
   double body_rate = 20e3;      // bytes per second
   double answer_seconds = 300;  // the longest time of computing; then engines are cancelled
-  double write_seconds = 60;    // the longest time for an answer or a part, plus 1 for each 100 kB
+  double write_seconds = 20;    // for an answer, plus one for each write_rate bytes of it
+  double write_rate = 20e3;     // bytes per second
   double drain_seconds = 30;    // the longest time for requests in flight when stopping
   std::size_t connections = 512;
+  std::size_t connections_per_address = 0;  // of one client's address; 0: as many as of all
+  std::size_t works_per_address = 0;        // requests that compute or wait to; 0: no limit
   std::size_t computing_threads = 2;
+  std::size_t small_threads = 16;  // most of the time they wait for the database
   std::size_t reading_threads = 4;
   std::size_t computing_queue = 64;  // requests waiting for a computing thread; more get 503
+  std::size_t small_queue = 256;
   std::size_t reading_queue = 256;
   std::size_t downloads = 16;  // answers in parts (Response::rest) at once; more get 503
 };

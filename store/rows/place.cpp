@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "store/place.h"
+#include "store/rows/place.h"
 
 #include <algorithm>
 #include <cmath>

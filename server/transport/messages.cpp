@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/messages.h"
+#include "server/transport/messages.h"
 
 #include <array>
 #include <boost/asio/ip/address.hpp>
@@ -81,6 +81,12 @@ Response busy(std::string detail) {
   return to_response(answer);
 }
 
+Response too_many(std::string detail) {
+  Problem answer{429, "too-many-requests", std::move(detail), {}, {}, {}, {}};
+  answer.headers.push_back({"Retry-After", "5"});
+  return to_response(answer);
+}
+
 std::optional<Response> answer_to(const error_code& error, const ServerOptions& options) {
   if (error == http::error::header_limit) {
     return problem(
@@ -120,7 +126,8 @@ std::optional<Response> refusal_of(const RequestParser& parser, const ServerOpti
                      "and without Content-Length");
     }
   }
-  const bool takes_body = request.method() == http::verb::post;
+  const bool takes_body =
+      request.method() == http::verb::post || request.method() == http::verb::patch;
   if (takes_body && !parser.chunked() && !parser.content_length()) {
     return problem(411, "length-required",
                    "send Content-Length or Transfer-Encoding: chunked with the body");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/listener.h"
+#include "server/transport/listener.h"
 
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
@@ -12,10 +12,11 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <chrono>
-#include <future>
+#include <optional>
 #include <thread>
 
-#include "server/session.h"
+#include "server/transport/messages.h"
+#include "server/transport/session.h"
 
 namespace watertight::server {
 namespace {
@@ -49,6 +50,8 @@ class AsioServer final : public HttpServer {
  private:
   awaitable<void> accept();
   void begin_session(tcp::socket socket);
+  std::optional<Response> refusal_of(const Connection& connection);
+  void refuse(std::shared_ptr<Connection> connection, Response refusal);
   bool make_room();
   void close_idle_connections();
   bool wait_for_sessions(double seconds);
@@ -110,52 +113,67 @@ void AsioServer::begin_session(tcp::socket socket) {
   const auto peer = socket.remote_endpoint(error);
   auto connection = std::make_shared<Connection>(std::move(socket));
   if (!error) connection->peer = peer.address().to_string();
-  const std::size_t most = environment_.options.connections;
-  const bool is_full = environment_.sessions >= most && !make_room();
-  if (is_full || environment_.sessions >= most + kRefusedAtOnce) {
-    if (refused_ >= kRefusedAtOnce) return;
-    ++refused_;
-    asio::co_spawn(context_, refuse_session(std::move(connection)),
-                   [this](std::exception_ptr) { --refused_; });
+  if (auto refusal = refusal_of(*connection)) {
+    refuse(std::move(connection), *std::move(refusal));
     return;
   }
   ++environment_.sessions;
-  {
-    const std::lock_guard lock(environment_.mutex);
-    environment_.connections.remove_if([](const auto& entry) { return entry.expired(); });
-    environment_.connections.push_back(connection);
+  const auto place = environment_.connections.insert(environment_.connections.end(), connection);
+  asio::co_spawn(context_, run_session(connection, environment_),
+                 [this, place, peer = connection->peer](std::exception_ptr) {
+                   environment_.connections.erase(place);
+                   environment_.connections_of.give_back(peer);
+                   --environment_.sessions;
+                 });
+}
+
+/// The refusal of a new connection; nothing if it is counted as one of its address now.
+std::optional<Response> AsioServer::refusal_of(const Connection& connection) {
+  const ServerOptions& options = environment_.options;
+  if (!environment_.connections_of.take(connection.peer, options.connections_per_address)) {
+    return too_many("this address has too many connections");
   }
-  asio::co_spawn(context_, run_session(std::move(connection), environment_),
-                 [this](std::exception_ptr) { --environment_.sessions; });
+  const bool is_full = environment_.sessions >= options.connections && !make_room();
+  if (!is_full && environment_.sessions < options.connections + kRefusedAtOnce) return std::nullopt;
+  environment_.connections_of.give_back(connection.peer);
+  return busy("too many connections");
+}
+
+void AsioServer::refuse(std::shared_ptr<Connection> connection, Response refusal) {
+  environment_.log("event=refused peer=" + connection->peer +
+                   " status=" + std::to_string(refusal.status));
+  if (refused_ >= kRefusedAtOnce) return;
+  ++refused_;
+  asio::co_spawn(context_, refuse_session(std::move(connection), std::move(refusal)),
+                 [this](std::exception_ptr) { --refused_; });
 }
 
 /// Closes the connection that has kept the service waiting longest: one without a request, else one
 /// that has not sent all of its request for kSlow. False if there is none.
 bool AsioServer::make_room() {
   const auto now = std::chrono::steady_clock::now();
-  const std::lock_guard lock(environment_.mutex);
   std::shared_ptr<Connection> slowest;
-  for (const auto& entry : environment_.connections) {
-    auto connection = entry.lock();
-    if (!connection || connection->state == Connection::State::answering) continue;
+  for (const auto& connection : environment_.connections) {
+    if (connection->state == Connection::State::answering) continue;
     const bool is_idle = connection->state == Connection::State::idle;
     if (!is_idle && now - connection->since < kSlow) continue;
     const bool is_slower =
         !slowest || std::pair(!is_idle, connection->since) <
                         std::pair(slowest->state != Connection::State::idle, slowest->since);
-    if (is_slower) slowest = std::move(connection);
+    if (is_slower) slowest = connection;
   }
   if (!slowest) return false;
+  if (slowest->state == Connection::State::receiving) {
+    environment_.log("event=closed-for-room peer=" + slowest->peer);
+  }
   slowest->enter(Connection::State::answering);  // so that it is not chosen again
   slowest->stream.close();
   return true;
 }
 
 void AsioServer::close_idle_connections() {
-  const std::lock_guard lock(environment_.mutex);
-  for (const auto& entry : environment_.connections) {
-    const auto connection = entry.lock();
-    if (connection && connection->state == Connection::State::idle) connection->stream.close();
+  for (const auto& connection : environment_.connections) {
+    if (connection->state == Connection::State::idle) connection->stream.close();
   }
 }
 
@@ -182,8 +200,9 @@ void AsioServer::stop() {
   environment_.is_cancelled = true;
   if (environment_.application.interrupt) environment_.application.interrupt();
   // Engines notice the cancellation within moments; no thread may outlive what it refers to.
-  environment_.computing.join();
-  environment_.reading.join();
+  for (const Lane lane : {Lane::computing, Lane::small, Lane::reading}) {
+    environment_.threads_of(lane).threads.join();
+  }
   wait_for_sessions(1);
   guard_.reset();
   context_.stop();

@@ -3,21 +3,23 @@
 #include <charconv>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
-#include "store/feature_rows.h"
+#include "store/rows/feature_rows.h"
 
 namespace watertight::store {
 namespace {
 
-constexpr std::uint64_t kLargestPage = 10'000;
 constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
 /// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
 /// are its smallest and largest coordinates. The index finds candidates in x and y; PostgreSQL's
 /// box operator is generous by 1e-6, so none is missed. The comparison of the six numbers decides.
 std::string matching(const FeatureQuery& query) {
-  return std::string(" FROM watertight.feature WHERE collection = $1") +
+  return std::string(
+             " FROM watertight.feature WHERE collection = "
+             "(SELECT id FROM watertight.collection WHERE name = $1)") +
          (query.box ? " AND min_x IS NOT NULL"
                       " AND watertight.index_box(min_x, min_y, max_x, max_y)"
                       "   && watertight.index_box($2, $3, $5, $6)"
@@ -26,86 +28,90 @@ std::string matching(const FeatureQuery& query) {
                     : "");
 }
 
+constexpr const char* kSolidColumns =
+    "s.object_id, s.geometry, s.ordinal, s.lod, s.blob, s.measures::text, s.report::text";
+
 const char* const kFeatureColumns =
     "SELECT id, version, type, format, srid, header, skeleton,"
     " min_x, min_y, min_z, max_x, max_y, max_z";
 
-/// The features in `rows`, whose columns are kFeatureColumns. The features have no solids yet, and
-/// fill_headers() has still to replace the digests of their headers.
-std::vector<StoredFeature> features_of(const Rows& rows, const std::string& collection) {
-  std::vector<StoredFeature> features(static_cast<std::size_t>(rows.size()));
-  for (int row = 0; row < rows.size(); ++row) {
-    StoredFeature& feature = features[static_cast<std::size_t>(row)];
-    feature.collection = collection;
-    feature.id = rows.text(row, 0);
-    feature.version = static_cast<std::uint64_t>(rows.int8(row, 1));
-    feature.type = rows.text(row, 2);
-    feature.format = rows.text(row, 3);
-    feature.srid = static_cast<std::uint32_t>(rows.int8(row, 4));
-    feature.header = std::string(rows.text(row, 5));  // the header's digest, until fill_headers()
-    const ByteView skeleton = as_bytes(rows.text(row, 6));
-    feature.skeleton.bytes.assign(skeleton.begin(), skeleton.end());
-    feature.box = box_of(rows, row, 7);
-  }
-  return features;
+/// The feature in a row, whose columns are kFeatureColumns, without solids. Its header is what is
+/// in the header's column.
+StoredFeature feature_of(const Rows& rows, int row, const std::string& collection) {
+  StoredFeature feature;
+  feature.collection = collection;
+  feature.id = rows.text(row, 0);
+  feature.version = static_cast<std::uint64_t>(rows.int8(row, 1));
+  feature.type = rows.text(row, 2);
+  feature.format = rows.text(row, 3);
+  feature.srid = static_cast<std::uint32_t>(rows.int8(row, 4));
+  feature.header = std::string(rows.text(row, 5));
+  const ByteView skeleton = as_bytes(rows.text(row, 6));
+  feature.skeleton.bytes.assign(skeleton.begin(), skeleton.end());
+  feature.box = box_of(rows, row, 7);
+  return feature;
 }
 
 /// Replaces the digest in the header of each feature by the text of the header. The query asks for
 /// each digest once, and the features with equal headers share one copy of the text. No header is
 /// missing: all queries of a read see one state of the database, in which features refer to headers
 /// that exist.
-Status fill_headers(DatabaseSession& connection, std::vector<StoredFeature>& features) {
+void set_headers(const Rows& rows, std::vector<StoredFeature>& features) {
   std::map<std::string, SharedText> contents;
-  for (const StoredFeature& feature : features) contents.try_emplace(feature.header);
-  std::vector<ByteView> digests;
-  for (const auto& [digest, content] : contents) digests.push_back(as_bytes(digest));
-  const Result<Rows> rows = connection.run(
-      "SELECT digest, content FROM watertight.document_header WHERE digest = ANY($1)",
-      Parameters().bytea_array(digests));
-  if (!rows) return rows.error();
-  for (int row = 0; row < rows->size(); ++row) {
-    contents[std::string(rows->text(row, 0))] = std::string(rows->text(row, 1));
+  for (int row = 0; row < rows.size(); ++row) {
+    contents[std::string(rows.text(row, 0))] = std::string(rows.text(row, 1));
   }
-  for (StoredFeature& feature : features) feature.header = contents.at(feature.header);
-  return Done{};
+  for (StoredFeature& feature : features) feature.header = contents[feature.header.str()];
 }
 
-Status fill_solids(DatabaseSession& connection, const std::string& collection,
-                   std::vector<StoredFeature>& features) {
+/// The solid in a row, whose columns from `column` on are kSolidColumns.
+StoredSolid solid_of(const Rows& rows, int row, int column) {
+  StoredSolid solid;
+  solid.object_id = rows.text(row, column);
+  solid.geometry = static_cast<std::uint32_t>(rows.int8(row, column + 1));
+  solid.ordinal = static_cast<std::uint32_t>(rows.int8(row, column + 2));
+  solid.lod = rows.text(row, column + 3);
+  const ByteView blob = as_bytes(rows.text(row, column + 4));
+  solid.blob.assign(blob.begin(), blob.end());
+  solid.measures = rows.text(row, column + 5);
+  solid.report = rows.text(row, column + 6);
+  return solid;
+}
+
+void add_solids(const Rows& rows, std::vector<StoredFeature>& features) {
   std::map<std::string_view, StoredFeature*> by_id;
-  std::vector<std::string_view> ids;
-  for (StoredFeature& feature : features) {
-    by_id[feature.id] = &feature;
-    ids.push_back(feature.id);
+  for (StoredFeature& feature : features) by_id[feature.id] = &feature;
+  for (int row = 0; row < rows.size(); ++row) {
+    const auto owner = by_id.find(rows.text(row, 0));
+    if (owner != by_id.end()) owner->second->solids.push_back(solid_of(rows, row, 1));
   }
-  const Result<Rows> rows = connection.run(
-      "SELECT feature, object_id, geometry, ordinal, lod, blob, measures::text, report::text"
-      " FROM watertight.solid WHERE collection = $1 AND feature = ANY($2)"
-      " ORDER BY feature, position",
-      Parameters().text(collection).text_array(ids));
-  if (!rows) return rows.error();
-  for (int row = 0; row < rows->size(); ++row) {
-    const auto owner = by_id.find(rows->text(row, 0));
-    if (owner == by_id.end()) continue;
-    StoredSolid solid;
-    solid.object_id = rows->text(row, 1);
-    solid.geometry = static_cast<std::uint32_t>(rows->int8(row, 2));
-    solid.ordinal = static_cast<std::uint32_t>(rows->int8(row, 3));
-    solid.lod = rows->text(row, 4);
-    const ByteView blob = as_bytes(rows->text(row, 5));
-    solid.blob.assign(blob.begin(), blob.end());
-    solid.measures = rows->text(row, 6);
-    solid.report = rows->text(row, 7);
-    owner->second->solids.push_back(std::move(solid));
-  }
-  return Done{};
 }
 
+/// Completes features that feature_of() has made with the digests of their headers.
 Status fill(DatabaseSession& connection, const std::string& collection,
             std::vector<StoredFeature>& features) {
-  if (features.empty()) return Done{};
-  if (Status done = fill_headers(connection, features); !done) return done;
-  return fill_solids(connection, collection, features);
+  std::set<std::string_view> distinct;
+  std::vector<std::string_view> ids;
+  for (const StoredFeature& feature : features) {
+    distinct.insert(feature.header.str());
+    ids.push_back(feature.id);
+  }
+  std::vector<ByteView> digests;
+  for (const std::string_view digest : distinct) digests.push_back(as_bytes(digest));
+  const std::size_t headers = connection.send(
+      "SELECT digest, content FROM watertight.document_header WHERE digest = ANY($1)",
+      Parameters().bytea_array(digests));
+  const std::size_t solids = connection.send(
+      std::string("SELECT feature, ") + kSolidColumns +
+          " FROM watertight.solid s WHERE collection ="
+          " (SELECT id FROM watertight.collection WHERE name = $1) AND feature = ANY($2)"
+          " ORDER BY feature, position",
+      Parameters().text(collection).text_array(ids));
+  const Result<std::vector<Rows>> results = connection.results();
+  if (!results) return results.error();
+  set_headers((*results)[headers], features);
+  add_solids((*results)[solids], features);
+  return Done{};
 }
 
 /// The parameters of matching(): $1 is the collection and, if there is a box, $2 ... $7 are its
@@ -126,7 +132,7 @@ Result<Rows> summary_rows(DatabaseSession& connection, const FeatureQuery& query
   parameters.text(query.after).int8(limit);
   const char* const rest =
       query.box ? " AND id > $8 ORDER BY id LIMIT $9" : " AND id > $2 ORDER BY id LIMIT $3";
-  return connection.run(
+  return connection.ask(
       "SELECT id, type, version, solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z" +
           matching(query) + rest,
       parameters);
@@ -170,8 +176,9 @@ Result<WalkPlace> walk_place(const std::string& text) {
 /// Selects `columns` and the place numbers of the next features, in order of place number and id.
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit) {
-  return connection.run(columns +
-                            ", place FROM watertight.feature WHERE collection = $1"
+  return connection.ask(columns +
+                            ", place FROM watertight.feature WHERE collection ="
+                            "(SELECT id FROM watertight.collection WHERE name = $1)"
                             " AND (place, id) > ($2, $3) ORDER BY place, id LIMIT $4",
                         Parameters().text(collection).int8(after.place).text(after.id).int8(limit));
 }
@@ -200,13 +207,17 @@ Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& col
 
 Status check_collection_exists(DatabaseSession& connection, const std::string& id) {
   const Result<Rows> exists =
-      connection.run("SELECT id FROM watertight.collection WHERE id = $1", Parameters().text(id));
+      connection.ask("SELECT id FROM watertight.collection WHERE name = $1", Parameters().text(id));
   if (!exists) return exists.error();
   if (exists->size() == 0) return no_collection(id);
   return Done{};
 }
 
 }  // namespace
+
+Error no_feature(const std::string& collection, const std::string& id) {
+  return {ErrorCode::not_found, "collection '" + collection + "' has no feature '" + id + "'"};
+}
 
 std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
   if (rows.is_null(row, first_column)) return std::nullopt;
@@ -220,17 +231,37 @@ std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
 
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id) {
-  const Result<Rows> rows = connection.run(
-      std::string(kFeatureColumns) + " FROM watertight.feature WHERE collection = $1 AND id = $2",
+  // A row for each solid, the first of which has what is large in the feature.
+  static const std::string statement =
+      std::string(
+          "SELECT f.id, f.version, f.type, f.format, f.srid,"
+          " CASE WHEN coalesce(s.position, 0) = 0 THEN h.content END,"
+          " CASE WHEN coalesce(s.position, 0) = 0 THEN f.skeleton END,"
+          " f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z, s.position, ") +
+      kSolidColumns +
+      " FROM watertight.feature f JOIN watertight.document_header h ON h.digest = f.header"
+      " LEFT JOIN watertight.solid s ON s.collection = f.collection AND s.feature = f.id"
+      " WHERE f.collection = (SELECT id FROM watertight.collection WHERE name = $1)"
+      " AND f.id = $2 ORDER BY s.position";
+  const Result<Rows> rows = connection.ask(statement, Parameters().text(collection).text(id));
+  if (!rows) return rows.error();
+  if (rows->size() == 0) return no_feature(collection, id);
+  StoredFeature feature = feature_of(*rows, 0, collection);
+  for (int row = 0; row < rows->size(); ++row) {
+    if (!rows->is_null(row, 13)) feature.solids.push_back(solid_of(*rows, row, 14));
+  }
+  return feature;
+}
+
+Result<std::uint64_t> read_version(DatabaseSession& connection, const std::string& collection,
+                                   const std::string& id) {
+  const Result<Rows> rows = connection.ask(
+      "SELECT version FROM watertight.feature WHERE collection ="
+      " (SELECT id FROM watertight.collection WHERE name = $1) AND id = $2",
       Parameters().text(collection).text(id));
   if (!rows) return rows.error();
-  if (rows->size() == 0) {
-    return Error{ErrorCode::not_found,
-                 "collection '" + collection + "' has no feature '" + id + "'"};
-  }
-  std::vector<StoredFeature> found = features_of(*rows, collection);
-  if (Status done = fill(connection, collection, found); !done) return std::move(done).error();
-  return std::move(found.front());
+  if (rows->size() == 0) return no_feature(collection, id);
+  return static_cast<std::uint64_t>(rows->int8(0, 0));
 }
 
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query) {
@@ -268,7 +299,9 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
   const Result<Rows> rows =
       walk_rows(connection, kFeatureColumns, collection, *start, size->features);
   if (!rows) return rows.error();
-  batch.features = features_of(*rows, collection);
+  for (int row = 0; row < rows->size(); ++row) {
+    batch.features.push_back(feature_of(*rows, row, collection));
+  }
   if (!size->is_last) {
     batch.next = to_string({rows->int8(rows->size() - 1, 13), batch.features.back().id});
   }
@@ -281,11 +314,14 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
 Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit) {
-  const Result<Rows> rows = connection.run(
+  const Result<Rows> rows = connection.ask(
       "WITH RECURSIVE document AS ((SELECT format, header FROM watertight.feature"
-      " WHERE collection = $1 ORDER BY format, header LIMIT 1)"
+      " WHERE collection ="
+      "(SELECT id FROM watertight.collection WHERE name = $1) ORDER BY format, header LIMIT 1)"
       " UNION ALL SELECT next.* FROM document d, LATERAL (SELECT format, header"
-      " FROM watertight.feature WHERE collection = $1 AND (format, header) > (d.format, d.header)"
+      " FROM watertight.feature WHERE collection ="
+      "(SELECT id FROM watertight.collection WHERE name = $1) AND (format, header) > (d.format, "
+      "d.header)"
       " ORDER BY format, header LIMIT 1) next)"
       " SELECT d.format, h.content FROM (SELECT * FROM document LIMIT $2) d"
       " JOIN watertight.document_header h ON h.digest = d.header ORDER BY d.format, d.header",

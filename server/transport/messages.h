@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
-#include "server/http.h"
-#include "server/listener.h"
+#include "server/transport/http.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
 
@@ -26,6 +26,8 @@ Response problem(unsigned status, std::string kind, std::string detail);
 
 /// 503: the client may come back in some seconds.
 Response busy(std::string detail);
+/// 429: this client's address has as much as it may have at once.
+Response too_many(std::string detail);
 
 /// The answer to a request that could not be read; nothing when the connection is simply over.
 std::optional<Response> answer_to(const boost::system::error_code& error,

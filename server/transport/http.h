@@ -4,13 +4,16 @@
 // parts of HTTP that routes use: percent-decoding, query parameters, content types, Accept.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/cancel.h"
 #include "base/result.h"
 
 namespace watertight::server {
@@ -30,9 +33,16 @@ struct Request {
   const std::string* header(std::string_view name) const;
 };
 
+/// The threads that answer a request. Quick requests are answered on the I/O thread, whatever the
+/// others do. Requests that only wait for the database, those that compute little, and those that
+/// may compute long each have threads of their own, so that none waits for one of another kind.
+enum class Lane : std::uint8_t { quick, reading, small, computing };
+
 /// The next part of a body; "" after the last. An error cuts the answer off, whose status has been
 /// sent.
 using BodyParts = std::function<Result<std::string>()>;
+
+struct FurtherWork;
 
 struct Response {
   unsigned status = 200;
@@ -42,6 +52,17 @@ struct Response {
   /// Makes the parts that follow `body` while they are sent; empty if `body` is whole. One thread
   /// at a time calls it, after the part before was sent, and never again once the client is gone.
   BodyParts rest = {};
+  /// If present, the answer is still to be made, by this work in another lane; the other members
+  /// have no meaning then.
+  std::shared_ptr<const FurtherWork> further = nullptr;
+};
+
+/// The second step of an answer. Works with the same key are done one after another, so that the
+/// later ones can use a result that the first one has kept; "" is no key.
+struct FurtherWork {
+  Lane lane = Lane::computing;
+  std::string key;
+  std::function<Response(const CancelPoll&)> make;
 };
 
 /// The standard phrase of a status, e.g. "Not Found".

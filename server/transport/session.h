@@ -6,18 +6,20 @@
 
 #include <utility>  // before Asio: Boost 1.74 uses std::exchange without including it
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <chrono>
 #include <cstdint>
 #include <list>
 #include <memory>
-#include <mutex>
 #include <string>
+#include <unordered_map>
 
-#include "server/listener.h"
+#include "server/transport/listener.h"
 
 namespace watertight::server {
 
@@ -57,6 +59,33 @@ class BudgetShare {
   bool is_granted_;
 };
 
+/// Threads for the requests of one lane, and the number of requests that they may have to do.
+struct LaneThreads {
+  LaneThreads(std::size_t count, std::size_t queue)
+      : threads(std::max<std::size_t>(count, 1)), places(queue + count) {}
+  boost::asio::thread_pool threads;
+  Budget places;
+};
+
+/// How many things of a kind each client's address has. Only for the I/O thread.
+class AddressCounts {
+ public:
+  /// Counts one more, unless the address has `most` (0: no limit).
+  bool take(const std::string& address, std::size_t most) {
+    std::size_t& count = counts_[address];
+    if (most != 0 && count >= most) return false;
+    ++count;
+    return true;
+  }
+  void give_back(const std::string& address) {
+    const auto found = counts_.find(address);
+    if (--found->second == 0) counts_.erase(found);
+  }
+
+ private:
+  std::unordered_map<std::string, std::size_t> counts_;
+};
+
 /// The stream of a connection, shared with the listener so that stopping can close idle
 /// connections.
 struct Connection {
@@ -78,28 +107,35 @@ struct SessionEnvironment {
   SessionEnvironment(const ServerOptions& server_options, Application server_application,
                      LogLine server_log);
 
+  /// The threads of a lane other than quick.
+  LaneThreads& threads_of(Lane lane);
+
   ServerOptions options;
   Application application;
   LogLine log;
-  boost::asio::thread_pool computing;
-  boost::asio::thread_pool reading;
+  LaneThreads computing;
+  LaneThreads small;
+  LaneThreads reading;
   Budget bodies;
-  Budget computing_places;
-  Budget reading_places;
   Budget downloads;
   std::atomic<bool> is_draining = false;
   std::atomic<bool> is_cancelled = false;
-
-  std::mutex mutex;
-  std::list<std::weak_ptr<Connection>> connections;  // guarded by mutex
   std::atomic<std::size_t> sessions = 0;
+
+  // For the I/O thread only.
+  std::list<std::shared_ptr<Connection>> connections;  // those of the sessions
+  AddressCounts connections_of;
+  AddressCounts works_of;
+  /// The keys of the works that are being done, each with a timer that is cancelled at its end.
+  std::unordered_map<std::string, std::shared_ptr<boost::asio::steady_timer>> keys;
 };
 
 /// Serves one connection until it closes.
 boost::asio::awaitable<void> run_session(std::shared_ptr<Connection> connection,
                                          SessionEnvironment& environment);
 
-/// Asks a connection beyond the limit to come back later, and closes it.
-boost::asio::awaitable<void> refuse_session(std::shared_ptr<Connection> connection);
+/// Sends `refusal` to a connection beyond a limit, whose request is not read, and closes it.
+boost::asio::awaitable<void> refuse_session(std::shared_ptr<Connection> connection,
+                                            Response refusal);
 
 }  // namespace watertight::server

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/session.h"
+#include "server/transport/session.h"
+
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +18,7 @@
 #include <optional>
 
 #include "base/ascii.h"
-#include "server/messages.h"
+#include "server/transport/messages.h"
 
 namespace watertight::server {
 namespace {
@@ -34,7 +36,6 @@ constexpr std::size_t kReadBytes = 16 * 1024;
 constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
 constexpr std::size_t kSmallBody = 64 * 1024;  // bytes of a body that no budget limits
-constexpr double kBytesPerSecond = 100e3;      // the slowest client that gets its whole answer
 
 Clock::duration seconds(double value) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(value));
@@ -44,10 +45,17 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Response respond_guarded(const Application& application, const Request& request,
-                         const CancelPoll& is_cancelled) {
+/// Makes the scheduler prefer other threads to this one, so that long computing does not delay
+/// short requests when there are more threads than cores.
+void step_back() {
+  constexpr int kNice = 10;
+  thread_local const bool has_stepped_back = setpriority(PRIO_PROCESS, 0, kNice) == 0;
+  static_cast<void>(has_stepped_back);  // without success the thread computes as any other does
+}
+
+Response made_guarded(const std::function<Response()>& make) {
   try {
-    return application.respond(request, is_cancelled);
+    return make();
   } catch (const std::bad_alloc&) {
     return busy("not enough memory for this request now");
   } catch (const std::exception& failure) {
@@ -124,6 +132,48 @@ class ClientWatch {
   std::shared_ptr<std::atomic<bool>> has_left_;
 };
 
+/// One of the things that are counted by address, while it is there.
+class AddressShare {
+ public:
+  AddressShare(AddressCounts& counts, std::string address, std::size_t most)
+      : counts_(counts), address_(std::move(address)), is_granted_(counts_.take(address_, most)) {}
+  ~AddressShare() {
+    if (is_granted_) counts_.give_back(address_);
+  }
+  AddressShare(const AddressShare&) = delete;
+  AddressShare& operator=(const AddressShare&) = delete;
+  bool is_granted() const { return is_granted_; }
+
+ private:
+  AddressCounts& counts_;
+  std::string address_;
+  bool is_granted_;
+};
+
+/// The right to do the works of a key, which nobody else has meanwhile.
+class KeyShare {
+ public:
+  KeyShare(SessionEnvironment& environment, std::string key,
+           const beast::tcp_stream::executor_type& executor)
+      : environment_(environment), key_(std::move(key)) {
+    if (key_.empty()) return;
+    const auto never = Clock::time_point::max();
+    environment_.keys.emplace(key_, std::make_shared<asio::steady_timer>(executor, never));
+  }
+  ~KeyShare() {
+    const auto own = environment_.keys.find(key_);
+    if (own == environment_.keys.end()) return;
+    own->second->cancel();
+    environment_.keys.erase(own);
+  }
+  KeyShare(const KeyShare&) = delete;
+  KeyShare& operator=(const KeyShare&) = delete;
+
+ private:
+  SessionEnvironment& environment_;
+  std::string key_;
+};
+
 /// The state of one run of run_session.
 class Session {
  public:
@@ -141,13 +191,15 @@ class Session {
   awaitable<std::optional<Response>> receive(RequestParser& parser);
   awaitable<std::optional<Response>> receive_body(RequestParser& parser);
   awaitable<Response> answer(const Request& request);
-  awaitable<bool> send(Response response, bool keep_alive);
+  awaitable<Response> run(Lane lane, std::function<Response()> make, const CancelPoll& cancel);
+  awaitable<Response> finish(std::shared_ptr<const FurtherWork> work, const CancelPoll& cancel);
+  awaitable<Status> send(Response response, bool keep_alive);
   awaitable<Status> send_parts(Response response, bool keep_alive, std::uint64_t& sent);
   awaitable<Result<std::string>> next_part(const BodyParts& parts);
   awaitable<bool> download(Response response, bool keep_alive, Clock::time_point start);
   awaitable<void> linger();
   void log_answer(unsigned status, std::uint64_t bytes, Clock::time_point start,
-                  const std::string& cut_off = {});
+                  const Status& sent);
 
   std::shared_ptr<Connection> connection_;
   beast::tcp_stream& stream_;
@@ -189,6 +241,9 @@ awaitable<bool> Session::wait_for_request() {
       co_await stream_.async_read_some(space, redirect_error(use_awaitable, error));
   connection_->enter(Connection::State::receiving);
   buffer_.commit(count);
+  // Line ends before a request mean nothing (RFC 9112, section 2.2).
+  const std::string_view text(static_cast<const char*>(buffer_.data().data()), buffer_.size());
+  buffer_.consume(std::min(text.find_first_not_of("\r\n"), text.size()));
   co_return !error && count > 0;
 }
 
@@ -251,6 +306,44 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
   co_return std::nullopt;
 }
 
+/// Makes an answer, or the next step of one, on the threads of a lane.
+awaitable<Response> Session::run(Lane lane, std::function<Response()> make,
+                                 const CancelPoll& cancel) {
+  if (lane == Lane::quick) co_return made_guarded(make);
+  LaneThreads& threads = environment_.threads_of(lane);
+  const BudgetShare place(threads.places, 1);
+  if (!place.is_granted()) co_return busy("too many requests are waiting");
+  const bool is_limited = lane != Lane::reading;
+  const AddressShare share(environment_.works_of, connection_->peer,
+                           is_limited ? options_.works_per_address : 0);
+  if (!share.is_granted()) co_return too_many("this address has too many requests in work");
+  auto work = [&make, &cancel, lane]() -> awaitable<Response> {
+    if (lane == Lane::computing) step_back();
+    if (cancel()) co_return busy("the request waited too long");
+    co_return made_guarded(make);
+  };
+  co_return co_await asio::co_spawn(threads.threads.get_executor(), std::move(work), use_awaitable);
+}
+
+/// Does the further work of an answer, after works with the same key that have begun before.
+awaitable<Response> Session::finish(std::shared_ptr<const FurtherWork> work,
+                                    const CancelPoll& cancel) {
+  for (;;) {
+    const auto other = environment_.keys.find(work->key);
+    if (other == environment_.keys.end()) break;
+    const auto timer = other->second;
+    error_code ignored;
+    co_await timer->async_wait(redirect_error(use_awaitable, ignored));
+  }
+  const KeyShare key(environment_, work->key, stream_.get_executor());
+  for (;;) {
+    Response response = co_await run(
+        work->lane, [work, &cancel] { return work->make(cancel); }, cancel);
+    if (!response.further) co_return response;
+    work = std::move(response.further);
+  }
+}
+
 /// Answers the request on the threads of its lane.
 awaitable<Response> Session::answer(const Request& request) {
   const Clock::time_point deadline = Clock::now() + seconds(options_.answer_seconds);
@@ -259,20 +352,12 @@ awaitable<Response> Session::answer(const Request& request) {
   const CancelPoll is_cancelled = [deadline, &environment, left = watch.has_left()] {
     return environment.is_cancelled || *left || Clock::now() > deadline;
   };
-  const Lane lane = environment_.application.lane(request);
-  if (lane == Lane::quick) {
-    co_return respond_guarded(environment_.application, request, is_cancelled);
-  }
-  const bool computes = lane == Lane::computing;
-  BudgetShare place(computes ? environment_.computing_places : environment_.reading_places, 1);
-  if (!place.is_granted()) co_return busy("too many requests are waiting");
-  auto& threads = computes ? environment_.computing : environment_.reading;
   const Application& application = environment_.application;
-  auto work = [&application, &request, &is_cancelled]() -> awaitable<Response> {
-    if (is_cancelled()) co_return busy("the request waited too long");
-    co_return respond_guarded(application, request, is_cancelled);
-  };
-  co_return co_await asio::co_spawn(threads.get_executor(), std::move(work), use_awaitable);
+  Response response = co_await run(
+      application.lane(request), [&] { return application.respond(request, is_cancelled); },
+      is_cancelled);
+  if (!response.further) co_return response;
+  co_return co_await finish(std::move(response.further), is_cancelled);
 }
 
 /// Serves one request whose first bytes are in the buffer. True when the connection goes on.
@@ -283,9 +368,15 @@ awaitable<bool> Session::serve_one() {
   parser.body_limit(options_.body_bytes);
   std::optional<Response> refusal = co_await receive(parser);
   if (refusal) {
-    if (refusal->status == 0) co_return false;
-    log_answer(refusal->status, refusal->body.size(), start);
-    co_await send(*std::move(refusal), false);
+    if (refusal->status == 0) {
+      const Error left{ErrorCode::cancelled, "the client left before its request was whole"};
+      if (!method_.empty()) log_answer(0, 0, start, left);
+      co_return false;
+    }
+    const unsigned status = refusal->status;
+    const std::uint64_t size = refusal->body.size();
+    const Status sent = co_await send(*std::move(refusal), false);
+    log_answer(status, size, start, sent);
     co_await linger();
     co_return false;
   }
@@ -301,14 +392,16 @@ awaitable<bool> Session::serve_one() {
     const bool is_whole = co_await download(std::move(response), goes_on, start);
     co_return is_whole&& goes_on;
   }
-  log_answer(response.status, response.body.size(), start);
-  const bool is_sent = co_await send(std::move(response), goes_on);
-  co_return is_sent&& goes_on;
+  const unsigned status = response.status;
+  const std::uint64_t size = response.body.size();
+  const Status sent = co_await send(std::move(response), goes_on);
+  log_answer(status, size, start, sent);
+  co_return sent.has_value() && goes_on;
 }
 
-awaitable<bool> Session::send(Response response, bool keep_alive) {
+awaitable<Status> Session::send(Response response, bool keep_alive) {
   const double size = static_cast<double>(response.body.size());
-  stream_.expires_after(seconds(options_.write_seconds + size / kBytesPerSecond));
+  stream_.expires_after(seconds(options_.write_seconds + size / options_.write_rate));
   auto message = to_message(std::move(response), is_head_, keep_alive, version_);
   http::serializer<false, http::string_body> serializer{message};
   error_code error;
@@ -317,16 +410,20 @@ awaitable<bool> Session::send(Response response, bool keep_alive) {
   } else {
     co_await http::async_write(stream_, serializer, redirect_error(use_awaitable, error));
   }
-  co_return !error;
+  if (error) co_return Error{ErrorCode::unavailable, error.message()};
+  co_return Done{};
 }
 
 /// Makes the next part on a thread for computing.
 awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
   if (environment_.is_cancelled) co_return Error{ErrorCode::cancelled, "the server is stopping"};
   using Made = std::optional<Result<std::string>>;  // co_spawn needs a type with a default value
-  auto work = [&parts]() -> awaitable<Made> { co_return next_part_guarded(parts); };
-  Made made = co_await asio::co_spawn(environment_.computing.get_executor(), std::move(work),
-                                      use_awaitable);
+  auto work = [&parts]() -> awaitable<Made> {
+    step_back();
+    co_return next_part_guarded(parts);
+  };
+  Made made = co_await asio::co_spawn(environment_.computing.threads.get_executor(),
+                                      std::move(work), use_awaitable);
   if (!made) co_return Error{ErrorCode::unavailable, "there is no next part"};
   co_return *std::move(made);
 }
@@ -340,16 +437,23 @@ awaitable<Status> Session::send_parts(Response response, bool keep_alive, std::u
   message.body().more = true;
   http::serializer<false, http::buffer_body> serializer{message};
   error_code error;
-  stream_.expires_after(seconds(options_.write_seconds));
+  // The time that the client still has to take what is being sent. Each byte adds to it, a client
+  // below write_rate uses write_seconds up, and the time in which parts are made does not count.
+  const Clock::duration reserve = seconds(options_.write_seconds);
+  Clock::duration left = reserve;
+  stream_.expires_after(left);
   co_await http::async_write_header(stream_, serializer, redirect_error(use_awaitable, error));
   Result<std::string> part = std::move(response.body);
   while (!error && !is_head_) {
     message.body().data = part->empty() ? nullptr : part->data();
     message.body().size = part->size();
     message.body().more = !part->empty();
-    stream_.expires_after(
-        seconds(options_.write_seconds + static_cast<double>(part->size()) / kBytesPerSecond));
+    left =
+        std::min(left, reserve) + seconds(static_cast<double>(part->size()) / options_.write_rate);
+    const Clock::time_point begin = Clock::now();
+    stream_.expires_after(left);
     co_await http::async_write(stream_, serializer, redirect_error(use_awaitable, error));
+    left -= Clock::now() - begin;
     if (error == http::error::need_buffer) error = {};
     if (error || part->empty()) break;
     sent += part->size();
@@ -368,14 +472,15 @@ awaitable<bool> Session::download(Response response, bool keep_alive, Clock::tim
   const BudgetShare place(environment_.downloads, 1);
   if (!place.is_granted()) {
     Response refusal = busy("too many downloads are running");
-    log_answer(refusal.status, refusal.body.size(), start);
-    const bool is_sent = co_await send(std::move(refusal), keep_alive);
-    co_return is_sent;
+    const std::uint64_t size = refusal.body.size();
+    const Status sent_refusal = co_await send(std::move(refusal), keep_alive);
+    log_answer(503, size, start, sent_refusal);
+    co_return sent_refusal.has_value() && keep_alive;
   }
   const unsigned status = response.status;
   std::uint64_t sent = 0;
   const Status done = co_await send_parts(std::move(response), keep_alive && version_ > 10, sent);
-  log_answer(status, sent, start, done ? std::string() : to_string(done.error()));
+  log_answer(status, sent, start, done);
   if (done) co_return version_ > 10;
   error_code ignored;
   stream_.socket().set_option(asio::socket_base::linger(true, 0), ignored);
@@ -398,12 +503,12 @@ awaitable<void> Session::linger() {
 }
 
 void Session::log_answer(unsigned status, std::uint64_t bytes, Clock::time_point start,
-                         const std::string& cut_off) {
+                         const Status& sent) {
   const auto milliseconds = static_cast<std::int64_t>(std::llround(seconds_since(start) * 1e3));
   environment_.log("event=request peer=" + connection_->peer + " method=" + quoted(method_) +
                    " target=" + quoted(target_) + " status=" + std::to_string(status) +
                    " bytes=" + std::to_string(bytes) + " ms=" + std::to_string(milliseconds) +
-                   (cut_off.empty() ? std::string() : " cut-off=" + quoted(cut_off)));
+                   (sent ? std::string() : " cut-off=" + quoted(to_string(sent.error()))));
 }
 
 }  // namespace
@@ -421,11 +526,10 @@ SessionEnvironment::SessionEnvironment(const ServerOptions& server_options,
     : options(server_options),
       application(std::move(server_application)),
       log(std::move(server_log)),
-      computing(std::max<std::size_t>(server_options.computing_threads, 1)),
-      reading(std::max<std::size_t>(server_options.reading_threads, 1)),
+      computing(server_options.computing_threads, server_options.computing_queue),
+      small(server_options.small_threads, server_options.small_queue),
+      reading(server_options.reading_threads, server_options.reading_queue),
       bodies(server_options.body_bytes_together),
-      computing_places(server_options.computing_queue + server_options.computing_threads),
-      reading_places(server_options.reading_queue + server_options.reading_threads),
       downloads(server_options.downloads) {}
 
 awaitable<void> run_session(std::shared_ptr<Connection> connection,
@@ -434,9 +538,14 @@ awaitable<void> run_session(std::shared_ptr<Connection> connection,
   co_await session.run();
 }
 
-awaitable<void> refuse_session(std::shared_ptr<Connection> connection) {
+LaneThreads& SessionEnvironment::threads_of(Lane lane) {
+  if (lane == Lane::reading) return reading;
+  return lane == Lane::small ? small : computing;
+}
+
+awaitable<void> refuse_session(std::shared_ptr<Connection> connection, Response refusal) {
   connection->stream.expires_after(seconds(kLingerSeconds));
-  auto message = to_message(busy("too many connections"), false, false, 11);
+  auto message = to_message(std::move(refusal), false, false, 11);
   error_code error;
   co_await http::async_write(connection->stream, message, redirect_error(use_awaitable, error));
   connection->stream.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Handlers of collections as a whole: they list, show, rename, recount and remove them.
+#include "server/json_answers.h"
+
+namespace watertight::server {
+namespace {
+
+Json collection_json(const store::StoredCollection& collection) {
+  const std::string self = "/collections/" + percent_encode(collection.id);
+  Json json{{"id", collection.id}, {"itemType", "feature"}};
+  json["crs"] = Json::array({crs_uri(collection.srid)});
+  json["storageCrs"] = crs_uri(collection.srid);
+  if (collection.box) {
+    json["extent"]["spatial"] = {{"bbox", Json::array({box_json(*collection.box)})},
+                                 {"crs", crs_uri(collection.srid)}};
+  }
+  json["features"] = collection.features;
+  json["solids"] = collection.solids;
+  json["blobBytes"] = collection.blob_bytes;
+  json["links"] = Json::array(
+      {link(self, "self", kJson, "this collection"),
+       link(self + "/items", "items", kJson, "its features"),
+       link(self + "/export?f=wt", "enclosure", kContainer, "all of it as a Watertight file"),
+       link(self + "/export?f=cityjsonseq", "enclosure", kCityJsonSeq,
+            "all of it as a CityJSONSeq, if its features share a header")});
+  return json;
+}
+
+Response collection_response(const Result<store::StoredCollection>& collection) {
+  if (!collection) return to_response(to_problem(collection.error()));
+  return json_response(collection_json(*collection));
+}
+
+/// The new id in a JSON merge patch (RFC 7396), which can change nothing else of a collection.
+Result<std::string> new_id_of(const std::string& body) {
+  const Json patch = Json::parse(body, nullptr, false);
+  if (patch.is_object() && patch.size() == 1 && patch.contains("id") && patch["id"].is_string()) {
+    return patch["id"].get<std::string>();
+  }
+  return Error{ErrorCode::invalid_argument,
+               "a collection can be given another id only: send {\"id\": \"NEW-ID\"}"};
+}
+
+}  // namespace
+
+Response get_collections(const RoutedRequest& request) {
+  if (auto refusal = json_only(request)) return *std::move(refusal);
+  const auto limit = limit_of_request(request.target, request.service.options);
+  if (!limit) return to_response(to_problem(limit.error()));
+  const std::string* given = request.target.parameter("after");
+  const std::string after = given == nullptr ? std::string() : *given;
+  const auto page = request.service.store->collections(*limit, after);
+  if (!page) return to_response(to_problem(page.error()));
+  const auto path = [&](const std::string& start) {
+    std::string text = "/collections?limit=" + std::to_string(*limit);
+    if (!start.empty()) text += "&after=" + percent_encode(start);
+    return text;
+  };
+  Json json;
+  json["links"] = Json::array({link(path(after), "self", kJson, "this page")});
+  if (!page->next.empty()) {
+    json["links"].push_back(link(path(page->next), "next", kJson, "next page"));
+  }
+  json["collections"] = Json::array();
+  for (const store::StoredCollection& collection : page->collections) {
+    json["collections"].push_back(collection_json(collection));
+  }
+  return json_response(json);
+}
+
+Response get_collection(const RoutedRequest& request) {
+  if (auto refusal = json_only(request)) return *std::move(refusal);
+  return collection_response(request.service.store->collection(request.target.segments[1]));
+}
+
+Response patch_collection(const RoutedRequest& request) {
+  const auto id = new_id_of(request.request.body);
+  if (!id) return to_response(to_problem(id.error()));
+  const Status renamed = request.service.store->rename_collection(request.target.segments[1], *id);
+  if (!renamed) return to_response(to_problem(renamed.error()));
+  Response response = collection_response(request.service.store->collection(*id));
+  response.headers.push_back({"Content-Location", "/collections/" + percent_encode(*id)});
+  return response;
+}
+
+Response post_recount(const RoutedRequest& request) {
+  return collection_response(request.service.store->recount(request.target.segments[1]));
+}
+
+Response delete_collection(const RoutedRequest& request) {
+  const Status removed =
+      request.service.store->remove_collection(request.target.segments[1], request.is_cancelled);
+  if (!removed) return to_response(to_problem(removed.error()));
+  return Response{204, "", "", {}};
+}
+
+}  // namespace watertight::server

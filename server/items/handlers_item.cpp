@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Handlers of one stored feature: they return it in the format that the client wants, or delete it.
+#include <array>
+#include <charconv>
+#include <memory>
+#include <optional>
+
+#include "pipeline/container.h"
+#include "server/handlers.h"
+#include "server/items/preconditions.h"
+#include "server/items/ranges.h"
+#include "server/items/representation_cache.h"
+
+namespace watertight::server {
+namespace {
+
+struct ItemFormat {
+  std::string_view parameter;  // value of f=
+  std::string_view type;
+};
+
+constexpr std::array<ItemFormat, 6> kFormats{{{"cityjson", kCityJson},
+                                              {"json", kJson},
+                                              {"cityjsonseq", kCityJsonSeq},
+                                              {"obj", kObj},
+                                              {"wt", kContainer},
+                                              {"blob", kBlob}}};
+
+std::optional<ItemFormat> chosen_format(const RoutedRequest& request) {
+  const std::string* wanted = request.target.parameter("f");
+  if (wanted != nullptr) {
+    for (const ItemFormat& format : kFormats) {
+      if (format.parameter == *wanted) return format;
+    }
+    return std::nullopt;
+  }
+  std::vector<std::string_view> offers;
+  for (const ItemFormat& format : kFormats) offers.push_back(format.type);
+  const auto chosen = negotiate(request.request.header("accept"), offers);
+  if (!chosen) return std::nullopt;
+  return kFormats[*chosen];
+}
+
+/// The request for one representation of one feature, apart from the message that stated it, so
+/// that another thread can answer it later.
+struct ItemRequest {
+  Service service;
+  std::string collection;
+  std::string id;
+  ItemFormat format;
+  std::string solid;  // the parameter `solid`, "" if there is none
+  Request message;    // of a GET or HEAD, so without a body
+
+  /// The word that names the representation in its tag.
+  std::string representation() const {
+    std::string name(format.parameter);
+    if (!solid.empty()) name += '-' + percent_encode(solid);
+    return name;
+  }
+  std::string key(std::uint64_t version) const {
+    return collection + '/' + id + '/' + etag_of(version, representation());
+  }
+};
+
+Result<Bytes> blob_of(const StoredFeature& feature, const std::string& text) {
+  const std::string count = std::to_string(feature.solids.size());
+  if (feature.solids.empty()) {
+    return Error{ErrorCode::not_encodable, "this feature has no solids, so there is no blob of it"};
+  }
+  std::size_t solid = 0;
+  if (!text.empty()) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), solid);
+    if (error != std::errc{} || end != text.data() + text.size() ||
+        solid >= feature.solids.size()) {
+      return Error{ErrorCode::invalid_argument, "solid counts from 0; this feature has " + count};
+    }
+  } else if (feature.solids.size() != 1) {
+    return Error{ErrorCode::invalid_argument,
+                 "this feature has " + count +
+                     " solids: choose one with solid=0, ..., or use f=wt for all in one file"};
+  }
+  return feature.solids[solid].blob;
+}
+
+Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
+  const std::string_view format = item.format.parameter;
+  if (format == "blob") return blob_of(feature, item.solid);
+  if (format == "wt") {
+    auto encoded = pipeline::unpack(std::move(feature));
+    if (!encoded) return std::move(encoded).error();
+    pipeline::EncodedDocument document{encoded->format, encoded->header, {}, {}};
+    document.features.push_back(*std::move(encoded));
+    return pipeline::write_container(document, {}, pipeline::SolidLayout::blobs);
+  }
+  auto document = pipeline::from_stored(std::move(feature), item.service.options.limits);
+  if (!document) {
+    return Error{ErrorCode::unavailable,
+                 "the stored feature cannot be decoded: " + to_string(document.error())};
+  }
+  Format target = Format::city_json;
+  if (format == "obj") target = Format::obj;
+  if (format == "cityjsonseq") target = Format::city_json_seq;
+  return pipeline::convert_document(*document, target);
+}
+
+/// The representation of a feature that was read, which the cache keeps.
+Response represented(StoredFeature feature, const ItemRequest& item) {
+  const std::uint64_t version = feature.version;
+  const std::vector<HeaderField> headers{{"ETag", etag_of(version, item.representation())},
+                                         {"Vary", "Accept"},
+                                         {"Content-Crs", crs_header(feature.srid)}};
+  auto body = represent(std::move(feature), item);
+  if (!body) {
+    Problem problem = to_problem(body.error());
+    // The feature is there, but not in this format.
+    if (body.error().code == ErrorCode::unsupported) problem.status = 406;
+    if (body.error().code == ErrorCode::not_encodable) problem.status = 406;
+    return to_response(problem);
+  }
+  Response response{200, std::string(item.format.type), std::string(as_text(*body)), headers};
+  if (RepresentationCache* cache = item.service.cache) {
+    cache->keep(item.key(version), std::make_shared<const Response>(response));
+  }
+  return in_range(item.message, std::move(response));
+}
+
+/// The answer that the cache has for this version of the feature.
+std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
+  if (item.service.cache == nullptr) return std::nullopt;
+  const auto kept = item.service.cache->find(item.key(version));
+  if (!kept) return std::nullopt;
+  return in_range(item.message, *kept);
+}
+
+bool is_large(const StoredFeature& feature) {
+  std::size_t bytes = feature.skeleton.bytes.size();
+  for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
+  return bytes > kSmallBody;
+}
+
+/// Reads the feature and makes its representation; leaves a large one to the lane for that.
+Response read_and_represent(const ItemRequest& item) {
+  auto feature = item.service.store->get(item.collection, item.id);
+  if (!feature) return to_response(to_problem(feature.error()));
+  if (item.format.parameter == "blob" || !is_large(*feature)) {
+    return represented(*std::move(feature), item);
+  }
+  const auto large = std::make_shared<StoredFeature>(*std::move(feature));
+  Response response;
+  response.further = std::make_shared<const FurtherWork>(
+      FurtherWork{Lane::computing, {}, [large, item](const CancelPoll&) {
+                    return represented(std::move(*large), item);
+                  }});
+  return response;
+}
+
+}  // namespace
+
+Response get_item(const RoutedRequest& request) {
+  const auto format = chosen_format(request);
+  if (!format) {
+    return refuse(
+        406, "not-acceptable",
+        "an item is available as application/city+json (f=cityjson), application/json (f=json), "
+        "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
+        "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob)");
+  }
+  const std::string* solid = request.target.parameter("solid");
+  if (solid != nullptr && format->parameter != "blob") {
+    return refuse(400, "invalid-argument", "the parameter solid is for f=blob only");
+  }
+  const ItemRequest item{request.service,
+                         request.target.segments[1],
+                         request.target.segments[3],
+                         *format,
+                         solid == nullptr ? std::string() : *solid,
+                         request.request};
+  const auto version = request.service.store->version(item.collection, item.id);
+  if (!version) return to_response(to_problem(version.error()));
+  auto unneeded = unless_needed(request.request, etag_of(*version, item.representation()));
+  if (unneeded) return *std::move(unneeded);
+  if (auto kept = cached(item, *version)) return *std::move(kept);
+  Response response;
+  response.further = std::make_shared<const FurtherWork>(
+      FurtherWork{Lane::small, item.key(*version), [item, version = *version](const CancelPoll&) {
+                    // A request for the same may have been answered meanwhile.
+                    if (auto kept = cached(item, version)) return *std::move(kept);
+                    return read_and_represent(item);
+                  }});
+  return response;
+}
+
+Response delete_item(const RoutedRequest& request) {
+  if (auto refusal = unless_conditional(request)) return *std::move(refusal);
+  const auto condition = write_condition(request.request);
+  if (!condition) return to_response(to_problem(condition.error()));
+  const Status status = request.service.store->remove(request.target.segments[1],
+                                                      request.target.segments[3], *condition);
+  if (!status) return to_response(to_problem(status.error()));
+  return Response{204, "", "", {}};
+}
+
+}  // namespace watertight::server

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "store/group_commit.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace watertight::store {
+namespace {
+
+using Key = std::pair<std::string_view, std::string_view>;
+
+Key key_of(const StoredFeature& feature) { return {feature.collection, feature.id}; }
+
+std::size_t bytes_of(std::span<const StoredFeature> features) {
+  std::size_t bytes = 0;
+  for (const StoredFeature& feature : features) {
+    bytes += feature.skeleton.bytes.size();
+    for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
+  }
+  return bytes;
+}
+
+void append(std::vector<const StoredFeature*>& all, std::span<const StoredFeature> features) {
+  for (const StoredFeature& feature : features) all.push_back(&feature);
+}
+
+}  // namespace
+
+/// A call of put() on the stack of its thread. The mutex guards all but the features.
+struct GroupCommit::Call {
+  std::span<const StoredFeature> features;
+  std::size_t bytes = 0;
+  std::optional<Versions> result;  // present when the call is done
+  bool leads = false;              // whether it is this call's turn to write a group
+  std::condition_variable changed;
+};
+
+GroupCommit::Versions GroupCommit::put(std::span<const StoredFeature> features) {
+  Call call;
+  call.features = features;
+  call.bytes = bytes_of(features);
+  std::unique_lock lock(mutex_);
+  waiting_.push_back(&call);
+  if (is_writing_) call.changed.wait(lock, [&] { return call.leads || call.result; });
+  if (call.result) return *std::move(call.result);
+  is_writing_ = true;
+  const Group group = take_group();
+  lock.unlock();
+  write_group(group);
+  lock.lock();
+  is_writing_ = !waiting_.empty();
+  if (is_writing_) {
+    waiting_.front()->leads = true;
+    waiting_.front()->changed.notify_one();
+  }
+  return *std::move(call.result);
+}
+
+/// Takes the calls from the front of the queue that fit in one group, one at least. Ends before a
+/// call that has a feature in common with one before.
+GroupCommit::Group GroupCommit::take_group() {
+  Group group;
+  std::set<Key> keys;
+  std::size_t features = 0;
+  std::size_t bytes = 0;
+  while (!waiting_.empty()) {
+    Call* const next = waiting_.front();
+    features += next->features.size();
+    bytes += next->bytes;
+    const bool fits = features <= limits_.features && bytes <= limits_.bytes;
+    const bool is_known =
+        std::any_of(next->features.begin(), next->features.end(),
+                    [&](const StoredFeature& feature) { return keys.contains(key_of(feature)); });
+    if (!group.empty() && (!fits || is_known)) break;
+    for (const StoredFeature& feature : next->features) keys.insert(key_of(feature));
+    group.push_back(next);
+    waiting_.pop_front();
+  }
+  return group;
+}
+
+GroupCommit::Versions GroupCommit::write_alone(const Call& call) {
+  std::vector<const StoredFeature*> features;
+  append(features, call.features);
+  return write_(features);
+}
+
+/// Writes a group and gives each of its calls its result.
+void GroupCommit::write_group(const Group& group) {
+  std::vector<const StoredFeature*> all;
+  for (const Call* const call : group) append(all, call->features);
+  const Versions versions = write_(all);
+  const bool is_shared =
+      versions || group.size() == 1 || versions.error().code == ErrorCode::unavailable;
+  std::size_t first = 0;
+  for (Call* const call : group) {
+    std::optional<Versions> result;
+    if (!is_shared) {
+      result = write_alone(*call);
+    } else if (!versions) {
+      result = versions;
+    } else {
+      const auto begin = versions->begin() + static_cast<std::ptrdiff_t>(first);
+      result = std::vector<std::uint64_t>(
+          begin, begin + static_cast<std::ptrdiff_t>(call->features.size()));
+    }
+    first += call->features.size();
+    // As soon as the mutex is free, the call's thread may return and take the call with it.
+    const std::lock_guard lock(mutex_);
+    call->result = std::move(result);
+    call->changed.notify_one();
+  }
+}
+
+}  // namespace watertight::store

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Renames and removes collections. Features refer to the key of their collection, and clients know
+// its name: a rename or a removal changes one row, whose lock it shares with no writer.
+#include "store/rows/feature_rows.h"
+
+namespace watertight::store {
+
+void send_gate(DatabaseSession& connection, std::string_view collection, Gate gate) {
+  // A number of its own for each name; two names with one number would only wait for each other.
+  connection.send(gate == Gate::shared
+                      ? "SELECT pg_advisory_xact_lock_shared(hashtextextended($1, 0))"
+                      : "SELECT pg_advisory_xact_lock(hashtextextended($1, 0))",
+                  Parameters().text(collection));
+}
+
+Result<std::string> hide_collection(DatabaseSession& connection, const std::string& id) {
+  send_gate(connection, id, Gate::alone);
+  const Result<Rows> rows =
+      connection.ask("UPDATE watertight.collection SET name = NULL WHERE name = $1 RETURNING id",
+                     Parameters().text(id));
+  if (!rows) return rows.error();
+  if (rows->size() == 0) return no_collection(id);
+  return std::string(rows->text(0, 0));
+}
+
+Result<Done> rename_collection(DatabaseSession& connection, const std::string& id,
+                               const std::string& new_id) {
+  send_gate(connection, id, Gate::alone);
+  const Result<Rows> rows =
+      connection.ask("UPDATE watertight.collection SET name = $2 WHERE name = $1 RETURNING id",
+                     Parameters().text(id).text(new_id));
+  if (!rows && connection.state() == "23505") {
+    return Error{ErrorCode::conflict, "there is a collection '" + new_id + "' already"};
+  }
+  if (!rows) return rows.error();
+  if (rows->size() == 0) return no_collection(id);
+  return Done{};
+}
+
+Result<std::string> read_hidden_collection(DatabaseSession& connection) {
+  const Result<Rows> rows =
+      connection.ask("SELECT id FROM watertight.collection WHERE name IS NULL LIMIT 1");
+  if (!rows) return rows.error();
+  return rows->size() == 0 ? std::string() : std::string(rows->text(0, 0));
+}
+
+Result<std::string> purge_step(DatabaseSession& connection, const std::string& key,
+                               const std::string& after) {
+  const Result<Rows> last = connection.ask(
+      "WITH gone AS (DELETE FROM watertight.feature WHERE collection = $1 AND id IN (SELECT id"
+      " FROM watertight.feature WHERE collection = $1 AND id > $2 ORDER BY id LIMIT 1000)"
+      " RETURNING id) SELECT max(id) FROM gone HAVING count(*) > 0",
+      Parameters().text(key).text(after));
+  if (!last) return last.error();
+  if (last->size() > 0) return std::string(last->text(0, 0));
+  for (const char* statement :
+       {"DELETE FROM watertight.collection_change WHERE collection = $1",
+        "DELETE FROM watertight.collection WHERE id = $1 AND name IS NULL"}) {
+    if (const Result<Rows> gone = connection.ask(statement, Parameters().text(key)); !gone) {
+      return gone.error();
+    }
+  }
+  return std::string();
+}
+
+}  // namespace watertight::store

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Answers for one feature: tags, preconditions, ranges and the cache; and collections as a whole.
+#include <catch2/catch_test_macros.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/handlers.h"
+#include "server/items/representation_cache.h"
+#include "tests/unit/pipeline/samples.h"
+
+namespace watertight {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kA = samples::sequence({samples::feature("a")});
+
+/// A service with a cache and the feature "a".
+class Items {
+ public:
+  Items() { REQUIRE(send({"POST", "/collections/town/items", {}, kA}).status == 201); }
+
+  server::Response send(const server::Request& request, bool requires_preconditions = false) const {
+    server::Service service{&store, nullptr, {}, {}, &cache};
+    service.options.requires_preconditions = requires_preconditions;
+    const CancelPoll never = [] { return false; };
+    server::Response response = server::respond(service, request, never);
+    while (response.further) response = std::shared_ptr(response.further)->make(never);
+    return response;
+  }
+  server::Response item(std::vector<server::HeaderField> fields = {},
+                        const std::string& query = "?f=blob") const {
+    return send({"GET", "/collections/town/items/a" + query, std::move(fields), ""});
+  }
+  static std::string field(const server::Response& response, std::string_view name) {
+    for (const server::HeaderField& field : response.headers) {
+      if (field.name == name) return field.value;
+    }
+    return "";
+  }
+
+  mutable samples::MemoryStore store;
+  mutable server::RepresentationCache cache{1 << 20};
+};
+
+TEST_CASE_METHOD(Items, "an item is read once for all requests for one representation") {
+  const server::Response first = item();
+  REQUIRE(first.status == 200);
+  const std::size_t read = store.gets;
+  CHECK(item().body == first.body);
+  CHECK(store.gets == read);
+  CHECK(item({}, "?f=cityjson").body != first.body);
+  CHECK(store.gets == read + 1);
+}
+
+TEST_CASE_METHOD(Items, "a changed item is never answered from the cache") {
+  const std::string before = field(item(), "ETag");
+  REQUIRE(send({"POST", "/collections/town/items", {}, kA}).status == 201);
+  CHECK(field(item(), "ETag") != before);
+  REQUIRE(send({"DELETE", "/collections/town/items/a", {}, ""}).status == 204);
+  CHECK(item().status == 404);
+}
+
+TEST_CASE("a cache keeps what was used last, and nothing larger than an eighth of it") {
+  server::RepresentationCache cache(100'000);
+  const auto answer = [](std::size_t bytes) {
+    return std::make_shared<const server::Response>(
+        server::Response{200, "text/plain", std::string(bytes, 'a'), {}});
+  };
+  for (const char* key : {"a", "b", "c", "d", "e", "f", "g", "h"}) cache.keep(key, answer(12'000));
+  CHECK(cache.find("a"));
+  cache.keep("i", answer(12'000));
+  CHECK(cache.find("a"));
+  CHECK_FALSE(cache.find("b"));
+  cache.keep("large", answer(13'000));
+  CHECK_FALSE(cache.find("large"));
+}
+
+TEST_CASE_METHOD(Items, "preconditions of a read are kept") {
+  const std::string etag = field(item(), "ETag");
+  CHECK(item({{"if-match", etag}}).status == 200);
+  CHECK(item({{"if-match", "*"}}).status == 200);
+  CHECK(item({{"if-match", "\"0-blob\""}}).status == 412);
+  CHECK(item({{"if-match", "W/" + etag}}).status == 412);  // weak tags never match strongly
+  CHECK(item({{"if-none-match", "\"0-blob\", W/" + etag}}).status == 304);
+  CHECK(item({{"if-none-match", "*"}}).status == 304);
+}
+
+TEST_CASE_METHOD(Items, "a write is done only if its precondition holds") {
+  const auto remove = [&](std::vector<server::HeaderField> fields) {
+    return send({"DELETE", "/collections/town/items/a", std::move(fields), ""}).status;
+  };
+  const std::string stale = field(item(), "ETag");
+  REQUIRE(send({"POST", "/collections/town/items", {}, kA}).status == 201);
+  CHECK(remove({{"if-match", stale}}) == 412);
+  CHECK(remove({{"if-none-match", "*"}}) == 412);
+  CHECK(remove({{"if-none-match", stale}}) == 400);
+  CHECK(item().status == 200);
+  CHECK(remove({{"if-match", "\"7-obj\", " + field(item(), "ETag")}}) == 204);
+  CHECK(item().status == 404);
+}
+
+TEST_CASE_METHOD(Items, "a service that wants preconditions refuses writes without") {
+  const server::Request blind{"DELETE", "/collections/town/items/a", {}, ""};
+  CHECK(send(blind, true).status == 428);
+  CHECK(item().status == 200);
+  server::Request careful = blind;
+  careful.headers.push_back({"if-match", "*"});
+  CHECK(send(careful, true).status == 204);
+}
+
+TEST_CASE_METHOD(Items, "a range of an item is its bytes, from the store and from the cache") {
+  const server::Response whole = item();
+  CHECK(field(whole, "Accept-Ranges") == "bytes");
+  const std::string size = std::to_string(whole.body.size());
+  const auto part = [&](const std::string& range) { return item({{"range", range}}); };
+  const server::Response middle = part("bytes=2-5");
+  CHECK(middle.status == 206);
+  CHECK(middle.body == whole.body.substr(2, 4));
+  CHECK(field(middle, "Content-Range") == "bytes 2-5/" + size);
+  CHECK(part("bytes=3-").body == whole.body.substr(3));
+  CHECK(part("bytes=-3").body == whole.body.substr(whole.body.size() - 3));
+  CHECK(part("bytes=0-999999999999999999999999").body == whole.body);
+  CHECK(part("bytes=-999999999999999999999999").status == 206);
+  const server::Response beyond = part("bytes=" + size + "-");
+  CHECK(beyond.status == 416);
+  CHECK(field(beyond, "Content-Range") == "bytes */" + size);
+  for (const char* odd : {"bytes=5-2", "bytes=0-1,3-4", "lines=1-2", "bytes=", "bytes=a-b", "5"}) {
+    INFO(odd);
+    CHECK(part(odd).status == 200);
+  }
+  CHECK(item({{"range", "bytes=1-2"}, {"if-range", field(whole, "ETag")}}).status == 206);
+  CHECK(item({{"range", "bytes=1-2"}, {"if-range", "\"0-blob\""}}).status == 200);
+}
+
+TEST_CASE_METHOD(Items, "collections are listed in pages, renamed, recounted and removed") {
+  for (const char* name : {"b", "c"}) {
+    const std::string path = std::string("/collections/").append(name).append("/items");
+    REQUIRE(send({"POST", path, {}, kA}).status == 201);
+  }
+  const auto ids = [&](const std::string& target) {
+    std::string text;
+    const Json page = Json::parse(send({"GET", target, {}, ""}).body);
+    for (const Json& collection : page["collections"]) text += collection["id"].get<std::string>();
+    for (const Json& link : page["links"]) {
+      if (link["rel"] == "next") text += " " + link["href"].get<std::string>();
+    }
+    return text;
+  };
+  CHECK(ids("/collections?limit=2") == "bc /collections?limit=2&after=c");
+  CHECK(ids("/collections?limit=2&after=c") == "town");
+  CHECK(send({"GET", "/collections?limit=0", {}, ""}).status == 400);
+
+  const auto rename = [&](const std::string& body) {
+    return send({"PATCH", "/collections/b", {}, body});
+  };
+  CHECK(rename("{\"id\":\"c\"}").status == 409);
+  CHECK(rename("{\"id\":\"no/id\"}").status == 400);
+  CHECK(rename("{\"id\":\"d\",\"crs\":1}").status == 400);
+  CHECK(rename("nothing").status == 400);
+  const server::Response renamed = rename("{\"id\":\"d\"}");
+  CHECK(renamed.status == 200);
+  CHECK(field(renamed, "Content-Location") == "/collections/d");
+  CHECK(Json::parse(renamed.body)["features"] == 1);
+  CHECK(rename("{\"id\":\"e\"}").status == 404);
+
+  CHECK(send({"POST", "/collections/d/recount", {}, ""}).status == 200);
+  CHECK(send({"POST", "/collections/nowhere/recount", {}, ""}).status == 404);
+  CHECK(send({"DELETE", "/collections/d", {}, ""}).status == 204);
+  CHECK(send({"DELETE", "/collections/d", {}, ""}).status == 404);
+  CHECK(ids("/collections") == "ctown");
+}
+
+}  // namespace
+}  // namespace watertight

@@ -12,7 +12,7 @@
 
 namespace watertight::delaunay {
 
-inline constexpr std::size_t kRungs = 5;  // Rung::delaunay to Rung::tetgen
+inline constexpr std::size_t kRungs = 6;  // Rung::delaunay to Rung::tetgen
 
 struct CdtStatistics {
   std::uint64_t solids = 0;    // the number of solids that climbed the ladder

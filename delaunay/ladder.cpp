@@ -21,6 +21,7 @@
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
+#include "delaunay/recovery/recover_faces.h"
 #include "tessellate/flatness.h"
 #include "workers/worker_pool.h"
 
@@ -168,11 +169,15 @@ Tetrahedralization restore(Tetrahedralization answer, const EngineInput& input,
 /// The order in which rungs are tried: those of the engine that is asked for come first. No engine
 /// decides: where it has no answer, the others are asked, so that a verdict does not depend on the
 /// choice.
-std::array<Rung, 5> order_of_rungs(Engine engine) {
+std::array<Rung, kRungs> order_of_rungs(Engine engine) {
   using enum Rung;
-  if (engine == Engine::cgal) return {patch, patch_scaled, triangles_scaled, delaunay, tetgen};
-  if (engine == Engine::tetgen) return {tetgen, delaunay, patch, patch_scaled, triangles_scaled};
-  return {delaunay, patch, patch_scaled, triangles_scaled, tetgen};
+  if (engine == Engine::cgal) {
+    return {patch, patch_scaled, triangles_scaled, delaunay, recovered, tetgen};
+  }
+  if (engine == Engine::tetgen) {
+    return {tetgen, delaunay, recovered, patch, patch_scaled, triangles_scaled};
+  }
+  return {delaunay, recovered, patch, patch_scaled, triangles_scaled, tetgen};
 }
 
 class Climb {
@@ -202,7 +207,9 @@ class Climb {
       attempt_.rung = rung;
       const Clock::time_point start = Clock::now();
       const double cpu_start = thread_seconds();
-      rung == Rung::delaunay ? try_delaunay() : try_engine(rung);
+      rung == Rung::delaunay    ? try_delaunay()
+      : rung == Rung::recovered ? try_recovered()
+                                : try_engine(rung);
       attempt_.seconds = seconds_since(start);
       attempt_.cpu_seconds = thread_seconds() - cpu_start;
       result_.attempts.push_back(std::move(attempt_));
@@ -255,6 +262,8 @@ class Climb {
         return !options_.strict && is_new(rung);
       case Rung::triangles_scaled:
         return is_new(rung);
+      case Rung::recovered:
+        return canonical_.triangles.size() >= options_.recovered_from;
       case Rung::delaunay:
       case Rung::tetgen:
         return true;
@@ -320,30 +329,65 @@ class Climb {
     }
   }
 
-  void try_delaunay() {
+  /// Makes the canonical Delaunay tetrahedralization and the facets' triangles that follow it.
+  /// False, with a conclusion, if that is not possible.
+  bool make_delaunay() {
     Result<CanonicalDelaunay> delaunay = canonical_delaunay(
         solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), options_.cancel);
-    if (!delaunay) return conclude(delaunay.error());
+    if (!delaunay) return conclude(delaunay.error()), false;
     Result<FollowingTriangles> followed =
         follow_delaunay(solid_, triangles(), *delaunay, is_kept_, options_.cancel);
-    if (!followed) return conclude(followed.error());
-    const FollowingTriangles& following = *followed;
-    if (following.missing_total > 0) {
-      return conclude(RungOutcome::not_delaunay,
-                      "refused: " + std::to_string(following.missing_total) + " of " +
-                          std::to_string(following.triangles.size()) +
-                          " boundary triangles are not Delaunay faces");
+    if (!followed) return conclude(followed.error()), false;
+    following_ = *std::move(followed);
+    delaunay_tetrahedra_ = std::move(delaunay->tetrahedra);
+    return true;
+  }
+
+  void conclude_missing(std::size_t missing, const char* faces) {
+    conclude(RungOutcome::not_delaunay, "refused: " + std::to_string(missing) + " of " +
+                                            std::to_string(following_->triangles.size()) +
+                                            " boundary triangles are not " + faces);
+  }
+
+  void try_delaunay() {
+    if (!make_delaunay()) return;
+    if (following_->missing_total > 0) {
+      return conclude_missing(following_->missing_total, "Delaunay faces");
     }
+    const auto points = solid_.vertices();
+    judge_own({points.begin(), points.end()}, std::exchange(delaunay_tetrahedra_, {}),
+              Rung::delaunay);
+  }
+
+  void try_recovered() {
+    if (!following_ && !make_delaunay()) return;
+    Result<RecoveredFaces> recovered =
+        recover_faces(solid_.vertices(), std::exchange(delaunay_tetrahedra_, {}),
+                      following_->triangles, options_.cancel);
+    if (!recovered) return conclude(recovered.error());
+    if (recovered->missing > 0) {
+      conclude_missing(recovered->missing, "recovered");
+      following_.reset();
+      return;
+    }
+    judge_own(std::move(recovered->points), std::move(recovered->tetrahedra), Rung::recovered);
+  }
+
+  /// Judges tetrahedra of which all following triangles are faces.
+  void judge_own(std::vector<Point> points, std::vector<geometry::Tetrahedron> tetrahedra,
+                 Rung rung) {
+    const FollowingTriangles following = *std::exchange(following_, std::nullopt);
     Tetrahedralization own;
-    own.points.assign(solid_.vertices().begin(), solid_.vertices().end());
+    own.points = std::move(points);
     own.input_count = solid_.vertex_count();
-    own.tetrahedra = std::move(delaunay->tetrahedra);
+    own.tetrahedra = std::move(tetrahedra);
     for (std::size_t t = 0; t < following.triangles.size(); ++t) {
-      own.constrained.push_back(
-          {delaunay->faces[following.delaunay_face[t]], following.facet_of[t]});
+      Triangle face = following.triangles[t];
+      std::sort(face.begin(), face.end());
+      own.constrained.push_back({face, following.facet_of[t]});
     }
     std::sort(own.constrained.begin(), own.constrained.end());
-    judge(std::move(own), Rung::delaunay);
+    judge(std::move(own), rung);
   }
 
   void try_engine(Rung rung) {
@@ -397,6 +441,9 @@ class Climb {
     limits.cpu_seconds = seconds;
     limits.wall_seconds = options_.seconds_per_rung > 0 ? seconds : 20 * seconds + 10;
     limits.memory_bytes = (std::uint64_t{512} << 20) + canonical_.triangles.size() * (16U << 10);
+    if (options_.memory_in_engine > 0) {
+      limits.memory_bytes = std::min(limits.memory_bytes, options_.memory_in_engine);
+    }
     return limits;
   }
 
@@ -440,6 +487,9 @@ class Climb {
   ContactTriangles contacts_;
   std::vector<bool> is_kept_;  // facet -> its canonical triangles must be kept; empty if none
   std::ptrdiff_t first_of_constraints_ = 0;  // the first attempt with the present constraints
+  // The canonical Delaunay tetrahedralization, from rung 0 to rung 1.
+  std::vector<geometry::Tetrahedron> delaunay_tetrahedra_;
+  std::optional<FollowingTriangles> following_;
   EngineInput input_;
   RungAttempt attempt_;
   double engines_seconds_ = 0;  // CPU time of workers so far
@@ -447,7 +497,8 @@ class Climb {
 };
 
 std::unique_ptr<workers::WorkerPool> make_pool(const std::string& executable,
-                                               const std::string& name, std::size_t processes,
+                                               const std::string& name,
+                                               const EngineWorkers::Options& engines,
                                                std::size_t jobs_per_process) {
   workers::WorkerPool::Options options;
   options.executable = executable;
@@ -456,7 +507,7 @@ std::unique_ptr<workers::WorkerPool> make_pool(const std::string& executable,
     if (!found) return nullptr;
     options.executable = *found;
   }
-  options.size = processes;
+  options.size = engines.processes;
   options.jobs_per_process = jobs_per_process;
   return std::make_unique<workers::WorkerPool>(std::move(options));
 }
@@ -468,9 +519,9 @@ double default_ladder_seconds(std::size_t triangles) {
 }
 
 EngineWorkers::EngineWorkers(const Options& options)
-    : cgal_(make_pool(options.cgal_executable, "watertight-worker", options.processes, 500)),
+    : cgal_(make_pool(options.cgal_executable, "watertight-worker", options, 500)),
       // TetGen keeps tables in globals and frees twice on errors: a process runs one job.
-      tetgen_(make_pool(options.tetgen_executable, "watertight-tetgen", options.processes, 1)) {}
+      tetgen_(make_pool(options.tetgen_executable, "watertight-tetgen", options, 1)) {}
 
 EngineWorkers::EngineWorkers() : EngineWorkers(Options{}) {}
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The CDT ladder (docs/robustness.md, "Engines prove nothing"): rung 0 in this process, the engines
-// in worker processes, each rung's result accepted only by the certificate.
+// The CDT ladder (docs/robustness.md, "Engines prove nothing"): rungs 0 and 1 in this process, the
+// engines in worker processes, each rung's result accepted only by the certificate.
 #pragma once
 
 #include <memory>
@@ -52,10 +52,15 @@ struct LadderOptions {
                         // triangles
   Rung first_rung = Rung::delaunay;  // the paper's table and tests leave out the rungs before it
   Rung last_rung = Rung::tetgen;
+  /// Boundary triangles from which on rung `recovered` is tried: engines are quicker on small
+  /// solids, and fail on large ones of which rounding has made many triangles non-Delaunay.
+  std::size_t recovered_from = 20'000;
   double seconds_per_rung = 0;  // CPU time of an engine on one rung; 0: by size (2 s and more)
   /// CPU time of all engines on one solid together; 0: by size (20 s and more, see
   /// default_ladder_seconds()). A rung gets the time that those before it left.
   double seconds_in_all = 0;
+  /// The most bytes of address space of an engine; 0: by size only (0.5 GiB and 16 KiB a triangle).
+  std::uint64_t memory_in_engine = 0;
   CancelPoll cancel = {};
   /// The result of divide_at_contacts() for the solid, or null: the ladder calls it.
   const ContactTriangles* contacts = nullptr;
@@ -86,7 +91,7 @@ struct LadderResult {
 
 /// Requires a solid that passed the exact tests, with rings that are divided as the triangles are
 /// (FacetTriangles::divided_solid). If neither `certificate` nor `property` is set, the solid is
-/// undecided. `workers` may be null: rung 0 only.
+/// undecided. `workers` may be null: rungs 0 and 1 only.
 LadderResult climb_ladder(const Solid& solid, const tessellate::FacetTriangles& facets,
                           EngineWorkers* workers, const LadderOptions& options);
 

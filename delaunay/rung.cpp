@@ -9,6 +9,8 @@ std::string_view to_string(Rung rung) {
       return "none";
     case Rung::delaunay:
       return "delaunay";
+    case Rung::recovered:
+      return "recovered";
     case Rung::patch:
       return "patch";
     case Rung::patch_scaled:

@@ -15,10 +15,11 @@ namespace watertight::delaunay {
 enum class Rung : std::uint8_t {
   none = 255,
   delaunay = 0,      // the canonical DT itself
-  patch = 1,         // CGAL, facets as patches
-  patch_scaled = 2,  // as patch, after scaling by a power of two on each axis
-  triangles_scaled = 3,
-  tetgen = 4
+  recovered = 1,     // the canonical DT, changed where triangles of the boundary are missing
+  patch = 2,         // CGAL, facets as patches
+  patch_scaled = 3,  // as patch, after scaling by a power of two on each axis
+  triangles_scaled = 4,
+  tetgen = 5
 };
 std::string_view to_string(Rung rung);
 
@@ -44,7 +45,7 @@ std::string_view to_string(CertificateRefusal refusal);
 enum class RungOutcome : std::uint8_t {
   accepted,                // the certificate accepts the result: the solid is decided
   refused_by_certificate,  // RungAttempt::refusal names the reason
-  not_delaunay,            // rung 0: facets are not unions of Delaunay faces
+  not_delaunay,            // rungs 0 and 1: facets are not unions of faces
   engine_error,            // the engine said that it has no answer
   crashed,                 // the worker process ended by itself
   timed_out,

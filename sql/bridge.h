@@ -53,6 +53,13 @@ typedef struct wt_job {
   size_t size;
   wt_engine* engine;
   wt_poll poll;
+  /** The longest time of a call in seconds; 0: no limit. Validation ends within milliseconds of it;
+   *  reading, encoding and decoding, whose time max_memory bounds, are ended after their step. */
+  uint32_t max_seconds;
+  /** The most memory in MiB; 0: no limit. The address space of a helper process, and the memory of
+   *  the call itself: a value is refused before the work if its bytes and facets, at 4 KiB a facet
+   *  or vertex, need more. */
+  uint32_t max_memory;
 } wt_job;
 
 /* Each function below fills a reply that is all zero. An undecided solid is a failure (57014, can

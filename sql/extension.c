@@ -21,6 +21,8 @@ void _PG_init(void);
 
 /* A backend serves one connection in one thread, so its state can be static. */
 static char *libexec_setting = NULL; /* watertight.libexec */
+static int	max_seconds_setting = 300; /* watertight.max_seconds */
+static int	max_memory_setting = 4096; /* watertight.max_memory, MB */
 static wt_engine *engine = NULL;
 static char *engine_libexec = NULL; /* the libexec with which `engine` was made */
 
@@ -126,6 +128,8 @@ run(bridge_function function, Datum argument, bool needs_engine)
 	job.size = VARSIZE_ANY_EXHDR(input);
 	job.engine = needs_engine ? current_engine() : NULL;
 	job.poll = is_interrupted;
+	job.max_seconds = (uint32_t) max_seconds_setting;
+	job.max_memory = (uint32_t) max_memory_setting;
 	function(&job, reply);
 	CHECK_FOR_INTERRUPTS();
 	if (reply->failure.sqlstate[0] != '\0')
@@ -202,5 +206,13 @@ _PG_init(void)
 							   "Folder of the helper executables watertight-worker and watertight-tetgen.",
 							   "Empty: the folder of the installation. No verdict depends on it.",
 							   &libexec_setting, "", PGC_SUSET, GUC_SUPERUSER_ONLY, NULL, NULL, NULL);
+	DefineCustomIntVariable("watertight.max_seconds",
+							"Longest time of a call of a watertight function.",
+							"0: no limit. A longer call raises program_limit_exceeded.",
+							&max_seconds_setting, 300, 0, 86400, PGC_SUSET, GUC_UNIT_S, NULL, NULL, NULL);
+	DefineCustomIntVariable("watertight.max_memory",
+							"Most memory of a call of a watertight function, and of each of its helper processes.",
+							"0: no limit but the built-in ones. A value that needs more raises program_limit_exceeded.",
+							&max_memory_setting, 4096, 0, 1048576, PGC_SUSET, GUC_UNIT_MB, NULL, NULL, NULL);
 	MarkGUCPrefixReserved("watertight");
 }

@@ -112,6 +112,7 @@ Answer answer(const std::function<Bytes(ByteView)>& handle, ByteView request) {
 }  // namespace
 
 int serve_jobs(const std::function<Bytes(ByteView)>& handle) {
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);  // no program that it may start gets more rights
   watch_parent();
   const int idle = idle_milliseconds();
   while (true) {

@@ -48,7 +48,8 @@ struct JobResult {
 /// processes, at most `size` at a time. Processes start on first use, serve many jobs, and are
 /// replaced after `jobs_per_process` jobs and after every outcome but ok. A process has its own
 /// group, an empty private directory, all descriptors but the socket closed, stdout and stderr to
-/// /dev/null, no core dumps, a parent-death signal, and the limits of its job.
+/// /dev/null, no core dumps, a parent-death signal, no new privileges, and the limits of its job,
+/// soft and hard.
 class WorkerPool {
  public:
   struct Options {

@@ -38,6 +38,10 @@ constexpr bool kCanLimitMemory = true;
 constexpr bool kCanLimitMemory = true;
 #endif
 
+/// The CPU seconds beyond its first job that a process may use in all: a process that ignores its
+/// soft limit ends then, whatever it does.
+constexpr rlim_t kSpareCpuSeconds = 3600;
+
 Error system_error(const std::string& what, int number) {
   return Error{ErrorCode::unavailable, what + ": " + std::string(std::strerror(number))};
 }
@@ -176,7 +180,8 @@ WorkerProcess::WorkerProcess(WorkerProcess&& other) noexcept
     : process_(std::exchange(other.process_, -1)),
       socket_(std::exchange(other.socket_, -1)),
       jobs_done_(other.jobs_done_),
-      accounted_(other.accounted_) {}
+      accounted_(other.accounted_),
+      has_hard_limits_(other.has_hard_limits_) {}
 
 WorkerProcess& WorkerProcess::operator=(WorkerProcess&& other) noexcept {
   if (this != &other) {
@@ -185,6 +190,7 @@ WorkerProcess& WorkerProcess::operator=(WorkerProcess&& other) noexcept {
     socket_ = std::exchange(other.socket_, -1);
     jobs_done_ = other.jobs_done_;
     accounted_ = other.accounted_;
+    has_hard_limits_ = other.has_hard_limits_;
   }
   return *this;
 }
@@ -201,22 +207,32 @@ std::optional<double> WorkerProcess::cpu_seconds() const {
 }
 
 Status WorkerProcess::limit(double cpu_seconds, std::uint64_t memory_bytes) {
-  // Only soft limits change, so that the next job can have higher ones.
-  rlimit current{};
-  if (prlimit(process_, RLIMIT_CPU, nullptr, &current) != 0) {
-    return system_error("cannot read a helper's limits", errno);
-  }
   // The pool watches the CPU time and is exact; this limit ends the process if the pool cannot.
   const double seconds =
       std::ceil(this->cpu_seconds().value_or(0) + std::max(cpu_seconds, 0.0)) + 1;
-  current.rlim_cur = std::min(static_cast<rlim_t>(std::min(seconds, 1e9)), current.rlim_max);
-  int failed = prlimit(process_, RLIMIT_CPU, &current, nullptr);
-  if (kCanLimitMemory && failed == 0) {
-    failed = prlimit(process_, RLIMIT_AS, nullptr, &current);
-    current.rlim_cur = std::min(static_cast<rlim_t>(memory_bytes), current.rlim_max);
-    if (failed == 0) failed = prlimit(process_, RLIMIT_AS, &current, nullptr);
+  const auto allowed = static_cast<rlim_t>(std::min(seconds, 1e9));
+  Status limited = set_limit(RLIMIT_CPU, allowed, allowed + kSpareCpuSeconds);
+  if (kCanLimitMemory && limited) limited = set_limit(RLIMIT_AS, memory_bytes, memory_bytes);
+  has_hard_limits_ = true;
+  return limited;
+}
+
+Status WorkerProcess::set_limit(int resource, std::uint64_t soft, std::uint64_t hard) const {
+  const auto which = static_cast<__rlimit_resource>(resource);
+  rlimit current{};
+  if (prlimit(process_, which, nullptr, &current) != 0) {
+    return system_error("cannot read a helper's limits", errno);
   }
-  if (failed != 0) return system_error("cannot limit a helper process", errno);
+  // A hard limit can be lowered only. The first job sets it; a job that needs more gets another
+  // process.
+  if (!has_hard_limits_) current.rlim_max = std::min(current.rlim_max, static_cast<rlim_t>(hard));
+  if (soft > current.rlim_max && has_hard_limits_) {
+    return Error{ErrorCode::unavailable, "the job needs more than the helper may use"};
+  }
+  current.rlim_cur = std::min(static_cast<rlim_t>(soft), current.rlim_max);
+  if (prlimit(process_, which, &current, nullptr) != 0) {
+    return system_error("cannot limit a helper process", errno);
+  }
   return Done{};
 }
 

@@ -37,7 +37,9 @@ class WorkerProcess {
   int socket() const { return socket_; }
   std::size_t jobs_done() const { return jobs_done_; }
 
-  /// Sets the memory limit, and the CPU limit counted from now.
+  /// Sets the memory limit, and the CPU limit counted from now; for the first job also hard limits:
+  /// the same memory, and an hour more of CPU time. Errors: unavailable if the process has ended,
+  /// or if the job needs more than its hard limits.
   Status limit(double cpu_seconds, std::uint64_t memory_bytes);
   /// CPU time since the process started; nullopt once it has ended.
   std::optional<double> cpu_seconds() const;
@@ -56,11 +58,13 @@ class WorkerProcess {
 
  private:
   WorkerProcess(pid_t process, int socket) : process_(process), socket_(socket) {}
+  Status set_limit(int resource, std::uint64_t soft, std::uint64_t hard) const;
 
   pid_t process_ = -1;
   int socket_ = -1;
   std::size_t jobs_done_ = 0;
   double accounted_ = 0;
+  bool has_hard_limits_ = false;
 };
 
 }  // namespace watertight::workers

@@ -31,7 +31,7 @@ struct Reply {
 
 Reply call(Function function, ByteView bytes, wt_poll poll = nullptr) {
   Reply reply;
-  const wt_job job{bytes.data(), bytes.size(), nullptr, poll};
+  const wt_job job{bytes.data(), bytes.size(), nullptr, poll, 0, 0};
   function(&job, &reply.value);
   return reply;
 }
@@ -112,7 +112,7 @@ TEST_CASE("an engine that finds no helpers is made and ended") {
   wt_engine* const engine = wt_engine_make("/no/such/folder");
   REQUIRE(engine != nullptr);
   const Bytes ewkb = cube();
-  const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr};
+  const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr, 0, 0};
   Reply reply;
   wt_bridge_is_valid(&job, &reply.value);
   CHECK(reply.value.truth);  // a cube needs no helper

@@ -4,6 +4,7 @@
 // unchanged.
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -48,6 +49,11 @@ Bytes surroundings() {
   rlimit core{};
   getrlimit(RLIMIT_CORE, &core);
   text += "core=" + std::to_string(core.rlim_cur) + "\n";
+  rlimit used{};
+  getrlimit(RLIMIT_CPU, &used);
+  text += "hard=" + std::string(used.rlim_max == RLIM_INFINITY ? "no" : "yes") + "\n";
+  const int none = prctl(PR_GET_NO_NEW_PRIVS, 0, 0, 0, 0);
+  text += "privileges=" + std::string(none == 1 ? "no" : "yes") + "\n";
   text += "leader=" + std::string(getpgrp() == getpid() ? "yes" : "no") + "\n";
   text += "descriptors=";
   for (int descriptor = 0; descriptor < 1024; ++descriptor) {

@@ -230,7 +230,8 @@ TEST_CASE("a worker sees nothing of its host") {
   close(leaked);
   pthread_sigmask(SIG_UNBLOCK, &blocked, nullptr);
   CHECK(text ==
-        "core=0\nleader=yes\ndescriptors=0,1,2,3,\n/dev/null\n/dev/null\n/dev/null\nwritable=no\n"
+        "core=0\nhard=yes\nprivileges=no\nleader=yes\ndescriptors=0,1,2,3,\n/dev/null\n/dev/null\n/"
+        "dev/null\nwritable=no\n"
         "blocked=no\nsecret=no\n");
 }
 
@@ -264,6 +265,19 @@ TEST_CASE("a pool that is asked to reaps the workers that ended from idleness") 
   CHECK(kill(process, 0) == 0);  // a zombie has its number still
   pool.reap();
   CHECK(kill(process, 0) != 0);
+}
+
+TEST_CASE("a job that needs more memory than the one before gets another process") {
+  workers::WorkerPool pool(faulty());
+  workers::WorkerLimits little;
+  little.memory_bytes = 1ULL << 30;
+  workers::WorkerLimits more;
+  more.memory_bytes = 2ULL << 30;
+  const std::string first = reply(run(pool, "process", little));
+  CHECK(reply(run(pool, "process", little)) == first);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  CHECK(reply(run(pool, "process", more)) != first);
+#endif
 }
 
 TEST_CASE("jobs that arrive just as a worker ends from idleness are run all the same") {

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "delaunay/recovery/fill_cavity.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "delaunay/recovery/tetrahedron_mesh.h"
+#include "geometry/intersection/triangle_triangle.h"
+#include "geometry/predicates/predicates.h"
+
+namespace watertight::delaunay {
+namespace {
+
+class Search {
+ public:
+  Search(std::span<const Point> points, Cavity cavity, std::size_t& steps)
+      : points_(points), steps_(steps), corners_(std::move(cavity.inner_vertices)) {
+    for (Triangle& triangle : cavity.front) {
+      triangle = rotated(triangle);
+      corners_.insert(corners_.end(), triangle.begin(), triangle.end());
+    }
+    std::sort(corners_.begin(), corners_.end());
+    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+    levels_.push_back({std::move(cavity.front), {}, 0, {}});
+  }
+
+  /// Goes down a level for each tetrahedron that fits, and up when none does.
+  bool run() {
+    levels_.back().choices = choices(levels_.back().front);
+    while (!levels_.empty()) {
+      Level& level = levels_.back();
+      if (level.front.empty()) return true;
+      if (level.next == level.choices.size()) {
+        levels_.pop_back();
+        continue;
+      }
+      if (steps_ == 0) return false;
+      const Choice choice = level.choices[level.next++];
+      level.placed = placed(level.front.back(), choice.apex);
+      Level below;
+      below.front = front_after(level.front, level.placed);
+      if (below.front.size() > kLargestFront) continue;
+      if (!below.front.empty()) below.choices = choices(below.front);
+      levels_.push_back(std::move(below));
+    }
+    return false;
+  }
+
+  Filling result(bool is_filled) && {
+    Filling filling;
+    for (const Level& level : levels_) {
+      if (is_filled && !level.front.empty()) filling.tetrahedra.push_back(level.placed);
+    }
+    std::sort(blocked_.begin(), blocked_.end());
+    blocked_.erase(std::unique(blocked_.begin(), blocked_.end()), blocked_.end());
+    filling.blocked = std::move(blocked_);
+    return filling;
+  }
+
+ private:
+  struct Choice {
+    Index apex = kNone;
+    int closed = 0;  // the faces of the front that the tetrahedron closes, besides its base
+  };
+  struct Level {
+    std::vector<Triangle> front;
+    std::vector<Choice> choices;  // for the last triangle of the front
+    std::size_t next = 0;
+    geometry::Tetrahedron placed{};
+  };
+
+  const Point& at(Index vertex) const { return points_[vertex]; }
+
+  static geometry::Tetrahedron placed(const Triangle& base, Index apex) {
+    return {base[0], base[1], base[2], apex};
+  }
+
+  static std::vector<Triangle> front_after(std::vector<Triangle> front,
+                                           const geometry::Tetrahedron& tetrahedron) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const Triangle face = rotated(inward_face(tetrahedron, corner));
+      const auto found = std::find(front.begin(), front.end(), face);
+      if (found != front.end()) {
+        front.erase(found);
+      } else {
+        front.push_back(rotated(reversed(face)));
+      }
+    }
+    return front;
+  }
+
+  /// The apexes of tetrahedra over the last triangle of the front that lie inside, those that close
+  /// most first.
+  std::vector<Choice> choices(const std::vector<Triangle>& front) {
+    std::vector<Choice> found;
+    const Triangle& base = front.back();
+    for (const Index apex : corners_) {
+      if (steps_ == 0) break;
+      if (geometry_contains(base, apex)) continue;
+      if (geometry::orient3d(at(base[0]), at(base[1]), at(base[2]), at(apex)) <= 0) continue;
+      --steps_;
+      const int closed = closed_by(front, placed(base, apex));
+      if (closed >= 0) found.push_back({apex, closed});
+    }
+    if (found.empty()) blocked_.push_back(base);
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Choice& a, const Choice& b) { return a.closed > b.closed; });
+    return found;
+  }
+
+  static bool geometry_contains(const Triangle& triangle, Index vertex) {
+    return std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
+  }
+
+  /// The number of faces of the front, besides the base, that are faces of the tetrahedron; -1 if
+  /// the tetrahedron is not inside.
+  int closed_by(const std::vector<Triangle>& front,
+                const geometry::Tetrahedron& tetrahedron) const {
+    if (holds_corner(tetrahedron)) return -1;
+    int closed = 0;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Triangle face = rotated(inward_face(tetrahedron, corner));
+      if (std::find(front.begin(), front.end(), face) != front.end()) {
+        ++closed;
+      } else if (!is_free(front, face)) {
+        return -1;
+      }
+    }
+    return closed;
+  }
+
+  /// True if a corner of the cavity lies in the tetrahedron without being its vertex.
+  bool holds_corner(const geometry::Tetrahedron& tetrahedron) const {
+    return std::any_of(corners_.begin(), corners_.end(), [&](Index vertex) {
+      if (std::find(tetrahedron.begin(), tetrahedron.end(), vertex) != tetrahedron.end()) {
+        return false;
+      }
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const auto [a, b, c] = inward_face(tetrahedron, corner);
+        if (geometry::orient3d(at(a), at(b), at(c), at(vertex)) < 0) return false;
+      }
+      return true;
+    });
+  }
+
+  /// True if a face that is not in the front meets the front in common vertices and edges only.
+  bool is_free(const std::vector<Triangle>& front, const Triangle& face) const {
+    return std::none_of(front.begin(), front.end(), [&](const Triangle& other) {
+      return is_intersection(geometry::classify_contact(points_, face, other));
+    });
+  }
+
+  std::span<const Point> points_;
+  std::size_t& steps_;
+  std::vector<Index> corners_;
+  std::vector<Level> levels_;
+  std::vector<Triangle> blocked_;
+};
+
+}  // namespace
+
+Filling fill_cavity(std::span<const Point> points, Cavity cavity, std::size_t& steps) {
+  if (cavity.front.size() > kLargestFront) return {};
+  Search search(points, std::move(cavity), steps);
+  const bool is_filled = search.run();
+  return std::move(search).result(is_filled);
+}
+
+}  // namespace watertight::delaunay

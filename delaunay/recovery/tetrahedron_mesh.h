@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Tetrahedra with their neighbours, in which a few tetrahedra can be replaced by others. Private to
+// delaunay/.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "delaunay/canonical/sort_by_vertices.h"
+#include "geometry/point.h"
+
+namespace watertight::delaunay {
+
+/// The face of a positive tetrahedron opposite to a corner, turned so that orient3d(face, corner)
+/// is positive.
+Triangle inward_face(const geometry::Tetrahedron& tetrahedron, std::size_t corner);
+/// A triangle with its vertices in increasing order.
+Triangle sorted(Triangle triangle);
+/// A triangle with its smallest vertex first, its orientation kept.
+Triangle rotated(Triangle triangle);
+Triangle reversed(const Triangle& triangle);
+
+class TetrahedronMesh {
+ public:
+  /// Requires positive tetrahedra, at most two at each face, with vertices below `vertex_count`.
+  /// Cost: O(n log n).
+  TetrahedronMesh(std::vector<geometry::Tetrahedron> tetrahedra, std::size_t vertex_count);
+
+  const geometry::Tetrahedron& tetrahedron(Index t) const { return tetrahedra_[t]; }
+  /// The tetrahedron beyond the face opposite to a corner; kNone at the hull.
+  Index neighbour(Index t, std::size_t corner) const { return neighbours_[t][corner]; }
+  /// A tetrahedron at a vertex; kNone if there is none.
+  Index at_vertex(Index vertex) const { return at_vertex_[vertex]; }
+  /// The number of places, some of which are empty after replacements.
+  std::size_t places() const { return tetrahedra_.size(); }
+
+  /// Replaces tetrahedra by others that fill the same place: the faces around both sets are equal.
+  void replace(std::span<const Index> old_ones, std::span<const geometry::Tetrahedron> new_ones);
+
+  /// All tetrahedra. The mesh is empty afterwards.
+  std::vector<geometry::Tetrahedron> take();
+
+ private:
+  struct Half {
+    Triangle vertices{};  // sorted
+    Index tetrahedron = kNone;
+    Index corner = 0;
+  };
+  void add_halves(Index t, std::vector<Half>& halves) const;
+  void pair(std::span<const Half> sorted_halves);
+
+  std::vector<geometry::Tetrahedron> tetrahedra_;  // [0] == [1] for an empty place
+  std::vector<std::array<Index, 4>> neighbours_;
+  std::vector<Index> at_vertex_;
+  std::vector<Index> empty_;
+};
+
+}  // namespace watertight::delaunay

@@ -30,8 +30,9 @@ namespace {
 constexpr std::size_t kFindingsShown = 20;
 // The most bytes of a result: a varlena of PostgreSQL holds less than 1 GiB.
 constexpr std::size_t kLargestValue = (1ULL << 30) - 1024;
-// The memory that validating or encoding takes for each facet or vertex: less than 1 KiB measured
-// on closed meshes of 250,000 and 1,000,000 triangles; facets of many vertices take more.
+// The memory of this process that validating or encoding takes for each facet or vertex, an
+// estimate: up to 2 KiB measured on closed meshes of 250,000 to 1,000,000 triangles, without the
+// helper, which has a limit of its own.
 constexpr std::uint64_t kBytesPerElement = 4096;
 
 char* copy_of(std::string_view text) noexcept {

@@ -87,7 +87,8 @@ Result<Token> new_token() {
 class PostgresStore final : public SolidStore {
  public:
   PostgresStore(const std::string& connection, std::size_t connections)
-      : pool_(connection, connections), pings_(connection, 1),
+      : pool_(connection, connections),
+        pings_(connection, 1),
         group_([this](FeatureRefs features) { return write_all(features, {}); }) {}
 
   Status open() {

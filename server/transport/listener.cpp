@@ -12,6 +12,7 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <thread>
 
@@ -31,7 +32,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kRefusedAtOnce = 64;  // connections beyond the limit that get an answer
 constexpr milliseconds kPause{20};
-constexpr milliseconds kSlow{1000};  // after which a request that is not whole makes room
+constexpr double kMoment = 0.001;  // seconds in which nobody is slow
 
 class AsioServer final : public HttpServer {
  public:
@@ -148,26 +149,26 @@ void AsioServer::refuse(std::shared_ptr<Connection> connection, Response refusal
                  [this](std::exception_ptr) { --refused_; });
 }
 
-/// Closes the connection that has kept the service waiting longest: one without a request, else one
-/// that has not sent all of its request for kSlow. False if there is none.
+/// Closes the connection that uses its place least: the one with the fewest bytes of a request for
+/// the time in which it could have sent them. False if all connections are being answered.
 bool AsioServer::make_room() {
   const auto now = std::chrono::steady_clock::now();
-  std::shared_ptr<Connection> slowest;
+  Connection* chosen = nullptr;
+  double lowest = std::numeric_limits<double>::infinity();
   for (const auto& connection : environment_.connections) {
     if (connection->state == Connection::State::answering) continue;
-    const bool is_idle = connection->state == Connection::State::idle;
-    if (!is_idle && now - connection->since < kSlow) continue;
-    const bool is_slower =
-        !slowest || std::pair(!is_idle, connection->since) <
-                        std::pair(slowest->state != Connection::State::idle, slowest->since);
-    if (is_slower) slowest = connection;
+    const std::chrono::duration<double> age = now - connection->since;
+    const double rate = (1 + static_cast<double>(connection->body_bytes)) / (kMoment + age.count());
+    if (rate >= lowest) continue;
+    lowest = rate;
+    chosen = connection.get();
   }
-  if (!slowest) return false;
-  if (slowest->state == Connection::State::receiving) {
-    environment_.log("event=closed-for-room peer=" + slowest->peer);
+  if (chosen == nullptr) return false;
+  if (chosen->state == Connection::State::receiving) {
+    environment_.log("event=closed-for-room peer=" + chosen->peer);
   }
-  slowest->enter(Connection::State::answering);  // so that it is not chosen again
-  slowest->stream.close();
+  chosen->enter(Connection::State::answering);  // so that it is not chosen again
+  chosen->stream.close();
   return true;
 }
 

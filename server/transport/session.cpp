@@ -298,6 +298,7 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
     if (limit.is_over()) co_return problem(408, "request-timeout", "the body came too slowly");
     if (error) co_return answer_to(error, options_).value_or(Response{0, "", "", {}});
     body_.append(piece.data(), piece.size() - parser.get().body().size);
+    connection_->body_bytes = body_.size();
     const bool is_small = body_.size() <= kSmallBody;
     if (!is_small && !body_share_->grow_to(body_.size())) {
       co_return busy("too many large requests are being received");

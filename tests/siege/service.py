@@ -126,5 +126,5 @@ class Service:
 
     def psql(self, statements):
         return subprocess.Popen(
-            [*self.prefix, "psql", "-q", "-h", str(self.folder / "data" / "socket"), "-d", "postgres", "-c", statements],
+            [*self.prefix, "psql", "-q", "-h", str(self.folder / "data" / "socket"), "-d", "watertight", "-c", statements],
             stdout=subprocess.DEVNULL, cwd=self.folder)

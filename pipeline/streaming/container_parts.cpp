@@ -38,7 +38,7 @@ Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
 Result<ContainerParts> ContainerParts::open(ByteView bytes, const Limits& limits) {
   auto reader = ContainerReader::open(bytes, limits);
   if (!reader) return std::move(reader).error();
-  return ContainerParts(*std::move(reader), limits);
+  return ContainerParts(*reader, limits);
 }
 
 Status ContainerParts::add(ContainerDocument added) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "formats/city_json/city_json.h"
@@ -17,7 +16,7 @@ class ContainerParts {
   /// `bytes` must outlive the object. Errors: those of ContainerReader::open().
   static Result<ContainerParts> open(ByteView bytes, const Limits& limits);
 
-  /// The documents of which the next part has features, each with these features only; nullopt
+  /// The documents with features in the next part, each with these features only; nullopt
   /// after the last part. Features of city models have the sources and instances, and documents
   /// the templates, that their text would give. Errors: those of ContainerReader::next() and
   /// decode_feature(); malformed when skeleton and solids do not fit.
@@ -28,8 +27,8 @@ class ContainerParts {
     Document document;  // without features
     std::optional<formats::CityHeader> header;
   };
-  ContainerParts(ContainerReader reader, const Limits& limits)
-      : reader_(std::move(reader)), limits_(limits) {}
+  ContainerParts(const ContainerReader& reader, const Limits& limits)
+      : reader_(reader), limits_(limits) {}
   Status add(ContainerDocument added);
   Result<Feature> whole(ContainerFeature feature) const;
 

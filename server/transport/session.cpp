@@ -191,8 +191,12 @@ class Session {
   awaitable<std::optional<Response>> receive(RequestParser& parser);
   awaitable<std::optional<Response>> receive_body(RequestParser& parser);
   awaitable<Response> answer(const Request& request);
-  awaitable<Response> run(Lane lane, std::function<Response()> make, const CancelPoll& cancel);
-  awaitable<Response> finish(std::shared_ptr<const FurtherWork> work, const CancelPoll& cancel);
+  // These take references to objects with names: GCC 12 destroys a temporary object in the argument
+  // of a co_await twice.
+  awaitable<Response> run(Lane lane, const std::function<Response()>& make,
+                          const CancelPoll& cancel);
+  awaitable<Response> finish(const std::shared_ptr<const FurtherWork>& first,
+                             const CancelPoll& cancel);
   awaitable<Status> send(Response response, bool keep_alive);
   awaitable<Status> send_parts(Response response, bool keep_alive, std::uint64_t& sent);
   awaitable<Result<std::string>> next_part(const BodyParts& parts);
@@ -308,7 +312,7 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
 }
 
 /// Makes an answer, or the next step of one, on the threads of a lane.
-awaitable<Response> Session::run(Lane lane, std::function<Response()> make,
+awaitable<Response> Session::run(Lane lane, const std::function<Response()>& make,
                                  const CancelPoll& cancel) {
   if (lane == Lane::quick) co_return made_guarded(make);
   LaneThreads& threads = environment_.threads_of(lane);
@@ -327,8 +331,9 @@ awaitable<Response> Session::run(Lane lane, std::function<Response()> make,
 }
 
 /// Does the further work of an answer, after works with the same key that have begun before.
-awaitable<Response> Session::finish(std::shared_ptr<const FurtherWork> work,
+awaitable<Response> Session::finish(const std::shared_ptr<const FurtherWork>& first,
                                     const CancelPoll& cancel) {
+  std::shared_ptr<const FurtherWork> work = first;
   for (;;) {
     const auto other = environment_.keys.find(work->key);
     if (other == environment_.keys.end()) break;
@@ -338,8 +343,8 @@ awaitable<Response> Session::finish(std::shared_ptr<const FurtherWork> work,
   }
   const KeyShare key(environment_, work->key, stream_.get_executor());
   for (;;) {
-    Response response = co_await run(
-        work->lane, [work, &cancel] { return work->make(cancel); }, cancel);
+    const std::function<Response()> make = [&work, &cancel] { return work->make(cancel); };
+    Response response = co_await run(work->lane, make, cancel);
     if (!response.further) co_return response;
     work = std::move(response.further);
   }
@@ -354,11 +359,12 @@ awaitable<Response> Session::answer(const Request& request) {
     return environment.is_cancelled || *left || Clock::now() > deadline;
   };
   const Application& application = environment_.application;
-  Response response = co_await run(
-      application.lane(request), [&] { return application.respond(request, is_cancelled); },
-      is_cancelled);
+  const std::function<Response()> make = [&] { return application.respond(request, is_cancelled); };
+  Response response = co_await run(application.lane(request), make, is_cancelled);
   if (!response.further) co_return response;
-  co_return co_await finish(std::move(response.further), is_cancelled);
+  const std::shared_ptr<const FurtherWork> further = std::move(response.further);
+  Response made = co_await finish(further, is_cancelled);
+  co_return made;
 }
 
 /// Serves one request whose first bytes are in the buffer. True when the connection goes on.

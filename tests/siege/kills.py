@@ -18,15 +18,13 @@ import json
 import os
 import pathlib
 import random
-import shutil
 import signal
 import sys
-import tempfile
 import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from service import Service, box_feature, sequence  # noqa: E402
+from service import Service, box_feature, sequence, temporary_folder  # noqa: E402
 
 READY_SECONDS = 5
 IDS = 400  # features that the writers of one run change
@@ -225,12 +223,8 @@ def main():
     parser.add_argument("--writers", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="watertight-kills-"))
-    folder.chmod(0o755)
-    try:
+    with temporary_folder("kills") as folder:
         return run(options, folder)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 if __name__ == "__main__":

@@ -16,13 +16,11 @@ import multiprocessing
 import pathlib
 import random
 import re
-import shutil
 import socket
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from service import Service, box_document, box_feature  # noqa: E402
+from service import Service, box_document, box_feature, temporary_folder  # noqa: E402
 
 WORDS = [b"\r\n", b"\0", b"\x80", b"\xff\xfe", b"%00", b"%2e%2e", b"../", b"%", b"?", b"#", b"Host: a\r\n",
          b"Content-Length: 5\r\n", b"Content-Length: -1\r\n", b"Content-Length: 99999999999999999999\r\n",
@@ -214,12 +212,8 @@ def main():
     parser.add_argument("--requests", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="watertight-mutations-"))
-    folder.chmod(0o755)
-    try:
+    with temporary_folder("mutations") as folder:
         return run(options, folder)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 if __name__ == "__main__":

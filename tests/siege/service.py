@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A service with a private database in a folder, as the programs of this folder start it."""
+import contextlib
 import http.client
 import json
 import os
 import pathlib
 import pwd
+import shutil
 import signal
 import subprocess
+import tempfile
 import time
 
 HEADER = {"type": "CityJSON", "version": "2.0", "transform": {"scale": [0.001] * 3, "translate": [0, 0, 0]},
@@ -45,6 +48,17 @@ def unprivileged():
             continue
         return ["setpriv", f"--reuid={user.pw_uid}", f"--regid={user.pw_gid}", "--clear-groups"], user
     raise SystemExit("there is no user other than root to run a database")
+
+
+@contextlib.contextmanager
+def temporary_folder(name):
+    """A folder that other users can enter, for as long as the block lasts."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"watertight-{name}-"))
+    folder.chmod(0o755)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 class Service:

@@ -43,7 +43,7 @@ class IngestRun {
   /// a run over one file.
   using FilesOfFeatures = std::unordered_map<std::string, std::size_t>;
 
-  /// What is known of a file before all of it is stored.
+  /// The facts about a file before all of it is stored.
   struct FileRun {
     Summary summary;
     std::vector<std::string> valid;  // ids; none in a run over one file

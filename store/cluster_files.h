@@ -44,7 +44,7 @@ class FileLock {
   int descriptor_ = -1;
 };
 
-/// What a file postmaster.pid says.
+/// The statements of a file postmaster.pid.
 struct PostmasterFile {
   pid_t pid = 0;
   std::string socket_folder;  // "" while the server starts

@@ -66,7 +66,7 @@ ErrorCode code_of(std::string_view state, bool is_lost) {
   return ErrorCode::unavailable;
 }
 
-/// What a client may know about a failure for which it is not to blame.
+/// The message that a client gets about a failure for which it is not to blame.
 const char* summary_of(std::string_view state, bool is_lost) {
   if (state == "53100") return "the database's disk is full";
   if (state.substr(0, 2) == "40" || state == "55P03")

@@ -142,7 +142,7 @@ class DatabaseSession {
     void operator()(pg_conn* connection) const;
   };
   struct Arguments;
-  /// What the server was sent and has still to answer.
+  /// The statements that the server was sent and has still to answer.
   struct Sent {
     std::string prepares;  // the statement that this prepares; "" = it runs one
   };

@@ -72,7 +72,7 @@ struct CollectionPage {
   std::string next;  // `after` of the next page; "" = this page is the last
 };
 
-/// What must be true of each feature of a write before it is changed.
+/// The fact that must hold for each feature of a write before the feature is changed.
 struct WriteCondition {
   enum class Kind : std::uint8_t {
     none,     // nothing

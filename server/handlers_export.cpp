@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The handler that sends a whole collection as one file, which is made part by part meanwhile.
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <utility>
 
 #include "pipeline/export.h"
+#include "server/export_files.h"
 #include "server/handlers.h"
+#include "server/items/preconditions.h"
+#include "server/items/ranges.h"
 
 namespace watertight::server {
 namespace {
@@ -45,6 +50,105 @@ Response refuse_export(const Error& error) {
   }
 }
 
+/// A request for an export, apart from the message that stated it, so that another thread can
+/// answer it later.
+struct ExportRequest {
+  Service service;
+  const FileFormat* file;
+  store::StoredCollection collection;
+  Request message;
+
+  std::string etag() const { return etag_of_state(collection.state, file->parameter); }
+  std::string key() const { return collection.id + "/" + etag(); }
+};
+
+std::vector<HeaderField> headers_of(const ExportRequest& request) {
+  std::string attachment = "attachment; filename=\"";
+  attachment.append(request.collection.id).append(request.file->ending) += '"';
+  return {{"Vary", "Accept"},
+          {"ETag", request.etag()},
+          {"Accept-Ranges", "bytes"},
+          {"Content-Crs", crs_header(request.collection.srid)},
+          {"Content-Disposition", attachment}};
+}
+
+/// Sends the file while it is made.
+Response streamed(const ExportRequest& request) {
+  auto started = pipeline::CollectionExport::start(*request.service.store, request.collection.id,
+                                                   request.file->format);
+  if (!started) return refuse_export(started.error());
+  const auto exporting = std::make_shared<pipeline::CollectionExport>(*std::move(started));
+  // The first part is made before the status is sent, because most errors show there.
+  auto first = exporting->next();
+  if (!first) return refuse_export(first.error());
+  Response response{200, std::string(request.file->type), std::string(as_text(*first)),
+                    headers_of(request)};
+  if (exporting->is_at_end()) return response;
+  response.rest = [exporting]() -> Result<std::string> {
+    const auto part = exporting->next();
+    if (!part) return part.error();
+    return std::string(as_text(*part));
+  };
+  return response;
+}
+
+/// Makes the whole file, of which a range is wanted: its length has to be known. Errors:
+/// unavailable when the collection changes meanwhile, or the disk has no room; cancelled.
+Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelPoll& is_cancelled) {
+  auto exporting = pipeline::CollectionExport::start(*request.service.store, request.collection.id,
+                                                     request.file->format);
+  if (!exporting) return std::move(exporting).error();
+  auto file = TemporaryFile::make();
+  if (!file) return std::move(file).error();
+  while (!exporting->is_at_end()) {
+    if (is_cancelled()) return Error{ErrorCode::cancelled, "the export was not finished"};
+    const auto part = exporting->next();
+    if (!part) return part.error();
+    if (Status added = file->append(*part); !added) return std::move(added).error();
+  }
+  const auto after = request.service.store->collection(request.collection.id);
+  if (!after) return after.error();
+  if (after->state != request.collection.state) {
+    return Error{ErrorCode::unavailable, "the collection changed while its file was made"};
+  }
+  return std::make_shared<const TemporaryFile>(*std::move(file));
+}
+
+/// The range of the file that the request wants, read piece by piece while it is sent.
+Response part_of(const ExportFiles::File& file, const ExportRequest& request) {
+  constexpr std::size_t kPiece = 1 << 20;
+  const WantedRange wanted = wanted_range(request.message, request.etag(), file->size());
+  if (wanted.kind == WantedRange::Kind::unsatisfiable) return beyond(file->size());
+  Response response{206, std::string(request.file->type), "", headers_of(request)};
+  response.headers.push_back(content_range(wanted.part, file->size()));
+  response.rest = [file, next = wanted.part.first,
+                   end = wanted.part.last + 1]() mutable -> Result<std::string> {
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kPiece, end - next));
+    const auto bytes = file->read(next, count);
+    if (!bytes) return bytes.error();
+    next += count;
+    return std::string(as_text(*bytes));
+  };
+  return response;
+}
+
+/// Answers a request for a range from a kept file, or by work that makes and keeps the file.
+Response ranged(const ExportRequest& request) {
+  ExportFiles* const files = request.service.export_files;
+  if (auto file = files->find(request.key())) return part_of(file, request);
+  Response response;
+  response.further = std::make_shared<const FurtherWork>(
+      FurtherWork{Lane::computing, request.key(), [request, files](const CancelPoll& is_cancelled) {
+                    // A request for the same file may have made it meanwhile.
+                    if (auto file = files->find(request.key())) return part_of(file, request);
+                    const auto made = whole_file(request, is_cancelled);
+                    if (!made) return refuse_export(made.error());
+                    files->keep(request.key(), *made);
+                    return part_of(*made, request);
+                  }});
+  return response;
+}
+
 }  // namespace
 
 Response get_export(const RoutedRequest& request) {
@@ -54,28 +158,15 @@ Response get_export(const RoutedRequest& request) {
                   "a collection is available as application/vnd.watertight (f=wt) or "
                   "application/city+json-seq (f=cityjsonseq)");
   }
-  const std::string& id = request.target.segments[1];
-  const auto collection = request.service.store->collection(id);
+  auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  auto started = pipeline::CollectionExport::start(*request.service.store, id, file->format);
-  if (!started) return refuse_export(started.error());
-  const auto exporting = std::make_shared<pipeline::CollectionExport>(*std::move(started));
-  // The first part is made before the status is sent, because most errors show there.
-  auto first = exporting->next();
-  if (!first) return refuse_export(first.error());
-  Response response{200, std::string(file->type), std::string(as_text(*first)), {}};
-  std::string attachment = "attachment; filename=\"";
-  attachment.append(id).append(file->ending) += '"';
-  response.headers = {{"Vary", "Accept"},
-                      {"Content-Crs", crs_header(collection->srid)},
-                      {"Content-Disposition", attachment}};
-  if (exporting->is_at_end()) return response;
-  response.rest = [exporting]() -> Result<std::string> {
-    const auto part = exporting->next();
-    if (!part) return part.error();
-    return std::string(as_text(*part));
-  };
-  return response;
+  const ExportRequest wanted{request.service, file, *std::move(collection), request.request};
+  auto unneeded = unless_needed(request.request, wanted.etag());
+  if (unneeded) return *std::move(unneeded);
+  // With a size of "all that there are", any range that is understood is a part.
+  const auto range = wanted_range(request.request, wanted.etag(), UINT64_MAX);
+  const bool has_range = range.kind == WantedRange::Kind::part;
+  return has_range && request.service.export_files != nullptr ? ranged(wanted) : streamed(wanted);
 }
 
 }  // namespace watertight::server

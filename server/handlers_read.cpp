@@ -21,7 +21,10 @@ constexpr std::string_view kDescription = "Validates, stores and compresses 3D s
 /// The landing page in HTML. It has the links of the page in JSON, and loads nothing from
 /// elsewhere.
 std::string landing_html(const Json& links) {
-  std::string html = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>";
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta "
+      "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+      "'unsafe-inline'\">\n<title>";
   html.append(kTitle).append("</title>\n<style>body{font:16px/1.5 sans-serif;margin:3em auto;");
   html.append("max-width:40em;padding:0 1em}</style>\n<h1>").append(kTitle).append("</h1>\n<p>");
   html.append(kDescription).append(".</p>\n<ul>\n");

@@ -60,9 +60,11 @@ Response to_response(const Problem& problem) {
   }
   // Details quote the sender's bytes, which need not be UTF-8: wrong bytes are replaced, nothing
   // throws.
-  return Response{problem.status, "application/problem+json",
-                  json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
-                  problem.headers};
+  Response response{problem.status, "application/problem+json",
+                    json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
+                    problem.headers};
+  response.note = problem.note;
+  return response;
 }
 
 Problem to_problem(const Error& error) {
@@ -70,6 +72,7 @@ Problem to_problem(const Error& error) {
   problem.status = status_of(error.code);
   problem.kind = std::string(to_string(error.code));
   problem.detail = error.message;
+  problem.note = error.detail;
   problem.byte_offset = error.byte_offset;
   problem.pointer = error.pointer;
   if (problem.status == 503) problem.headers.push_back({"Retry-After", "5"});

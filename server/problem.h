@@ -25,6 +25,7 @@ struct Problem {
   /// Further members as a JSON object ("" = none), e.g. the report of an invalid document.
   std::string extension = {};
   std::vector<HeaderField> headers = {};
+  std::string note = {};  // for the log, never for the sender
 };
 
 /// The answer application/problem+json with type, title (the kind in words), status, detail,

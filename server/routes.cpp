@@ -140,6 +140,10 @@ Lane lane_of(const Request& request) {
 }
 
 Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
+  // The service as a whole (RFC 9110, section 9.3.7).
+  if (request.method == "OPTIONS" && request.target == "*") {
+    return Response{204, "", "", {{"Allow", "GET, HEAD, POST, PATCH, DELETE, OPTIONS"}}};
+  }
   const auto target = parse_target(request.target);
   if (!target) return to_response(to_problem(target.error()));
   for (const Route& route : routes()) {

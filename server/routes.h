@@ -16,6 +16,7 @@
 
 namespace watertight::server {
 
+class ExportFiles;
 class RepresentationCache;
 
 struct RouteOptions {
@@ -36,6 +37,8 @@ struct Service {
   std::function<Status()> readiness = nullptr;
   /// Keeps answers for items. Null: none is kept. Outlives the service.
   RepresentationCache* cache = nullptr;
+  /// Keeps exports of which ranges are wanted. Null: exports have no ranges. Outlives the service.
+  ExportFiles* export_files = nullptr;
 };
 
 /// Answers a request. Never fails: every error is an application/problem+json answer.

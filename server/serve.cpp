@@ -15,6 +15,7 @@
 #include <mutex>
 #include <thread>
 
+#include "server/export_files.h"
 #include "server/items/representation_cache.h"
 
 namespace watertight::server {
@@ -170,7 +171,8 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
     return health ? monitor.status() : health;
   };
   RepresentationCache cache(options.cache_bytes);
-  Service service{store->get(), &workers, {}, readiness, &cache};
+  ExportFiles export_files;
+  Service service{store->get(), &workers, {}, readiness, &cache, &export_files};
   service.options.limits = options.limits;
   service.options.requires_preconditions = options.requires_preconditions;
   const auto logger = make_logger();

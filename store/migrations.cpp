@@ -182,6 +182,14 @@ constexpr Migration kMigrations[] = {
          R"(COMMENT ON COLUMN watertight.collection.name IS
               'The id that clients use. NULL: the collection was removed, its rows are being deleted')",
      }},
+    {"states of collections",
+     {
+         // With the number of the pending changes added, `changes` grows with each transaction that
+         // changes features; `generation` tells apart collections that had a name in turn.
+         R"(ALTER TABLE watertight.collection
+              ADD COLUMN generation bigint NOT NULL DEFAULT nextval('watertight.feature_version'),
+              ADD COLUMN changes bigint NOT NULL DEFAULT 0)",
+     }},
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);
 

@@ -1,22 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures requests to collections of 1, 120,000 and 1,000,000 features in turn.
+"""Measures the same requests to collections of 1, 120,000 and 1,000,000 features in turn.
 
-    bench/service/scale.py URL SOCKET_FOLDER SEQUENCE [FEATURES ...]
+    scale.py PROGRAM CITY [--features N ...] [--rounds R]
 
-URL is a running service with a private database, whose socket is in SOCKET_FOLDER (DATA/socket).
-SEQUENCE is a CityJSONSeq whose features are stored and then copied in the database, each copy with
-its box moved along x. Prints the median time of each kind of request, and its ratio to that of the
-smallest collection.
+CITY is a CityJSONSeq. Its first feature is stored in each collection and then copied in the database,
+each copy with its box moved along x. The service and its private database run in a temporary folder.
+Prints the median time of each kind of request for each collection, and its ratio to that of the
+smallest one. Exit code 1 if a ratio is above 1.5.
 """
+import argparse
+import http.client
 import json
+import pathlib
+import shutil
 import statistics
-import subprocess
 import sys
+import tempfile
 import time
-import urllib.request
 
-ROUNDS = 40
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "siege"))
+from service import Service  # noqa: E402
+
+LARGEST_RATIO = 1.5
 
 COPY = """
 INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, solids, blob_bytes,
@@ -27,65 +33,83 @@ FROM watertight.feature, generate_series(1, {copies}) n WHERE collection = '{nam
 INSERT INTO watertight.solid
 SELECT s.collection, s.feature || '-' || n, object_id, geometry, ordinal, position, lod, blob, measures, report
 FROM watertight.solid s, generate_series(1, {copies}) n WHERE collection = '{name}';
-ANALYZE watertight.feature;
+VACUUM ANALYZE;
 """
 
 
-def psql(folder, statements):
-    subprocess.run(["psql", "-q", "-v", "ON_ERROR_STOP=1", "-h", folder, "-d", "postgres"],
-                   input=statements, text=True, check=True)
+class Client:
+    """A kept connection; the seconds until the first byte of an answer's body."""
+
+    def __init__(self, port):
+        self.connection = http.client.HTTPConnection("127.0.0.1", port, timeout=120)
+
+    def ask(self, method, path, body=None, reads_all=True):
+        start = time.perf_counter()
+        self.connection.request(method, path, body, {"Content-Type": "application/city+json-seq"})
+        answer = self.connection.getresponse()
+        answer.read(1)
+        elapsed = time.perf_counter() - start
+        if reads_all:
+            answer.read()
+        else:
+            self.connection.close()
+        if answer.status not in (200, 201):
+            raise SystemExit(f"scale: {method} {path}: status {answer.status}")
+        return elapsed
 
 
-def ask(request):
-    started = time.perf_counter()
-    with urllib.request.urlopen(request) as answer:
-        first = answer.read(1)
-        elapsed = time.perf_counter() - started
-        return elapsed, first + answer.read()
+def fill(service, name, size, one):
+    service.post(name, one)
+    for statement in COPY.format(name=name, copies=size - 1).split(";\n") if size > 1 else []:
+        if statement and service.psql(statement).wait() != 0:
+            raise SystemExit("scale: copying failed")
+    counted = json.loads(service.request("GET", f"/collections/{name}")[1])["features"]
+    print(f"{name}: {counted} features", flush=True)
 
 
-def post(url, name, body):
-    return ask(urllib.request.Request(f"{url}/collections/{name}/items", data=body, method="POST", headers={
-        "Content-Type": "application/city+json-seq"}))
-
-
-def main(arguments):
-    if len(arguments) < 3:
-        print(__doc__, file=sys.stderr)
-        return 2
-    url, folder, path = arguments[:3]
-    sizes = [int(number) for number in arguments[3:]] or [1, 120_000, 1_000_000]
-    with open(path, "rb") as file:
-        header, *features = [line for line in file.read().split(b"\n") if line]
-    one = header + b"\n" + features[0] + b"\n"
-    names = {}
-    for size in sizes:
-        names[size] = f"scale-{size}"
-        post(url, names[size], one)
-        if size > 1:
-            psql(folder, COPY.format(name=names[size], copies=size - 1))
-        print(f"{names[size]}: {json.loads(ask(url + '/collections/' + names[size])[1])['features']} features",
-              flush=True)
-    items = json.loads(ask(f"{url}/collections/{names[sizes[0]]}/items")[1])
-    box = items["features"][0]["bbox"]
-    crs = json.loads(ask(f"{url}/collections/{names[sizes[0]]}")[1])["storageCrs"]
-    few = ",".join(str(number) for number in [box[0], box[1], box[3], box[4]])
-    kinds = {
-        "items?limit=1": lambda name: ask(f"{url}/collections/{name}/items?limit=1"),
-        "bbox page": lambda name: ask(f"{url}/collections/{name}/items?limit=1&bbox={few}&bbox-crs={crs}"),
-        "collection": lambda name: ask(f"{url}/collections/{name}"),
-        "POST one feature": lambda name: post(url, name, one),
-    }
-    for kind, request in kinds.items():
-        times = {size: [] for size in sizes}
-        for _ in range(ROUNDS):
-            for size in sizes:
-                times[size].append(request(names[size])[0])
-        medians = [statistics.median(times[size]) for size in sizes]
-        print(f"| {kind} | " + " | ".join(f"{1e3 * median:.2f} ms ({median / medians[0]:.2f})" for median in medians)
-              + " |", flush=True)
-    return 0
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("city")
+    parser.add_argument("--features", type=int, nargs="+", default=[1, 120_000, 1_000_000])
+    parser.add_argument("--rounds", type=int, default=60)
+    options = parser.parse_args()
+    header, feature = pathlib.Path(options.city).read_bytes().splitlines()[:2]
+    one = header + b"\n" + feature + b"\n"
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="watertight-scale-"))
+    folder.chmod(0o755)
+    worst = 0.0
+    try:
+        with Service(options.program, folder) as service:
+            names = [f"scale-{size}" for size in options.features]
+            for name, size in zip(names, options.features):
+                fill(service, name, size, one)
+            first = json.loads(service.request("GET", f"/collections/{names[0]}/items")[1])["features"][0]
+            crs = json.loads(service.request("GET", f"/collections/{names[0]}")[1])["storageCrs"]
+            box = ",".join(str(first["bbox"][i]) for i in (0, 1, 3, 4))
+            client = Client(service.port)
+            kinds = {
+                "items?limit=1": lambda path: client.ask("GET", f"{path}/items?limit=1"),
+                "bbox page": lambda path: client.ask("GET", f"{path}/items?limit=1&bbox={box}&bbox-crs={crs}"),
+                "collection": lambda path: client.ask("GET", path),
+                "POST of one feature": lambda path: client.ask("POST", f"{path}/items", one),
+                "export, first byte": lambda path: client.ask("GET", f"{path}/export?f=cityjsonseq", None, False),
+                "export as .wt, first byte": lambda path: client.ask("GET", f"{path}/export?f=wt", None, False)}
+            for kind, request in kinds.items():
+                times = {name: [] for name in names}
+                for _ in range(options.rounds):
+                    for name in names:
+                        times[name].append(request(f"/collections/{name}"))
+                medians = [statistics.median(times[name]) for name in names]
+                ratios = [median / medians[0] for median in medians]
+                worst = max(worst, ratios[-1])
+                print(f"| {kind} | " + " | ".join(
+                    f"{1e3 * median:.2f} ms ({ratio:.2f})" for median, ratio in zip(medians, ratios)) + " |", flush=True)
+            service.stop()
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    return 1 if worst > LARGEST_RATIO else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

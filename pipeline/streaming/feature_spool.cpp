@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/streaming/feature_spool.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,23 +12,8 @@ constexpr std::size_t kBatchFeatures = 5000;
 constexpr std::size_t kSolidOverhead = sizeof(StoredSolid);
 constexpr std::size_t kFeatureOverhead = sizeof(StoredFeature);
 
-Error file_error(int error) {
-  return {ErrorCode::unavailable,
-          std::string("the temporary file for encoded features: ").append(std::strerror(error))};
-}
-
-/// Opens a temporary file that vanishes with the process. Returns -1 with errno.
-int open_temporary() {
-  std::error_code error;
-  std::string folder = std::filesystem::temp_directory_path(error).string();
-  if (error) folder = "/tmp";
-  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor >= 0) return descriptor;
-  std::string name = folder + "/watertight-XXXXXX";
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
-}
+/// The spool holds other bytes than were written to it.
+Error damaged() { return {ErrorCode::unavailable, "the temporary file has been changed"}; }
 
 std::size_t bytes_of(const StoredFeature& feature) {
   std::size_t bytes = kFeatureOverhead + feature.id.size() + feature.skeleton.bytes.size();
@@ -144,20 +121,16 @@ std::uint64_t FeatureSpool::number_of(const SharedText& header) {
 
 Status FeatureSpool::write_batch() {
   if (!file_) {
-    const int descriptor = open_temporary();
-    if (descriptor < 0) return file_error(errno);
-    file_.reset(::fdopen(descriptor, "w+b"));
-    if (!file_) return file_error(errno);
+    auto made = TemporaryFile::make();
+    if (!made) return std::move(made).error();
+    file_ = *std::move(made);
   }
   ByteWriter writer;
   for (const StoredFeature& feature : open_) {
     write_feature(writer, feature, number_of(feature.header));
   }
-  const bool is_written =
-      std::fwrite(writer.bytes().data(), 1, writer.size(), file_.get()) == writer.size() &&
-      std::fflush(file_.get()) == 0;
-  if (!is_written) return file_error(errno);
-  batches_.push_back({open_.size(), writer.size()});
+  batches_.push_back({open_.size(), file_->size(), writer.size()});
+  if (Status written = file_->append(writer.bytes()); !written) return written;
   open_.clear();
   open_bytes_ = 0;
   return Done{};
@@ -165,7 +138,6 @@ Status FeatureSpool::write_batch() {
 
 Status FeatureSpool::rewind() {
   given_ = 0;
-  if (file_ && std::fseek(file_.get(), 0, SEEK_SET) != 0) return file_error(errno);
   return Done{};
 }
 
@@ -179,15 +151,13 @@ Result<std::span<const StoredFeature>> FeatureSpool::next() {
 }
 
 Status FeatureSpool::read_batch(const Batch& batch) {
-  Bytes bytes(batch.bytes);
-  if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
-    return file_error(std::ferror(file_.get()) != 0 ? errno : EIO);
-  }
-  ByteReader reader(bytes);
+  const auto bytes = file_->read(batch.offset, batch.bytes);
+  if (!bytes) return bytes.error();
+  ByteReader reader(*bytes);
   for (std::uint64_t i = 0; i < batch.features; ++i) {
     read_.push_back(read_feature(reader, headers_));
   }
-  if (reader.failed() || reader.remaining() > 0) return file_error(EIO);
+  if (reader.failed() || reader.remaining() > 0) return damaged();
   return Done{};
 }
 

@@ -5,11 +5,11 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <map>
-#include <memory>
+#include <optional>
 #include <vector>
 
+#include "base/temporary_file.h"
 #include "store/solid_store.h"
 
 namespace watertight::pipeline {
@@ -35,10 +35,8 @@ class FeatureSpool final : public store::FeatureBatches {
  private:
   struct Batch {
     std::uint64_t features = 0;
-    std::uint64_t bytes = 0;
-  };
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
+    std::uint64_t offset = 0;  // in the file
+    std::size_t bytes = 0;
   };
   Status write_batch();
   Status read_batch(const Batch& batch);
@@ -47,7 +45,7 @@ class FeatureSpool final : public store::FeatureBatches {
   std::size_t batch_bytes_;
   std::vector<StoredFeature> open_;  // the last batch, which is not in the file
   std::size_t open_bytes_ = 0;
-  std::unique_ptr<std::FILE, CloseFile> file_;
+  std::optional<TemporaryFile> file_;
   std::vector<Batch> batches_;       // the batches in the file
   std::vector<SharedText> headers_;  // the headers of the features in the file
   std::map<SharedText, std::uint64_t> header_numbers_;

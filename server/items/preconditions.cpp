@@ -50,6 +50,12 @@ std::string etag_of(std::uint64_t version, std::string_view representation) {
   return etag += '"';
 }
 
+std::string etag_of_state(std::string_view state, std::string_view representation) {
+  std::string etag = "\"";
+  etag.append(state).append("-").append(representation);
+  return etag += '"';
+}
+
 std::optional<Response> unless_needed(const Request& request, const std::string& etag) {
   const std::string* wanted = request.header("if-match");
   if (wanted != nullptr && !is_listed(*wanted, etag, false)) {

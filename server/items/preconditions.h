@@ -17,6 +17,9 @@ namespace watertight::server {
 /// and the words that name the representation are enough: "17-wt".
 std::string etag_of(std::uint64_t version, std::string_view representation);
 
+/// The entity tag of a representation of a collection as a whole, from StoredCollection::state.
+std::string etag_of_state(std::string_view state, std::string_view representation);
+
 /// 412 or 304 for a request for a representation with this tag, when its preconditions say so.
 std::optional<Response> unless_needed(const Request& request, const std::string& etag);
 

@@ -63,25 +63,31 @@ WantedRange wanted_range(const Request& request, std::string_view etag, std::uin
   return is_one ? range_of(std::string_view(text).substr(kUnit.size()), size) : WantedRange{};
 }
 
+HeaderField content_range(const ByteRange& part, std::uint64_t size) {
+  std::string place = "bytes ";
+  place.append(std::to_string(part.first)).append("-").append(std::to_string(part.last));
+  place.append("/").append(std::to_string(size));
+  return {"Content-Range", place};
+}
+
+Response beyond(std::uint64_t size) {
+  Problem problem{416, "range-not-satisfiable", "", {}, {}, {}, {}};
+  problem.detail.append("the body has ").append(std::to_string(size)).append(" bytes");
+  problem.headers.push_back({"Content-Range", "bytes */" + std::to_string(size)});
+  return to_response(problem);
+}
+
 Response in_range(const Request& request, Response whole) {
   const std::string* etag = field_of(whole, "ETag");
   if (whole.status != 200 || etag == nullptr || whole.rest || whole.further) return whole;
   const std::uint64_t size = whole.body.size();
   const WantedRange wanted = wanted_range(request, *etag, size);
-  if (wanted.kind == WantedRange::Kind::unsatisfiable) {
-    Problem problem{416, "range-not-satisfiable", "", {}, {}, {}, {}};
-    problem.detail.append("the body has ").append(std::to_string(size)).append(" bytes");
-    problem.headers.push_back({"Content-Range", "bytes */" + std::to_string(size)});
-    return to_response(problem);
-  }
+  if (wanted.kind == WantedRange::Kind::unsatisfiable) return beyond(size);
   whole.headers.push_back({"Accept-Ranges", "bytes"});
   if (wanted.kind == WantedRange::Kind::whole) return whole;
   const auto [first, last] = wanted.part;
   whole.status = 206;
-  std::string place = "bytes ";
-  place.append(std::to_string(first)).append("-").append(std::to_string(last));
-  place.append("/").append(std::to_string(size));
-  whole.headers.push_back({"Content-Range", place});
+  whole.headers.push_back(content_range(wanted.part, size));
   whole.body = whole.body.substr(first, last - first + 1);
   return whole;
 }

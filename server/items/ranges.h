@@ -28,6 +28,12 @@ struct WantedRange {
 /// as the standard allows.
 WantedRange wanted_range(const Request& request, std::string_view etag, std::uint64_t size);
 
+/// The field Content-Range of a part of a body of `size` bytes.
+HeaderField content_range(const ByteRange& part, std::uint64_t size);
+
+/// 416: the range begins after the end of the body.
+Response beyond(std::uint64_t size);
+
 /// Makes a whole answer with status 200 and an ETag the part that the request asks for: 206, or 416
 /// for a range beyond the end. Leaves other answers as they are.
 Response in_range(const Request& request, Response whole);

@@ -55,6 +55,7 @@ struct Response {
   /// If present, the answer is still to be made, by this work in another lane; the other members
   /// have no meaning then.
   std::shared_ptr<const FurtherWork> further = nullptr;
+  std::string note = {};  // for the log, never for the client
 };
 
 /// The second step of an answer. Works with the same key are done one after another, so that the

@@ -212,6 +212,7 @@ class Session {
   beast::flat_buffer buffer_;
   std::string method_;
   std::string target_;
+  std::string note_;                       // of the answer, for the log
   std::string body_;                       // of the request
   std::optional<BudgetShare> body_share_;  // held from the header to the answer
   bool is_head_ = false;
@@ -401,6 +402,7 @@ awaitable<bool> Session::serve_one() {
   }
   const unsigned status = response.status;
   const std::uint64_t size = response.body.size();
+  note_ = std::move(response.note);
   const Status sent = co_await send(std::move(response), goes_on);
   log_answer(status, size, start, sent);
   co_return sent.has_value() && goes_on;
@@ -515,7 +517,9 @@ void Session::log_answer(unsigned status, std::uint64_t bytes, Clock::time_point
   environment_.log("event=request peer=" + connection_->peer + " method=" + quoted(method_) +
                    " target=" + quoted(target_) + " status=" + std::to_string(status) +
                    " bytes=" + std::to_string(bytes) + " ms=" + std::to_string(milliseconds) +
+                   (note_.empty() ? std::string() : " note=" + quoted(note_)) +
                    (sent ? std::string() : " cut-off=" + quoted(to_string(sent.error()))));
+  note_.clear();
 }
 
 }  // namespace

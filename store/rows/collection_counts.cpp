@@ -14,7 +14,8 @@ namespace {
 constexpr const char* kCountsLock = "x'636f756e74626f78'::bigint";
 
 const char* const kCounts =
-    "c.features, c.solids, c.blob_bytes, c.min_x, c.min_y, c.min_z, c.max_x, c.max_y, c.max_z";
+    "c.features, c.solids, c.blob_bytes, c.min_x, c.min_y, c.min_z, c.max_x, c.max_y, c.max_z,"
+    " c.generation, c.changes";
 
 /// The changes of each collection, summed up, from a table of changes.
 std::string summed(const char* changes) {
@@ -22,7 +23,7 @@ std::string summed(const char* changes) {
              "SELECT collection, sum(features)::int8 AS features, sum(solids)::int8 AS solids,"
              " sum(blob_bytes)::int8 AS blob_bytes, min(min_x) AS min_x, min(min_y) AS min_y,"
              " min(min_z) AS min_z, max(max_x) AS max_x, max(max_y) AS max_y,"
-             " max(max_z) AS max_z FROM ") +
+             " max(max_z) AS max_z, count(*) AS changes FROM ") +
          changes;
 }
 
@@ -31,7 +32,8 @@ std::string collections_from(const char* collections) {
   return "SELECT c.name, c.srid, h.content, c.features + coalesce(d.features, 0),"
          " c.solids + coalesce(d.solids, 0), c.blob_bytes + coalesce(d.blob_bytes, 0),"
          " least(c.min_x, d.min_x), least(c.min_y, d.min_y), least(c.min_z, d.min_z),"
-         " greatest(c.max_x, d.max_x), greatest(c.max_y, d.max_y), greatest(c.max_z, d.max_z)"
+         " greatest(c.max_x, d.max_x), greatest(c.max_y, d.max_y), greatest(c.max_z, d.max_z),"
+         " c.generation, c.changes + coalesce(d.changes, 0)"
          " FROM " +
          std::string(collections) +
          " c JOIN watertight.document_header h ON h.digest = c.header"
@@ -49,6 +51,8 @@ StoredCollection collection_of(const Rows& rows, int row) {
   found.solids = static_cast<std::uint64_t>(rows.int8(row, 4));
   found.blob_bytes = static_cast<std::uint64_t>(rows.int8(row, 5));
   if (found.features > 0) found.box = box_of(rows, row, 6);
+  found.state = std::to_string(rows.int8(row, 12));
+  found.state.append("-").append(std::to_string(rows.int8(row, 13)));
   return found;
 }
 
@@ -100,6 +104,7 @@ Result<Done> fold_changes(DatabaseSession& connection) {
       summed("gone") +
       " GROUP BY collection) UPDATE watertight.collection c SET features = c.features + d.features,"
       " solids = c.solids + d.solids, blob_bytes = c.blob_bytes + d.blob_bytes,"
+      " changes = c.changes + d.changes,"
       " min_x = CASE WHEN c.features + d.features > 0 THEN least(c.min_x, d.min_x) END,"
       " min_y = CASE WHEN c.features + d.features > 0 THEN least(c.min_y, d.min_y) END,"
       " min_z = CASE WHEN c.features + d.features > 0 THEN least(c.min_z, d.min_z) END,"
@@ -115,18 +120,19 @@ Result<StoredCollection> recount_collection(DatabaseSession& connection, const s
   connection.send(std::string("SELECT pg_advisory_xact_lock(") + kCountsLock + ")");
   // One statement, so that the features that it counts are those whose changes it removes.
   const Result<Rows> counted = connection.ask(
-      std::string(
-          "WITH k AS (SELECT id FROM watertight.collection WHERE name = $1), gone AS"
-          " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)),"
-          " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
-          " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes, min(min_x) AS min_x,"
-          " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
-          " max(max_y) AS max_y, max(max_z) AS max_z"
-          " FROM watertight.feature WHERE collection = (SELECT id FROM k))"
-          " UPDATE watertight.collection c SET (features, solids, blob_bytes,"
-          " min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d)"
-          " FROM watertight.document_header h WHERE c.name = $1 AND h.digest = c.header"
-          " RETURNING c.name, c.srid, h.content, ") +
+      std::string("WITH k AS (SELECT id FROM watertight.collection WHERE name = $1), gone AS"
+                  " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)"
+                  " RETURNING 1),"
+                  " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
+                  " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes, min(min_x) AS min_x,"
+                  " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
+                  " max(max_y) AS max_y, max(max_z) AS max_z"
+                  " FROM watertight.feature WHERE collection = (SELECT id FROM k))"
+                  " UPDATE watertight.collection c SET (features, solids, blob_bytes,"
+                  " min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d),"
+                  " changes = c.changes + (SELECT count(*) FROM gone)"
+                  " FROM watertight.document_header h WHERE c.name = $1 AND h.digest = c.header"
+                  " RETURNING c.name, c.srid, h.content, ") +
           kCounts,
       Parameters().text(id));
   if (!counted) return counted.error();

@@ -236,6 +236,7 @@ class MemoryStore : public SolidStore {
       ++collection.features;
       collection.solids += feature.solids.size();
     }
+    collection.state = std::to_string(version_) + "-" + std::to_string(collection.features);
     return collection;
   }
 

@@ -2,9 +2,12 @@
 //
 // Answers for one feature: tags, preconditions, ranges and the cache; and collections as a whole.
 #include <catch2/catch_test_macros.hpp>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
+#include "server/export_files.h"
 #include "server/handlers.h"
 #include "server/items/representation_cache.h"
 #include "tests/unit/pipeline/samples.h"
@@ -22,7 +25,7 @@ class Items {
   Items() { REQUIRE(send({"POST", "/collections/town/items", {}, kA}).status == 201); }
 
   server::Response send(const server::Request& request, bool requires_preconditions = false) const {
-    server::Service service{&store, nullptr, {}, {}, &cache};
+    server::Service service{&store, nullptr, {}, {}, &cache, &files};
     service.options.requires_preconditions = requires_preconditions;
     const CancelPoll never = [] { return false; };
     server::Response response = server::respond(service, request, never);
@@ -42,6 +45,7 @@ class Items {
 
   mutable samples::MemoryStore store;
   mutable server::RepresentationCache cache{1 << 20};
+  mutable server::ExportFiles files;
 };
 
 TEST_CASE_METHOD(Items, "an item is read once for all requests for one representation") {
@@ -148,6 +152,65 @@ TEST_CASE_METHOD(Items, "a range of an item is its bytes, from the store and fro
   }
   CHECK(item({{"range", "bytes=1-2"}, {"if-range", field(whole, "ETag")}}).status == 206);
   CHECK(item({{"range", "bytes=1-2"}, {"if-range", "\"0-blob\""}}).status == 200);
+}
+
+/// The whole body of an answer: its first bytes and all further parts.
+std::string whole(const server::Response& response) {
+  std::string text = response.body;
+  while (response.rest) {
+    const auto part = response.rest();
+    REQUIRE(part);
+    if (part->empty()) break;
+    text += *part;
+  }
+  return text;
+}
+
+TEST_CASE_METHOD(Items,
+                 "a download of a collection can be resumed while the collection is the same") {
+  const auto get = [&](std::vector<server::HeaderField> fields) {
+    return send({"GET", "/collections/town/export?f=wt", std::move(fields), ""});
+  };
+  const server::Response first = get({});
+  const std::string all = whole(first);
+  const std::string etag = field(first, "ETag");
+  CHECK(field(first, "Accept-Ranges") == "bytes");
+  const server::Response rest = get({{"range", "bytes=7-"}, {"if-range", etag}});
+  CHECK(rest.status == 206);
+  CHECK(field(rest, "ETag") == etag);
+  const std::string size = std::to_string(all.size());
+  CHECK(field(rest, "Content-Range") == "bytes 7-" + std::to_string(all.size() - 1) + "/" + size);
+  CHECK(whole(rest) == all.substr(7));
+  CHECK(whole(get({{"range", "bytes=2-4"}})) == all.substr(2, 3));
+  CHECK(whole(get({{"range", "bytes=-4"}})) == all.substr(all.size() - 4));
+  CHECK(get({{"range", "bytes=" + size + "-"}}).status == 416);
+  CHECK(get({{"if-none-match", etag}}).status == 304);
+
+  REQUIRE(send({"POST", "/collections/town/items", {}, kA}).status == 201);
+  CHECK(get({{"range", "bytes=7-"}, {"if-range", etag}}).status == 200);
+  CHECK(get({{"if-none-match", etag}}).status == 200);
+  CHECK(get({{"if-match", etag}}).status == 412);
+}
+
+TEST_CASE("exports are kept as files for a while, so many and so large") {
+  using server::ExportFiles;
+  const auto file = [](std::size_t bytes) {
+    auto made = TemporaryFile::make();
+    REQUIRE(made);
+    REQUIRE(made->append(Bytes(bytes, 1)));
+    return std::make_shared<const TemporaryFile>(*std::move(made));
+  };
+  ExportFiles few(2, 1000);
+  for (const char* key : {"a", "b", "c"}) few.keep(key, file(10));
+  CHECK_FALSE(few.find("a"));
+  CHECK(few.find("b"));
+  few.keep("large", file(985));
+  CHECK(few.find("large"));
+  CHECK_FALSE(few.find("c"));
+  ExportFiles brief(2, 1000, std::chrono::seconds(0));
+  brief.keep("a", file(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  CHECK_FALSE(brief.find("a"));
 }
 
 TEST_CASE_METHOD(Items, "collections are listed in pages, renamed, recounted and removed") {

@@ -272,6 +272,22 @@ TEST_CASE_METHOD(Fixture, "validate answers with the report, a layer or a page, 
   CHECK(answer("image/png").status == 406);
 }
 
+TEST_CASE_METHOD(Fixture, "OPTIONS of the service as a whole lists its methods") {
+  const server::Response response = send({"OPTIONS", "*", {}, ""});
+  CHECK(response.status == 204);
+  REQUIRE(header_of(response, "Allow"));
+  CHECK(header_of(response, "Allow")->find("PATCH") != std::string::npos);
+  CHECK(send({"GET", "*", {}, ""}).status == 400);
+}
+
+TEST_CASE("the server's own words about a failure are for the log alone") {
+  const Error error{
+      ErrorCode::unavailable, "the database is away", {}, {}, "no file /secret/socket"};
+  const server::Response response = server::to_response(server::to_problem(error));
+  CHECK(response.body.find("secret") == std::string::npos);
+  CHECK(response.note == "no file /secret/socket");
+}
+
 TEST_CASE_METHOD(Fixture, "a malformed body is answered with its place") {
   const server::Response response =
       post("/validate", "{\"type\":\"CityJSON\",", "application/json");

@@ -3,6 +3,7 @@
 // The counts and boxes of collections, which every write keeps, against those of the features.
 #include <catch2/catch_test_macros.hpp>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "fixture.h"
@@ -153,4 +154,33 @@ TEST_CASE("the documents of a collection are found without reading its features"
   CHECK(store->documents("c", 10)->size() == 3);
   CHECK(store->documents("c", 2)->size() == 2);
   CHECK(store->documents("nothing", 10)->empty());
+}
+
+TEST_CASE(
+    "the state of a collection changes with every change of its features, and with no other") {
+  const Database database;
+  const auto store = database.store();
+  const auto state = [&] {
+    const auto collection = store->collection("buildings");
+    REQUIRE(collection);
+    return collection->state;
+  };
+  REQUIRE(store->put(std::vector{feature_at("a", 1)}));
+  std::set<std::string> states{state()};
+  REQUIRE(store->put(std::vector{feature_at("a", 1)}));  // replaced by an equal one: a new version
+  CHECK(states.insert(state()).second);
+  REQUIRE(store->put(std::vector{feature_at("b", 2), feature_at("c", 3)}));
+  CHECK(states.insert(state()).second);
+  REQUIRE(store->remove("buildings", "b"));
+  CHECK(states.insert(state()).second);
+  const std::string before = state();
+  REQUIRE(store->recount("buildings"));
+  CHECK(state() == before);
+  for (int i = 0; i < 120; ++i) {  // more writes than are summed up at once
+    REQUIRE(store->put(std::vector{feature_at("a", 1)}));
+    CHECK(states.insert(state()).second);
+  }
+  REQUIRE(store->remove_collection("buildings", {}));
+  REQUIRE(store->put(std::vector{feature_at("a", 1)}));
+  CHECK(states.insert(state()).second);
 }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Exports that were asked for by ranges, kept as files for a while so that the ranges that follow
+// need not make them again. Internal to server/.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "base/temporary_file.h"
+
+namespace watertight::server {
+
+/// Whole files by key, which names the state of their collection. Thread-safe.
+class ExportFiles {
+ public:
+  using File = std::shared_ptr<const TemporaryFile>;
+
+  /// Keeps at most `most_files` files, each for `keep` after it was asked for last, and at most
+  /// `most_bytes` of them together.
+  explicit ExportFiles(std::size_t most_files = 8, std::uint64_t most_bytes = 4ULL << 30,
+                       std::chrono::seconds keep = std::chrono::seconds(600))
+      : most_files_(most_files), most_bytes_(most_bytes), keep_(keep) {}
+
+  /// The file that is kept under `key`; null if there is none.
+  File find(const std::string& key);
+  void keep(const std::string& key, File file);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Entry {
+    std::string key;
+    File file;
+    Clock::time_point used;
+  };
+  void forget_old();
+
+  const std::size_t most_files_;
+  const std::uint64_t most_bytes_;
+  const std::chrono::seconds keep_;
+  std::mutex mutex_;
+  std::list<Entry> entries_;  // the one that was used last comes first
+};
+
+}  // namespace watertight::server

@@ -7,6 +7,7 @@ namespace watertight::pipeline {
 namespace {
 
 constexpr std::uint64_t kBatch = 500;
+constexpr std::uint64_t kFirstBatch = 8;  // few, so that the first bytes are there soon
 constexpr std::size_t kWorthSending = 64U << 10U;
 
 Error about(const std::string& id, Error error) {
@@ -68,8 +69,9 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
 
 Result<Bytes> CollectionExport::next() {
   Bytes bytes;
-  while (bytes.size() < kWorthSending && !is_last_) {
-    auto batch = store_->walk(collection_, kBatch, after_);
+  const std::size_t enough = is_first_ ? 1 : kWorthSending;
+  while (bytes.size() < enough && !is_last_) {
+    auto batch = store_->walk(collection_, is_first_ ? kFirstBatch : kBatch, after_);
     if (!batch) return std::move(batch).error();
     if (is_first_ && batch->features.empty()) {
       return Error{ErrorCode::not_found, "collection '" + collection_ + "' has no features"};

@@ -37,9 +37,10 @@ class CollectionExport {
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
                                         ExportFormat format, const EncodeOptions& pages = {});
 
-  /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file. Empty
-  /// after the last ones. Errors: those of the store; malformed when a stored feature is damaged;
-  /// unsupported as for start(). After an error the file has no end.
+  /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file; the first
+  /// call returns after a few features. Empty after the last ones. Errors: those of the store;
+  /// malformed when a stored feature is damaged; unsupported as for start(). After an error the
+  /// file has no end.
   Result<Bytes> next();
 
   /// True when the last bytes have been returned.

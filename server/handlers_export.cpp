@@ -26,6 +26,8 @@ constexpr std::array<FileFormat, 2> kFiles{
     {{"wt", kContainer, ".wt", pipeline::ExportFormat::container},
      {"cityjsonseq", kCityJsonSeq, ".city.jsonl", pipeline::ExportFormat::sequence}}};
 
+constexpr std::uint64_t kPiece = 1U << 20U;  // bytes of a kept file that are sent at a time
+
 const FileFormat* chosen_file(const RoutedRequest& request) {
   if (const std::string* wanted = request.target.parameter("f")) {
     for (const FileFormat& file : kFiles) {
@@ -116,14 +118,13 @@ Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelP
 
 /// The range of the file that the request wants, read piece by piece while it is sent.
 Response part_of(const ExportFiles::File& file, const ExportRequest& request) {
-  constexpr std::size_t kPiece = 1 << 20;
   const WantedRange wanted = wanted_range(request.message, request.etag(), file->size());
   if (wanted.kind == WantedRange::Kind::unsatisfiable) return beyond(file->size());
   Response response{206, std::string(request.file->type), "", headers_of(request)};
   response.headers.push_back(content_range(wanted.part, file->size()));
   response.rest = [file, next = wanted.part.first,
                    end = wanted.part.last + 1]() mutable -> Result<std::string> {
-    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kPiece, end - next));
+    const auto count = static_cast<std::size_t>(std::min(kPiece, end - next));
     const auto bytes = file->read(next, count);
     if (!bytes) return bytes.error();
     next += count;

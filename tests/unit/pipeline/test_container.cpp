@@ -390,8 +390,8 @@ TEST_CASE("an export as a sequence has the header and each feature's line") {
   CHECK(mixed.error().code == ErrorCode::unsupported);
   CHECK(mixed.error().message.find("different headers") != std::string::npos);
   // A feature that came after the start is refused when the export reaches it.
-  REQUIRE(begun->next());
-  const auto late = begun->next();
+  Result<Bytes> late = begun->next();
+  while (late && !begun->is_at_end()) late = begun->next();
   REQUIRE_FALSE(late);
   CHECK(late.error().code == ErrorCode::unsupported);
   CHECK(late.error().message.find("'zz'") != std::string::npos);

@@ -6,7 +6,7 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kBatch = 500;
+constexpr std::uint64_t kBatch = 100;
 constexpr std::uint64_t kFirstBatch = 8;  // few, so that the first bytes are there soon
 constexpr std::size_t kWorthSending = 64U << 10U;
 
@@ -49,11 +49,12 @@ void append(Bytes& bytes, ByteView more) { bytes.insert(bytes.end(), more.begin(
 }  // namespace
 
 Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::string& collection,
-                                                 ExportFormat format, const EncodeOptions& pages) {
+                                                 ExportFormat format, const EncodeOptions& pages,
+                                                 SolidLayout layout) {
   if (const auto found = store.collection(collection); !found) return found.error();
   CollectionExport started(store, collection);
   if (format == ExportFormat::container) {
-    started.container_.emplace(pages);
+    started.container_.emplace(pages, layout);
     return started;
   }
   auto header = sequence_header(store, collection);
@@ -67,7 +68,7 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
   return started;
 }
 
-Result<Bytes> CollectionExport::next() {
+Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
   Bytes bytes;
   const std::size_t enough = is_first_ ? 1 : kWorthSending;
   while (bytes.size() < enough && !is_last_) {
@@ -79,6 +80,9 @@ Result<Bytes> CollectionExport::next() {
     if (is_first_ && !container_) append(bytes, as_bytes(header_ + '\n'));
     is_first_ = false;
     for (StoredFeature& feature : batch->features) {
+      if (is_cancelled && is_cancelled()) {
+        return Error{ErrorCode::cancelled, "the export was not finished"};
+      }
       ++exported_.features;
       exported_.solids += feature.solids.size();
       if (Status status = add(std::move(feature), bytes); !status) return status.error();

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "base/cancel.h"
 #include "codec/blob.h"
 #include "formats/city_json/city_json.h"
 #include "formats/document.h"
@@ -35,13 +36,14 @@ class CollectionExport {
   /// unsupported when the features cannot be in one sequence (not of city models, or with several
   /// headers, under which coordinates and references differ).
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
-                                        ExportFormat format, const EncodeOptions& pages = {});
+                                        ExportFormat format, const EncodeOptions& pages = {},
+                                        SolidLayout layout = SolidLayout::pages);
 
   /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file; the first
   /// call returns after a few features. Empty after the last ones. Errors: those of the store;
-  /// malformed when a stored feature is damaged; unsupported as for start(). After an error the
-  /// file has no end.
-  Result<Bytes> next();
+  /// malformed when a stored feature is damaged; unsupported as for start(); cancelled, asked for
+  /// before each feature. After an error the file has no end.
+  Result<Bytes> next(const CancelPoll& is_cancelled = {});
 
   /// True when the last bytes have been returned.
   bool is_at_end() const { return is_last_; }

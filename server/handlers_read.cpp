@@ -85,6 +85,13 @@ Result<store::StoredBox> parse_box(std::string_view text) {
   return box;
 }
 
+bool holds(const store::StoredBox& outer, const store::StoredBox& inner) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (outer.min[axis] > inner.min[axis] || outer.max[axis] < inner.max[axis]) return false;
+  }
+  return true;
+}
+
 /// The box of a request. It counts in the collection's own CRS only, and the client has to state
 /// that.
 Result<std::optional<store::StoredBox>> box_of_request(const Target& target,
@@ -203,7 +210,8 @@ Response get_items(const RoutedRequest& request) {
   if (!limit) return to_response(to_problem(limit.error()));
   const std::string* after = request.target.parameter("after");
   const auto page = request.service.store->list(
-      {collection->id, *limit, after == nullptr ? std::string() : *after, *box});
+      {collection->id, *limit, after == nullptr ? std::string() : *after, *box,
+       *box && collection->box && holds(**box, *collection->box)});
   if (!page) return to_response(to_problem(page.error()));
 
   Json json{{"type", "FeatureCollection"}};

@@ -90,6 +90,8 @@ struct FeatureQuery {
   std::string after;  // id after which the page starts; "" = from the start
   /// Selects the features whose closed boxes have a point in common with this box.
   std::optional<StoredBox> box;
+  /// True if the box holds that of the collection, so that searching by place would save nothing.
+  bool holds_collection = false;
 };
 
 /// The facts about a feature that lists show.

@@ -39,8 +39,8 @@ struct Request {
 enum class Lane : std::uint8_t { quick, reading, small, computing };
 
 /// The next part of a body; "" after the last. An error cuts the answer off, whose status has been
-/// sent.
-using BodyParts = std::function<Result<std::string>()>;
+/// sent. The work ends early, by an error, once the poll says that nobody waits for the part.
+using BodyParts = std::function<Result<std::string>(const CancelPoll&)>;
 
 struct FurtherWork;
 

@@ -63,9 +63,9 @@ Response made_guarded(const std::function<Response()>& make) {
   }
 }
 
-Result<std::string> next_part_guarded(const BodyParts& parts) {
+Result<std::string> next_part_guarded(const BodyParts& parts, const CancelPoll& is_cancelled) {
   try {
-    return parts();
+    return parts(is_cancelled);
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::limit_exceeded, "not enough memory"};
   } catch (const std::exception& failure) {
@@ -427,9 +427,14 @@ awaitable<Status> Session::send(Response response, bool keep_alive) {
 awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
   if (environment_.is_cancelled) co_return Error{ErrorCode::cancelled, "the server is stopping"};
   using Made = std::optional<Result<std::string>>;  // co_spawn needs a type with a default value
-  auto work = [&parts]() -> awaitable<Made> {
+  const SessionEnvironment& environment = environment_;
+  const ClientWatch watch(connection_);
+  const CancelPoll is_cancelled = [&environment, left = watch.has_left()] {
+    return environment.is_cancelled || *left;
+  };
+  auto work = [&parts, &is_cancelled]() -> awaitable<Made> {
     step_back();
-    co_return next_part_guarded(parts);
+    co_return next_part_guarded(parts, is_cancelled);
   };
   Made made = co_await asio::co_spawn(environment_.computing.threads.get_executor(),
                                       std::move(work), use_awaitable);

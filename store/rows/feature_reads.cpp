@@ -14,18 +14,25 @@ namespace {
 constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
 /// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
-/// are its smallest and largest coordinates. The index finds candidates in x and y; PostgreSQL's
-/// box operator is generous by 1e-6, so none is missed. The comparison of the six numbers decides.
+/// are its smallest and largest coordinates. The index of boxes finds candidates in x and y;
+/// PostgreSQL's box operator is generous by 1e-6, so none is missed. The comparison of the six
+/// numbers decides. The appended '' keeps PostgreSQL from narrowing the candidates down by an index
+/// that holds all features of the collection.
 std::string matching(const FeatureQuery& query) {
-  return std::string(
-             " FROM watertight.feature WHERE collection = "
-             "(SELECT id FROM watertight.collection WHERE name = $1)") +
-         (query.box ? " AND min_x IS NOT NULL"
-                      " AND watertight.index_box(min_x, min_y, max_x, max_y)"
-                      "   && watertight.index_box($2, $3, $5, $6)"
-                      " AND min_x <= $5 AND min_y <= $6 AND min_z <= $7"
-                      " AND max_x >= $2 AND max_y >= $3 AND max_z >= $4"
-                    : "");
+  constexpr const char* kFeatures = " FROM watertight.feature WHERE ";
+  constexpr const char* kOfCollection = "= (SELECT id FROM watertight.collection WHERE name = $1)";
+  constexpr const char* kCandidates =
+      " AND watertight.index_box(min_x, min_y, max_x, max_y)"
+      " && watertight.index_box($2, $3, $5, $6)";
+  constexpr const char* kInBox =
+      " AND min_x IS NOT NULL AND min_x <= $5 AND min_y <= $6 AND min_z <= $7"
+      " AND max_x >= $2 AND max_y >= $3 AND max_z >= $4";
+  const bool by_place = query.box && !query.holds_collection;
+  std::string clauses = kFeatures;
+  clauses.append(by_place ? "collection || '' " : "collection ").append(kOfCollection);
+  if (by_place) clauses.append(kCandidates);
+  if (query.box) clauses.append(kInBox);
+  return clauses;
 }
 
 constexpr const char* kSolidColumns =

@@ -131,7 +131,7 @@ TEST_CASE("the service exports the same file as the command line") {
     REQUIRE(response.status == 200);
     std::string body = response.body;
     while (response.rest) {
-      const auto part = response.rest();
+      const auto part = response.rest({});
       REQUIRE(part);
       if (part->empty()) break;
       body += *part;

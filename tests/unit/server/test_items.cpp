@@ -158,7 +158,7 @@ TEST_CASE_METHOD(Items, "a range of an item is its bytes, from the store and fro
 std::string whole(const server::Response& response) {
   std::string text = response.body;
   while (response.rest) {
-    const auto part = response.rest();
+    const auto part = response.rest({});
     REQUIRE(part);
     if (part->empty()) break;
     text += *part;

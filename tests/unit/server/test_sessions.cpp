@@ -373,7 +373,8 @@ struct Parts {
     application.respond = [=, this](const server::Request& request, const CancelPoll&) {
       server::Response response{200, "text/plain", std::string(bytes, 'a'), {}};
       if (request.target != "/parts") return response;
-      response.rest = [=, this, alive = alive, left = count - 1]() mutable -> Result<std::string> {
+      response.rest = [=, this, alive = alive,
+                       left = count - 1](const CancelPoll&) mutable -> Result<std::string> {
         ++made;
         if (left > 0) return std::string(bytes, static_cast<char>('a' + left--));
         if (failing) return Error{ErrorCode::unavailable, "the database is away"};
@@ -478,6 +479,38 @@ TEST_CASE("a client that leaves or stops reading leaves nothing behind, and bloc
   CHECK(parts.has_logged("cut-off=", 2));
   CHECK(parts.is_idle());
   CHECK(parts.made < 1000);
+}
+
+TEST_CASE("the work on a part ends when the client leaves") {
+  std::atomic<bool> has_begun = false;
+  std::atomic<bool> has_ended = false;
+  server::Application application;
+  application.lane = [](const server::Request&) { return server::Lane::reading; };
+  application.respond = [&](const server::Request&, const CancelPoll&) {
+    server::Response response{200, "text/plain", "start", {}};
+    response.rest = [&](const CancelPoll& is_cancelled) -> Result<std::string> {
+      has_begun = true;
+      while (!is_cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      has_ended = true;
+      return Error{ErrorCode::cancelled, "not finished"};
+    };
+    return response;
+  };
+  server::ServerOptions options = Server::small();
+  options.port = 0;
+  const auto started = server::HttpServer::start(options, application, [](const std::string&) {});
+  REQUIRE(started);
+  {
+    const Client client((*started)->port());
+    client.send(kGetParts);
+    while (!has_begun) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    CHECK_FALSE(has_ended);
+  }
+  for (int i = 0; i < 2500 && !has_ended; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  CHECK(has_ended);
+  (*started)->stop();
 }
 
 TEST_CASE("stopping cuts off an answer in parts that does not end in time") {

@@ -291,6 +291,7 @@ TEST_CASE("features of any finite size are stored and found, and keep no others 
   }
   const auto count = [&](const store::StoredBox& box) {
     const auto found = store->list({"buildings", 1000, "", box});
+    INFO((found ? std::string() : to_string(found.error())));
     REQUIRE(found);
     return found->features.size();
   };

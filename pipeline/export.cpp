@@ -7,7 +7,7 @@ namespace watertight::pipeline {
 namespace {
 
 constexpr std::uint64_t kBatch = 100;
-constexpr std::uint64_t kFirstBatch = 8;  // few, so that the first bytes are there soon
+constexpr std::uint64_t kFirstBatch = 1;  // so that the first bytes are there soon
 constexpr std::size_t kWorthSending = 64U << 10U;
 
 Error about(const std::string& id, Error error) {

@@ -40,7 +40,7 @@ class CollectionExport {
                                         SolidLayout layout = SolidLayout::pages);
 
   /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file; the first
-  /// call returns after a few features. Empty after the last ones. Errors: those of the store;
+  /// call returns after one feature. Empty after the last ones. Errors: those of the store;
   /// malformed when a stored feature is damaged; unsupported as for start(); cancelled, asked for
   /// before each feature. After an error the file has no end.
   Result<Bytes> next(const CancelPoll& is_cancelled = {});

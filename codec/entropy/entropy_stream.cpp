@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 #include <utility>
 
 #include "base/assert.h"
@@ -111,12 +110,10 @@ bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
     }
     shift_out();
   }
-  costs_[part_] += kCosts[(result ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
+  const std::uint32_t cost = kCosts[(result ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
+  cost_ += cost;
+  costs_[part_] += cost;
   return result;
-}
-
-std::uint64_t EntropyStream::cost() const {
-  return std::accumulate(costs_.begin(), costs_.end(), std::uint64_t{0});
 }
 
 std::uint64_t EntropyStream::code_bits(std::uint64_t value, int count) {

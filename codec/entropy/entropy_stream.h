@@ -26,7 +26,12 @@ inline constexpr int kCostBits = 16;
 class EntropyStream {
  public:
   static EntropyStream writer() { return EntropyStream(Direction::write, {}); }
-  static EntropyStream meter() { return EntropyStream(Direction::measure, {}); }
+  /// A meter fails once its cost reaches `limit`, so that whoever looks for less can stop.
+  static EntropyStream meter(std::uint64_t limit = ~std::uint64_t{0}) {
+    EntropyStream stream(Direction::measure, {});
+    stream.limit_ = limit;
+    return stream;
+  }
   /// `bytes` must outlive the stream.
   static EntropyStream reader(ByteView bytes) { return EntropyStream(Direction::read, bytes); }
 
@@ -46,12 +51,12 @@ class EntropyStream {
   /// reader that runs past the end of its bytes fails by itself. Callers bound their loops, and ask
   /// failed() in every loop that could be long.
   void fail() { failed_ = true; }
-  bool failed() const { return failed_; }
+  bool failed() const { return failed_ || cost_ >= limit_; }
 
   /// When reading, the number of bytes taken so far, including the few that the coder reads ahead.
   std::size_t position() const { return std::min(position_, source_.size()); }
   /// The cost of the decisions so far, in 1/65536 bit; within 0.1 % of the bytes.
-  std::uint64_t cost() const;
+  std::uint64_t cost() const { return cost_; }
   std::uint64_t cost(StreamPart part) const { return costs_[static_cast<std::size_t>(part)]; }
   const StreamCosts& costs() const { return costs_; }
   /// Books the costs of the decisions from here on under `part`. Changes nothing else.
@@ -76,6 +81,8 @@ class EntropyStream {
   std::size_t position_ = 0;  // reading: bytes taken, counting those past the end
   ByteView source_;
   Bytes bytes_;
+  std::uint64_t limit_ = ~std::uint64_t{0};
+  std::uint64_t cost_ = 0;
   StreamCosts costs_{};
   std::size_t part_ = 0;
 };

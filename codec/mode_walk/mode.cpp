@@ -92,6 +92,7 @@ Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& me
     return status;
   }
   const ErrorCode failure = stream.is_reading() ? ErrorCode::malformed : ErrorCode::not_encodable;
+  if (stream.failed()) return Error{failure, "the columns of the vertices"};
   const std::vector<Point> points = points_of(solid.vertices);
   for (const Point& p : points) {
     if (p.x >= 0x1p30 || p.y >= 0x1p30 || p.z >= 0x1p30) {

@@ -399,7 +399,8 @@ Status SolidCoder::code(PageSolid& solid, const WriterChoice& choice) {
 }
 
 std::optional<SolidCoder::Measure> SolidCoder::measure(const PageSolid& solid, Mode mode,
-                                                       const WriterChoice& choice) const {
+                                                       const WriterChoice& choice,
+                                                       std::uint64_t limit) const {
   const ModeCoder coder = coder_of(mode);
   if (coder.code == nullptr || !solid.integers) return std::nullopt;
   if (mode == Mode::parallelogram && !is_all_triangles(*solid.integers)) return std::nullopt;
@@ -411,9 +412,10 @@ std::optional<SolidCoder::Measure> SolidCoder::measure(const PageSolid& solid, M
     if (!options) return std::nullopt;
     result.choice.vertex_options = std::move(options).value();
   }
-  EntropyStream meter = EntropyStream::meter();
+  EntropyStream meter = EntropyStream::meter(limit);
   const BankTrial trial(models, integers.vertices.size());
-  if (!coder.code(meter, models, memory_, integers, result.choice, limits_)) return std::nullopt;
+  const Status coded = coder.code(meter, models, memory_, integers, result.choice, limits_);
+  if (!coded || meter.failed()) return std::nullopt;
   result.cost = meter.cost();
   return result;
 }
@@ -425,10 +427,9 @@ Plan SolidCoder::cheapest(const PageSolid& solid, const Plan& plan) const {
   for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {
     if ((plan.declined >> static_cast<unsigned>(mode) & 1U) != 0) continue;
     if (mode == Mode::walk && solid.integers && is_large_mesh(*solid.integers)) continue;
-    const auto measured = measure(solid, mode, best.choice);
+    const auto measured = measure(solid, mode, best.choice, least);
     if (!measured) continue;
     best.choice = measured->choice;
-    if (measured->cost >= least) continue;
     least = measured->cost;
     best.mode = mode;
   }

@@ -84,9 +84,9 @@ class SolidCoder {
     WriterChoice choice;     // the choice that has this cost
   };
   /// Measures a solid in a mode. Makes the choices that `choice` leaves open. Returns nothing if
-  /// the mode cannot hold the solid or is not for integers.
-  std::optional<Measure> measure(const PageSolid& solid, Mode mode,
-                                 const WriterChoice& choice = {}) const;
+  /// the mode cannot hold the solid for less than `limit` or is not for integers.
+  std::optional<Measure> measure(const PageSolid& solid, Mode mode, const WriterChoice& choice = {},
+                                 std::uint64_t limit = ~std::uint64_t{0}) const;
 
   /// Returns `plan` with the mode for integers that costs least among those that the plan does not
   /// decline, and with the choices made on the way; the mode is Mode::automatic if no such mode can

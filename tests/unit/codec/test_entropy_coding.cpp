@@ -123,6 +123,20 @@ TEST_CASE("a measuring stream measures the bytes that a writing stream takes") {
   REQUIRE(measured < 1.002 * written + 2);
 }
 
+TEST_CASE("a meter fails once its cost reaches the limit, and not before") {
+  std::vector<Sample> all = samples(7, 500);
+  const auto measured = [&](std::uint64_t limit) {
+    codec::EntropyStream meter = codec::EntropyStream::meter(limit);
+    codec::ModelBank models(kLayout);
+    code(meter, models, all);
+    return meter;
+  };
+  const std::uint64_t cost = measured(~std::uint64_t{0}).cost();
+  CHECK_FALSE(measured(cost + 1).failed());
+  CHECK(measured(cost).failed());
+  CHECK(measured(cost / 2).failed());
+}
+
 TEST_CASE("a stream cut short fails instead of going on for ever") {
   std::vector<Sample> all = samples(3, 2000);
   codec::EntropyStream writer = codec::EntropyStream::writer();

@@ -405,8 +405,8 @@ TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is as
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a small collection comes as one part, whose length is known") {
-  REQUIRE(post("/collections/town/items", kTwo).status == 201);
+TEST_CASE_METHOD(Fixture, "a collection of one feature comes as one part, whose length is known") {
+  REQUIRE(post("/collections/town/items", many(1)).status == 201);
   const server::Response file = get("/collections/town/export");
   CHECK_FALSE(file.rest);
   CHECK(pipeline::decode_container(as_bytes(file.body)));

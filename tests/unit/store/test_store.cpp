@@ -337,6 +337,7 @@ TEST_CASE("a box finds exactly the features whose closed boxes share a point wit
     }
     CHECK(all_ids(*store, {"buildings", 50, "", box}) == expected);
     CHECK(all_ids(*store, {"buildings", 1, "", box}) == expected);
+    CHECK(all_ids(*store, {"buildings", 50, "", box, true}) == expected);  // the other plan
   }
 }
 

@@ -11,6 +11,7 @@
 #include "server/handlers.h"
 #include "server/items/representation_cache.h"
 #include "tests/unit/pipeline/samples.h"
+#include "tests/unit/server/answers.h"
 
 namespace watertight {
 namespace {
@@ -154,25 +155,13 @@ TEST_CASE_METHOD(Items, "a range of an item is its bytes, from the store and fro
   CHECK(item({{"range", "bytes=1-2"}, {"if-range", "\"0-blob\""}}).status == 200);
 }
 
-/// The whole body of an answer: its first bytes and all further parts.
-std::string whole(const server::Response& response) {
-  std::string text = response.body;
-  while (response.rest) {
-    const auto part = response.rest({});
-    REQUIRE(part);
-    if (part->empty()) break;
-    text += *part;
-  }
-  return text;
-}
-
 TEST_CASE_METHOD(Items,
                  "a download of a collection can be resumed while the collection is the same") {
   const auto get = [&](std::vector<server::HeaderField> fields) {
     return send({"GET", "/collections/town/export?f=wt", std::move(fields), ""});
   };
   const server::Response first = get({});
-  const std::string all = whole(first);
+  const std::string all = test::whole(first);
   const std::string etag = field(first, "ETag");
   CHECK(field(first, "Accept-Ranges") == "bytes");
   const server::Response rest = get({{"range", "bytes=7-"}, {"if-range", etag}});
@@ -180,9 +169,9 @@ TEST_CASE_METHOD(Items,
   CHECK(field(rest, "ETag") == etag);
   const std::string size = std::to_string(all.size());
   CHECK(field(rest, "Content-Range") == "bytes 7-" + std::to_string(all.size() - 1) + "/" + size);
-  CHECK(whole(rest) == all.substr(7));
-  CHECK(whole(get({{"range", "bytes=2-4"}})) == all.substr(2, 3));
-  CHECK(whole(get({{"range", "bytes=-4"}})) == all.substr(all.size() - 4));
+  CHECK(test::whole(rest) == all.substr(7));
+  CHECK(test::whole(get({{"range", "bytes=2-4"}})) == all.substr(2, 3));
+  CHECK(test::whole(get({{"range", "bytes=-4"}})) == all.substr(all.size() - 4));
   CHECK(get({{"range", "bytes=" + size + "-"}}).status == 416);
   CHECK(get({{"if-none-match", etag}}).status == 304);
 

@@ -7,6 +7,7 @@
 #include "pipeline/container.h"
 #include "server/handlers.h"
 #include "tests/unit/pipeline/samples.h"
+#include "tests/unit/server/answers.h"
 
 namespace watertight {
 namespace {
@@ -168,14 +169,15 @@ TEST_CASE_METHOD(Fixture, "the export of a collection of two documents can be po
   REQUIRE(post("/collections/town/items", coarse).status == 201);
   const server::Response file = get("/collections/town/export?f=wt");
   REQUIRE(file.status == 200);
+  const std::string bytes = test::whole(file);
   for (const std::string& type : {std::string("application/vnd.watertight"), std::string()}) {
-    const server::Response posted = post("/collections/copy/items", file.body, type);
+    const server::Response posted = post("/collections/copy/items", bytes, type);
     INFO(posted.body);
     REQUIRE(posted.status == 201);
     CHECK(Json::parse(posted.body)["stored"] == 3);
   }
-  CHECK(get("/collections/copy/export?f=wt").body == file.body);
-  CHECK(post("/collections/copy/items", file.body.substr(0, file.body.size() / 2),
+  CHECK(test::whole(get("/collections/copy/export?f=wt")) == bytes);
+  CHECK(post("/collections/copy/items", bytes.substr(0, bytes.size() / 2),
              "application/vnd.watertight")
             .status == 400);
 }
@@ -366,18 +368,6 @@ std::string many(int count) {
   return samples::sequence(lines);
 }
 
-/// The whole body of an answer: its first bytes and all further parts.
-std::string whole(const server::Response& response) {
-  std::string text = response.body;
-  while (response.rest) {
-    const auto part = response.rest({});
-    REQUIRE(part);
-    if (part->empty()) break;
-    text += *part;
-  }
-  return text;
-}
-
 TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is asked for") {
   const std::string text = many(600);
   REQUIRE(post("/collections/town/items", text).status == 201);
@@ -387,11 +377,11 @@ TEST_CASE_METHOD(Fixture, "a collection comes as one file in the form that is as
   CHECK(*header_of(sequence, "Content-Disposition") == "attachment; filename=\"town.city.jsonl\"");
   CHECK(sequence.rest);
   CHECK(sequence.body.size() < text.size());
-  CHECK(whole(sequence) == text);
+  CHECK(test::whole(sequence) == text);
   const server::Response file = get("/collections/town/export");
   REQUIRE(file.status == 200);
   CHECK(file.content_type == "application/vnd.watertight");
-  const std::string bytes = whole(file);
+  const std::string bytes = test::whole(file);
   const auto documents = pipeline::decode_container(as_bytes(bytes));
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);

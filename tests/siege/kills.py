@@ -76,9 +76,20 @@ class Writer(threading.Thread):
             time.sleep(0.02)
 
 
+def read(service, path):
+    """An answer other than 503, which is right for a moment after a smart shutdown: it ends sessions
+    only seconds later, perhaps after the service was ready."""
+    end = time.monotonic() + READY_SECONDS
+    while True:
+        status, body = service.request("GET", path)
+        if status != 503 or time.monotonic() > end:
+            return status, body
+        time.sleep(0.05)
+
+
 def state_of(service, name):
     """The number of the box that is stored under a name."""
-    status, body = service.request("GET", f"/collections/town/items/{name}?f=cityjsonseq")
+    status, body = read(service, f"/collections/town/items/{name}?f=cityjsonseq")
     if status == 404:
         return ABSENT
     if status != 200:
@@ -106,7 +117,7 @@ def check(service, writers):
     listed = []
     path = "/collections/town/items?limit=1000"
     while path:
-        status, body = service.request("GET", path)
+        status, body = read(service, path)
         if status != 200:
             return [*complaints, f"{path}: status {status}"]
         page = json.loads(body)
@@ -114,7 +125,7 @@ def check(service, writers):
         path = next((link["href"] for link in page["links"] if link["rel"] == "next"), None)
     if sorted(listed) != sorted(expected):
         complaints.append(f"the list has {len(listed)} entries, {len(expected)} are expected")
-    counted = json.loads(service.request("GET", "/collections/town")[1]).get("features")
+    counted = json.loads(read(service, "/collections/town")[1]).get("features")
     if counted != len(expected):
         complaints.append(f"the collection counts {counted} features, {len(expected)} are expected")
     return complaints

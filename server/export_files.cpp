@@ -8,7 +8,7 @@ namespace watertight::server {
 
 ExportFiles::File ExportFiles::find(const std::string& key) {
   const std::lock_guard lock(mutex_);
-  forget_old();
+  drop_surplus();
   const auto found = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const Entry& entry) { return entry.key == key; });
   if (found == entries_.end()) return nullptr;
@@ -18,13 +18,20 @@ ExportFiles::File ExportFiles::find(const std::string& key) {
 }
 
 void ExportFiles::keep(const std::string& key, File file) {
+  if (file->size() > most_bytes_) return;
   const std::lock_guard lock(mutex_);
   entries_.remove_if([&](const Entry& entry) { return entry.key == key; });
   entries_.push_front({key, std::move(file), Clock::now()});
-  forget_old();
+  drop_surplus();
 }
 
 void ExportFiles::forget_old() {
+  const std::lock_guard lock(mutex_);
+  drop_surplus();
+}
+
+/// Removes the files that are too old, too many or too large together. Requires the lock.
+void ExportFiles::drop_surplus() {
   const Clock::time_point now = Clock::now();
   std::size_t files = 0;
   std::uint64_t bytes = 0;

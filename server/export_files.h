@@ -29,7 +29,10 @@ class ExportFiles {
 
   /// The file that is kept under `key`; null if there is none.
   File find(const std::string& key);
+  /// Keeps a file, unless it alone is larger than all may be.
   void keep(const std::string& key, File file);
+  /// Removes the files whose time is over.
+  void forget_old();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -38,7 +41,7 @@ class ExportFiles {
     File file;
     Clock::time_point used;
   };
-  void forget_old();
+  void drop_surplus();
 
   const std::size_t most_files_;
   const std::uint64_t most_bytes_;

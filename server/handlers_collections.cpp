@@ -34,6 +34,10 @@ Response collection_response(const Result<store::StoredCollection>& collection) 
 
 /// The new id in a JSON merge patch (RFC 7396), which can change nothing else of a collection.
 Result<std::string> new_id_of(const std::string& body) {
+  constexpr std::size_t kLongestPatch = 1024;
+  if (body.size() > kLongestPatch) {
+    return Error{ErrorCode::limit_exceeded, "a change of a collection has at most 1024 bytes"};
+  }
   const Json patch = Json::parse(body, nullptr, false);
   if (patch.is_object() && patch.size() == 1 && patch.contains("id") && patch["id"].is_string()) {
     return patch["id"].get<std::string>();

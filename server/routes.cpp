@@ -100,8 +100,8 @@ const std::vector<Route>& routes() {
       {"GET", "/collections", Lane::reading, get_collections, {"f", "limit", "after"}},
       {"GET", "/collections/{collectionId}", Lane::reading, get_collection, {"f"}},
       {"PATCH", "/collections/{collectionId}", Lane::small, patch_collection, {}},
-      {"DELETE", "/collections/{collectionId}", Lane::small, delete_collection, {}},
-      {"POST", "/collections/{collectionId}/recount", Lane::small, post_recount, {}},
+      {"DELETE", "/collections/{collectionId}", Lane::computing, delete_collection, {}},
+      {"POST", "/collections/{collectionId}/recount", Lane::computing, post_recount, {}},
       {"GET",
        "/collections/{collectionId}/items",
        Lane::reading,
@@ -133,7 +133,8 @@ Lane lane_of(const Request& request) {
   if (!target) return Lane::quick;
   for (const Route& route : routes()) {
     if (route.method != effective_method(request) || !matches(route, *target)) continue;
-    const bool is_small = request.method == "POST" && request.body.size() <= kSmallBody;
+    const bool is_small = request.method == "POST" && !request.body.empty() &&
+                          request.body.size() <= kSmallBody;
     return route.lane == Lane::computing && is_small ? Lane::small : route.lane;
   }
   return Lane::quick;

@@ -12,8 +12,10 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "server/export_files.h"
 #include "server/items/representation_cache.h"
@@ -51,11 +53,11 @@ std::shared_ptr<spdlog::logger> make_logger() {
 }
 
 /// Asks the store again and again whether it can be used, so that probes are answered at once, and
-/// reaps helper processes that ended.
+/// calls `tidy_up` each time.
 class ReadinessMonitor {
  public:
-  ReadinessMonitor(SolidStore& store, delaunay::EngineWorkers& workers)
-      : store_(store), workers_(workers), thread_([this] { run(); }) {}
+  ReadinessMonitor(SolidStore& store, std::function<void()> tidy_up)
+      : store_(store), tidy_up_(std::move(tidy_up)), thread_([this] { run(); }) {}
   ~ReadinessMonitor() {
     {
       const std::lock_guard lock(mutex_);
@@ -80,7 +82,7 @@ class ReadinessMonitor {
 
   void run() {
     for (;;) {
-      workers_.reap();
+      tidy_up_();
       Status status = store_.ping();
       std::unique_lock lock(mutex_);
       const auto pause = status ? kPause : kPauseWhileAway;
@@ -91,7 +93,7 @@ class ReadinessMonitor {
   }
 
   SolidStore& store_;
-  delaunay::EngineWorkers& workers_;
+  const std::function<void()> tidy_up_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_stopping_ = false;
@@ -165,13 +167,16 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   if (is_stopping()) return Error{ErrorCode::cancelled, "stopped before the service listened"};
   if (!store) return std::move(store).error();
   delaunay::EngineWorkers workers;
-  ReadinessMonitor monitor(**store, workers);
+  ExportFiles export_files;
+  ReadinessMonitor monitor(**store, [&] {
+    workers.reap();  // helper processes that ended
+    export_files.forget_old();
+  });
   const auto readiness = [&options, &monitor] {
     Status health = options.database_health ? options.database_health() : Done{};
     return health ? monitor.status() : health;
   };
   RepresentationCache cache(options.cache_bytes);
-  ExportFiles export_files;
   Service service{store->get(), &workers, {}, readiness, &cache, &export_files};
   service.options.limits = options.limits;
   service.options.requires_preconditions = options.requires_preconditions;

@@ -492,6 +492,10 @@ void DatabaseSession::roll_back() {
 
 bool DatabaseSession::is_lost() const { return PQstatus(connection_.get()) != CONNECTION_OK; }
 
+bool DatabaseSession::is_idle() const {
+  return !is_lost() && sent_.empty() && PQtransactionStatus(connection_.get()) == PQTRANS_IDLE;
+}
+
 ServerState server_state(const std::string& connection) {
   switch (PQping(connection.c_str())) {
     case PQPING_OK:
@@ -544,7 +548,8 @@ void ConnectionPool::give_back(std::unique_ptr<DatabaseSession> session) {
   {
     const std::lock_guard lock(mutex_);
     ++free_slots_;
-    if (session && !session->is_lost()) idle_.push_back(std::move(session));
+    // After an exception a transaction may be open, which the next user must not inherit.
+    if (session && session->is_idle()) idle_.push_back(std::move(session));
   }
   freed_.notify_one();
 }

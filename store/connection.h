@@ -136,6 +136,8 @@ class DatabaseSession {
   const std::string& constraint() const { return constraint_; }
   /// Whether the session is gone, so that this object is of no more use.
   bool is_lost() const;
+  /// True if nothing is under way: no transaction is open, and all results were read.
+  bool is_idle() const;
 
  private:
   struct Finish {

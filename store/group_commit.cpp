@@ -38,6 +38,35 @@ struct GroupCommit::Call {
   std::condition_variable changed;
 };
 
+/// The turn of a call to write a group. At its end, by an exception too, each call of the group has
+/// a result and the next call has its turn: else they would wait for ever.
+class GroupCommit::Turn {
+ public:
+  Turn(GroupCommit& commit, Call& leader) : commit_(commit), leader_(leader) {}
+  ~Turn() {
+    const std::lock_guard lock(commit_.mutex_);
+    for (Call* const call : group) {
+      if (call == nullptr) continue;
+      call->result = Error{ErrorCode::unavailable, "out of memory"};
+      call->changed.notify_one();
+    }
+    std::deque<Call*>& waiting = commit_.waiting_;
+    waiting.erase(std::remove(waiting.begin(), waiting.end(), &leader_), waiting.end());
+    commit_.is_writing_ = !waiting.empty();
+    if (waiting.empty()) return;
+    waiting.front()->leads = true;
+    waiting.front()->changed.notify_one();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+  Group group;  // null: a call that has its result and may be gone
+
+ private:
+  GroupCommit& commit_;
+  Call& leader_;
+};
+
 GroupCommit::Versions GroupCommit::put(std::span<const StoredFeature> features) {
   Call call;
   call.features = features;
@@ -47,22 +76,19 @@ GroupCommit::Versions GroupCommit::put(std::span<const StoredFeature> features) 
   if (is_writing_) call.changed.wait(lock, [&] { return call.leads || call.result; });
   if (call.result) return *std::move(call.result);
   is_writing_ = true;
-  const Group group = take_group();
   lock.unlock();
-  write_group(group);
-  lock.lock();
-  is_writing_ = !waiting_.empty();
-  if (is_writing_) {
-    waiting_.front()->leads = true;
-    waiting_.front()->changed.notify_one();
+  {
+    Turn turn(*this, call);
+    take_group(turn.group);
+    write_group(turn.group);
   }
   return *std::move(call.result);
 }
 
 /// Takes the calls from the front of the queue that fit in one group, one at least. Ends before a
 /// call that has a feature in common with one before.
-GroupCommit::Group GroupCommit::take_group() {
-  Group group;
+void GroupCommit::take_group(Group& group) {
+  const std::lock_guard lock(mutex_);
   std::set<Key> keys;
   std::size_t features = 0;
   std::size_t bytes = 0;
@@ -79,7 +105,6 @@ GroupCommit::Group GroupCommit::take_group() {
     group.push_back(next);
     waiting_.pop_front();
   }
-  return group;
 }
 
 GroupCommit::Versions GroupCommit::write_alone(const Call& call) {
@@ -89,14 +114,14 @@ GroupCommit::Versions GroupCommit::write_alone(const Call& call) {
 }
 
 /// Writes a group and gives each of its calls its result.
-void GroupCommit::write_group(const Group& group) {
+void GroupCommit::write_group(Group& group) {
   std::vector<const StoredFeature*> all;
   for (const Call* const call : group) append(all, call->features);
   const Versions versions = write_(all);
   const bool is_shared =
       versions || group.size() == 1 || versions.error().code == ErrorCode::unavailable;
   std::size_t first = 0;
-  for (Call* const call : group) {
+  for (Call*& call : group) {
     std::optional<Versions> result;
     if (!is_shared) {
       result = write_alone(*call);
@@ -112,6 +137,7 @@ void GroupCommit::write_group(const Group& group) {
     const std::lock_guard lock(mutex_);
     call->result = std::move(result);
     call->changed.notify_one();
+    call = nullptr;
   }
 }
 

@@ -44,9 +44,10 @@ class GroupCommit {
 
  private:
   struct Call;
+  class Turn;
   using Group = std::vector<Call*>;
-  Group take_group();
-  void write_group(const Group& group);
+  void take_group(Group& group);
+  void write_group(Group& group);
   Versions write_alone(const Call& call);
 
   const Write write_;

@@ -12,6 +12,7 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <chrono>
+#include <future>
 #include <limits>
 #include <optional>
 #include <thread>
@@ -98,9 +99,13 @@ awaitable<void> AsioServer::accept() {
     error_code error;
     tcp::socket socket = co_await acceptor_.async_accept(redirect_error(use_awaitable, error));
     if (environment_.is_draining) break;
-    if (!error) {
-      begin_session(std::move(socket));
-      continue;
+    try {
+      if (!error) {
+        begin_session(std::move(socket));
+        continue;
+      }
+    } catch (const std::bad_alloc&) {
+      environment_.log("event=refused reason=memory");
     }
     // Descriptors or memory ran out. Open connections may end, so accepting is tried again soon.
     timer.expires_after(kPause);
@@ -198,7 +203,13 @@ void AsioServer::stop() {
   if (!wait_for_sessions(environment_.options.drain_seconds)) {
     environment_.log("event=drain-timeout sessions=" + std::to_string(environment_.sessions));
   }
-  environment_.is_cancelled = true;
+  // Set on the I/O thread, so that no session gives work to a lane after this.
+  std::promise<void> is_noted;
+  asio::post(context_, [&] {
+    environment_.is_cancelled = true;
+    is_noted.set_value();
+  });
+  is_noted.get_future().wait();
   if (environment_.application.interrupt) environment_.application.interrupt();
   // Engines notice the cancellation within moments; no thread may outlive what it refers to.
   for (const Lane lane : {Lane::computing, Lane::small, Lane::reading}) {

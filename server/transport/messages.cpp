@@ -108,6 +108,11 @@ std::optional<Response> answer_to(const error_code& error, const ServerOptions& 
   return problem(400, "malformed", "not an HTTP request: " + error.message());
 }
 
+bool takes_body(const RequestParser& parser) {
+  const http::verb method = parser.get().method();
+  return method == http::verb::post || method == http::verb::patch;
+}
+
 std::optional<Response> refusal_of(const RequestParser& parser, const ServerOptions& options) {
   const auto& request = parser.get();
   if (request.version() >= 11 && request.count(http::field::host) != 1) {
@@ -126,9 +131,7 @@ std::optional<Response> refusal_of(const RequestParser& parser, const ServerOpti
                      "and without Content-Length");
     }
   }
-  const bool takes_body =
-      request.method() == http::verb::post || request.method() == http::verb::patch;
-  if (takes_body && !parser.chunked() && !parser.content_length()) {
+  if (takes_body(parser) && !parser.chunked() && !parser.content_length()) {
     return problem(411, "length-required",
                    "send Content-Length or Transfer-Encoding: chunked with the body");
   }

@@ -33,6 +33,9 @@ Response too_many(std::string detail);
 std::optional<Response> answer_to(const boost::system::error_code& error,
                                   const ServerOptions& options);
 
+/// True if a request with this method has a use for its body; that of others is read and dropped.
+bool takes_body(const RequestParser& parser);
+
 /// The refusal of a header before its body is read; nothing when the header is fine.
 std::optional<Response> refusal_of(const RequestParser& parser, const ServerOptions& options);
 

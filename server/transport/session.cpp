@@ -316,6 +316,7 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
 awaitable<Response> Session::run(Lane lane, const std::function<Response()>& make,
                                  const CancelPoll& cancel) {
   if (lane == Lane::quick) co_return made_guarded(make);
+  if (environment_.is_cancelled) co_return busy("the service is stopping");
   LaneThreads& threads = environment_.threads_of(lane);
   const BudgetShare place(threads.places, 1);
   if (!place.is_granted()) co_return busy("too many requests are waiting");
@@ -390,12 +391,16 @@ awaitable<bool> Session::serve_one() {
   }
   const bool keep_alive = parser.get().keep_alive();
   connection_->enter(Connection::State::answering);
-  Request request = to_request(parser);
-  request.body = std::move(body_);
   stream_.expires_never();
-  Response response = co_await answer(request);
-  const bool goes_on = keep_alive && !environment_.is_draining;
+  Response response;
+  {
+    Request request = to_request(parser);
+    request.body = std::exchange(body_, {});
+    if (!takes_body(parser)) request.body = {};
+    response = co_await answer(request);
+  }
   body_share_.reset();
+  const bool goes_on = keep_alive && !environment_.is_draining;
   if (response.rest) {
     const bool is_whole = co_await download(std::move(response), goes_on, start);
     co_return is_whole&& goes_on;
@@ -458,6 +463,11 @@ awaitable<Status> Session::send_parts(Response response, bool keep_alive, std::u
   stream_.expires_after(left);
   co_await http::async_write_header(stream_, serializer, redirect_error(use_awaitable, error));
   Result<std::string> part = std::move(response.body);
+  if (part->empty() && !error && !is_head_) {
+    stream_.expires_never();
+    part = co_await next_part(response.rest);
+    if (!part) co_return part.error();
+  }
   while (!error && !is_head_) {
     message.body().data = part->empty() ? nullptr : part->data();
     message.body().size = part->size();

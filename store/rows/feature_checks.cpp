@@ -95,8 +95,10 @@ Status check_collection_id(const std::string& id) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '.' || c == '-';
   };
-  if (id.empty() || id.size() > 64 || !std::all_of(id.begin(), id.end(), allowed)) {
-    return bad("a collection id is 1 to 64 of the characters A-Z a-z 0-9 _ . -");
+  const bool is_possible = !id.empty() && id.size() <= 64 && id != "." && id != ".." &&
+                           std::all_of(id.begin(), id.end(), allowed);
+  if (!is_possible) {
+    return bad("a collection id is 1 to 64 of A-Z a-z 0-9 _ . -, and neither . nor ..");
   }
   return Done{};
 }

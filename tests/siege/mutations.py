@@ -158,16 +158,9 @@ def send_many(port, seed, count, results):
 
 
 def resident_megabytes(pid):
-    """Of the process and its children."""
-    total = 0
-    for status in pathlib.Path("/proc").glob("[0-9]*/status"):
-        try:
-            fields = dict(line.split(":\t", 1) for line in status.read_text().splitlines() if ":\t" in line)
-        except OSError:
-            continue
-        if int(status.parent.name) == pid:
-            total += int(fields.get("VmRSS", "0 kB").split()[0])
-    return total // 1024
+    """The resident memory of a process."""
+    status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    return int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) // 1024
 
 
 def run(options, folder):
@@ -190,8 +183,10 @@ def run(options, folder):
                     return 1
             for sender in senders:
                 sender.join()
-            pid = int(service.request("GET", "/healthz")[0] == 200 and service.process.pid)
-            memory.append(resident_megabytes(pid))
+            if service.request("GET", "/healthz")[0] != 200:
+                print("mutations: the service is not healthy at the end", file=sys.stderr)
+                return 1
+            memory.append(resident_megabytes(service.process.pid))
         service.stop()
         log = (folder / "log").read_text(errors="replace")
     print(f"{sum(statuses.values())} requests: {dict(sorted(statuses.items()))}; "

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
@@ -373,6 +374,7 @@ struct Parts {
     application.respond = [=, this](const server::Request& request, const CancelPoll&) {
       server::Response response{200, "text/plain", std::string(bytes, 'a'), {}};
       if (request.target != "/parts") return response;
+      response.body.resize(std::min<std::size_t>(bytes, first_bytes));
       response.rest = [=, this, alive = alive,
                        left = count - 1](const CancelPoll&) mutable -> Result<std::string> {
         ++made;
@@ -416,6 +418,7 @@ struct Parts {
 
   std::shared_ptr<int> alive = std::make_shared<int>(0);
   std::atomic<std::size_t> made = 0;
+  std::atomic<std::size_t> first_bytes = SIZE_MAX;  // the most that the answer begins with
   std::mutex mutex;
   std::string log;
   std::unique_ptr<server::HttpServer> server;
@@ -434,6 +437,15 @@ TEST_CASE("an answer in parts comes in chunks, and the connection goes on") {
       answers.substr(body).starts_with("5\r\naaaaa\r\n5\r\nccccc\r\n5\r\nbbbbb\r\n0\r\n\r\nHTTP"));
   CHECK(answers.ends_with("\r\n\r\naaaaa"));
   CHECK(parts.has_logged("target=\"/parts\" status=200 bytes=15 "));
+}
+
+TEST_CASE("an answer whose first bytes are still to be made comes as a whole") {
+  Parts parts(3);
+  parts.first_bytes = 0;
+  const Client client(parts.server->port());
+  client.send("GET /parts HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  const std::string answer = client.receive_all();
+  CHECK(answer.ends_with("\r\n\r\n5\r\nccccc\r\n5\r\nbbbbb\r\n0\r\n\r\n"));
 }
 
 TEST_CASE("HTTP 1.0 gets the parts without chunks, and HEAD none") {

@@ -77,6 +77,11 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
     if (is_first_ && batch->features.empty()) {
       return Error{ErrorCode::not_found, "collection '" + collection_ + "' has no features"};
     }
+    if (is_first_) key_ = batch->key;
+    if (batch->key != key_) {
+      return Error{ErrorCode::unavailable,
+                   "another collection has the id '" + collection_ + "' by now"};
+    }
     if (is_first_ && !container_) append(bytes, as_bytes(header_ + '\n'));
     is_first_ = false;
     for (StoredFeature& feature : batch->features) {

@@ -62,6 +62,7 @@ class CollectionExport {
   std::string header_;                              // the header of a sequence
   std::optional<formats::CityHeader> city_header_;  // the same header, parsed
   std::string after_;                               // where the next batch starts
+  std::string key_;                                 // FeatureBatch::key of the first batch
   bool is_first_ = true;
   bool is_last_ = false;
   Exported exported_;

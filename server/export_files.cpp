@@ -17,12 +17,25 @@ ExportFiles::File ExportFiles::find(const std::string& key) {
   return entries_.front().file;
 }
 
-void ExportFiles::keep(const std::string& key, File file) {
-  if (file->size() > most_bytes_) return;
+bool ExportFiles::make_room(std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  while (*bytes_ + bytes > most_bytes_ && !entries_.empty()) entries_.pop_back();
+  return *bytes_ + bytes <= most_bytes_;
+}
+
+ExportFiles::File ExportFiles::keep(const std::string& key, TemporaryFile file) {
+  const std::uint64_t size = file.size();
+  const File kept(new TemporaryFile(std::move(file)),
+                  [size, bytes = bytes_](const TemporaryFile* gone) {
+                    delete gone;
+                    *bytes -= size;
+                  });
+  *bytes_ += size;
   const std::lock_guard lock(mutex_);
   entries_.remove_if([&](const Entry& entry) { return entry.key == key; });
-  entries_.push_front({key, std::move(file), Clock::now()});
+  entries_.push_front({key, kept, Clock::now()});
   drop_surplus();
+  return kept;
 }
 
 void ExportFiles::forget_old() {
@@ -30,15 +43,12 @@ void ExportFiles::forget_old() {
   drop_surplus();
 }
 
-/// Removes the files that are too old, too many or too large together. Requires the lock.
+/// Removes the files that are too old or too many. Requires the lock.
 void ExportFiles::drop_surplus() {
   const Clock::time_point now = Clock::now();
   std::size_t files = 0;
-  std::uint64_t bytes = 0;
-  entries_.remove_if([&](const Entry& entry) {
-    bytes += entry.file->size();
-    return ++files > most_files_ || bytes > most_bytes_ || now - entry.used > keep_;
-  });
+  entries_.remove_if(
+      [&](const Entry& entry) { return ++files > most_files_ || now - entry.used > keep_; });
 }
 
 }  // namespace watertight::server

@@ -37,8 +37,8 @@ using Handler = Response (*)(const RoutedRequest&);
 struct Route {
   std::string_view method;
   std::string_view path;  // "/collections/{collectionId}": as in the OpenAPI document
-  Lane lane;  // POST requests of the computing lane with at most kSmallBody bytes go to the small
-              // one
+  Lane lane;  // POST requests of the computing lane with at most kSmallBody bytes, which are not
+              // compressed, go to the small one
   Handler handler;
   std::vector<std::string_view> parameters;  // the query parameters that the route knows
 };

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Handlers of collections as a whole: they list, show, rename, recount and remove them.
+#include <memory>
+#include <optional>
+
+#include "server/items/preconditions.h"
 #include "server/json_answers.h"
 
 namespace watertight::server {
@@ -46,6 +50,29 @@ Result<std::string> new_id_of(const std::string& body) {
                "a collection can be given another id only: send {\"id\": \"NEW-ID\"}"};
 }
 
+using Upkeep = Response (*)(SolidStore&, const std::string&, const CancelPoll&);
+
+/// Work that touches all features of a collection, which can take minutes. One such work is done at
+/// a time, so that they leave threads to others.
+Response upkeep(const RoutedRequest& request, Upkeep work) {
+  Response response;
+  response.further = std::make_shared<const FurtherWork>(
+      FurtherWork{Lane::computing, "upkeep",
+                  [work, store = request.service.store, id = request.target.segments[1]](
+                      const CancelPoll& is_cancelled) { return work(*store, id, is_cancelled); }});
+  return response;
+}
+
+/// The refusal of a change of a collection whose preconditions do not hold (412), or are missing
+/// though wanted (428). They are compared before the change; what happens in between is not seen.
+std::optional<Response> unless_change_is_wanted(const RoutedRequest& request) {
+  if (auto missing = unless_conditional(request)) return missing;
+  if (!has_precondition(request.request)) return std::nullopt;
+  const auto collection = request.service.store->collection(request.target.segments[1]);
+  if (!collection) return to_response(to_problem(collection.error()));
+  return unless_same_state(request.request, collection->state);
+}
+
 }  // namespace
 
 Response get_collections(const RoutedRequest& request) {
@@ -75,12 +102,19 @@ Response get_collections(const RoutedRequest& request) {
 
 Response get_collection(const RoutedRequest& request) {
   if (auto refusal = json_only(request)) return *std::move(refusal);
-  return collection_response(request.service.store->collection(request.target.segments[1]));
+  const auto collection = request.service.store->collection(request.target.segments[1]);
+  if (!collection) return to_response(to_problem(collection.error()));
+  const std::string etag = etag_of_state(collection->state, "json");
+  if (auto unneeded = unless_needed(request.request, etag)) return *std::move(unneeded);
+  Response response = json_response(collection_json(*collection));
+  response.headers.push_back({"ETag", etag});
+  return response;
 }
 
 Response patch_collection(const RoutedRequest& request) {
   const auto id = new_id_of(request.request.body);
   if (!id) return to_response(to_problem(id.error()));
+  if (auto refusal = unless_change_is_wanted(request)) return *std::move(refusal);
   const Status renamed = request.service.store->rename_collection(request.target.segments[1], *id);
   if (!renamed) return to_response(to_problem(renamed.error()));
   Response response = collection_response(request.service.store->collection(*id));
@@ -89,14 +123,17 @@ Response patch_collection(const RoutedRequest& request) {
 }
 
 Response post_recount(const RoutedRequest& request) {
-  return collection_response(request.service.store->recount(request.target.segments[1]));
+  return upkeep(request, [](SolidStore& store, const std::string& id, const CancelPoll&) {
+    return collection_response(store.recount(id));
+  });
 }
 
 Response delete_collection(const RoutedRequest& request) {
-  const Status removed =
-      request.service.store->remove_collection(request.target.segments[1], request.is_cancelled);
-  if (!removed) return to_response(to_problem(removed.error()));
-  return Response{204, "", "", {}};
+  if (auto refusal = unless_change_is_wanted(request)) return *std::move(refusal);
+  return upkeep(request, [](SolidStore& store, const std::string& id, const CancelPoll& cancel) {
+    const Status removed = store.remove_collection(id, cancel);
+    return removed ? Response{204, "", "", {}} : to_response(to_problem(removed.error()));
+  });
 }
 
 }  // namespace watertight::server

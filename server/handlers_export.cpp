@@ -101,8 +101,10 @@ Response streamed(const ExportRequest& request, const CancelPoll& is_cancelled) 
 }
 
 /// Makes the whole file, of which a range is wanted: its length has to be known. Errors:
-/// unavailable when the collection changes meanwhile, or the disk has no room; cancelled.
+/// unavailable when the collection changes meanwhile, or the disk has no room; limit_exceeded when
+/// there are too many bytes of such files; cancelled.
 Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelPoll& is_cancelled) {
+  ExportFiles& files = *request.service.export_files;
   auto exporting = export_for(request);
   if (!exporting) return std::move(exporting).error();
   auto file = TemporaryFile::make();
@@ -110,6 +112,9 @@ Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelP
   while (!exporting->is_at_end()) {
     const auto part = exporting->next(is_cancelled);
     if (!part) return part.error();
+    if (!files.make_room(file->size() + part->size())) {
+      return Error{ErrorCode::limit_exceeded, "no room for the file of the export"};
+    }
     if (Status added = file->append(*part); !added) return std::move(added).error();
   }
   const auto after = request.service.store->collection(request.collection.id);
@@ -117,7 +122,7 @@ Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelP
   if (after->state != request.collection.state) {
     return Error{ErrorCode::unavailable, "the collection changed while its file was made"};
   }
-  return std::make_shared<const TemporaryFile>(*std::move(file));
+  return files.keep(request.key(), *std::move(file));
 }
 
 /// The range of the file that the request wants, read piece by piece while it is sent.
@@ -147,9 +152,12 @@ Response ranged(const ExportRequest& request) {
                     // A request for the same file may have made it meanwhile.
                     if (auto file = files->find(request.key())) return part_of(file, request);
                     const auto made = whole_file(request, is_cancelled);
-                    if (!made) return refuse_export(made.error());
-                    files->keep(request.key(), *made);
-                    return part_of(*made, request);
+                    if (made) return part_of(*made, request);
+                    // A service may ignore a range (RFC 9110, section 14.2).
+                    if (made.error().code == ErrorCode::limit_exceeded) {
+                      return streamed(request, is_cancelled);
+                    }
+                    return refuse_export(made.error());
                   }});
   return response;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Handlers that only read: landing, health, lists of items.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -85,11 +86,16 @@ Result<store::StoredBox> parse_box(std::string_view text) {
   return box;
 }
 
-bool holds(const store::StoredBox& outer, const store::StoredBox& inner) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (outer.min[axis] > inner.min[axis] || outer.max[axis] < inner.max[axis]) return false;
+/// How much of an extent in x and y a box covers, 0 to 1.
+double share_of(const store::StoredBox& extent, const store::StoredBox& box) {
+  double share = 1;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double low = std::max(extent.min[axis], box.min[axis]);
+    const double high = std::min(extent.max[axis], box.max[axis]);
+    const double length = extent.max[axis] - extent.min[axis];
+    share *= length > 0 ? std::clamp((high - low) / length, 0.0, 1.0) : 1;
   }
-  return true;
+  return share;
 }
 
 /// The box of a request. It counts in the collection's own CRS only, and the client has to state
@@ -211,7 +217,7 @@ Response get_items(const RoutedRequest& request) {
   const std::string* after = request.target.parameter("after");
   const auto page = request.service.store->list(
       {collection->id, *limit, after == nullptr ? std::string() : *after, *box,
-       *box && collection->box && holds(**box, *collection->box)});
+       *box && collection->box ? share_of(*collection->box, **box) : 0});
   if (!page) return to_response(to_problem(page.error()));
 
   Json json{{"type", "FeatureCollection"}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pipeline/container.h"
 #include "server/handlers.h"
 
 namespace watertight::server {
@@ -100,8 +101,8 @@ const std::vector<Route>& routes() {
       {"GET", "/collections", Lane::reading, get_collections, {"f", "limit", "after"}},
       {"GET", "/collections/{collectionId}", Lane::reading, get_collection, {"f"}},
       {"PATCH", "/collections/{collectionId}", Lane::small, patch_collection, {}},
-      {"DELETE", "/collections/{collectionId}", Lane::computing, delete_collection, {}},
-      {"POST", "/collections/{collectionId}/recount", Lane::computing, post_recount, {}},
+      {"DELETE", "/collections/{collectionId}", Lane::small, delete_collection, {}},
+      {"POST", "/collections/{collectionId}/recount", Lane::small, post_recount, {}},
       {"GET",
        "/collections/{collectionId}/items",
        Lane::reading,
@@ -113,7 +114,7 @@ const std::vector<Route>& routes() {
        Lane::reading,
        get_item,
        {"f", "solid"}},
-      {"DELETE", "/collections/{collectionId}/items/{itemId}", Lane::reading, delete_item, {}},
+      {"DELETE", "/collections/{collectionId}/items/{itemId}", Lane::small, delete_item, {}},
       {"GET", "/collections/{collectionId}/export", Lane::computing, get_export, {"f"}},
       {"POST",
        "/validate",
@@ -133,8 +134,9 @@ Lane lane_of(const Request& request) {
   if (!target) return Lane::quick;
   for (const Route& route : routes()) {
     if (route.method != effective_method(request) || !matches(route, *target)) continue;
-    const bool is_small = request.method == "POST" && !request.body.empty() &&
-                          request.body.size() <= kSmallBody;
+    // A Watertight file is compressed: its size says little about the work in it.
+    const bool is_small = request.method == "POST" && request.body.size() <= kSmallBody &&
+                          !pipeline::is_container(as_bytes(request.body));
     return route.lane == Lane::computing && is_small ? Lane::small : route.lane;
   }
   return Lane::quick;

@@ -35,6 +35,7 @@ struct GroupCommit::Call {
   std::size_t bytes = 0;
   std::optional<Versions> result;  // present when the call is done
   bool leads = false;              // whether it is this call's turn to write a group
+  bool is_alone = false;           // whether its own thread has to write it
   std::condition_variable changed;
 };
 
@@ -73,16 +74,22 @@ GroupCommit::Versions GroupCommit::put(std::span<const StoredFeature> features) 
   call.bytes = bytes_of(features);
   std::unique_lock lock(mutex_);
   waiting_.push_back(&call);
-  if (is_writing_) call.changed.wait(lock, [&] { return call.leads || call.result; });
-  if (call.result) return *std::move(call.result);
-  is_writing_ = true;
-  lock.unlock();
-  {
+  if (is_writing_) {
+    call.changed.wait(lock, [&] { return call.leads || call.is_alone || call.result; });
+  }
+  if (!call.result && !call.is_alone) {
+    is_writing_ = true;
+    lock.unlock();
     Turn turn(*this, call);
     take_group(turn.group);
     write_group(turn.group);
+  } else {
+    lock.unlock();
   }
-  return *std::move(call.result);
+  if (call.result) return *std::move(call.result);
+  std::vector<const StoredFeature*> alone;
+  append(alone, features);
+  return writer_.alone(alone);
 }
 
 /// Takes the calls from the front of the queue that fit in one group, one at least. Ends before a
@@ -107,28 +114,19 @@ void GroupCommit::take_group(Group& group) {
   }
 }
 
-GroupCommit::Versions GroupCommit::write_alone(const Call& call) {
-  std::vector<const StoredFeature*> features;
-  append(features, call.features);
-  return write_(features);
-}
-
-/// Writes a group and gives each of its calls its result.
+/// Writes a group and gives each of its calls its result, or leaves the call to its own thread.
 void GroupCommit::write_group(Group& group) {
   std::vector<const StoredFeature*> all;
   for (const Call* const call : group) append(all, call->features);
-  const Versions versions = write_(all);
+  const std::optional<Versions> written = writer_.group(all);
   const bool is_shared =
-      versions || group.size() == 1 || versions.error().code == ErrorCode::unavailable;
+      written && (*written || group.size() == 1 || written->error().code == ErrorCode::unavailable);
   std::size_t first = 0;
   for (Call*& call : group) {
     std::optional<Versions> result;
-    if (!is_shared) {
-      result = write_alone(*call);
-    } else if (!versions) {
-      result = versions;
-    } else {
-      const auto begin = versions->begin() + static_cast<std::ptrdiff_t>(first);
+    if (is_shared && !*written) result = written->error();
+    if (is_shared && *written) {
+      const auto begin = (*written)->begin() + static_cast<std::ptrdiff_t>(first);
       result = std::vector<std::uint64_t>(
           begin, begin + static_cast<std::ptrdiff_t>(call->features.size()));
     }
@@ -136,6 +134,7 @@ void GroupCommit::write_group(Group& group) {
     // As soon as the mutex is free, the call's thread may return and take the call with it.
     const std::lock_guard lock(mutex_);
     call->result = std::move(result);
+    call->is_alone = !is_shared;
     call->changed.notify_one();
     call = nullptr;
   }

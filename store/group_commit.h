@@ -9,7 +9,9 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -24,22 +26,29 @@ namespace watertight::store {
 class GroupCommit {
  public:
   using Versions = Result<std::vector<std::uint64_t>>;
-  /// Stores all features or none, each key at most once; returns the version of each.
-  using Write = std::function<Versions(std::span<const StoredFeature* const>)>;
+  using Features = std::span<const StoredFeature* const>;
+  /// Both store all features or none, each key at most once, and return the version of each.
+  struct Writer {
+    /// Writes the features of some calls, without waiting long for the locks of others. Nothing:
+    /// such a lock was in the way, and nothing is stored.
+    std::function<std::optional<Versions>(Features)> group;
+    /// Writes the features of one call.
+    std::function<Versions(Features)> alone;
+  };
 
   struct Limits {
     std::size_t features = 256;
     std::size_t bytes = 4 << 20;  // of skeletons and blobs
   };
 
-  explicit GroupCommit(Write write) : GroupCommit(std::move(write), Limits{}) {}
-  GroupCommit(Write write, const Limits& limits) : write_(std::move(write)), limits_(limits) {}
+  explicit GroupCommit(Writer writer) : GroupCommit(std::move(writer), Limits{}) {}
+  GroupCommit(Writer writer, const Limits& limits) : writer_(std::move(writer)), limits_(limits) {}
 
   /// Stores all features or none, each key at most once in a call; returns the version of each.
-  /// Calls with a feature in common are written in the order of the queue, in different
-  /// transactions. When a group fails, each of its calls is written alone, so that one bad call
-  /// fails alone; but not when the database was unavailable: then the calls of the group share its
-  /// failure, as it may not be known whether the group was stored.
+  /// Calls with a feature in common are written in different transactions. When a group fails, or a
+  /// lock is in its way, each of its calls is written alone by its own thread, so that one bad or
+  /// long call is nobody else's matter; but not when the database was unavailable: then the calls
+  /// of the group share its failure, as it may not be known whether the group was stored.
   Versions put(std::span<const StoredFeature> features);
 
  private:
@@ -48,9 +57,8 @@ class GroupCommit {
   using Group = std::vector<Call*>;
   void take_group(Group& group);
   void write_group(Group& group);
-  Versions write_alone(const Call& call);
 
-  const Write write_;
+  const Writer writer_;
   const Limits limits_;
   std::mutex mutex_;
   std::deque<Call*> waiting_;

@@ -39,6 +39,8 @@ constexpr std::chrono::seconds kAway{2};
 // Calls that put at most so many features share a transaction with others (store/group_commit.h).
 // Larger ones are written at the same time as others, each in a session of its own.
 constexpr std::size_t kGrouped = 16;
+// For transactions that many wait for: who is in their way has to be waited for elsewhere.
+constexpr const char* kImpatient = "SET LOCAL lock_timeout = '100ms'";
 // PostgreSQL's name for the primary key of the receipts.
 constexpr std::string_view kReceiptConstraint = "write_receipt_pkey";
 constexpr double kPingLeaseSeconds = 2;
@@ -89,7 +91,8 @@ class PostgresStore final : public SolidStore {
   PostgresStore(const std::string& connection, std::size_t connections)
       : pool_(connection, connections),
         pings_(connection, 1),
-        group_([this](FeatureRefs features) { return write_all(features, {}); }) {}
+        group_({[this](FeatureRefs features) { return write_group(features); },
+                [this](FeatureRefs features) { return write_all(features, {}); }}) {}
 
   Status open() {
     return with_session<Done>([](DatabaseSession& session) { return migrate(session); },
@@ -245,6 +248,20 @@ class PostgresStore final : public SolidStore {
     });
   }
 
+  /// Writes the features of several calls. Nothing: a lock of another transaction is in the way.
+  std::optional<Result<std::vector<std::uint64_t>>> write_group(FeatureRefs features) {
+    bool has_collided = false;
+    const Work<std::vector<std::uint64_t>> work = [&](DatabaseSession& session) {
+      session.send(kImpatient);
+      auto versions = write_features(session, features, {}, digests_);
+      has_collided = !versions && is_collision(session.state());
+      return versions;
+    };
+    auto versions = write(work, kWriting, Collisions::are_errors);
+    if (!versions && has_collided) return std::nullopt;
+    return versions;
+  }
+
   template <class Value>
   using Work = std::function<Result<Value>(DatabaseSession&)>;
 
@@ -278,10 +295,13 @@ class PostgresStore final : public SolidStore {
                                       : "there is no such collection"};
   }
 
+  enum class Collisions : std::uint8_t { are_tried_again, are_errors };
+
   /// Runs `work` with a session, and runs it again when transactions collided or the session was
   /// lost, then with a new session. Requires work that may be run again.
   template <class Value>
-  Result<Value> with_session(const Work<Value>& work, std::chrono::seconds longest) {
+  Result<Value> with_session(const Work<Value>& work, std::chrono::seconds longest,
+                             Collisions collisions = Collisions::are_tried_again) {
     if (Clock::now() < away_until_.load()) {
       return Error{ErrorCode::unavailable, "the database is away"};
     }
@@ -300,7 +320,8 @@ class PostgresStore final : public SolidStore {
       Result<Value> result = work(*lease->session);
       if (result) return result;
       const bool lost = lease->session->is_lost();
-      const bool collided = is_collision(lease->session->state());
+      const bool collided =
+          collisions == Collisions::are_tried_again && is_collision(lease->session->state());
       if (lost) {
         lease->session.reset();
       } else {
@@ -335,7 +356,8 @@ class PostgresStore final : public SolidStore {
   /// end of the first attempt, and fails exactly when the first attempt was committed. `work` must
   /// wait for a result; BEGIN and the token are sent with its first statements.
   template <class Value>
-  Result<Value> write(const Work<Value>& work, std::chrono::seconds longest = kWriting) {
+  Result<Value> write(const Work<Value>& work, std::chrono::seconds longest = kWriting,
+                      Collisions collisions = Collisions::are_tried_again) {
     const Result<Token> token = new_token();
     if (!token) return token.error();
     std::optional<Value> in_doubt;  // the result of an attempt whose COMMIT was not answered
@@ -354,7 +376,7 @@ class PostgresStore final : public SolidStore {
       if (session.is_lost()) in_doubt = *value;
       return ended.error();
     };
-    Result<Value> result = with_session<Value>(transaction, longest);
+    Result<Value> result = with_session<Value>(transaction, longest, collisions);
     if (!result && in_doubt && result.error().code == ErrorCode::unavailable) {
       return Error{
           ErrorCode::unavailable,

@@ -90,8 +90,9 @@ struct FeatureQuery {
   std::string after;  // id after which the page starts; "" = from the start
   /// Selects the features whose closed boxes have a point in common with this box.
   std::optional<StoredBox> box;
-  /// True if the box holds that of the collection, so that searching by place would save nothing.
-  bool holds_collection = false;
+  /// How much of the collection's extent in x and y the box covers, 0 to 1, so that the search can
+  /// go by place (little) or by id (much). Any value is right; the cost differs.
+  double share = 0;
 };
 
 /// The facts about a feature that lists show.
@@ -118,6 +119,8 @@ struct StoredHeader {
 struct FeatureBatch {
   std::vector<StoredFeature> features;
   std::string next;  // `after` of the next batch; "" = this batch is the last
+  /// The collection's key, which no other collection of its name has at another time.
+  std::string key;
 };
 
 /// Features in batches, for SolidStore::put_all(), which may read them more than once.

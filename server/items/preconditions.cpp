@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/items/preconditions.h"
 
+#include <algorithm>
 #include <charconv>
 #include <vector>
 
@@ -88,10 +89,29 @@ Result<store::WriteCondition> write_condition(const Request& request) {
   return condition;
 }
 
+bool has_precondition(const Request& request) {
+  return request.header("if-match") != nullptr || request.header("if-none-match") != nullptr;
+}
+
+std::optional<Response> unless_same_state(const Request& request, const std::string& state) {
+  const std::string start = etag_of_state(state, "");
+  const auto is_of_state = [&](std::string_view list) {
+    const auto tags = tags_of(list);
+    return std::any_of(tags.begin(), tags.end(), [&](std::string_view tag) {
+      return tag == "*" || tag.starts_with(std::string_view(start).substr(0, start.size() - 1));
+    });
+  };
+  const std::string* match = request.header("if-match");
+  const std::string* none_match = request.header("if-none-match");
+  const bool holds = (match == nullptr || is_of_state(*match)) &&
+                     (none_match == nullptr || !is_of_state(*none_match));
+  if (holds) return std::nullopt;
+  return refuse(412, "precondition-failed",
+                "the collection has the tag " + etag_of_state(state, "json"));
+}
+
 std::optional<Response> unless_conditional(const RoutedRequest& request) {
-  if (!request.service.options.requires_preconditions) return std::nullopt;
-  const Request& message = request.request;
-  if (message.header("if-match") != nullptr || message.header("if-none-match") != nullptr) {
+  if (!request.service.options.requires_preconditions || has_precondition(request.request)) {
     return std::nullopt;
   }
   return refuse(428, "precondition-required",

@@ -27,6 +27,13 @@ std::optional<Response> unless_needed(const Request& request, const std::string&
 /// service does not know (If-None-Match with anything but *).
 Result<store::WriteCondition> write_condition(const Request& request);
 
+/// True if the request states a precondition on what it changes.
+bool has_precondition(const Request& request);
+
+/// 412 for a change of a collection in this state, when the request's preconditions do not hold.
+/// Any tag of the state counts, whatever the representation that the tag is of.
+std::optional<Response> unless_same_state(const Request& request, const std::string& state);
+
 /// 428 for a write without a precondition, if the service wants one.
 std::optional<Response> unless_conditional(const RoutedRequest& request);
 

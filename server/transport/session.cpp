@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/transport/session.h"
 
+#include <poll.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -35,7 +36,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kReadBytes = 16 * 1024;
 constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
-constexpr std::size_t kSmallBody = 64 * 1024;  // bytes of a body that no budget limits
+constexpr std::size_t kUnbudgeted = 64 * 1024;  // bytes of a body that no budget limits
+// A read that has waited so long for a thread is refused: those before it hang, and it would too.
+constexpr std::chrono::seconds kLongestReadWait{2};
 
 Clock::duration seconds(double value) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(value));
@@ -107,29 +110,56 @@ class TimeLimit {
 class ClientWatch {
  public:
   explicit ClientWatch(const std::shared_ptr<Connection>& connection)
-      : connection_(connection), has_left_(std::make_shared<std::atomic<bool>>(false)) {
-    connection_->stream.socket().async_wait(
-        asio::ip::tcp::socket::wait_read, [connection, left = has_left_](const error_code& error) {
-          if (error) return;
-          char byte = 0;
-          error_code problem_of_socket;
-          const std::size_t count = connection->stream.socket().receive(
-              asio::buffer(&byte, 1), asio::socket_base::message_peek, problem_of_socket);
-          *left = problem_of_socket || count == 0;
-        });
+      : watched_(std::make_shared<Watched>(connection)) {
+    wait_for_bytes(watched_);
   }
   ~ClientWatch() {
+    watched_->is_over = true;
+    watched_->timer.cancel();
     error_code ignored;
-    connection_->stream.socket().cancel(ignored);
+    watched_->connection->stream.socket().cancel(ignored);
   }
   ClientWatch(const ClientWatch&) = delete;
   ClientWatch& operator=(const ClientWatch&) = delete;
   /// May be asked by any thread, also after the watch has ended.
-  std::shared_ptr<const std::atomic<bool>> has_left() const { return has_left_; }
+  std::shared_ptr<const std::atomic<bool>> has_left() const {
+    return {watched_, &watched_->has_left};
+  }
 
  private:
-  std::shared_ptr<Connection> connection_;
-  std::shared_ptr<std::atomic<bool>> has_left_;
+  struct Watched {
+    explicit Watched(const std::shared_ptr<Connection>& watched_connection)
+        : connection(watched_connection), timer(connection->stream.get_executor()) {}
+    std::shared_ptr<Connection> connection;
+    asio::steady_timer timer;
+    bool is_over = false;
+    std::atomic<bool> has_left = false;
+  };
+
+  static void wait_for_bytes(const std::shared_ptr<Watched>& watched) {
+    watched->connection->stream.socket().async_wait(asio::ip::tcp::socket::wait_read,
+                                                    [watched](const error_code& error) {
+                                                      if (!error && !watched->is_over)
+                                                        look(watched);
+                                                    });
+  }
+
+  /// Looks whether the client has closed its side. Behind bytes that wait to be read, no event
+  /// reports the end, so it is looked for again and again.
+  static void look(const std::shared_ptr<Watched>& watched) {
+    constexpr std::chrono::milliseconds kPause{50};
+    pollfd state{watched->connection->stream.socket().native_handle(), POLLRDHUP, 0};
+    if (::poll(&state, 1, 0) > 0 && (state.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0) {
+      watched->has_left = true;
+      return;
+    }
+    watched->timer.expires_after(kPause);
+    watched->timer.async_wait([watched](const error_code& error) {
+      if (!error && !watched->is_over) look(watched);
+    });
+  }
+
+  std::shared_ptr<Watched> watched_;
 };
 
 /// One of the things that are counted by address, while it is there.
@@ -304,7 +334,7 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
     if (error) co_return answer_to(error, options_).value_or(Response{0, "", "", {}});
     body_.append(piece.data(), piece.size() - parser.get().body().size);
     connection_->body_bytes = body_.size();
-    const bool is_small = body_.size() <= kSmallBody;
+    const bool is_small = body_.size() <= kUnbudgeted;
     if (!is_small && !body_share_->grow_to(body_.size())) {
       co_return busy("too many large requests are being received");
     }
@@ -324,9 +354,11 @@ awaitable<Response> Session::run(Lane lane, const std::function<Response()>& mak
   const AddressShare share(environment_.works_of, connection_->peer,
                            is_limited ? options_.works_per_address : 0);
   if (!share.is_granted()) co_return too_many("this address has too many requests in work");
-  auto work = [&make, &cancel, lane]() -> awaitable<Response> {
+  const Clock::time_point begin = Clock::now();
+  auto work = [&make, &cancel, lane, begin]() -> awaitable<Response> {
     if (lane == Lane::computing) step_back();
-    if (cancel()) co_return busy("the request waited too long");
+    const bool is_late = lane == Lane::reading && Clock::now() - begin > kLongestReadWait;
+    if (is_late || cancel()) co_return busy("the request waited too long");
     co_return made_guarded(make);
   };
   co_return co_await asio::co_spawn(threads.threads.get_executor(), std::move(work), use_awaitable);
@@ -405,6 +437,9 @@ awaitable<bool> Session::serve_one() {
     const bool is_whole = co_await download(std::move(response), goes_on, start);
     co_return is_whole&& goes_on;
   }
+  const BudgetShare unsent(environment_.bodies,
+                           response.body.size() > kUnbudgeted ? response.body.size() : 0);
+  if (!unsent.is_granted()) response = busy("too many large answers are being sent");
   const unsigned status = response.status;
   const std::uint64_t size = response.body.size();
   note_ = std::move(response.note);

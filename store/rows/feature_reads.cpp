@@ -16,8 +16,9 @@ constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and s
 /// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
 /// are its smallest and largest coordinates. The index of boxes finds candidates in x and y;
 /// PostgreSQL's box operator is generous by 1e-6, so none is missed. The comparison of the six
-/// numbers decides. The appended '' keeps PostgreSQL from narrowing the candidates down by an index
-/// that holds all features of the collection.
+/// numbers decides. For a small box the appended '' keeps PostgreSQL from narrowing the candidates
+/// down by an index that holds all features of the collection; for a larger one PostgreSQL chooses
+/// between place and id; for a box around everything a search by place would save nothing.
 std::string matching(const FeatureQuery& query) {
   constexpr const char* kFeatures = " FROM watertight.feature WHERE ";
   constexpr const char* kOfCollection = "= (SELECT id FROM watertight.collection WHERE name = $1)";
@@ -27,10 +28,11 @@ std::string matching(const FeatureQuery& query) {
   constexpr const char* kInBox =
       " AND min_x IS NOT NULL AND min_x <= $5 AND min_y <= $6 AND min_z <= $7"
       " AND max_x >= $2 AND max_y >= $3 AND max_z >= $4";
-  const bool by_place = query.box && !query.holds_collection;
+  constexpr double kSmall = 1.0 / 16;
+  const bool is_small = query.box && query.share < kSmall;
   std::string clauses = kFeatures;
-  clauses.append(by_place ? "collection || '' " : "collection ").append(kOfCollection);
-  if (by_place) clauses.append(kCandidates);
+  clauses.append(is_small ? "collection || '' " : "collection ").append(kOfCollection);
+  if (query.box && query.share < 1) clauses.append(kCandidates);
   if (query.box) clauses.append(kInBox);
   return clauses;
 }
@@ -212,12 +214,13 @@ Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& col
   return size;
 }
 
-Status check_collection_exists(DatabaseSession& connection, const std::string& id) {
-  const Result<Rows> exists =
-      connection.ask("SELECT id FROM watertight.collection WHERE name = $1", Parameters().text(id));
+/// The key of a collection. Errors: not_found.
+Result<std::string> key_of_collection(DatabaseSession& connection, const std::string& id) {
+  const Result<Rows> exists = connection.ask(
+      "SELECT id::text FROM watertight.collection WHERE name = $1", Parameters().text(id));
   if (!exists) return exists.error();
   if (exists->size() == 0) return no_collection(id);
-  return Done{};
+  return std::string(exists->text(0, 0));
 }
 
 }  // namespace
@@ -279,9 +282,8 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
   if (!rows) return rows.error();
   for (int row = 0; row < rows->size(); ++row) page.features.push_back(summary_of(*rows, row));
   if (page.features.empty()) {
-    if (Status exists = check_collection_exists(connection, query.collection); !exists) {
-      return std::move(exists).error();
-    }
+    const auto exists = key_of_collection(connection, query.collection);
+    if (!exists) return exists.error();
   }
   const bool has_more = page.features.size() > limit;
   if (has_more) page.features.resize(limit);
@@ -294,15 +296,13 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
   const Result<WalkPlace> start = walk_place(after);
   if (!start) return start.error();
   const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));
+  auto key = key_of_collection(connection, collection);
+  if (!key) return std::move(key).error();
   const Result<BatchSize> size = batch_size(connection, collection, *start, at_most);
   if (!size) return size.error();
   FeatureBatch batch;
-  if (size->features == 0) {
-    if (Status exists = check_collection_exists(connection, collection); !exists) {
-      return std::move(exists).error();
-    }
-    return batch;
-  }
+  batch.key = *std::move(key);
+  if (size->features == 0) return batch;
   const Result<Rows> rows =
       walk_rows(connection, kFeatureColumns, collection, *start, size->features);
   if (!rows) return rows.error();

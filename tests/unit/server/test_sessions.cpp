@@ -242,6 +242,22 @@ TEST_CASE("work for a client that has left is cancelled") {
   starts(next.receive_answer(), "200");
 }
 
+TEST_CASE("work for a client that has left is cancelled although it sent more before") {
+  Server server;
+  {
+    const Client client(server.server->port());
+    client.send(kGetSlow);
+    server.wait_for_slow(1);
+    client.send("G");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  const Client next(server.server->port());
+  next.send(kGetSlow);
+  server.wait_for_slow(2);
+  server.release = true;
+  starts(next.receive_answer(), "200");
+}
+
 TEST_CASE("the next request may come while one is answered") {
   Server server;
   const Client client(server.server->port());

@@ -6,8 +6,11 @@
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
 #include <map>
+#include <new>
+#include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "fixture.h"
 
@@ -37,6 +40,7 @@ class FakeWriter {
       if (id == refused) return Error{ErrorCode::conflict, "no " + id};
       if (id == lost && ids.size() > 1) return Error{ErrorCode::unavailable, "away"};
     }
+    if (std::exchange(must_throw, false)) throw std::bad_alloc();
     std::vector<std::uint64_t> versions;
     for (std::size_t i = 0; i < ids.size(); ++i) versions.push_back(++version_);
     return versions;
@@ -45,8 +49,18 @@ class FakeWriter {
   std::size_t calls() const { return calls_; }
   const std::vector<Ids>& groups() const { return groups_; }  // after all threads have ended
 
+  /// As write(), unless a lock on a feature is in the way.
+  std::optional<GroupCommit::Versions> write_group(Refs features) {
+    for (const StoredFeature* feature : features) {
+      if (feature->id == locked) return std::nullopt;
+    }
+    return write(features);
+  }
+
   std::string refused;  // a write with this id fails
-  std::string lost;     // a write with this id and others finds the database away
+  std::string locked;   // a group with this id finds a lock
+  bool must_throw = false;
+  std::string lost;  // a write with this id and others finds the database away
 
  private:
   std::atomic<std::size_t> calls_{0};
@@ -60,7 +74,9 @@ class FakeWriter {
 /// results of `calls`.
 std::vector<GroupCommit::Versions> put_all(FakeWriter& writer, const GroupCommit::Limits& limits,
                                            const std::vector<Ids>& calls) {
-  GroupCommit group([&](Refs features) { return writer.write(features); }, limits);
+  GroupCommit group({[&](Refs all) { return writer.write_group(all); },
+                     [&](Refs all) { return writer.write(all); }},
+                    limits);
   std::vector<std::vector<StoredFeature>> features(calls.size() + 1);
   features[0].push_back(sample_feature("first"));
   for (std::size_t i = 0; i < calls.size(); ++i) {
@@ -112,12 +128,54 @@ TEST_CASE("when a group fails, only its guilty call fails") {
   FakeWriter writer;
   writer.refused = "b";
   const auto results = put_all(writer, {}, {{"a"}, {"b", "x"}, {"c"}});
-  CHECK(writer.groups() ==
-        std::vector<Ids>{{"first"}, {"a", "b", "x", "c"}, {"a"}, {"b", "x"}, {"c"}});
+  REQUIRE(writer.groups().size() == 5);
+  CHECK(writer.groups()[1] == Ids{"a", "b", "x", "c"});
+  const std::multiset<Ids> alone(writer.groups().begin() + 2, writer.groups().end());
+  CHECK(alone == std::multiset<Ids>{{"a"}, {"b", "x"}, {"c"}});
   CHECK(results[0]);
   REQUIRE(!results[1]);
   CHECK(results[1].error().code == ErrorCode::conflict);
   CHECK(results[2]);
+}
+
+TEST_CASE("when a lock is in the way of a group, each of its calls is written alone") {
+  FakeWriter writer;
+  writer.locked = "b";
+  const auto results = put_all(writer, {}, {{"a"}, {"b"}, {"c"}});
+  for (const auto& result : results) CHECK(result);
+  CHECK(writer.groups().size() == 4);
+}
+
+TEST_CASE("an exception leaves no call waiting") {
+  FakeWriter writer;
+  GroupCommit group({[&](Refs all) { return writer.write_group(all); },
+                     [&](Refs all) { return writer.write(all); }});
+  writer.release();
+  writer.must_throw = true;
+  const StoredFeature feature = sample_feature("a");
+  CHECK_THROWS_AS(group.put(std::span(&feature, 1)), std::bad_alloc);
+  CHECK(group.put(std::span(&feature, 1)));
+}
+
+TEST_CASE("a feature that another transaction has locked holds up no other put") {
+  const Database database;
+  const auto store = database.store(8);
+  REQUIRE(store->put(std::vector{sample_feature("locked")}));
+  const auto session = test::session_in(database.connection());
+  REQUIRE(session->run("BEGIN"));
+  REQUIRE(session->run("SELECT FROM watertight.feature WHERE id = 'locked' FOR UPDATE"));
+  std::atomic<bool> is_stored = false;
+  std::thread waiting(
+      [&] { is_stored = store->put(std::vector{sample_feature("locked")}).has_value(); });
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 5; ++i) {
+    CHECK(store->put(std::vector{sample_feature("free" + std::to_string(i))}));
+  }
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+  CHECK_FALSE(is_stored);
+  REQUIRE(session->run("COMMIT"));
+  waiting.join();
+  CHECK(is_stored);
 }
 
 TEST_CASE("when the database is away, the calls of a group share this and none is repeated") {

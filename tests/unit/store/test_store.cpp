@@ -337,7 +337,9 @@ TEST_CASE("a box finds exactly the features whose closed boxes share a point wit
     }
     CHECK(all_ids(*store, {"buildings", 50, "", box}) == expected);
     CHECK(all_ids(*store, {"buildings", 1, "", box}) == expected);
-    CHECK(all_ids(*store, {"buildings", 50, "", box, true}) == expected);  // the other plan
+    for (const double share : {0.5, 1.0}) {  // other plans
+      CHECK(all_ids(*store, {"buildings", 50, "", box, share}) == expected);
+    }
   }
 }
 

@@ -169,11 +169,8 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
 }
 
 std::string is_collection_id(const std::string& id) {
-  const bool is_id =
-      !id.empty() && id.size() <= 64 && id != "." && id != ".." &&
-      id.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-") ==
-          std::string::npos;
-  return is_id ? std::string() : "a collection id is 1 to 64 of A-Z a-z 0-9 _ . -";
+  const Status checked = store::check_collection_id(id);
+  return checked ? std::string() : checked.error().message;
 }
 
 void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {

@@ -45,20 +45,13 @@ std::string allowed_methods(const Target& target) {
   return allowed.empty() ? allowed : allowed + "OPTIONS";
 }
 
-bool is_collection_id(std::string_view id) {
-  const auto is_allowed = [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '.' || c == '-';
-  };
-  return !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), is_allowed) &&
-         id != "." && id != "..";
-}
-
 /// The refusal of a target that matches a route; nothing when the target is fine.
 std::optional<Response> refusal_of(const Target& target, const Route& route) {
-  if (target.segments.size() > 1 && !is_collection_id(target.segments[1])) {
-    return refuse(route.method == "GET" ? 404 : 400, "collection-id",
-                  "a collection id is 1 to 64 of A-Z a-z 0-9 _ . -");
+  if (target.segments.size() > 1) {
+    const Status checked = store::check_collection_id(target.segments[1]);
+    if (!checked) {
+      return refuse(route.method == "GET" ? 404 : 400, "collection-id", checked.error().message);
+    }
   }
   if (target.segments.size() > 3 && target.segments[3].size() > kLongestId) {
     return refuse(400, "item-id", "an item id has at most 1024 bytes");

@@ -26,6 +26,10 @@ struct StoredBox {
   std::array<double, 3> max{};
 };
 
+/// Ok for an id that a collection can have: 1 to 64 of A-Z a-z 0-9 _ . -, and neither "." nor "..",
+/// which no URL can name. Errors: invalid_argument.
+Status check_collection_id(const std::string& id);
+
 struct StoredCollection {
   std::string id;  // [A-Za-z0-9_.-]{1,64}
   std::uint32_t srid = 0;

@@ -49,8 +49,8 @@ def wrk(service, path, options, script=None):
                           check=True).stdout
     rate = float(re.search(r"Requests/sec:\s+([\d.]+)", text)[1])
     value, unit = re.search(r"99%\s+([\d.]+)(us|ms|s)", text).groups()
-    bad = re.search(r"Non-2xx or 3xx responses: (\d+)", text)
-    return rate, float(value) * {"us": 1e-3, "ms": 1, "s": 1e3}[unit], int(bad[1]) if bad else 0
+    bad = [int(count) for count in re.findall(r"(?:Non-2xx or 3xx responses:|connect|read|write|timeout) (\d+)", text)]
+    return rate, float(value) * {"us": 1e-3, "ms": 1, "s": 1e3}[unit], sum(bad)
 
 
 def post_script(folder, collection, batch):

@@ -24,7 +24,6 @@ namespace watertight::store {
 /// UTF-8 without NUL, boxes are finite, and no feature or solid occurs twice. Errors:
 /// invalid_argument, conflict.
 Status check_features(std::span<const StoredFeature> features);
-Status check_collection_id(const std::string& id);
 Status check_box(const StoredBox& box);
 /// False for an id that no stored feature can have.
 bool is_possible_id(const std::string& id);

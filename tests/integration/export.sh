@@ -77,6 +77,11 @@ curl -fsS "$url?f=cityjsonseq" | cmp - all.city.jsonl
 curl -fsS -H 'Accept: application/city+json-seq' "$url" | cmp - all.city.jsonl
 curl -fsS --http1.0 "$url" | cmp - blobs.wt
 curl -fsSI "$url" | tr -d '\r' | grep -Fxq 'Content-Disposition: attachment; filename="delft.wt"'
+# A download that broke off goes on, and has the same bytes then.
+head -c 5000 blobs.wt >resumed.wt
+curl -fsS -C - -o resumed.wt "$url"
+cmp resumed.wt blobs.wt
+[ "$(curl -fsS -r 10-19 "$url" | wc -c)" -eq 10 ] || fail "a range of ten bytes has another length"
 curl -sS "${url/delft/none}" | grep -q '"status":404'
 # A client that leaves in the middle of an export; a busy machine may need a while to begin it.
 for seconds in 1 5 25; do

@@ -27,6 +27,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from service import Service, box_feature, sequence, temporary_folder  # noqa: E402
 
 READY_SECONDS = 5
+TOGETHER = 20  # features of a document that is stored as a whole or not at all
 IDS = 400  # features that the writers of one run change
 ABSENT = None
 
@@ -40,7 +41,10 @@ class Writer(threading.Thread):
         self.service = service
         self.ids = [f"w{number}-{n}" for n in range(IDS // writers)]
         self.known = {name: [ABSENT] for name in self.ids}
+        self.together = [f"t{number}-{n}" for n in range(TOGETHER)]  # always written in one document
         self.random = random.Random(seed * 1000 + number)
+        self.last_together = ABSENT
+        self.has_written_together = False
         self.acknowledged = 0
         self.in_doubt = 0
         self.is_over = threading.Event()
@@ -56,6 +60,9 @@ class Writer(threading.Thread):
                     self.write_once()
 
     def write_once(self):
+        if self.random.random() < 0.2:
+            self.write_together()
+            return
         name = self.random.choice(self.ids)
         state = ABSENT if self.random.random() < 0.2 else self.random.randrange(1 << 30)
         try:
@@ -75,6 +82,18 @@ class Writer(threading.Thread):
             self.in_doubt += 1
             time.sleep(0.02)
 
+    def write_together(self):
+        state = self.random.randrange(1 << 30)
+        document = sequence([box_feature(name, state) for name in self.together])
+        try:
+            status, _ = self.service.request("POST", "/collections/together/items", document, timeout=20)
+        except (OSError, http.client.HTTPException):
+            status = 0
+        self.last_together = state if status == 201 else None  # None: this state or the one before
+        self.has_written_together |= status == 201
+        self.acknowledged += status == 201
+        self.in_doubt += status != 201
+
 
 def read(service, path):
     """An answer other than 503, which is right for a moment after a smart shutdown: it ends sessions
@@ -87,14 +106,28 @@ def read(service, path):
         time.sleep(0.05)
 
 
-def state_of(service, name):
-    """The number of the box that is stored under a name."""
-    status, body = read(service, f"/collections/town/items/{name}?f=cityjsonseq")
+def state_of(service, name, collection="town"):
+    """The line of the feature that is stored under a name, or ABSENT."""
+    status, body = read(service, f"/collections/{collection}/items/{name}?f=cityjsonseq")
     if status == 404:
         return ABSENT
     if status != 200:
         raise SystemExit(f"kills: {name}: status {status}: {body[:300]!r}")
     return body.decode().splitlines()[1]
+
+
+def check_together(service, writer):
+    """Whether all features of a writer's document are there in one state, the acknowledged one."""
+    found = [state_of(service, name, "together") for name in writer.together]
+    shapes = {None if line is ABSENT else json.dumps(json.loads(line)["vertices"]) for line in found}
+    if len(shapes) != 1:
+        return [f"a document of {TOGETHER} features is stored in {len(shapes)} states: {writer.together[0]}"]
+    if writer.has_written_together and shapes == {None}:
+        return [f"an acknowledged document is gone: {writer.together[0]}"]
+    wanted = writer.last_together
+    if wanted is not None and shapes != {json.dumps(json.loads(box_feature("x", wanted))["vertices"])}:
+        return [f"a document is not as it was acknowledged: {writer.together[0]}"]
+    return []
 
 
 def check(service, writers):
@@ -114,6 +147,7 @@ def check(service, writers):
             writer.known[name] = matching[:1]
             if matching[0] is not ABSENT:
                 expected.add(name)
+        complaints += check_together(service, writer)
     listed = []
     path = "/collections/town/items?limit=1000"
     while path:
@@ -132,37 +166,42 @@ def check(service, writers):
 
 
 def harm(service, kind, choice):
-    """Does one thing to the service; True if it has to be started anew."""
+    """Does one thing to the service, and starts it again if it was killed. Returns the moment from
+    which it has to become ready."""
+    begin = time.monotonic()
     if kind == "service":
         service.process.kill()
         service.process.wait()
-        return True
+        service.start()
+        return begin
     pids = service.database_processes()
     if not pids:
-        return False
+        return begin
     if kind == "postmaster":
-        os.kill(pids[0], signal.SIGKILL)
+        kill_if_there(pids[0], signal.SIGKILL)
     elif kind == "one":
-        os.kill(choice.choice(pids), signal.SIGKILL)
+        kill_if_there(choice.choice(pids), signal.SIGKILL)
     elif kind == "all":
         for pid in pids:
             kill_if_there(pid, signal.SIGKILL)
     elif kind == "stop":
         for pid in pids:
             kill_if_there(pid, signal.SIGSTOP)
-        time.sleep(2)
+        time.sleep(choice.uniform(0.5, 4))
         for pid in pids:
             kill_if_there(pid, signal.SIGCONT)
+        begin = time.monotonic()
     elif kind == "smart":
-        os.kill(pids[0], signal.SIGTERM)
-        time.sleep(0.1)
+        kill_if_there(pids[0], signal.SIGTERM)
+        while pathlib.Path(f"/proc/{pids[0]}").exists() and time.monotonic() < begin + 2 * READY_SECONDS:
+            time.sleep(0.02)
     elif kind == "both":
         service.process.kill()
         for pid in pids:
             kill_if_there(pid, signal.SIGKILL)
         service.process.wait()
-        return True
-    return False
+        service.start()
+    return begin
 
 
 def kill_if_there(pid, what):
@@ -172,9 +211,8 @@ def kill_if_there(pid, what):
         pass
 
 
-def seconds_until_ready(service):
+def seconds_until_ready(service, start):
     """Ready is a /readyz of 200 and a write that is acknowledged."""
-    start = time.monotonic()
     while time.monotonic() - start < 60:
         try:
             if service.request("GET", "/readyz", timeout=5)[0] == 200:
@@ -196,13 +234,13 @@ def run(options, folder):
         for writer in writers:
             writer.start()
         for number in range(options.rounds):
-            kind = kinds[number % len(kinds)] if options.rounds >= len(kinds) else choice.choice(kinds)
+            if number % len(kinds) == 0:
+                choice.shuffle(kinds)
+            kind = kinds[number % len(kinds)]
             for writer in writers:
                 writer.may_write.set()
             time.sleep(choice.uniform(0.2, 1.0))
-            if harm(service, kind, choice):
-                service.start()
-            ready = seconds_until_ready(service)
+            ready = seconds_until_ready(service, harm(service, kind, choice))
             slowest = max(slowest, ready)
             for writer in writers:
                 writer.may_write.clear()

@@ -25,7 +25,6 @@ import random
 import resource
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -195,8 +194,10 @@ def judge(samples, phases, situation):
             if kind == "/healthz" and set(row["statuses"]) != {"200"}:
                 complaints.append(f"{phase}: {kind} answers {row['statuses']}")
             is_there = phase != "during" or situation in ("calm", "full")
+            failed = sum(count for status, count in row["statuses"].items() if status != "200")
+            if kind == "/readyz" and is_there and situation != "full" and failed > 0.01 * row["answers"]:
+                complaints.append(f"{phase}: {kind} answers {row['statuses']}")
             if kind == "read" and is_there:
-                failed = sum(count for status, count in row["statuses"].items() if status != "200")
                 if row["p99"] > READ_MS or failed > 0.01 * row["answers"]:
                     complaints.append(f"{phase}: reads take {row['p99']} ms (at most {READ_MS}), {row['statuses']}")
     return table, complaints

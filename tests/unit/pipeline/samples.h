@@ -89,7 +89,7 @@ class MemoryStore : public SolidStore {
     if (is_away) return away();
     if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
     if (features_.contains(new_id)) return Error{ErrorCode::conflict, "there is a " + new_id};
-    if (new_id.find('/') != std::string::npos) return Error{ErrorCode::invalid_argument, new_id};
+    if (Status checked = store::check_collection_id(new_id); !checked) return checked;
     auto moved = features_.extract(id);
     moved.key() = new_id;
     for (auto& [key, feature] : moved.mapped()) feature.collection = new_id;

@@ -233,6 +233,8 @@ TEST_CASE_METHOD(Items, "collections are listed in pages, renamed, recounted and
   CHECK(rename("{\"id\":\"no/id\"}").status == 400);
   CHECK(rename("{\"id\":\"d\",\"crs\":1}").status == 400);
   CHECK(rename("nothing").status == 400);
+  CHECK(rename("{\"id\":\"..\"}").status == 400);  // a URL cannot name it
+  CHECK(rename(std::string(2000, '[')).status == 413);
   const server::Response renamed = rename("{\"id\":\"d\"}");
   CHECK(renamed.status == 200);
   CHECK(field(renamed, "Content-Location") == "/collections/d");
@@ -244,6 +246,22 @@ TEST_CASE_METHOD(Items, "collections are listed in pages, renamed, recounted and
   CHECK(send({"DELETE", "/collections/d", {}, ""}).status == 204);
   CHECK(send({"DELETE", "/collections/d", {}, ""}).status == 404);
   CHECK(ids("/collections") == "ctown");
+}
+
+TEST_CASE_METHOD(Items, "a collection changes only from the state that the client saw") {
+  const auto change = [&](const std::string& method, const std::string& body,
+                          const std::string& tag) {
+    return send({method, "/collections/town", {{"if-match", tag}}, body}).status;
+  };
+  const server::Response seen = send({"GET", "/collections/town", {}, ""});
+  const std::string etag = field(seen, "ETag");
+  CHECK(send({"GET", "/collections/town", {{"if-none-match", etag}}, ""}).status == 304);
+  REQUIRE(send({"POST", "/collections/town/items", {}, kA}).status == 201);
+  CHECK(change("DELETE", "", etag) == 412);
+  CHECK(change("PATCH", "{\"id\":\"new\"}", etag) == 412);
+  const std::string now = field(send({"GET", "/collections/town", {}, ""}), "ETag");
+  CHECK(change("PATCH", "{\"id\":\"town\"}", now) != 412);
+  CHECK(change("DELETE", "", now) == 204);
 }
 
 }  // namespace

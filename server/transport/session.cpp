@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/transport/session.h"
 
-#include <poll.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -19,6 +18,7 @@
 #include <optional>
 
 #include "base/ascii.h"
+#include "server/transport/client_watch.h"
 #include "server/transport/messages.h"
 
 namespace watertight::server {
@@ -103,63 +103,6 @@ class TimeLimit {
   };
   asio::steady_timer timer_;
   std::shared_ptr<State> state_;
-};
-
-/// Notices that a client has closed its side of the connection while its request is answered. Does
-/// not read: bytes that come are those of the next request. Only for the stream's executor.
-class ClientWatch {
- public:
-  explicit ClientWatch(const std::shared_ptr<Connection>& connection)
-      : watched_(std::make_shared<Watched>(connection)) {
-    wait_for_bytes(watched_);
-  }
-  ~ClientWatch() {
-    watched_->is_over = true;
-    watched_->timer.cancel();
-    error_code ignored;
-    watched_->connection->stream.socket().cancel(ignored);
-  }
-  ClientWatch(const ClientWatch&) = delete;
-  ClientWatch& operator=(const ClientWatch&) = delete;
-  /// May be asked by any thread, also after the watch has ended.
-  std::shared_ptr<const std::atomic<bool>> has_left() const {
-    return {watched_, &watched_->has_left};
-  }
-
- private:
-  struct Watched {
-    explicit Watched(const std::shared_ptr<Connection>& watched_connection)
-        : connection(watched_connection), timer(connection->stream.get_executor()) {}
-    std::shared_ptr<Connection> connection;
-    asio::steady_timer timer;
-    bool is_over = false;
-    std::atomic<bool> has_left = false;
-  };
-
-  static void wait_for_bytes(const std::shared_ptr<Watched>& watched) {
-    watched->connection->stream.socket().async_wait(asio::ip::tcp::socket::wait_read,
-                                                    [watched](const error_code& error) {
-                                                      if (!error && !watched->is_over)
-                                                        look(watched);
-                                                    });
-  }
-
-  /// Looks whether the client has closed its side. Behind bytes that wait to be read, no event
-  /// reports the end, so it is looked for again and again.
-  static void look(const std::shared_ptr<Watched>& watched) {
-    constexpr std::chrono::milliseconds kPause{50};
-    pollfd state{watched->connection->stream.socket().native_handle(), POLLRDHUP, 0};
-    if (::poll(&state, 1, 0) > 0 && (state.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0) {
-      watched->has_left = true;
-      return;
-    }
-    watched->timer.expires_after(kPause);
-    watched->timer.async_wait([watched](const error_code& error) {
-      if (!error && !watched->is_over) look(watched);
-    });
-  }
-
-  std::shared_ptr<Watched> watched_;
 };
 
 /// One of the things that are counted by address, while it is there.

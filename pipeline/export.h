@@ -20,7 +20,7 @@
 namespace watertight::pipeline {
 
 enum class ExportFormat : std::uint8_t {
-  container,  // a Watertight file: solids in pages, any number of documents
+  container,  // a Watertight file: any number of documents, solids in pages or blobs
   sequence    // a CityJSONSeq; for city models that came with one header
 };
 

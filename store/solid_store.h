@@ -37,7 +37,8 @@ struct StoredCollection {
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t blob_bytes = 0;
-  /// A word that a collection of this name has never had with other features.
+  /// Changes with every change of the features. Collections that have this name in turn never share
+  /// one.
   std::string state;
   /// Contains all features. After features were removed or replaced it may be larger than needed,
   /// until recount().

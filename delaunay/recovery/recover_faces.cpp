@@ -198,7 +198,7 @@ class Recovery {
   bool is_marked(Index t) const { return t < mark_of_.size() && mark_of_[t] == mark_; }
 
   /// Collects the tetrahedra that belong to a set, which is connected across faces, from one of
-  /// them or its neighbours on. False if too many were looked at.
+  /// them or its neighbours on. Ends at the limit of visits; the set is incomplete then.
   template <class Belongs>
   void flood(std::vector<Index>& found, const Belongs& belongs) {
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -283,7 +283,7 @@ class Recovery {
         }
       }
     }
-    // Each pass begins elsewhere.
+    // The search fills over the last triangle first: each pass puts another one there.
     std::rotate(front.begin(), front.begin() + static_cast<std::ptrdiff_t>(pass_ % front.size()),
                 front.end());
     return front;

@@ -33,7 +33,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kRefusedAtOnce = 64;  // connections beyond the limit that get an answer
 constexpr milliseconds kPause{20};
-constexpr double kMoment = 0.001;  // seconds in which nobody is slow
+constexpr double kMoment = 0.001;  // seconds, added to ages so that all rates are finite
 
 class AsioServer final : public HttpServer {
  public:

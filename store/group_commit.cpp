@@ -92,6 +92,11 @@ GroupCommit::Versions GroupCommit::put(std::span<const StoredFeature> features) 
   return writer_.alone(alone);
 }
 
+std::size_t GroupCommit::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
 /// Takes the calls from the front of the queue that fit in one group, one at least. Ends before a
 /// call that has a feature in common with one before.
 void GroupCommit::take_group(Group& group) {

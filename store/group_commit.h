@@ -51,6 +51,9 @@ class GroupCommit {
   /// of the group share its failure, as it may not be known whether the group was stored.
   Versions put(std::span<const StoredFeature> features);
 
+  /// The number of calls that wait for their turn.
+  std::size_t waiting() const;
+
  private:
   struct Call;
   class Turn;
@@ -60,7 +63,7 @@ class GroupCommit {
 
   const Writer writer_;
   const Limits limits_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::deque<Call*> waiting_;
   bool is_writing_ = false;
 };

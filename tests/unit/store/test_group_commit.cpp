@@ -86,8 +86,9 @@ std::vector<GroupCommit::Versions> put_all(FakeWriter& writer, const GroupCommit
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < features.size(); ++i) {
     threads.emplace_back([&, i] { results[i] = group.put(features[i]); });
-    while (writer.calls() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // until the call is in the queue
+    while (writer.calls() == 0 || group.waiting() < i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
   writer.release();
   for (std::thread& thread : threads) thread.join();

@@ -91,7 +91,7 @@ TEST_CASE("a smart shutdown of the server takes seconds, with clients and with s
   const auto session = session_in(cluster->connection());  // a smart shutdown waits for its end
   const pid_t before = postmaster_of(folder.path);
   REQUIRE(kill(before, SIGTERM) == 0);
-  const auto second = started({folder.path});
+  const auto second = started(options);  // either of the two may act, and say so
   // The second user may have found the server before it began to shut down.
   CHECK(soon(seconds(5), [&] {
     return postmaster_of(folder.path) != before && answers(second->connection());
@@ -207,7 +207,7 @@ TEST_CASE("the log of a running server stays small") {
   const std::string log = folder.path + "/server.log";
   std::ofstream(log, std::ios::app) << std::string(20 << 20, 'x') << '\n';
   CHECK(soon(seconds(5), [&] { return std::filesystem::file_size(log) < (1 << 20); }));
-  CHECK(std::filesystem::file_size(log + ".old") > (20 << 20));
+  CHECK(std::filesystem::file_size(log + ".old") >= (20 << 20));
   const auto session = session_in(cluster->connection());
   CHECK(!session->run("SELECT no_such_column"));
   ask(cluster->connection(), "DO $$ BEGIN RAISE WARNING 'a later line'; END $$");

@@ -35,6 +35,7 @@ from service import Service, box_document, unprivileged  # noqa: E402
 
 PROBE_MS = 50
 READ_MS = 500
+KINDS = ("/healthz", "/readyz", "read")
 READY_SECONDS = 5  # within which the service is ready after the event
 
 
@@ -178,13 +179,16 @@ def summary(samples):
             "statuses": {str(s): sum(1 for x in samples if x[3] == s) for s in sorted({x[3] for x in samples})}}
 
 
+def kind_of(sample):
+    return "read" if sample[1].startswith("/collections") else sample[1]
+
+
 def judge(samples, phases, situation):
     """A table of what each kind of request took in each phase, and the complaints."""
     table, complaints = {}, []
     for phase, begin, end in phases:
-        for kind in ("/healthz", "/readyz", "read"):
-            chosen = [s for s in samples if begin <= s[0] < end
-                      and (s[1] == kind or (kind == "read" and s[1].startswith("/collections")))]
+        for kind in KINDS:
+            chosen = [s for s in samples if begin <= s[0] < end and kind_of(s) == kind]
             if not chosen:
                 complaints.append(f"{phase}: no answer for {kind}")
                 continue
@@ -243,8 +247,10 @@ def run(options, folder):
         time.sleep(options.seconds)
         phases.append(("after", ready, time.monotonic()))
         samples = []
-        while len(samples) < 10 or samples[-1][0] < phases[-1][2] - 0.5:  # until the last ones have come
+        latest = dict.fromkeys(KINDS, 0.0)
+        while min(latest.values()) < phases[-1][2] - 0.5:  # until the last ones of each observer have come
             samples.append(results.get(timeout=40))
+            latest[kind_of(samples[-1])] = samples[-1][0]
         for worker in workers:
             worker.kill()
         stop = service.stop()

@@ -16,12 +16,11 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "siege"))
-from service import HEADER, Service, box_feature  # noqa: E402
+from service import HEADER, Service, box_feature, temporary_folder  # noqa: E402
 
 POST_SCRIPT = """
 local header = [[{header}]]
@@ -89,8 +88,8 @@ def main():
     parser.add_argument("--seconds", type=int, default=5)
     parser.add_argument("--clients", type=int, default=8)
     options = parser.parse_args()
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="watertight-load-"))
-    folder.chmod(0o755)
+    if shutil.which("wrk") is None:
+        raise SystemExit("load: the program wrk is not installed (Debian: apt install wrk)")
     failures = 0
 
     def show(kind, rate, p99, bad):
@@ -98,32 +97,29 @@ def main():
         failures += bad
         print(f"{kind:44} {rate:9.0f} /s   p99 {p99:7.1f} ms   {bad} errors", flush=True)
 
-    try:
-        with Service(options.program, folder) as service:
-            city = pathlib.Path(options.city).read_bytes()
-            status, body = service.request("POST", "/collections/city/items?invalid=skip&f=cityjsonseq", city)
-            if status != 201:
-                raise SystemExit(f"load: storing gave {status}: {body[:300]!r}")
-            items = []
-            path = "/collections/city/items?limit=1000"
-            while path:
-                page = json.loads(service.request("GET", path)[1])
-                items += [feature["id"] for feature in page["features"] if feature["properties"]["solids"] == 3]
-                path = next((link["href"] for link in page["links"] if link["rel"] == "next"), None)
-            base = "/collections/city/items/"
-            for name, query in (("blob", "?f=blob&solid=2"), ("CityJSON", "?f=cityjson"), ("f=wt", "?f=wt")):
-                rate, bad = each_once(service, [base + item + query for item in items], options.clients)
-                print(f"{name + f', each of {len(items)} buildings once':44} {rate:9.0f} /s   {bad} errors")
-                show(f"{name}, one building", *wrk(service, base + items[0] + query, options))
-            show("page of ten", *wrk(service, "/collections/city/items?limit=10", options))
-            show("page of one", *wrk(service, "/collections/city/items?limit=1", options))
-            show("POST of one box", *wrk(service, "/", options, post_script(folder, "boxes", 1)))
-            rate, p99, bad = wrk(service, "/", options, post_script(folder, "batches", 100))
-            show("POST of 100 boxes, boxes", rate * 100, p99, bad)
-            show("/healthz", *wrk(service, "/healthz", options))
-            service.stop()
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    with temporary_folder("load") as folder, Service(options.program, folder) as service:
+        city = pathlib.Path(options.city).read_bytes()
+        status, body = service.request("POST", "/collections/city/items?invalid=skip&f=cityjsonseq", city)
+        if status != 201:
+            raise SystemExit(f"load: storing gave {status}: {body[:300]!r}")
+        items = []
+        path = "/collections/city/items?limit=1000"
+        while path:
+            page = json.loads(service.request("GET", path)[1])
+            items += [feature["id"] for feature in page["features"] if feature["properties"]["solids"] == 3]
+            path = next((link["href"] for link in page["links"] if link["rel"] == "next"), None)
+        base = "/collections/city/items/"
+        for name, query in (("blob", "?f=blob&solid=2"), ("CityJSON", "?f=cityjson"), ("f=wt", "?f=wt")):
+            rate, bad = each_once(service, [base + item + query for item in items], options.clients)
+            print(f"{name + f', each of {len(items)} buildings once':44} {rate:9.0f} /s   {bad} errors")
+            show(f"{name}, one building", *wrk(service, base + items[0] + query, options))
+        show("page of ten", *wrk(service, "/collections/city/items?limit=10", options))
+        show("page of one", *wrk(service, "/collections/city/items?limit=1", options))
+        show("POST of one box", *wrk(service, "/", options, post_script(folder, "boxes", 1)))
+        rate, p99, bad = wrk(service, "/", options, post_script(folder, "batches", 100))
+        show("POST of 100 boxes, boxes", rate * 100, p99, bad)
+        show("/healthz", *wrk(service, "/healthz", options))
+        service.stop()
     return 1 if failures else 0
 
 

@@ -16,6 +16,7 @@
 
 namespace watertight::server {
 
+class Budget;
 class ExportFiles;
 class RepresentationCache;
 
@@ -39,6 +40,8 @@ struct Service {
   RepresentationCache* cache = nullptr;
   /// Keeps exports of which ranges are wanted. Null: exports have no ranges. Outlives the service.
   ExportFiles* export_files = nullptr;
+  /// The memory for documents that are read whole, bytes. Null: no limit. Outlives the service.
+  Budget* document_memory = nullptr;
 };
 
 /// Answers a request. Never fails: every error is an application/problem+json answer.

@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "server/budget.h"
 #include "server/export_files.h"
 #include "server/items/representation_cache.h"
 
@@ -177,7 +178,8 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
     return health ? monitor.status() : health;
   };
   RepresentationCache cache(options.cache_bytes);
-  Service service{store->get(), &workers, {}, readiness, &cache, &export_files};
+  Budget document_memory(options.document_memory);
+  Service service{store->get(), &workers, {}, readiness, &cache, &export_files, &document_memory};
   service.options.limits = options.limits;
   service.options.requires_preconditions = options.requires_preconditions;
   const auto logger = make_logger();

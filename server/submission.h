@@ -3,10 +3,12 @@
 // Reads a submitted body: finds its format and reads the document. Internal to server/.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "formats/feature_reader.h"
+#include "server/budget.h"
 #include "server/handlers.h"
 
 namespace watertight::server {
@@ -18,11 +20,13 @@ std::string top_level_type(std::string_view json);
 /// The formats that clients may send.
 enum class AcceptedFormats : std::uint8_t { city_models, all };
 
-/// The document in a body, or the problem with it: 400 malformed, 413, 415, 422. The format follows
-/// from f=, else from Content-Type. A CityJSONSeq is read while it is used, so the request must
-/// outlive the reader; other documents are read whole. `header` is the document header that a bare
-/// CityJSONFeature needs (that of the collection), "" when there is none.
+/// The document in a body, or the problem with it: 400 malformed, 413, 415, 422, 503. The format
+/// follows from f=, else from Content-Type. A CityJSONSeq is read while it is used, so the request
+/// must outlive the reader; other documents are read whole, and hold a share of the memory for such
+/// documents until they are stored. `header` is the document header that a bare CityJSONFeature
+/// needs (that of the collection), "" when there is none.
 struct Submission {
+  std::unique_ptr<BudgetShare> memory;
   std::optional<formats::FeatureReader> reader;
   std::optional<Problem> problem;
 };

@@ -517,14 +517,6 @@ void Session::log_answer(unsigned status, std::uint64_t bytes, Clock::time_point
 
 }  // namespace
 
-bool Budget::take(std::uint64_t amount) {
-  std::uint64_t left = left_;
-  while (left >= amount) {
-    if (left_.compare_exchange_weak(left, left - amount)) return true;
-  }
-  return false;
-}
-
 SessionEnvironment::SessionEnvironment(const ServerOptions& server_options,
                                        Application server_application, LogLine server_log)
     : options(server_options),

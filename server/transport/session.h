@@ -19,45 +19,10 @@
 #include <string>
 #include <unordered_map>
 
+#include "server/budget.h"
 #include "server/transport/listener.h"
 
 namespace watertight::server {
-
-/// A limited quantity that several threads take from and give back to.
-class Budget {
- public:
-  explicit Budget(std::uint64_t amount) : left_(amount) {}
-  bool take(std::uint64_t amount);
-  void give_back(std::uint64_t amount) { left_ += amount; }
-
- private:
-  std::atomic<std::uint64_t> left_;
-};
-
-/// The share of a Budget that a session holds while it lives.
-class BudgetShare {
- public:
-  BudgetShare(Budget& budget, std::uint64_t amount)
-      : budget_(budget),
-        amount_(budget.take(amount) ? amount : 0),
-        is_granted_(amount_ == amount) {}
-  /// Makes the share at least `amount`. False when the budget has not so much left.
-  bool grow_to(std::uint64_t amount) {
-    if (amount <= amount_) return true;
-    if (!budget_.take(amount - amount_)) return false;
-    amount_ = amount;
-    return true;
-  }
-  ~BudgetShare() { budget_.give_back(amount_); }
-  BudgetShare(const BudgetShare&) = delete;
-  BudgetShare& operator=(const BudgetShare&) = delete;
-  bool is_granted() const { return is_granted_; }
-
- private:
-  Budget& budget_;
-  std::uint64_t amount_;
-  bool is_granted_;
-};
 
 /// Threads for the requests of one lane, and the number of requests that they may have to do.
 struct LaneThreads {

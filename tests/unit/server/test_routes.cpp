@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/container.h"
+#include "server/budget.h"
 #include "server/handlers.h"
 #include "tests/unit/pipeline/samples.h"
 #include "tests/unit/server/answers.h"
@@ -198,6 +199,26 @@ TEST_CASE_METHOD(Fixture, "invalid=skip stores the valid features and reports th
   CHECK(get("/collections/town/items/a").status == 200);
   CHECK(get("/collections/town/items/open").status == 404);
   CHECK(post("/collections/town/items?invalid=maybe", kOneOpen).status == 400);
+}
+
+TEST_CASE_METHOD(Fixture, "documents that are read whole share a budget of memory") {
+  const std::string wkt = "POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)))";
+  server::Budget memory(40 * (wkt.size() + 100));
+  const auto send_with_budget = [&](const std::string& body, const std::string& type) {
+    server::Service service{&store, nullptr, {}};
+    service.document_memory = &memory;
+    return server::respond(service, {"POST", "/validate", {{"content-type", type}}, body},
+                           [] { return false; });
+  };
+  CHECK(send_with_budget(wkt, "text/wkt").status == 200);
+  const server::Response large = send_with_budget(wkt + std::string(200, ' '), "text/wkt");
+  REQUIRE(large.status == 413);
+  CHECK(problem_of(large)["detail"].get<std::string>().find("CityJSONSeq") != std::string::npos);
+  CHECK(send_with_budget(kTwo, "application/city+json-seq").status == 200);
+  const server::BudgetShare of_others(memory, 40 * 101);
+  const server::Response refused = send_with_budget(wkt, "text/wkt");
+  CHECK(refused.status == 503);
+  CHECK(header_of(refused, "Retry-After") != nullptr);
 }
 
 TEST_CASE_METHOD(Fixture,

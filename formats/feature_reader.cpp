@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/text/json.h"
+
 namespace watertight::formats {
 namespace {
 
@@ -19,15 +21,25 @@ std::size_t text_start(std::string_view line) {
 
 Error in_line(Error error, const FeatureText& text) {
   const bool is_cut_off = error.byte_offset && *error.byte_offset + 1 >= text.line.size();
-  error.message = "line " + std::to_string(text.line_number) + ": " + error.message;
+  error.message = "line " + std::to_string(text.place.line) + ": " + error.message;
   if (is_cut_off) {
     error.message += "; each line of a CityJSONSeq must be one complete JSON text";
   }
-  error.byte_offset = text.offset + error.byte_offset.value_or(0);
+  error.byte_offset = text.place.offset + error.byte_offset.value_or(0);
   return error;
 }
 
 }  // namespace
+
+Error at_place(Error error, const FeaturePlace& place, const std::string& id) {
+  if (place.line == 0) {
+    if (!id.empty()) error.pointer = "/CityObjects" + pointer_token(id);
+    return error;
+  }
+  error.message = "line " + std::to_string(place.line) + ": " + error.message;
+  error.byte_offset = place.offset;
+  return error;
+}
 
 /// Appends the next bytes of the source to the buffer.
 Status FeatureReader::fill() {
@@ -145,7 +157,7 @@ Result<std::optional<FeatureText>> FeatureReader::next_line() {
     const std::size_t start = text_start(line);
     const std::uint64_t offset = bytes_read_ - rest.size() + start;
     line.remove_prefix(start);
-    FeatureText text{std::string(line), ++line_number_, offset, {}};
+    FeatureText text{std::string(line), {++line_number_, offset}, {}};
     if (options_.keep_text) note_gap(rest.substr(0, start), !line.empty());
     if (options_.keep_text && searched_ < buffer_.size()) gap_ += '\n';
     used_ = std::min(searched_ + 1, buffer_.size());

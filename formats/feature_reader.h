@@ -19,12 +19,21 @@ namespace watertight::formats {
 /// Fills the span from the input and returns the number of bytes; 0 at the end of the input.
 using ByteSource = std::function<Result<std::size_t>(std::span<std::uint8_t>)>;
 
+/// The place of a feature in the input.
+struct FeaturePlace {
+  std::uint64_t line = 0;    // number of the line of a sequence, from 1; 0 in other documents
+  std::uint64_t offset = 0;  // start of that line in the input, bytes
+};
+
+/// Adds the place to an error of a feature whose id could be read: the line with its byte offset,
+/// else a JSON Pointer to the city object.
+Error at_place(Error error, const FeaturePlace& place, const std::string& id);
+
 /// A feature found but not yet read: a line of a sequence, or a feature of a document that was read
 /// whole.
 struct FeatureText {
   std::string line;
-  std::uint64_t line_number = 0;  // number of the line, from 1
-  std::uint64_t offset = 0;       // start of the line in the input, bytes
+  FeaturePlace place;
   std::optional<Feature> ready;
 };
 

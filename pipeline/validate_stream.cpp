@@ -40,10 +40,11 @@ class Stream {
         options_.progress(outcome_.features, bytes);
       };
     }
-    const auto count =
-        stream_features(reader_, stream, [this](std::uint64_t number, Result<Feature> feature) {
-          return validate(number, std::move(feature));
-        });
+    const FeatureWork work = [this](std::uint64_t number, const formats::FeaturePlace&,
+                                    Result<Feature> feature) {
+      return validate(number, std::move(feature));
+    };
+    const auto count = stream_features(reader_, stream, work);
     if (!count) return count.error();
     if (Status status = add_templates(*count); !status) return status.error();
     return outcome_;

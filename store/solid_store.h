@@ -30,6 +30,10 @@ struct StoredBox {
 /// which no URL can name. Errors: invalid_argument.
 Status check_collection_id(const std::string& id);
 
+/// Ok for an id that a feature can have: 1 to 1024 bytes of UTF-8 without NUL, neither "." nor "..",
+/// which no URL can name. Errors: invalid_argument.
+Status check_feature_id(const std::string& id);
+
 struct StoredCollection {
   std::string id;  // [A-Za-z0-9_.-]{1,64}
   std::uint32_t srid = 0;

@@ -51,7 +51,8 @@ class FeatureStream {
     try {
       for (auto found = take_next(); found; found = take_next()) {
         const std::uint64_t bytes = found->text.line.size();
-        Delivery delivery = work_(found->number, reader_.read(std::move(found->text)));
+        const formats::FeaturePlace place = found->text.place;
+        Delivery delivery = work_(found->number, place, reader_.read(std::move(found->text)));
         put_back(found->number, {bytes, std::move(delivery)});
       }
     } catch (...) {
@@ -104,7 +105,7 @@ std::optional<FeatureStream::Found> FeatureStream::take_next() {
   is_over_ = true;
   if (!text) {  // the rest cannot be read; the error waits for its turn
     const std::uint64_t number = taken_++;
-    passages_[number].delivery = work_(number, std::move(text).error());
+    passages_[number].delivery = work_(number, {}, std::move(text).error());
     hand_on_in_order(lock);
   }
   room_.notify_all();

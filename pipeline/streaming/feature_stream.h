@@ -15,8 +15,10 @@ namespace watertight::pipeline {
 /// Hands the result of one feature on. Called in document order, from one thread at a time.
 using Delivery = std::function<Status()>;
 /// Works on a feature, or on the error of a feature or of the rest of the document that could not
-/// be read. `number` is the number in the document, from 0. Called from several threads at once.
-using FeatureWork = std::function<Delivery(std::uint64_t number, Result<Feature> feature)>;
+/// be read (then without a place). `number` is the number in the document, from 0. Called from
+/// several threads at once.
+using FeatureWork = std::function<Delivery(
+    std::uint64_t number, const formats::FeaturePlace& place, Result<Feature> feature)>;
 
 struct FeatureStreamOptions {
   std::size_t threads = 1;

@@ -16,6 +16,7 @@ namespace watertight::pipeline {
 /// A feature after validation; `packed` if it is valid.
 struct Ingestion::Processed {
   FeatureOutcome outcome;
+  formats::FeaturePlace place;
   std::uint32_t srid = 0;
   std::optional<StoredFeature> packed;
 };
@@ -34,13 +35,14 @@ Status Ingestion::add(formats::FeatureReader& reader) {
   if (!shared) return std::move(shared).error();
   TemplateInspector templates(reader.document().templates, workers_, options_.certify,
                               group_options(options_.groups, options_.certify));
-  const FeatureWork work = [&](std::uint64_t, Result<Feature> feature) -> Delivery {
+  const FeatureWork work = [&](std::uint64_t, const formats::FeaturePlace& place,
+                               Result<Feature> feature) -> Delivery {
     if (!feature) return [error = std::move(feature).error()]() -> Status { return error; };
     const std::uint32_t srid = feature->srid;
     auto processed = process(*std::move(feature), *shared, workers_, options_, templates);
     if (!processed) return [error = std::move(processed).error()]() -> Status { return error; };
     const auto taken =
-        std::make_shared<Processed>(Processed{std::move(processed->outcome), srid, {}});
+        std::make_shared<Processed>(Processed{std::move(processed->outcome), place, srid, {}});
     if (processed->encoded) {
       auto packed = pack(*std::move(processed->encoded));
       if (!packed) return [error = std::move(packed).error()]() -> Status { return error; };
@@ -69,17 +71,23 @@ Status Ingestion::add_container(ByteView bytes, const Limits& limits) {
   }
 }
 
-/// Names a feature that has no id; checks its id, and that document and collection have one CRS.
-Status Ingestion::check(FeatureOutcome& outcome, std::uint32_t srid) {
+/// Names a feature that has no id; checks that the store can keep its id and has it once.
+Status Ingestion::check_id(FeatureOutcome& outcome) {
   if (outcome.id.empty()) {
     if (options_.unnamed.empty()) return Error{ErrorCode::malformed, "a feature has no id"};
     outcome.has_own_id = false;
     outcome.id = options_.unnamed;
     if (++unnamed_ > 1) outcome.id.append("-").append(std::to_string(unnamed_));
   }
+  if (Status checked = store::check_feature_id(outcome.id); !checked) return checked;
   if (!ids_.insert(outcome.id).second) {
     return Error{ErrorCode::malformed, "two features have the id '" + outcome.id + "'"};
   }
+  return Done{};
+}
+
+/// Checks that document and collection have one CRS.
+Status Ingestion::check_srid(const FeatureOutcome& outcome, std::uint32_t srid) {
   if (!srid_) {
     const auto existing = store_.collection(options_.collection);
     if (!existing && existing.error().code != ErrorCode::not_found) return existing.error();
@@ -93,7 +101,10 @@ Status Ingestion::check(FeatureOutcome& outcome, std::uint32_t srid) {
 
 Status Ingestion::take(Processed processed) {
   FeatureOutcome& outcome = processed.outcome;
-  if (Status checked = check(outcome, processed.srid); !checked) return checked;
+  if (Status checked = check_id(outcome); !checked) {
+    return formats::at_place(std::move(checked).error(), processed.place, outcome.id);
+  }
+  if (Status checked = check_srid(outcome, processed.srid); !checked) return checked;
   counts_.add(outcome.verdict);
   if (is_refused()) {
     spool_.clear();

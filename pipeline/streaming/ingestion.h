@@ -34,7 +34,7 @@ class Ingestion {
   /// Validates and encodes all features of a reader; may be called for several readers, whose
   /// features then count as one document. Nothing is stored yet, and nothing may be stored after an
   /// error. Errors: those of the reader and of encode(); malformed (two features of one id, an
-  /// empty id); conflict (another CRS than the collection's); cancelled; those of the sink;
+  /// empty id), invalid_argument (an id that the store cannot keep), with the place; conflict (another CRS than the collection's); cancelled; those of the sink;
   /// unavailable (the spool).
   Status add(formats::FeatureReader& reader);
   /// The same for all documents of a Watertight file. City models are checked as their texts would
@@ -50,7 +50,8 @@ class Ingestion {
  private:
   struct Processed;
   Status take(Processed processed);
-  Status check(FeatureOutcome& outcome, std::uint32_t srid);
+  Status check_srid(const FeatureOutcome& outcome, std::uint32_t srid);
+  Status check_id(FeatureOutcome& outcome);
   bool is_refused() const {
     return counts_.verdict != Verdict::valid &&
            options_.invalid_features == InvalidFeatures::refuse_document;

@@ -74,11 +74,7 @@ Status check_solids(const StoredFeature& feature) {
 
 Status check_feature(const StoredFeature& feature) {
   if (Status checked = check_collection_id(feature.collection); !checked) return checked;
-  if (feature.id.empty()) return bad("a feature has no id");
-  if (feature.id == "." || feature.id == "..") {
-    return bad("a feature cannot have the id '" + feature.id + "', which no URL can name");
-  }
-  if (Status checked = check_id(feature.id, "a feature id"); !checked) return checked;
+  if (Status checked = check_feature_id(feature.id); !checked) return checked;
   if (!is_plain_utf8(feature.type) || !is_plain_utf8(feature.format)) {
     return bad("the type or format of feature '" + feature.id + "' is not UTF-8 text without NUL");
   }
@@ -101,6 +97,14 @@ Status check_collection_id(const std::string& id) {
     return bad("a collection id is 1 to 64 of A-Z a-z 0-9 _ . -, and neither . nor ..");
   }
   return Done{};
+}
+
+Status check_feature_id(const std::string& id) {
+  if (id.empty()) return bad("a feature has no id");
+  if (id == "." || id == "..") {
+    return bad("a feature cannot have the id '" + id + "', which no URL can name");
+  }
+  return check_id(id, "a feature id");
 }
 
 bool is_possible_id(const std::string& id) { return !id.empty() && check_id(id, "").has_value(); }

@@ -201,6 +201,18 @@ TEST_CASE_METHOD(Fixture, "invalid=skip stores the valid features and reports th
   CHECK(post("/collections/town/items?invalid=maybe", kOneOpen).status == 400);
 }
 
+TEST_CASE_METHOD(Fixture, "an id that cannot be stored is refused with its place") {
+  for (const char* id : {"..", "a"}) {
+    const std::string first = samples::sequence({samples::feature("a")});
+    const server::Response response =
+        post("/collections/town/items", first + samples::feature(id) + "\n");
+    REQUIRE(response.status == 400);
+    const Json problem = problem_of(response);
+    CHECK(problem["detail"].get<std::string>().starts_with("line 3: "));
+    CHECK(problem["byteOffset"] == first.size());
+  }
+}
+
 TEST_CASE_METHOD(Fixture, "documents that are read whole share a budget of memory") {
   const std::string wkt = "POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)))";
   server::Budget memory(40 * (wkt.size() + 100));

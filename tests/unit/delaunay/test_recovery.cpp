@@ -76,6 +76,14 @@ TEST_CASE("a sphere that rounding has dented is proven without an engine") {
   }
 }
 
+TEST_CASE("a solid of 249,000 triangles that rounding has dented is proven without an engine") {
+  const Shape sphere = rounded_sphere(250, 100'000);
+  REQUIRE(sphere.shells.front().size() == 249'000);
+  const delaunay::LadderResult result = climb_alone(sphere);
+  REQUIRE(result.certificate.has_value());
+  CHECK(result.certificate->rung == delaunay::Rung::recovered);
+}
+
 TEST_CASE("Schoenhardt's prism gets Steiner points without an engine") {
   const delaunay::LadderResult result = climb_alone(samples::schoenhardt());
   REQUIRE(result.certificate.has_value());

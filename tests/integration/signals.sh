@@ -44,15 +44,18 @@ ends() {
 }
 gone() { ! kill -0 "$1" 2>/dev/null || grep -qs '^State:.Z' "/proc/$1/status"; }
 status_of() { curl -s -o answer -w '%{http_code}' --max-time 3 "$url$1" || true; }
+probe() { [ "$(curl -s -o answer -w '%{http_code}' --max-time 3 "$probes$1")" = "$2" ]; }
 answers() { [ "$(status_of "$1")" = "$2" ]; }
 is_new() { [ -e data/postgres/postmaster.pid ] && [ "$(postmaster)" != "$server" ]; }
 start_service() {
   rm -f listening said
   (ulimit -Sn 256 && exec "${as[@]}" env WATERTIGHT_DATABASE_URL= TOKEN=a-secret "$program" serve "${store[@]}" \
-    --listen 127.0.0.1:0 >listening 2>said) &
+    --listen 127.0.0.1:0 --probes 127.0.0.1:0 >listening 2>said) &
   service=$!
   until_true 60 grep -qs http listening || fail "$(cat said)"
   url=$(sed -n 's/^listening on //p' listening)
+  until_true 5 grep -qs event=probes said || fail "no address of the probes: $(cat said)"
+  probes=$(sed -n 's/.*event=probes url=//p' said)
 }
 echo 'SOLID Z((((0 0 0,0 1 0,1 0 0,0 0 0)),((0 0 0,1 0 0,0 0 1,0 0 0)),((0 0 0,0 0 1,0 1 0,0 0 0)),((1 0 0,0 1 0,0 0 1,1 0 0))))' >a.wkt
 chmod a+r a.wkt
@@ -93,6 +96,8 @@ other=
 
 start_service
 until_true 5 answers /readyz 200 || fail "not ready: $(cat answer)"
+probe /readyz 200 || fail "the address of the probes says not ready: $(cat answer)"
+probe /collections 404 || fail "the address of the probes answers more than probes: $(cat answer)"
 
 # What children see, and what nobody can get.
 server=$(postmaster)
@@ -130,6 +135,8 @@ server=$(postmaster)
 kill -STOP "$server"
 until_true 6 answers /readyz 503 || fail "ready with a stopped postmaster"
 answers /healthz 200 || fail "not healthy with a stopped postmaster"
+probe /healthz 200 || fail "the probes say not healthy with a stopped postmaster"
+probe /readyz 503 || fail "the probes say ready with a stopped postmaster"
 kill -CONT "$server"
 until_true 6 answers /readyz 200 || fail "not ready after SIGCONT: $(cat answer)"
 

@@ -40,6 +40,7 @@ struct EncodeCommand {
   std::string mode = "auto";
   bool keeps_steiner = false;
   std::string contract = "exact";
+  std::string invalid = "keep";
   bool is_bare = false;   // one blob instead of a Watertight file
   bool explains = false;  // print the bytes that the solids take in each mode
   std::size_t jobs = 1;

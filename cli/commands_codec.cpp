@@ -86,6 +86,11 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::EncodedDocument
   const Bytes* blob = nullptr;
   for (const pipeline::EncodedFeature& feature : document.features) {
     solids += feature.solids.size();
+    for (const StoredSolid& solid : feature.solids) {
+      if (!solid.is_proven) {
+        return Error{ErrorCode::not_encodable, "the solid is not valid, so there is no blob of it"};
+      }
+    }
     if (!feature.solids.empty()) blob = &feature.solids.front().blob;
   }
   if (solids == 1) return *blob;
@@ -204,6 +209,7 @@ Result<Json> info_of_container(ByteView bytes) {
   json["format"] = names_of(info->formats);
   json["features"] = info->features;
   json["solids"] = info->solids;
+  json["unproven"] = info->unproven;
   json["pages"] = info->pages;
   json["solidBytes"] = info->solid_bytes;
   json["documentBytes"] = bytes.size() - info->solid_bytes;
@@ -232,6 +238,7 @@ Status explain_features(const std::vector<pipeline::EncodedFeature>& features, s
   std::map<Mode, ModeTotal> totals;
   for (const pipeline::EncodedFeature& feature : features) {
     for (const StoredSolid& solid : feature.solids) {
+      if (!solid.is_proven) continue;
       const auto sizes = codec::explain(solid.blob);
       if (!sizes) return sizes.error();
       for (const codec::ModeSize& size : *sizes) {
@@ -255,6 +262,29 @@ Status explain_features(const std::vector<pipeline::EncodedFeature>& features, s
   return Done{};
 }
 
+pipeline::InvalidFeatures invalid_features_named(const std::string& name) {
+  if (name == "keep") return pipeline::InvalidFeatures::keep;
+  if (name == "skip") return pipeline::InvalidFeatures::skip;
+  return pipeline::InvalidFeatures::refuse_document;
+}
+
+/// Says what of a document is not proven, and what became of it.
+void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& encoded) {
+  const std::string name = printable(command.input);
+  const std::size_t left_out = encoded.outcome.features.size() - encoded.document.features.size();
+  if (left_out > 0) {
+    std::fprintf(stderr,
+                 "watertight: %s: %zu features were left out, because not all of them is valid\n",
+                 name.c_str(), left_out);
+    return;
+  }
+  std::fprintf(
+      stderr,
+      "watertight: %s: %llu solids are kept as they came, unproven; see the findings above, "
+      "or `watertight validate`\n",
+      name.c_str(), static_cast<unsigned long long>(encoded.outcome.unproven));
+}
+
 }  // namespace
 
 Exit run(const EncodeCommand& command) {
@@ -268,6 +298,7 @@ Exit run(const EncodeCommand& command) {
   pipeline::IngestOptions options;
   options.threads = command.jobs;
   options.contract = *contract;
+  options.invalid_features = invalid_features_named(command.invalid);
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
   options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
                                           : pipeline::SteinerVertices::leave_out;
@@ -284,19 +315,22 @@ Exit run(const EncodeCommand& command) {
     for (const pipeline::FeatureOutcome& feature : encoded->outcome.features) {
       print_findings(command.input, feature, command.output == "-" ? stderr : stdout);
     }
-    std::fprintf(stderr, "watertight: %s: not all solids are valid; nothing was written\n",
-                 printable(command.input).c_str());
-    return exit;
+    if (options.invalid_features == pipeline::InvalidFeatures::refuse_document) {
+      std::fprintf(stderr, "watertight: %s: not all solids are valid; nothing was written\n",
+                   printable(command.input).c_str());
+      return exit;
+    }
+    tell_unproven(command, *encoded);
   }
   tell_rounded(command.input, encoded->outcome);
   const auto packed = pack(command, encoded->document);
   if (!packed) return fail(command.input, packed.error());
   const Status status = write_file(command.output, *packed);
   if (!status) return fail_to_write(command.output, status.error());
-  if (!command.explains) return Exit::valid;
+  if (!command.explains) return exit;
   const Status explained =
       explain_features(encoded->document.features, command.output == "-" ? stderr : stdout);
-  return explained ? Exit::valid : fail(command.input, explained.error());
+  return explained ? exit : fail(command.input, explained.error());
 }
 
 Exit run(const DecodeCommand& command) {

@@ -120,6 +120,11 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   sub->add_flag("--steiner", command.keeps_steiner,
                 "keep the Steiner vertices of the proof (mode bitmap)")
       ->excludes(mode);
+  sub->add_option("--invalid", command.invalid,
+                  "what is not proven to be valid: keep, as it came and marked as unproven; skip, "
+                  "leave its feature out; refuse, write nothing")
+      ->check(CLI::IsMember({"keep", "skip", "refuse"}))
+      ->capture_default_str();
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
   add_contract(*sub, command.contract);
   sub->add_flag("--explain", command.explains,

@@ -40,6 +40,10 @@ Result<Paged> make_pages(const std::vector<const Bytes*>& blobs, const EncodeOpt
   codec::PageFileWriter writer(codec::kMaxPageSolids, options);
   Paged paged;
   for (const Bytes* blob : blobs) {
+    if (blob->empty()) {
+      paged.is_in_file.push_back(false);
+      continue;
+    }
     const auto info = codec::describe(*blob);
     if (!info) return info.error();
     paged.is_in_file.push_back(info->steiner_vertices == 0);
@@ -79,8 +83,14 @@ void write_feature(ByteWriter& writer, std::uint64_t document, const EncodedFeat
     write_text(writer, solid.lod);
     writer.varint(solid.geometry);
     writer.varint(solid.ordinal);
-    writer.varint(is_paged[first_solid + i] ? 0 : solid.blob.size());
+    const std::size_t size = is_paged[first_solid + i] ? 0 : solid.blob.size();
+    writer.varint(solid.is_proven ? size : kNoBlob);
   }
+}
+
+bool is_proven(const EncodedFeature& feature) {
+  return std::all_of(feature.solids.begin(), feature.solids.end(),
+                     [](const StoredSolid& solid) { return solid.is_proven; });
 }
 
 }  // namespace
@@ -90,11 +100,12 @@ bool is_container(ByteView bytes) {
          std::equal(std::begin(kContainerMagic), std::end(kContainerMagic), bytes.begin());
 }
 
-ContainerWriter::ContainerWriter(const EncodeOptions& pages, SolidLayout layout)
-    : pages_(pages), layout_(layout) {
+ContainerWriter::ContainerWriter(const EncodeOptions& pages, SolidLayout layout,
+                                 std::uint8_t version)
+    : pages_(pages), layout_(layout), version_(version) {
   pages_.certificate = nullptr;
   write(kContainerMagic);
-  write(ByteView(&kContainerVersion, 1));
+  write(ByteView(&version_, 1));
 }
 
 void ContainerWriter::write(ByteView bytes) {
@@ -112,6 +123,9 @@ void ContainerWriter::add_document(const std::string& format, const SharedText& 
 }
 
 Status ContainerWriter::add(EncodedFeature feature) {
+  if (version_ == 1 && !is_proven(feature)) {
+    return Error{ErrorCode::unsupported, "feature '" + feature.id + "' is not proven"};
+  }
   add_document(feature.format, feature.header);
   part_bytes_ += feature.skeleton.size();
   for (const StoredSolid& solid : feature.solids) part_bytes_ += solid.blob.size();
@@ -169,7 +183,9 @@ Result<Bytes> ContainerWriter::finish() && {
 
 Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages,
                               SolidLayout layout) {
-  ContainerWriter writer(pages, layout);
+  const bool all_proven =
+      std::all_of(document.features.begin(), document.features.end(), is_proven);
+  ContainerWriter writer(pages, layout, all_proven ? 1 : kContainerVersion);
   writer.add_document(document.format, document.header, document.framing);
   for (const EncodedFeature& feature : document.features) {
     if (feature.format != document.format || feature.header != document.header) {
@@ -222,7 +238,8 @@ Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
     info.pages += (*part)->pages;
     info.solid_bytes += (*part)->solid_bytes;
     for (const ContainerFeature& feature : (*part)->features) {
-      info.solids += feature.solids.size();
+      info.solids += feature.encoded.solids.size();
+      info.unproven += feature.encoded.solids.size() - feature.solids.size();
       for (const Decoded& decoded : feature.solids) {
         for (const codec::BlobInfo::Part& bytes_of : decoded.info.parts) {
           info.parts[bytes_of.name] += bytes_of.bytes;

@@ -12,6 +12,9 @@
 
 namespace watertight::pipeline {
 
+/// The version of the layout: 2 can hold solids that are not proven, 1 cannot.
+inline constexpr std::uint8_t kContainerVersion = 2;
+
 /// True if the bytes start like a Watertight file (of any version).
 bool is_container(ByteView bytes);
 
@@ -24,14 +27,15 @@ enum class SolidLayout : std::uint8_t { pages, blobs };
 class ContainerWriter {
  public:
   /// `pages` says how the solids are coded in pages. Solids with Steiner vertices stay blobs.
-  explicit ContainerWriter(const EncodeOptions& pages = {},
-                           SolidLayout layout = SolidLayout::pages);
+  /// A file of version 1, which older programs read too, holds proven solids only.
+  explicit ContainerWriter(const EncodeOptions& pages = {}, SolidLayout layout = SolidLayout::pages,
+                           std::uint8_t version = kContainerVersion);
 
   /// Adds the document of the features with this format and header. Without this call the first
   /// such feature adds it. Cost: linear in the number of documents.
   void add_document(const std::string& format, const SharedText& header, Bytes framing = {});
   /// Adds a feature. Features of a document keep their order. Errors: malformed (a blob is
-  /// damaged); limit_exceeded; not_encodable.
+  /// damaged); limit_exceeded; not_encodable; unsupported (not proven, in a file of version 1).
   Status add(EncodedFeature feature);
   /// The bytes written since the last call, to be appended to the file.
   Bytes take();
@@ -44,6 +48,7 @@ class ContainerWriter {
 
   EncodeOptions pages_;
   SolidLayout layout_;
+  std::uint8_t version_;
   std::map<std::pair<std::string, SharedText>, std::uint64_t> documents_;  // by format and header
   std::uint64_t new_documents_ = 0;
   ByteWriter new_document_texts_;
@@ -68,6 +73,7 @@ struct ContainerInfo {
   std::vector<Format> formats;  // the format of each document
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
+  std::uint64_t unproven = 0;  // the solids among them that are not proven
   std::uint64_t pages = 0;
   std::uint64_t solid_bytes = 0;        // the bytes of page files and blobs
   std::map<std::string, double> parts;  // the bytes by part of the stream

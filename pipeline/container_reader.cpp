@@ -61,6 +61,7 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& it
     solid.geometry = read_index(reader, is_in_range);
     solid.ordinal = read_index(reader, is_in_range);
     texts.sizes.push_back(reader.varint());
+    solid.is_proven = texts.sizes.back() != kNoBlob;
   }
   return !reader.failed() && is_in_range && feature.document < documents;
 }
@@ -129,10 +130,10 @@ Result<ContainerReader> ContainerReader::open(ByteView bytes, const Limits& limi
     return malformed("truncated Watertight file", bytes.size());
   }
   const std::uint8_t version = bytes[kHeadBytes - 1];
-  if (version != kContainerVersion) {
+  if (version == 0 || version > kContainerVersion) {
     return Error{ErrorCode::unsupported,
                  "Watertight file of version " + std::to_string(version) +
-                     "; this program reads version " + std::to_string(kContainerVersion),
+                     "; this program reads versions 1 to " + std::to_string(kContainerVersion),
                  kHeadBytes - 1,
                  {}};
   }
@@ -178,6 +179,7 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
   for (ContainerFeature& feature : part.features) {
     for (std::size_t i = 0; i < feature.encoded.solids.size(); ++i) {
       const std::uint64_t size = texts.sizes[number++];
+      if (!feature.encoded.solids[i].is_proven) continue;
       if (size == 0) {
         if (next_paged == paged.size())
           return malformed("the pages hold fewer solids than the features");

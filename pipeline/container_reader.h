@@ -9,6 +9,7 @@
 
 #include "base/limits.h"
 #include "codec/blob.h"
+#include "pipeline/container.h"
 #include "pipeline/pipeline.h"
 
 namespace watertight::pipeline {
@@ -16,7 +17,8 @@ namespace watertight::pipeline {
 /// The first bytes of a Watertight file. Like those of PNG they have a byte above 127, and line
 /// ends that a text-mode transfer would change.
 inline constexpr std::uint8_t kContainerMagic[8] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n'};
-inline constexpr std::uint8_t kContainerVersion = 1;
+/// In place of the bytes of a blob, of which there are more: the solid is not proven.
+inline constexpr std::uint64_t kNoBlob = 1;
 
 /// A document that features of this part and later ones may belong to.
 struct ContainerDocument {
@@ -28,7 +30,7 @@ struct ContainerDocument {
 struct ContainerFeature {
   std::uint64_t document = 0;   // number of the document in the file
   EncodedFeature encoded;       // the feature, with empty blobs
-  std::vector<Decoded> solids;  // one for each of encoded.solids
+  std::vector<Decoded> solids;  // one for each proven solid of encoded.solids
 };
 
 /// The feature as it was before encoding. Errors: those of decode_feature().

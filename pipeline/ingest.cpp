@@ -73,6 +73,12 @@ Result<std::vector<ProcessedFeature>> process_all(std::vector<Feature> features,
   return all;
 }
 
+std::uint64_t unproven_solids(const EncodedFeature& feature) {
+  const auto count = std::count_if(feature.solids.begin(), feature.solids.end(),
+                                   [](const StoredSolid& solid) { return !solid.is_proven; });
+  return static_cast<std::uint64_t>(count);
+}
+
 }  // namespace
 
 Verdict worse(Verdict a, Verdict b) {
@@ -100,6 +106,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
         {submitted.source, certify(submitted.solid, workers, options_for(submitted, options))});
   }
   inspected.feature = std::move(feature);
+  inspected.own = inspected.solids.size();
   if (templates != nullptr) {
     add_groups(templates->inspect(inspected.feature.instances), *templates,
                group_options(groups, options), inspected);
@@ -153,15 +160,16 @@ Result<ProcessedFeature> process(Feature feature, const Document& shared,
       inspect(std::move(feature), workers, options.certify, options.groups, &templates);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
-  if (processed.outcome.verdict == Verdict::valid) {
+  const bool is_kept = options.invalid_features == InvalidFeatures::keep;
+  if (is_kept || processed.outcome.verdict == Verdict::valid) {
     auto encoded = encode_feature(inspected, shared, options);
     if (!encoded) return std::move(encoded).error();
     processed.encoded = *std::move(encoded);
   }
   for (std::size_t i = 0; i < inspected.solids.size(); ++i) {
-    processed.outcome.solids.push_back(
-        outcome_of(inspected.solids[i], inspected.feature.solids[i].solid,
-                   processed.encoded ? &processed.encoded->solids[i] : nullptr));
+    processed.outcome.solids.push_back(outcome_of(
+        inspected.solids[i], inspected.feature.solids[i].solid,
+        processed.encoded && i < inspected.own ? &processed.encoded->solids[i] : nullptr));
   }
   processed.outcome.groups = std::move(inspected.groups);
   return processed;
@@ -180,10 +188,14 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
   encoded.document.framing = std::move(shared->framing);
   for (ProcessedFeature& feature : *processed) {
     encoded.outcome.add(feature.outcome.verdict);
-    if (feature.encoded) encoded.document.features.push_back(*std::move(feature.encoded));
+    if (feature.encoded) {
+      encoded.outcome.unproven += unproven_solids(*feature.encoded);
+      encoded.document.features.push_back(*std::move(feature.encoded));
+    }
     encoded.outcome.features.push_back(std::move(feature.outcome));
   }
-  if (encoded.outcome.verdict != Verdict::valid) encoded.document.features.clear();
+  const bool is_kept = options.invalid_features != InvalidFeatures::refuse_document;
+  if (encoded.outcome.verdict != Verdict::valid && !is_kept) encoded.document.features.clear();
   return encoded;
 }
 

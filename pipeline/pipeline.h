@@ -42,6 +42,7 @@ struct InspectedFeature {
   /// feature that is valid has no other solids than its own.
   Feature feature;
   std::vector<InspectedSolid> solids;  // one for each of feature.solids, in order
+  std::size_t own = 0;                 // how many of them are the feature's own solids
   std::vector<InspectedGroup> groups;  // in order of their first members
   Verdict verdict() const;             // the worst of solids and groups; valid without any
 };
@@ -87,8 +88,9 @@ struct FeatureOutcome {
   std::uint64_t version = 0;  // 0 unless stored
 };
 
-/// The treatment of a document in which not all features are valid.
-enum class InvalidFeatures : std::uint8_t { refuse_document, skip };
+/// The treatment of a document in which not all features are valid: nothing of it is encoded; the
+/// valid features are; or all are, with what is not proven as it came.
+enum class InvalidFeatures : std::uint8_t { refuse_document, skip, keep };
 
 /// Called with the number of features that are done and of all, from one thread at a time.
 using Progress = std::function<void(std::size_t, std::size_t)>;
@@ -118,10 +120,11 @@ struct IngestOptions : FeatureEncoding {
   Progress progress = {};  // of encode_document()
 };
 
-/// A feature with its solids encoded.
+/// A feature with its solids encoded: those that are proven as blobs, the others in the skeleton.
 struct EncodedFeature : store::FeatureRecord {
-  /// Feature::skeleton; before it, a line for each solid whose equal vertices were merged; after
-  /// it, a line feed and Feature::layout if the feature has one (pipeline/stored_feature.cpp).
+  /// Feature::skeleton; before it, a line for each solid that is not proven and for each whose
+  /// equal vertices were merged; after it, a line feed and Feature::layout if the feature has one
+  /// (pipeline/stored_feature.cpp).
   std::string skeleton;
 };
 
@@ -133,17 +136,17 @@ struct EncodedDocument {
   std::vector<EncodedFeature> features;
 };
 
-/// Encodes a feature whose verdict is valid. For contract boundary, document.header must be a
-/// boundary_header().
-/// Errors: invalid_argument when a solid is not valid; those of encode().
+/// Encodes a feature with its own solids. A solid whose verdict is valid becomes a blob; any other,
+/// which only `InvalidFeatures::keep` gives to this function, stays as it came. For contract
+/// boundary, document.header must be a boundary_header(). Errors: those of encode().
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
                                       const FeatureEncoding& options);
 
 /// The document (with one feature) that encode_feature() was given. Errors: malformed when
 /// encode_feature() did not make the feature; those of decode().
 Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits = {});
-/// The document of a feature whose solids are decoded already, one for each of feature.solids; the
-/// feature's blobs are not used.
+/// The document of a feature whose proven solids are decoded already, in the order of
+/// feature.solids; the feature's blobs are not used.
 Result<Document> decode_feature(const EncodedFeature& feature, std::vector<Solid> solids,
                                 const Limits& limits = {});
 
@@ -160,6 +163,7 @@ struct IngestCounts {
   std::uint64_t invalid = 0;
   std::uint64_t undecided = 0;
   std::uint64_t stored = 0;
+  std::uint64_t unproven = 0;        // the number of solids that were kept without proof
   Verdict verdict = Verdict::valid;  // the worst of all features
 
   void add(Verdict of_feature);

@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Encodes features for the store, and decodes them. The skeleton of an EncodedFeature is that of
-// the feature and, if the feature has a layout, a line feed and the layout. Before them stands one
-// line "merged <solid> <line of describe_merge>" for each solid with equal vertices.
+// the feature and, if the feature has a layout, a line feed and the layout. Before them stand a
+// line "unproven <solid> <line of write_unproven>" for each solid that is not proven, and a line
+// "merged <solid> <line of describe_merge>" for each proven solid with equal vertices.
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
+#include <utility>
 
 #include "formats/city_json/city_json.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/merged_vertices.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/unproven_solid.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {
 namespace {
 
 constexpr std::string_view kMergedLine = "merged ";
+constexpr std::string_view kUnprovenLine = "unproven ";
 
 void include(std::optional<store::StoredBox>& box, const Solid& solid) {
   const Box lattice_box = solid.box();
@@ -32,48 +36,81 @@ void include(std::optional<store::StoredBox>& box, const Solid& solid) {
   }
 }
 
-Result<StoredSolid> store_solid(const InspectedSolid& solid, const Solid& submitted,
-                                EncodeOptions options, SteinerVertices steiner) {
-  const Inspection& inspection = solid.inspection;
-  if (inspection.report.verdict != Verdict::valid || !inspection.certified) {
-    return Error{ErrorCode::invalid_argument, "only valid solids are stored"};
-  }
-  if (steiner == SteinerVertices::keep && inspection.certified->certificate) {
-    options.certificate = &*inspection.certified->certificate;
-  }
-  auto blob = encode(inspection.certified->solid, options);
-  if (!blob) return std::move(blob).error();
+bool is_proven(const InspectedSolid& solid) {
+  return solid.inspection.report.verdict == Verdict::valid && solid.inspection.certified;
+}
+
+/// A solid without its blob.
+StoredSolid described(const InspectedSolid& solid, const Solid& submitted) {
   StoredSolid stored;
   stored.object_id = solid.source.object_id;
   stored.geometry = solid.source.geometry;
   stored.ordinal = solid.source.ordinal;
   stored.lod = solid.source.lod;
-  stored.blob = *std::move(blob);
-  if (inspection.report.measures) stored.measures = measures_json(*inspection.report.measures);
+  stored.is_proven = is_proven(solid);
+  const Report& report = solid.inspection.report;
+  if (report.measures) stored.measures = measures_json(*report.measures);
   validate::ReportJsonOptions json;
   json.pointer_prefix = solid.source.pointer;
   json.include_times = false;
-  stored.report = validate::report_json(inspection.report, submitted, json);
+  stored.report = validate::report_json(report, submitted, json);
   return stored;
 }
 
-/// Takes the merge lines off the front of a stored skeleton; a solid without such a line gets "".
-Result<std::vector<std::string_view>> take_merge_lines(std::string_view& skeleton,
-                                                       std::size_t solids) {
-  std::vector<std::string_view> lines(solids);
-  while (skeleton.starts_with(kMergedLine)) {
-    const std::size_t end = skeleton.find('\n');
-    std::string_view line = skeleton.substr(kMergedLine.size(), end - kMergedLine.size());
-    std::size_t solid = 0;
-    const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), solid);
-    if (end == std::string_view::npos || error != std::errc{} || solid >= solids ||
-        rest == line.data() + line.size()) {
-      return Error{ErrorCode::malformed, "stored vertex merge: the line has no number of a solid"};
-    }
-    lines[solid] = line.substr(static_cast<std::size_t>(rest - line.data()) + 1);
-    skeleton.remove_prefix(end + 1);
+Result<Bytes> blob_of(const validate::Certified& certified, EncodeOptions options,
+                      SteinerVertices steiner) {
+  if (steiner == SteinerVertices::keep && certified.certificate) {
+    options.certificate = &*certified.certificate;
   }
-  return lines;
+  return encode(certified.solid, options);
+}
+
+std::string line_of(std::string_view start, std::size_t solid, const std::string& text) {
+  std::string line(start);
+  line.append(std::to_string(solid)).append(" ").append(text) += '\n';
+  return line;
+}
+
+/// The lines in front of a stored skeleton: for each solid one of the two texts, or none.
+struct SolidLines {
+  std::string_view unproven;
+  std::string_view merged;
+};
+
+/// Takes a line that starts with `start` off the front of a skeleton. Returns the number of its
+/// solid and its text. Errors: malformed when it has no number below `solids`.
+Result<std::pair<std::size_t, std::string_view>> take_line(std::string_view& skeleton,
+                                                           std::string_view start,
+                                                           std::size_t solids) {
+  const std::size_t end = skeleton.find('\n');
+  const std::string_view line = skeleton.substr(start.size(), end - start.size());
+  std::size_t solid = 0;
+  const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), solid);
+  if (end == std::string_view::npos || error != std::errc{} || solid >= solids ||
+      rest == line.data() + line.size()) {
+    return Error{ErrorCode::malformed, "a stored solid: the line has no number of a solid"};
+  }
+  skeleton.remove_prefix(end + 1);
+  return std::pair(solid, line.substr(static_cast<std::size_t>(rest - line.data()) + 1));
+}
+
+/// Takes the lines of solids off the front of a stored skeleton.
+Result<std::vector<SolidLines>> take_solid_lines(std::string_view& skeleton, std::size_t solids) {
+  std::vector<SolidLines> lines(solids);
+  for (;;) {
+    const bool is_unproven = skeleton.starts_with(kUnprovenLine);
+    if (!is_unproven && !skeleton.starts_with(kMergedLine)) return lines;
+    const auto line = take_line(skeleton, is_unproven ? kUnprovenLine : kMergedLine, solids);
+    if (!line) return line.error();
+    SolidLines& of_solid = lines[line->first];
+    (is_unproven ? of_solid.unproven : of_solid.merged) = line->second;
+  }
+}
+
+/// The solid as it came, of the merged one.
+Result<Solid> source_of(Solid merged, std::string_view line, const Limits& limits) {
+  if (line.empty()) return merged;
+  return unmerge(merged, line, limits);
 }
 
 }  // namespace
@@ -90,28 +127,33 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
   encoded.header = document.header;
   EncodeOptions encode_options = options.encode;
   if (!is_exact) encode_options.keep_order = false;
-  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+  for (std::size_t i = 0; i < feature.own; ++i) {
     const InspectedSolid& inspected = feature.solids[i];
-    auto solid =
-        store_solid(inspected, feature.feature.solids[i].solid, encode_options, options.steiner);
-    if (!solid) {
-      Error error = std::move(solid).error();
+    const Solid& submitted = feature.feature.solids[i].solid;
+    StoredSolid& stored = encoded.solids.emplace_back(described(inspected, submitted));
+    if (!stored.is_proven) {
+      include(encoded.box, submitted);
+      encoded.skeleton += line_of(kUnprovenLine, i, write_unproven(submitted));
+      continue;
+    }
+    auto blob = blob_of(*inspected.inspection.certified, encode_options, options.steiner);
+    if (!blob) {
+      Error error = std::move(blob).error();
       if (error.pointer.empty()) error.pointer = inspected.source.pointer;
       return error;
     }
-    encoded.solids.push_back(*std::move(solid));
+    stored.blob = *std::move(blob);
     const Solid& certified = inspected.inspection.certified->solid.solid();
     include(encoded.box, certified);
-    auto merge = describe_merge(feature.feature.solids[i].solid, certified);
+    auto merge = describe_merge(submitted, certified);
     if (!merge) return std::move(merge).error();
-    if (!is_exact || merge->empty()) continue;
-    encoded.skeleton += std::string(kMergedLine) + std::to_string(i) + ' ' + *merge + '\n';
+    if (is_exact && !merge->empty()) encoded.skeleton += line_of(kMergedLine, i, *merge);
   }
   if (!is_exact) {
     if (feature.feature.skeleton.empty()) return encoded;
     auto skeleton = formats::canonical_skeleton(feature.feature, options.contract);
     if (!skeleton) return std::move(skeleton).error();
-    encoded.skeleton = *std::move(skeleton);
+    encoded.skeleton += *skeleton;
     return encoded;
   }
   encoded.skeleton += feature.feature.skeleton;
@@ -125,6 +167,7 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
 Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits) {
   std::vector<Solid> solids;
   for (const StoredSolid& solid : feature.solids) {
+    if (!solid.is_proven) continue;
     auto decoded = decode(solid.blob, limits);
     if (!decoded) return std::move(decoded).error();
     solids.push_back(std::move(decoded->solid));
@@ -134,14 +177,16 @@ Result<Document> decode_feature(const EncodedFeature& feature, const Limits& lim
 
 Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid> solids,
                                 const Limits& limits) {
-  if (solids.size() != encoded.solids.size()) {
+  const auto proven = std::count_if(encoded.solids.begin(), encoded.solids.end(),
+                                    [](const StoredSolid& solid) { return solid.is_proven; });
+  if (solids.size() != static_cast<std::size_t>(proven)) {
     return Error{ErrorCode::malformed, "a stored feature of another number of solids"};
   }
   auto format = formats::format_named(encoded.format);
   if (!format) return std::move(format).error();
   std::string_view skeleton = encoded.skeleton;
-  auto merges = take_merge_lines(skeleton, encoded.solids.size());
-  if (!merges) return std::move(merges).error();
+  const auto lines = take_solid_lines(skeleton, encoded.solids.size());
+  if (!lines) return lines.error();
   Feature feature;
   feature.id = encoded.id;
   feature.type = encoded.type;
@@ -150,6 +195,7 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
   feature.skeleton = std::string(skeleton.substr(0, end));
   const ByteView layout = as_bytes(skeleton.substr(std::min(end + 1, skeleton.size())));
   feature.layout.assign(layout.begin(), layout.end());
+  auto next_proven = solids.begin();
   for (std::size_t i = 0; i < encoded.solids.size(); ++i) {
     const StoredSolid& solid = encoded.solids[i];
     SolidSource source;
@@ -157,9 +203,8 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
     source.lod = solid.lod;
     source.geometry = solid.geometry;
     source.ordinal = solid.ordinal;
-    const std::string_view merge = (*merges)[i];
-    auto whole =
-        merge.empty() ? Result<Solid>(std::move(solids[i])) : unmerge(solids[i], merge, limits);
+    auto whole = solid.is_proven ? source_of(*std::move(next_proven++), (*lines)[i].merged, limits)
+                                 : read_unproven((*lines)[i].unproven, limits);
     if (!whole) return std::move(whole).error();
     feature.solids.push_back(SubmittedSolid{*std::move(whole), std::move(source), {}});
   }

@@ -190,6 +190,12 @@ constexpr Migration kMigrations[] = {
               ADD COLUMN generation bigint NOT NULL DEFAULT nextval('watertight.feature_version'),
               ADD COLUMN changes bigint NOT NULL DEFAULT 0)",
      }},
+    {"solids that are not proven",
+     {
+         R"(ALTER TABLE watertight.solid ALTER COLUMN blob DROP NOT NULL)",
+         R"(COMMENT ON COLUMN watertight.solid.blob IS
+              'NULL: the solid is not proven to be valid; the skeleton of its feature has it as it came')",
+     }},
 };
 constexpr std::int64_t kNewest = std::size(kMigrations);
 

@@ -54,9 +54,10 @@ struct StoredSolid {
   std::uint32_t geometry = 0;
   std::uint32_t ordinal = 0;
   std::string lod;
-  Bytes blob;
-  std::string measures;  // JSON
-  std::string report;    // JSON
+  Bytes blob;             // empty unless the solid is proven
+  bool is_proven = true;  // false: the skeleton of the feature has the solid as it came
+  std::string measures;   // JSON
+  std::string report;     // JSON
 };
 
 /// A stored feature without its skeleton.

@@ -62,6 +62,7 @@ void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64
     writer.varint(solid.ordinal);
     write(writer, solid.lod);
     write(writer, solid.blob);
+    writer.u8(solid.is_proven ? 1 : 0);
     write(writer, solid.measures);
     write(writer, solid.report);
   }
@@ -91,6 +92,7 @@ StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& he
     solid.ordinal = static_cast<std::uint32_t>(reader.varint());
     solid.lod = read_text(reader);
     solid.blob = read_copy(reader);
+    solid.is_proven = reader.u8() != 0;
     solid.measures = read_text(reader);
     solid.report = read_text(reader);
   }

@@ -80,6 +80,7 @@ StoredSolid solid_of(const Rows& rows, int row, int column) {
   solid.geometry = static_cast<std::uint32_t>(rows.int8(row, column + 1));
   solid.ordinal = static_cast<std::uint32_t>(rows.int8(row, column + 2));
   solid.lod = rows.text(row, column + 3);
+  solid.is_proven = !rows.is_null(row, column + 4);
   const ByteView blob = as_bytes(rows.text(row, column + 4));
   solid.blob.assign(blob.begin(), blob.end());
   solid.measures = rows.text(row, column + 5);

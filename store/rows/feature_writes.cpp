@@ -310,7 +310,7 @@ constexpr const char* kPutSolids = R"(
   INSERT INTO watertight.solid (collection, feature, object_id, geometry, ordinal, position, lod,
     blob, measures, report)
   SELECT (SELECT id FROM watertight.collection WHERE name = $1),
-    f, o, g, n, p, l, b, nullif(m, '')::jsonb, nullif(r, '')::jsonb
+    f, o, g, n, p, l, nullif(b, ''::bytea), nullif(m, '')::jsonb, nullif(r, '')::jsonb
   FROM unnest($2::text[], $3::text[], $4::int8[], $5::int8[], $6::int8[], $7::text[],
     $8::bytea[], $9::text[], $10::text[]) AS u (f, o, g, n, p, l, b, m, r))";
 

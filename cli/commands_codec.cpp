@@ -262,12 +262,6 @@ Status explain_features(const std::vector<pipeline::EncodedFeature>& features, s
   return Done{};
 }
 
-pipeline::InvalidFeatures invalid_features_named(const std::string& name) {
-  if (name == "keep") return pipeline::InvalidFeatures::keep;
-  if (name == "skip") return pipeline::InvalidFeatures::skip;
-  return pipeline::InvalidFeatures::refuse_document;
-}
-
 /// Says what of a document is not proven, and what became of it.
 void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& encoded) {
   const std::string name = printable(command.input);
@@ -298,7 +292,7 @@ Exit run(const EncodeCommand& command) {
   pipeline::IngestOptions options;
   options.threads = command.jobs;
   options.contract = *contract;
-  options.invalid_features = invalid_features_named(command.invalid);
+  options.invalid_features = *pipeline::invalid_features_named(command.invalid);
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
   options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
                                           : pipeline::SteinerVertices::leave_out;

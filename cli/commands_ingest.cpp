@@ -25,8 +25,7 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
   options.collection = command.collection;
   options.threads = command.jobs;
   options.contract = contract;
-  options.invalid_features = command.invalid == "skip" ? pipeline::InvalidFeatures::skip
-                                                       : pipeline::InvalidFeatures::refuse_document;
+  options.invalid_features = *pipeline::invalid_features_named(command.invalid);
   return options;
 }
 

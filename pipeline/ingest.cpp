@@ -81,6 +81,13 @@ std::uint64_t unproven_solids(const EncodedFeature& feature) {
 
 }  // namespace
 
+Result<InvalidFeatures> invalid_features_named(const std::string& name) {
+  if (name == "refuse") return InvalidFeatures::refuse_document;
+  if (name == "skip") return InvalidFeatures::skip;
+  if (name == "keep") return InvalidFeatures::keep;
+  return Error{ErrorCode::invalid_argument, "what is invalid is treated by refuse, skip or keep"};
+}
+
 Verdict worse(Verdict a, Verdict b) {
   if (a == Verdict::invalid || b == Verdict::invalid) return Verdict::invalid;
   if (a == Verdict::undecided || b == Verdict::undecided) return Verdict::undecided;

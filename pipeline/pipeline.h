@@ -91,6 +91,8 @@ struct FeatureOutcome {
 /// The treatment of a document in which not all features are valid: nothing of it is encoded; the
 /// valid features are; or all are, with what is not proven as it came.
 enum class InvalidFeatures : std::uint8_t { refuse_document, skip, keep };
+/// The treatment named "refuse", "skip" or "keep". Errors: invalid_argument.
+Result<InvalidFeatures> invalid_features_named(const std::string& name);
 
 /// Called with the number of features that are done and of all, from one thread at a time.
 using Progress = std::function<void(std::size_t, std::size_t)>;

@@ -197,12 +197,11 @@ Response post_items(const RoutedRequest& request) {
   if (auto refusal = unless_conditional(request)) return *std::move(refusal);
   pipeline::IngestOptions options = ingest_options(request);
   options.collection = request.target.segments[1];
-  const std::string* invalid = request.target.parameter("invalid");
-  if (invalid != nullptr && *invalid != "skip" && *invalid != "refuse") {
-    return refuse(400, "invalid-argument", "invalid is refuse (the default) or skip");
+  if (const std::string* named = request.target.parameter("invalid")) {
+    const auto invalid = pipeline::invalid_features_named(*named);
+    if (!invalid) return to_response(to_problem(invalid.error()));
+    options.invalid_features = *invalid;
   }
-  if (invalid != nullptr && *invalid == "skip")
-    options.invalid_features = pipeline::InvalidFeatures::skip;
   auto condition = write_condition(request.request);
   if (!condition) return to_response(to_problem(condition.error()));
   options.condition = *std::move(condition);

@@ -187,8 +187,9 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
       ->check(is_collection_id);
   add_store(*sub, command.store);
   sub->add_option("--invalid", command.invalid,
-                  "documents with invalid features: refuse them, or skip those features")
-      ->check(CLI::IsMember({"refuse", "skip"}))
+                  "documents with invalid features: refuse them, skip those features, or keep what is "
+                  "not proven as it came")
+      ->check(CLI::IsMember({"refuse", "skip", "keep"}))
       ->capture_default_str();
   add_contract(*sub, command.contract);
   sub->add_flag("--json", command.is_json, "the table as one line of JSON");

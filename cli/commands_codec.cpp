@@ -201,6 +201,23 @@ std::string names_of(std::span<const Format> formats) {
   return names;
 }
 
+/// What of a file is not proven: numbers, and each solid with its place and findings.
+Json unproven_json(const pipeline::ContainerInfo& info) {
+  Json list = Json::array();
+  for (const pipeline::UnprovenSolid& solid : info.unproven) {
+    Json json{{"feature", solid.feature}, {"object", solid.object_id}};
+    if (!solid.lod.empty()) json["lod"] = solid.lod;
+    json["geometry"] = solid.geometry;
+    json["solid"] = solid.ordinal;
+    const Json report = Json::parse(solid.report, nullptr, false);
+    json["report"] = report.is_discarded() ? Json() : report;
+    list.push_back(std::move(json));
+  }
+  return {{"features", info.unproven_features},
+          {"count", info.unproven.size()},
+          {"solids", std::move(list)}};
+}
+
 Result<Json> info_of_container(ByteView bytes) {
   const auto info = pipeline::describe_container(bytes);
   if (!info) return info.error();
@@ -209,7 +226,7 @@ Result<Json> info_of_container(ByteView bytes) {
   json["format"] = names_of(info->formats);
   json["features"] = info->features;
   json["solids"] = info->solids;
-  json["unproven"] = info->unproven;
+  json["unproven"] = unproven_json(*info);
   json["pages"] = info->pages;
   json["solidBytes"] = info->solid_bytes;
   json["documentBytes"] = bytes.size() - info->solid_bytes;
@@ -292,7 +309,7 @@ Exit run(const EncodeCommand& command) {
   pipeline::IngestOptions options;
   options.threads = command.jobs;
   options.contract = *contract;
-  options.invalid_features = *pipeline::invalid_features_named(command.invalid);
+  options.policy = *pipeline::policy_named(command.invalid);
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
   options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
                                           : pipeline::SteinerVertices::leave_out;
@@ -309,7 +326,7 @@ Exit run(const EncodeCommand& command) {
     for (const pipeline::FeatureOutcome& feature : encoded->outcome.features) {
       print_findings(command.input, feature, command.output == "-" ? stderr : stdout);
     }
-    if (options.invalid_features == pipeline::InvalidFeatures::refuse_document) {
+    if (options.policy == store::Policy::refuse) {
       std::fprintf(stderr, "watertight: %s: not all solids are valid; nothing was written\n",
                    printable(command.input).c_str());
       return exit;

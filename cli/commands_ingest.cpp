@@ -25,7 +25,7 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
   options.collection = command.collection;
   options.threads = command.jobs;
   options.contract = contract;
-  options.invalid_features = *pipeline::invalid_features_named(command.invalid);
+  options.policy = *pipeline::policy_named(command.invalid);
   return options;
 }
 

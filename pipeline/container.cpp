@@ -70,12 +70,14 @@ Result<Paged> pages_if_smaller(const std::vector<const Bytes*>& blobs, const Enc
 }
 
 void write_feature(ByteWriter& writer, std::uint64_t document, const EncodedFeature& feature,
-                   const std::vector<bool>& is_paged, std::size_t first_solid) {
+                   const std::vector<bool>& is_paged, std::size_t first_solid,
+                   std::uint8_t version) {
   writer.varint(document);
   write_text(writer, feature.id);
   write_text(writer, feature.type);
   writer.varint(feature.srid);
   write_text(writer, feature.skeleton);
+  if (version > 1) write_text(writer, feature.findings);
   writer.varint(feature.solids.size());
   for (std::size_t i = 0; i < feature.solids.size(); ++i) {
     const StoredSolid& solid = feature.solids[i];
@@ -85,12 +87,8 @@ void write_feature(ByteWriter& writer, std::uint64_t document, const EncodedFeat
     writer.varint(solid.ordinal);
     const std::size_t size = is_paged[first_solid + i] ? 0 : solid.blob.size();
     writer.varint(solid.is_proven ? size : kNoBlob);
+    if (!solid.is_proven) write_text(writer, solid.report);
   }
-}
-
-bool is_proven(const EncodedFeature& feature) {
-  return std::all_of(feature.solids.begin(), feature.solids.end(),
-                     [](const StoredSolid& solid) { return solid.is_proven; });
 }
 
 }  // namespace
@@ -123,7 +121,7 @@ void ContainerWriter::add_document(const std::string& format, const SharedText& 
 }
 
 Status ContainerWriter::add(EncodedFeature feature) {
-  if (version_ == 1 && !is_proven(feature)) {
+  if (version_ == 1 && !feature.is_proven()) {
     return Error{ErrorCode::unsupported, "feature '" + feature.id + "' is not proven"};
   }
   add_document(feature.format, feature.header);
@@ -148,7 +146,7 @@ Status ContainerWriter::close_part() {
   texts.varint(features_.size());
   std::size_t solids = 0;
   for (const auto& [document, feature] : features_) {
-    write_feature(texts, document, feature, paged->is_in_file, solids);
+    write_feature(texts, document, feature, paged->is_in_file, solids, version_);
     solids += feature.solids.size();
   }
   const auto packed = formats::pack_text(as_text(texts.bytes()));
@@ -184,7 +182,8 @@ Result<Bytes> ContainerWriter::finish() && {
 Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptions& pages,
                               SolidLayout layout) {
   const bool all_proven =
-      std::all_of(document.features.begin(), document.features.end(), is_proven);
+      std::all_of(document.features.begin(), document.features.end(),
+                  [](const EncodedFeature& feature) { return feature.is_proven(); });
   ContainerWriter writer(pages, layout, all_proven ? 1 : kContainerVersion);
   writer.add_document(document.format, document.header, document.framing);
   for (const EncodedFeature& feature : document.features) {
@@ -221,6 +220,19 @@ Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& lim
   }
 }
 
+namespace {
+
+void list_unproven(const EncodedFeature& feature, ContainerInfo& info) {
+  if (!feature.is_proven()) ++info.unproven_features;
+  for (const StoredSolid& solid : feature.solids) {
+    if (solid.is_proven) continue;
+    info.unproven.push_back({feature.id, solid.object_id, solid.lod, solid.geometry, solid.ordinal,
+                             solid.report});
+  }
+}
+
+}  // namespace
+
 Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
   auto reader = ContainerReader::open(bytes, limits);
   if (!reader) return std::move(reader).error();
@@ -239,7 +251,7 @@ Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
     info.solid_bytes += (*part)->solid_bytes;
     for (const ContainerFeature& feature : (*part)->features) {
       info.solids += feature.encoded.solids.size();
-      info.unproven += feature.encoded.solids.size() - feature.solids.size();
+      list_unproven(feature.encoded, info);
       for (const Decoded& decoded : feature.solids) {
         for (const codec::BlobInfo::Part& bytes_of : decoded.info.parts) {
           info.parts[bytes_of.name] += bytes_of.bytes;

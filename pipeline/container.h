@@ -69,11 +69,22 @@ Result<Bytes> write_container(const EncodedDocument& document, const EncodeOptio
 Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& limits = {});
 
 /// The contents of a Watertight file, counted.
+/// A solid that is not proven, and its place in the document.
+struct UnprovenSolid {
+  std::string feature;
+  std::string object_id;
+  std::string lod;
+  std::uint32_t geometry = 0;
+  std::uint32_t ordinal = 0;
+  std::string report;  // JSON
+};
+
 struct ContainerInfo {
   std::vector<Format> formats;  // the format of each document
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
-  std::uint64_t unproven = 0;  // the solids among them that are not proven
+  std::uint64_t unproven_features = 0;  // the features among them that are not proven
+  std::vector<UnprovenSolid> unproven;  // the solids among them that are not proven
   std::uint64_t pages = 0;
   std::uint64_t solid_bytes = 0;        // the bytes of page files and blobs
   std::map<std::string, double> parts;  // the bytes by part of the stream

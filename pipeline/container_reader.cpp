@@ -31,6 +31,7 @@ std::uint32_t read_index(ByteReader& reader, bool& is_in_range) {
 
 /// The texts of a part. `sizes` are the bytes of each solid's blob, 0 for a solid in the page file.
 struct Texts {
+  std::uint8_t version = 1;  // that of the file
   ContainerPart part;
   std::vector<std::uint64_t> sizes;
 };
@@ -52,6 +53,7 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& it
   feature.encoded.type = read_text(reader);
   feature.encoded.srid = read_index(reader, is_in_range);
   feature.encoded.skeleton = read_text(reader);
+  if (texts.version > 1) feature.encoded.findings = read_text(reader);
   const std::uint64_t count = reader.varint();
   if (!take_items(count, items_left)) return false;
   for (std::uint64_t i = 0; i < count && !reader.failed() && is_in_range; ++i) {
@@ -61,7 +63,8 @@ bool read_feature(ByteReader& reader, std::uint64_t documents, std::uint64_t& it
     solid.geometry = read_index(reader, is_in_range);
     solid.ordinal = read_index(reader, is_in_range);
     texts.sizes.push_back(reader.varint());
-    solid.is_proven = texts.sizes.back() != kNoBlob;
+    solid.is_proven = texts.version == 1 || texts.sizes.back() != kNoBlob;
+    if (!solid.is_proven) solid.report = read_text(reader);
   }
   return !reader.failed() && is_in_range && feature.document < documents;
 }
@@ -142,7 +145,7 @@ Result<ContainerReader> ContainerReader::open(ByteView bytes, const Limits& limi
   if (checksum.u32() != crc32c(checked)) {
     return malformed("truncated or damaged Watertight file: its checksum differs", checked.size());
   }
-  return ContainerReader(checked.subspan(kHeadBytes), limits);
+  return ContainerReader(checked.subspan(kHeadBytes), limits, version);
 }
 
 Error ContainerReader::malformed(std::string message) const {
@@ -160,6 +163,7 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
   if (!text) return text.error();
   texts_left_ -= text->size();
   Texts texts;
+  texts.version = version_;
   if (!read_texts(as_bytes(*text), documents_, items_left_, texts)) {
     return malformed("malformed texts of a Watertight file");
   }

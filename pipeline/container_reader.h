@@ -59,14 +59,16 @@ class ContainerReader {
   static constexpr std::uint64_t kFreeItems = 65'536;
   static constexpr std::uint64_t kItemsPerByte = 4;
 
-  ContainerReader(ByteView parts, const Limits& limits)
+  ContainerReader(ByteView parts, const Limits& limits, std::uint8_t version)
       : parts_(parts),
+        version_(version),
         limits_(limits),
         texts_left_(limits.bytes),
         items_left_(kFreeItems + kItemsPerByte * parts.size()) {}
   Error malformed(std::string message) const;
 
   ByteReader parts_;
+  std::uint8_t version_;
   Limits limits_;
   std::uint64_t texts_left_;  // bytes of all texts that may still come
   std::uint64_t items_left_;  // documents, features and solids that may still come

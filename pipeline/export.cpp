@@ -50,11 +50,13 @@ void append(Bytes& bytes, ByteView more) { bytes.insert(bytes.end(), more.begin(
 
 Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::string& collection,
                                                  ExportFormat format, const EncodeOptions& pages,
-                                                 SolidLayout layout) {
+                                                 SolidLayout layout, ExportScope scope) {
   if (const auto found = store.collection(collection); !found) return found.error();
   CollectionExport started(store, collection);
+  started.scope_ = scope;
   if (format == ExportFormat::container) {
-    started.container_.emplace(pages, layout);
+    // A file of proven features can be of version 1, which older programs read.
+    started.container_.emplace(pages, layout, scope == ExportScope::all ? kContainerVersion : 1);
     return started;
   }
   auto header = sequence_header(store, collection);
@@ -88,6 +90,7 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
       if (is_cancelled && is_cancelled()) {
         return Error{ErrorCode::cancelled, "the export was not finished"};
       }
+      if (scope_ == ExportScope::proven && !feature.is_proven()) continue;
       ++exported_.features;
       exported_.solids += feature.solids.size();
       if (Status status = add(std::move(feature), bytes); !status) return status.error();

@@ -24,6 +24,9 @@ enum class ExportFormat : std::uint8_t {
   sequence    // a CityJSONSeq; for city models that came with one header
 };
 
+/// The features of an export: all, or those that are proven (FeatureRecord::is_proven()).
+enum class ExportScope : std::uint8_t { all, proven };
+
 struct Exported {
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
@@ -37,7 +40,8 @@ class CollectionExport {
   /// headers, under which coordinates and references differ).
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
                                         ExportFormat format, const EncodeOptions& pages = {},
-                                        SolidLayout layout = SolidLayout::pages);
+                                        SolidLayout layout = SolidLayout::pages,
+                                        ExportScope scope = ExportScope::all);
 
   /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file; the first
   /// call returns after one feature. Empty after the last ones. Errors: those of the store;
@@ -58,6 +62,7 @@ class CollectionExport {
 
   SolidStore* store_;
   std::string collection_;
+  ExportScope scope_ = ExportScope::all;
   std::optional<ContainerWriter> container_;        // none for a sequence
   std::string header_;                              // the header of a sequence
   std::optional<formats::CityHeader> city_header_;  // the same header, parsed

@@ -73,19 +73,18 @@ Result<std::vector<ProcessedFeature>> process_all(std::vector<Feature> features,
   return all;
 }
 
-std::uint64_t unproven_solids(const EncodedFeature& feature) {
-  const auto count = std::count_if(feature.solids.begin(), feature.solids.end(),
-                                   [](const StoredSolid& solid) { return !solid.is_proven; });
-  return static_cast<std::uint64_t>(count);
-}
-
 }  // namespace
 
-Result<InvalidFeatures> invalid_features_named(const std::string& name) {
-  if (name == "refuse") return InvalidFeatures::refuse_document;
-  if (name == "skip") return InvalidFeatures::skip;
-  if (name == "keep") return InvalidFeatures::keep;
-  return Error{ErrorCode::invalid_argument, "what is invalid is treated by refuse, skip or keep"};
+Result<Policy> policy_named(const std::string& name) {
+  if (name == "refuse") return Policy::refuse;
+  if (name == "skip") return Policy::skip;
+  if (name == "keep") return Policy::keep;
+  return Error{ErrorCode::invalid_argument, "the policy for invalid features is refuse, skip or keep"};
+}
+
+std::string_view to_string(Policy policy) {
+  if (policy == Policy::refuse) return "refuse";
+  return policy == Policy::skip ? "skip" : "keep";
 }
 
 Verdict worse(Verdict a, Verdict b) {
@@ -167,7 +166,7 @@ Result<ProcessedFeature> process(Feature feature, const Document& shared,
       inspect(std::move(feature), workers, options.certify, options.groups, &templates);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
-  const bool is_kept = options.invalid_features == InvalidFeatures::keep;
+  const bool is_kept = options.policy == Policy::keep;
   if (is_kept || processed.outcome.verdict == Verdict::valid) {
     auto encoded = encode_feature(inspected, shared, options);
     if (!encoded) return std::move(encoded).error();
@@ -196,13 +195,14 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
   for (ProcessedFeature& feature : *processed) {
     encoded.outcome.add(feature.outcome.verdict);
     if (feature.encoded) {
-      encoded.outcome.unproven += unproven_solids(*feature.encoded);
+      encoded.outcome.unproven += feature.encoded->unproven();
+      encoded.outcome.unproven_features += feature.encoded->is_proven() ? 0 : 1;
       encoded.document.features.push_back(*std::move(feature.encoded));
     }
     encoded.outcome.features.push_back(std::move(feature.outcome));
   }
-  const bool is_kept = options.invalid_features != InvalidFeatures::refuse_document;
-  if (encoded.outcome.verdict != Verdict::valid && !is_kept) encoded.document.features.clear();
+  const bool is_refused = options.policy.value_or(Policy::refuse) == Policy::refuse;
+  if (encoded.outcome.verdict != Verdict::valid && is_refused) encoded.document.features.clear();
   return encoded;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "validate/report_json.h"
+
 namespace watertight::pipeline {
 namespace {
 
@@ -64,6 +66,51 @@ void write_group(JsonText& json, const InspectedGroup& group) {
 
 }  // namespace
 
+std::string feature_findings_json(const InspectedFeature& feature) {
+  JsonText json;
+  bool has_findings = false;
+  json.open('[');
+  for (const InspectedGroup& group : feature.groups) {
+    if (group.report.verdict == Verdict::valid) continue;
+    has_findings = true;
+    write_group(json, group);
+  }
+  for (std::size_t i = feature.own; i < feature.solids.size(); ++i) {
+    const InspectedSolid& instance = feature.solids[i];
+    if (instance.inspection.report.verdict == Verdict::valid) continue;
+    has_findings = true;
+    SolidOutcome outcome;
+    outcome.source = instance.source;
+    validate::ReportJsonOptions options;
+    options.pointer_prefix = instance.source.pointer;
+    options.include_times = false;
+    outcome.report_json =
+        validate::report_json(instance.inspection.report, feature.feature.solids[i].solid, options);
+    write_solid(json, outcome);
+  }
+  json.close(']');
+  return has_findings ? json.take() : std::string();
+}
+
+std::string proof_json(const store::FeatureRecord& feature) {
+  JsonText json;
+  json.open('{').key("id").value(feature.id).key("proven").value(feature.is_proven());
+  json.key("solids").open('[');
+  for (const StoredSolid& solid : feature.solids) {
+    json.open('{').key("object").value(solid.object_id);
+    if (!solid.lod.empty()) json.key("lod").value(solid.lod);
+    json.key("geometry").value(solid.geometry).key("ordinal").value(solid.ordinal);
+    json.key("proven").value(solid.is_proven);
+    if (!solid.measures.empty()) json.key("measures").raw(solid.measures);
+    if (!solid.report.empty()) json.key("report").raw(solid.report);
+    json.close('}');
+  }
+  json.close(']');
+  if (!feature.findings.empty()) json.key("findings").raw(feature.findings);
+  json.close('}');
+  return json.take();
+}
+
 std::string measures_json(const geometry::Measures& measures) {
   JsonText json;
   json.open('{').key("volume").value(measures.volume).key("area").value(measures.area);
@@ -78,6 +125,8 @@ std::string outcome_json(const IngestOutcome& outcome) {
   JsonText json;
   json.open('{').key("verdict").value(validate::to_string(outcome.verdict));
   json.key("stored").value(outcome.stored);
+  json.key("unproven").open('{').key("features").value(outcome.unproven_features);
+  json.key("solids").value(outcome.unproven).close('}');
   json.key("counts").open('{').key("features").value(outcome.total);
   json.key("valid").value(outcome.total - outcome.invalid - outcome.undecided);
   json.key("invalid").value(outcome.invalid).key("undecided").value(outcome.undecided).close('}');

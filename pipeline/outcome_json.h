@@ -23,4 +23,12 @@ std::string measures_json(const geometry::Measures& measures);
 /// feature's "solids".
 std::string outcome_json(const IngestOutcome& outcome);
 
+/// The defects of a feature that are of none of its own solids alone, as a JSON array: the groups
+/// that are not valid, and the instances of geometry templates that are not. "" without any.
+std::string feature_findings_json(const InspectedFeature& feature);
+
+/// Which solids of a stored feature are proven, with measures and reports, and the defects that are
+/// of none of its solids alone.
+std::string proof_json(const store::FeatureRecord& feature);
+
 }  // namespace watertight::pipeline

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/cancel.h"
@@ -88,11 +89,11 @@ struct FeatureOutcome {
   std::uint64_t version = 0;  // 0 unless stored
 };
 
-/// The treatment of a document in which not all features are valid: nothing of it is encoded; the
-/// valid features are; or all are, with what is not proven as it came.
-enum class InvalidFeatures : std::uint8_t { refuse_document, skip, keep };
-/// The treatment named "refuse", "skip" or "keep". Errors: invalid_argument.
-Result<InvalidFeatures> invalid_features_named(const std::string& name);
+using store::Policy;
+
+/// The policy named "refuse", "skip" or "keep". Errors: invalid_argument.
+Result<Policy> policy_named(const std::string& name);
+std::string_view to_string(Policy policy);
 
 /// Called with the number of features that are done and of all, from one thread at a time.
 using Progress = std::function<void(std::size_t, std::size_t)>;
@@ -111,7 +112,9 @@ struct FeatureEncoding {
 struct IngestOptions : FeatureEncoding {
   CertifyOptions certify;
   validate::GroupOptions groups;
-  InvalidFeatures invalid_features = InvalidFeatures::refuse_document;
+  /// Absent: that of the collection; refuse where there is none. A collection that the write makes
+  /// gets this policy.
+  std::optional<Policy> policy;
   /// The name of features that have no id: "house" makes house, house-2, ...; "": they are refused.
   std::string unnamed;
   store::WriteCondition condition;  // for each feature that is stored
@@ -139,7 +142,7 @@ struct EncodedDocument {
 };
 
 /// Encodes a feature with its own solids. A solid whose verdict is valid becomes a blob; any other,
-/// which only `InvalidFeatures::keep` gives to this function, stays as it came. For contract
+/// which only `Policy::keep` gives to this function, stays as it came. For contract
 /// boundary, document.header must be a boundary_header(). Errors: those of encode().
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
                                       const FeatureEncoding& options);
@@ -165,7 +168,8 @@ struct IngestCounts {
   std::uint64_t invalid = 0;
   std::uint64_t undecided = 0;
   std::uint64_t stored = 0;
-  std::uint64_t unproven = 0;        // the number of solids that were kept without proof
+  std::uint64_t unproven = 0;           // the number of solids that were kept without proof
+  std::uint64_t unproven_features = 0;  // the number of features that were kept without proof
   Verdict verdict = Verdict::valid;  // the worst of all features
 
   void add(Verdict of_feature);

@@ -125,6 +125,7 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
   encoded.srid = feature.feature.srid;
   encoded.format = std::string(formats::to_string(document.format));
   encoded.header = document.header;
+  encoded.findings = feature_findings_json(feature);
   EncodeOptions encode_options = options.encode;
   if (!is_exact) encode_options.keep_order = false;
   for (std::size_t i = 0; i < feature.own; ++i) {

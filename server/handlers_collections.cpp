@@ -22,6 +22,8 @@ Json collection_json(const store::StoredCollection& collection) {
   json["features"] = collection.features;
   json["solids"] = collection.solids;
   json["blobBytes"] = collection.blob_bytes;
+  json["unproven"] = {{"features", collection.unproven_features}, {"solids", collection.unproven}};
+  json["invalid"] = pipeline::to_string(collection.policy);
   json["links"] = Json::array(
       {link(self, "self", kJson, "this collection"),
        link(self + "/items", "items", kJson, "its features"),
@@ -36,18 +38,37 @@ Response collection_response(const Result<store::StoredCollection>& collection) 
   return json_response(collection_json(*collection));
 }
 
-/// The new id in a JSON merge patch (RFC 7396), which can change nothing else of a collection.
-Result<std::string> new_id_of(const std::string& body) {
+/// The members of a collection that clients can change.
+struct CollectionChange {
+  std::optional<std::string> id;
+  std::optional<store::Policy> policy;
+};
+
+/// The change in a JSON merge patch (RFC 7396).
+Result<CollectionChange> change_of(const std::string& body) {
   constexpr std::size_t kLongestPatch = 1024;
   if (body.size() > kLongestPatch) {
     return Error{ErrorCode::limit_exceeded, "a change of a collection has at most 1024 bytes"};
   }
   const Json patch = Json::parse(body, nullptr, false);
-  if (patch.is_object() && patch.size() == 1 && patch.contains("id") && patch["id"].is_string()) {
-    return patch["id"].get<std::string>();
+  const Error wrong{ErrorCode::invalid_argument,
+                    "a change of a collection is {\"id\": \"NEW-ID\"} or {\"invalid\": "
+                    "\"refuse\", \"skip\" or \"keep\"}, or both in one object"};
+  if (!patch.is_object() || patch.empty()) return wrong;
+  CollectionChange change;
+  for (const auto& [key, value] : patch.items()) {
+    if (!value.is_string()) return wrong;
+    if (key == "id") {
+      change.id = value.get<std::string>();
+    } else if (key == "invalid") {
+      auto policy = pipeline::policy_named(value.get<std::string>());
+      if (!policy) return std::move(policy).error();
+      change.policy = *policy;
+    } else {
+      return wrong;
+    }
   }
-  return Error{ErrorCode::invalid_argument,
-               "a collection can be given another id only: send {\"id\": \"NEW-ID\"}"};
+  return change;
 }
 
 using Upkeep = Response (*)(SolidStore&, const std::string&, const CancelPoll&);
@@ -112,13 +133,17 @@ Response get_collection(const RoutedRequest& request) {
 }
 
 Response patch_collection(const RoutedRequest& request) {
-  const auto id = new_id_of(request.request.body);
-  if (!id) return to_response(to_problem(id.error()));
+  const auto change = change_of(request.request.body);
+  if (!change) return to_response(to_problem(change.error()));
   if (auto refusal = unless_change_is_wanted(request)) return *std::move(refusal);
-  const Status renamed = request.service.store->rename_collection(request.target.segments[1], *id);
-  if (!renamed) return to_response(to_problem(renamed.error()));
-  Response response = collection_response(request.service.store->collection(*id));
-  response.headers.push_back({"Content-Location", "/collections/" + percent_encode(*id)});
+  SolidStore& store = *request.service.store;
+  std::string id = request.target.segments[1];
+  Status changed = change->policy ? store.set_policy(id, *change->policy) : Done{};
+  if (changed && change->id) changed = store.rename_collection(id, *change->id);
+  if (!changed) return to_response(to_problem(changed.error()));
+  if (change->id) id = *change->id;
+  Response response = collection_response(store.collection(id));
+  response.headers.push_back({"Content-Location", "/collections/" + percent_encode(id)});
   return response;
 }
 

@@ -11,6 +11,7 @@
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
 #include "server/items/ranges.h"
+#include "server/json_answers.h"
 
 namespace watertight::server {
 namespace {
@@ -57,10 +58,15 @@ Response refuse_export(const Error& error) {
 struct ExportRequest {
   Service service;
   const FileFormat* file;
+  pipeline::ExportScope scope;
   store::StoredCollection collection;
   Request message;
 
-  std::string etag() const { return etag_of_state(collection.state, file->parameter); }
+  std::string etag() const {
+    std::string representation(file->parameter);
+    if (scope == pipeline::ExportScope::proven) representation += "-proven";
+    return etag_of_state(collection.state, representation);
+  }
   std::string key() const { return collection.id + "/" + etag(); }
 };
 
@@ -78,7 +84,8 @@ std::vector<HeaderField> headers_of(const ExportRequest& request) {
 /// smaller, but coding them anew takes nine times as long.
 Result<pipeline::CollectionExport> export_for(const ExportRequest& request) {
   return pipeline::CollectionExport::start(*request.service.store, request.collection.id,
-                                           request.file->format, {}, pipeline::SolidLayout::blobs);
+                                           request.file->format, {}, pipeline::SolidLayout::blobs,
+                                           request.scope);
 }
 
 /// Sends the file while it is made.
@@ -171,9 +178,16 @@ Response get_export(const RoutedRequest& request) {
                   "a collection is available as application/vnd.watertight (f=wt) or "
                   "application/city+json-seq (f=cityjsonseq)");
   }
+  const auto is_proven = proof_of_request(request.target);
+  if (!is_proven) return to_response(to_problem(is_proven.error()));
+  if (*is_proven == false) {
+    return refuse(400, "invalid-argument", "an export has all features, or with proven=true those");
+  }
+  const auto scope = *is_proven ? pipeline::ExportScope::proven : pipeline::ExportScope::all;
   auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  const ExportRequest wanted{request.service, file, *std::move(collection), request.request};
+  const ExportRequest wanted{request.service, file, scope, *std::move(collection),
+                             request.request};
   auto unneeded = unless_needed(request.request, wanted.etag());
   if (unneeded) return *std::move(unneeded);
   // With a size of "all that there are", any range that is understood is a part.

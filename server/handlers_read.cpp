@@ -137,6 +137,8 @@ Json feature_json(const std::string& collection, const store::FeatureSummary& fe
   json["properties"] = {{"type", feature.type},
                         {"solids", feature.solids},
                         {"blobBytes", feature.blob_bytes},
+                        {"proven", feature.is_proven},
+                        {"unprovenSolids", feature.unproven},
                         {"version", feature.version}};
   const std::string path = item_path(collection, feature.id);
   json["links"] = Json::array({link(path + "?f=cityjson", "item", kCityJson, "CityJSON"),
@@ -145,7 +147,21 @@ Json feature_json(const std::string& collection, const store::FeatureSummary& fe
   return json;
 }
 
+/// The number of features of a collection that are proven, or are not, or of all.
+std::uint64_t matched(const store::StoredCollection& collection, std::optional<bool> is_proven) {
+  if (!is_proven) return collection.features;
+  return *is_proven ? collection.features - collection.unproven_features
+                    : collection.unproven_features;
+}
+
 }  // namespace
+
+Result<std::optional<bool>> proof_of_request(const Target& target) {
+  const std::string* text = target.parameter("proven");
+  if (text == nullptr) return std::optional<bool>();
+  if (*text == "true" || *text == "false") return std::optional<bool>(*text == "true");
+  return Error{ErrorCode::invalid_argument, "proven is true or false"};
+}
 
 std::string crs_uri(std::uint32_t srid) {
   if (srid == 0) return std::string(kUnknownCrs);
@@ -214,10 +230,12 @@ Response get_items(const RoutedRequest& request) {
   if (!box) return to_response(to_problem(box.error()));
   const auto limit = limit_of_request(request.target, request.service.options);
   if (!limit) return to_response(to_problem(limit.error()));
+  const auto is_proven = proof_of_request(request.target);
+  if (!is_proven) return to_response(to_problem(is_proven.error()));
   const std::string* after = request.target.parameter("after");
   const auto page = request.service.store->list(
       {collection->id, *limit, after == nullptr ? std::string() : *after, *box,
-       *box && collection->box ? share_of(*collection->box, **box) : 0});
+       *box && collection->box ? share_of(*collection->box, **box) : 0, *is_proven});
   if (!page) return to_response(to_problem(page.error()));
 
   Json json{{"type", "FeatureCollection"}};
@@ -230,7 +248,7 @@ Response get_items(const RoutedRequest& request) {
   if (is_whole) {
     json["numberMatched"] = page->features.size();
   } else if (!*box) {
-    json["numberMatched"] = collection->features;
+    json["numberMatched"] = matched(*collection, *is_proven);
   }
   json["numberReturned"] = page->features.size();
   json["features"] = Json::array();

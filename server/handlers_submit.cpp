@@ -68,7 +68,9 @@ Status read_tolerance(const Target& target, std::string_view name, double limit,
   return Done{};
 }
 
-Status read_certify_options(const Target& target, CertifyOptions& options) {
+/// Reads the rules by which solids are judged: planarity, planarity-angle, overlap, proof, strict.
+Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
+  CertifyOptions& options = ingest.certify;
   constexpr double kWidestMetres = 1000;
   constexpr double kWidestDegrees = 90;
   Status status =
@@ -76,6 +78,8 @@ Status read_certify_options(const Target& target, CertifyOptions& options) {
   if (!status) return status;
   status = read_tolerance(target, "planarity-angle", kWidestDegrees,
                           options.tolerances.planarity_degrees);
+  if (!status) return status;
+  status = read_tolerance(target, "overlap", kWidestMetres, ingest.groups.overlap_metres);
   if (!status) return status;
   const auto strict = parse_flag(target, "strict");
   if (!strict) return strict.error();
@@ -108,6 +112,7 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
   report::ReportHead head;
   head.program_version = WATERTIGHT_VERSION;
   head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
+  head.overlap_metres = options.groups.overlap_metres;
   head.is_strict = options.certify.ladder.strict;
   const auto report = make_report(
       kind,
@@ -118,6 +123,7 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
       std::move(head));
   pipeline::StreamOptions stream;
   stream.certify = options.certify;
+  stream.groups = options.groups;
   stream.groups.limits = options.certify.limits;
   stream.groups.cancel = options.certify.ladder.cancel;
   stream.threads = options.threads;
@@ -198,9 +204,12 @@ Response post_items(const RoutedRequest& request) {
   pipeline::IngestOptions options = ingest_options(request);
   options.collection = request.target.segments[1];
   if (const std::string* named = request.target.parameter("invalid")) {
-    const auto invalid = pipeline::invalid_features_named(*named);
+    const auto invalid = pipeline::policy_named(*named);
     if (!invalid) return to_response(to_problem(invalid.error()));
-    options.invalid_features = *invalid;
+    options.policy = *invalid;
+  }
+  if (Status rules = read_rules(request.target, options); !rules) {
+    return to_response(to_problem(rules.error()));
   }
   auto condition = write_condition(request.request);
   if (!condition) return to_response(to_problem(condition.error()));
@@ -215,14 +224,12 @@ Response post_items(const RoutedRequest& request) {
   const auto counts = ingestion.finish();
   if (!counts) return to_response(to_problem(counts.error()));
   const auto outcome = std::move(keeper).outcome(*counts, ingestion.versions());
-  const bool is_refused = outcome.verdict != Verdict::valid &&
-                          options.invalid_features == pipeline::InvalidFeatures::refuse_document;
-  return is_refused ? refused_document(outcome) : answer_of(outcome, options.collection);
+  return ingestion.is_refused() ? refused_document(outcome) : answer_of(outcome, options.collection);
 }
 
 Response post_validate(const RoutedRequest& request) {
   pipeline::IngestOptions options = ingest_options(request);
-  const Status status = read_certify_options(request.target, options.certify);
+  const Status status = read_rules(request.target, options);
   if (!status) return to_response(to_problem(status.error()));
   const auto kind = negotiate(request.request.header("accept"), {kJson, kGeoJson, kHtml});
   if (!kind) {

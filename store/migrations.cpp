@@ -193,6 +193,40 @@ constexpr Migration kMigrations[] = {
     {"solids that are not proven",
      {
          R"(ALTER TABLE watertight.solid ALTER COLUMN blob DROP NOT NULL)",
+         R"(ALTER TABLE watertight.feature
+              ADD COLUMN unproven bigint NOT NULL DEFAULT 0,
+              ADD COLUMN is_proven boolean NOT NULL DEFAULT true,
+              ADD COLUMN findings jsonb)",
+         R"(COMMENT ON COLUMN watertight.feature.findings IS
+              'The groups of solids in which a defect was found. NULL: none')",
+         R"(CREATE INDEX feature_not_proven ON watertight.feature (collection, id)
+              WHERE NOT is_proven)",
+         R"(ALTER TABLE watertight.collection
+              ADD COLUMN unproven bigint NOT NULL DEFAULT 0,
+              ADD COLUMN unproven_features bigint NOT NULL DEFAULT 0,
+              ADD COLUMN policy smallint NOT NULL DEFAULT 0 CHECK (policy BETWEEN 0 AND 2))",
+         R"(COMMENT ON COLUMN watertight.collection.policy IS
+              'A document with features that are not valid is 0: refused; 1: stored without them; 2: stored as it came')",
+         R"(ALTER TABLE watertight.collection_change
+              ADD COLUMN unproven bigint NOT NULL DEFAULT 0,
+              ADD COLUMN unproven_features bigint NOT NULL DEFAULT 0)",
+         R"(CREATE OR REPLACE FUNCTION watertight.note_added() RETURNS trigger LANGUAGE plpgsql
+              AS $$ BEGIN
+              INSERT INTO watertight.collection_change (collection, features, solids, blob_bytes,
+                  unproven, unproven_features, min_x, min_y, min_z, max_x, max_y, max_z)
+                SELECT collection, count(*), sum(solids), sum(blob_bytes), sum(unproven),
+                       count(*) FILTER (WHERE NOT is_proven),
+                       min(min_x), min(min_y), min(min_z), max(max_x), max(max_y), max(max_z)
+                FROM added GROUP BY collection;
+              RETURN NULL; END $$)",
+         R"(CREATE OR REPLACE FUNCTION watertight.note_removed() RETURNS trigger LANGUAGE plpgsql
+              AS $$ BEGIN
+              INSERT INTO watertight.collection_change (collection, features, solids, blob_bytes,
+                  unproven, unproven_features)
+                SELECT collection, -count(*), -sum(solids), -sum(blob_bytes), -sum(unproven),
+                       -count(*) FILTER (WHERE NOT is_proven)
+                FROM removed GROUP BY collection;
+              RETURN NULL; END $$)",
          R"(COMMENT ON COLUMN watertight.solid.blob IS
               'NULL: the solid is not proven to be valid; the skeleton of its feature has it as it came')",
      }},

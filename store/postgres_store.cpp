@@ -173,6 +173,12 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return store::rename_collection(session, id, new_id); });
   }
 
+  Status set_policy(const std::string& id, Policy policy) override {
+    if (!check_collection_id(id)) return no_such_collection();
+    return write<Done>(
+        [&](DatabaseSession& session) { return store::set_policy(session, id, policy); });
+  }
+
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
                                          const WriteCondition& condition) override {
     if (features.empty()) return std::vector<std::uint64_t>{};

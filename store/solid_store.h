@@ -34,6 +34,10 @@ Status check_collection_id(const std::string& id);
 /// which no URL can name. Errors: invalid_argument.
 Status check_feature_id(const std::string& id);
 
+/// The treatment of a document with features that are not valid, where the write says none: nothing
+/// of it is stored; the valid rest is; or all is, with what is not proven as it came.
+enum class Policy : std::uint8_t { refuse, skip, keep };
+
 struct StoredCollection {
   std::string id;  // [A-Za-z0-9_.-]{1,64}
   std::uint32_t srid = 0;
@@ -41,6 +45,9 @@ struct StoredCollection {
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t blob_bytes = 0;
+  std::uint64_t unproven = 0;           // the solids that are not proven
+  std::uint64_t unproven_features = 0;  // the features that are not proven (is_proven())
+  Policy policy = Policy::refuse;
   /// Changes with every change of the features. Collections that have this name in turn never share
   /// one.
   std::string state;
@@ -70,7 +77,18 @@ struct FeatureRecord {
   SharedText header;       // header of the feature's document (may differ from the collection's)
   std::optional<StoredBox> box;  // world coordinates of the box around its solids
   std::vector<StoredSolid> solids;
+  /// JSON array of the groups of solids in which a defect was found; "" when there is none.
+  std::string findings;
   std::uint64_t version = 0;  // set by the store, never used twice; serves as ETag
+
+  /// The number of solids that are not proven.
+  std::uint64_t unproven() const {
+    std::uint64_t count = 0;
+    for (const StoredSolid& solid : solids) count += solid.is_proven ? 0 : 1;
+    return count;
+  }
+  /// Whether all solids are proven, and no defect was found in a group of them.
+  bool is_proven() const { return findings.empty() && unproven() == 0; }
 };
 
 struct StoredFeature : FeatureRecord {
@@ -103,6 +121,8 @@ struct FeatureQuery {
   /// How much of the collection's extent in x and y the box covers, 0 to 1, so that the search can
   /// go by place (little) or by id (much). Any value is right; the cost differs.
   double share = 0;
+  /// Selects the features that are proven, or those that are not.
+  std::optional<bool> is_proven = std::nullopt;
 };
 
 /// The facts about a feature that lists show.
@@ -113,6 +133,8 @@ struct FeatureSummary {
   std::uint64_t solids = 0;
   std::uint64_t blob_bytes = 0;
   std::optional<StoredBox> box;
+  std::uint64_t unproven = 0;  // the solids that are not proven
+  bool is_proven = true;
 };
 
 struct FeaturePage {
@@ -169,6 +191,8 @@ class SolidStore {
   /// does not depend on the number of features. Errors: not_found; conflict when `new_id` exists;
   /// invalid_argument when it is not an id of a collection.
   virtual Status rename_collection(const std::string& id, const std::string& new_id) = 0;
+  /// Sets the policy of a collection for later writes. Errors: not_found.
+  virtual Status set_policy(const std::string& id, Policy policy) = 0;
   /// Stores all features or none, durably. Creates the collection when it does not exist; replaces
   /// a feature whose id exists, under a higher version. Sends the rows of a table together. Returns
   /// the new version of each feature. Errors: invalid_argument for a feature that the database

@@ -16,7 +16,8 @@ constexpr std::size_t kFeatureOverhead = sizeof(StoredFeature);
 Error damaged() { return {ErrorCode::unavailable, "the temporary file has been changed"}; }
 
 std::size_t bytes_of(const StoredFeature& feature) {
-  std::size_t bytes = kFeatureOverhead + feature.id.size() + feature.skeleton.bytes.size();
+  std::size_t bytes = kFeatureOverhead + feature.id.size() + feature.findings.size() +
+                      feature.skeleton.bytes.size();
   for (const StoredSolid& solid : feature.solids) {
     bytes += kSolidOverhead + solid.object_id.size() + solid.blob.size() + solid.measures.size() +
              solid.report.size();
@@ -54,6 +55,7 @@ void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64
     writer.f64(feature.box->min[axis]);
     writer.f64(feature.box->max[axis]);
   }
+  write(writer, feature.findings);
   write(writer, feature.skeleton.bytes);
   writer.varint(feature.solids.size());
   for (const StoredSolid& solid : feature.solids) {
@@ -83,6 +85,7 @@ StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& he
     feature.box->min[axis] = reader.f64();
     feature.box->max[axis] = reader.f64();
   }
+  feature.findings = read_text(reader);
   feature.skeleton.bytes = read_copy(reader);
   const std::uint64_t solids = reader.varint();
   for (std::uint64_t i = 0; i < solids && !reader.failed(); ++i) {

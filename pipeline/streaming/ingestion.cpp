@@ -30,7 +30,22 @@ Ingestion::Ingestion(SolidStore& store, delaunay::EngineWorkers* workers, Ingest
       progress_(std::move(progress)),
       spool_(options_.batch_bytes) {}
 
+/// Reads CRS and policy of the collection if there is one.
+Status Ingestion::look_up_collection() {
+  if (std::exchange(has_looked_up_, true)) return Done{};
+  const auto existing = store_.collection(options_.collection);
+  if (existing) {
+    srid_ = existing->srid;
+    if (!options_.policy) options_.policy = existing->policy;
+    return Done{};
+  }
+  if (existing.error().code != ErrorCode::not_found) return existing.error();
+  if (options_.policy.value_or(Policy::refuse) != Policy::refuse) new_policy_ = options_.policy;
+  return Done{};
+}
+
 Status Ingestion::add(formats::FeatureReader& reader) {
+  if (Status found = look_up_collection(); !found) return found;
   auto shared = shared_part(reader.document(), options_.contract);
   if (!shared) return std::move(shared).error();
   TemplateInspector templates(reader.document().templates, workers_, options_.certify,
@@ -88,11 +103,7 @@ Status Ingestion::check_id(FeatureOutcome& outcome) {
 
 /// Checks that document and collection have one CRS.
 Status Ingestion::check_srid(const FeatureOutcome& outcome, std::uint32_t srid) {
-  if (!srid_) {
-    const auto existing = store_.collection(options_.collection);
-    if (!existing && existing.error().code != ErrorCode::not_found) return existing.error();
-    srid_ = existing ? existing->srid : srid;
-  }
+  if (!srid_) srid_ = srid;
   if (srid == *srid_) return Done{};
   return Error{ErrorCode::conflict, "feature '" + outcome.id + "' is in CRS " +
                                         std::to_string(srid) + ", the collection in " +
@@ -110,6 +121,8 @@ Status Ingestion::take(Processed processed) {
     spool_.clear();
   } else if (processed.packed) {
     processed.packed->id = outcome.id;
+    counts_.unproven += processed.packed->unproven();
+    counts_.unproven_features += processed.packed->is_proven() ? 0 : 1;
     if (Status added = spool_.add(*std::move(processed.packed)); !added) return added;
   }
   return on_feature_(std::move(outcome));
@@ -126,6 +139,9 @@ Result<IngestCounts> Ingestion::finish() {
   if (!versions) return std::move(versions).error();
   versions_ = *std::move(versions);
   counts_.stored = spool_.size();
+  if (new_policy_) {
+    if (Status set = store_.set_policy(options_.collection, *new_policy_); !set) return set.error();
+  }
   spool_.clear();
   return counts_;
 }

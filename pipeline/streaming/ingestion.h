@@ -44,18 +44,20 @@ class Ingestion {
   /// Stores the features in one transaction. Nothing is stored after an error. Errors: cancelled;
   /// those of SolidStore::put().
   Result<IngestCounts> finish();
+  /// Whether nothing is stored, because a feature is not valid and the policy is to refuse.
+  bool is_refused() const {
+    return counts_.verdict != Verdict::valid &&
+           options_.policy.value_or(Policy::refuse) == Policy::refuse;
+  }
   /// The versions of the stored features in their order; empty before finish().
   const std::vector<std::uint64_t>& versions() const { return versions_; }
 
  private:
   struct Processed;
   Status take(Processed processed);
+  Status look_up_collection();
   Status check_srid(const FeatureOutcome& outcome, std::uint32_t srid);
   Status check_id(FeatureOutcome& outcome);
-  bool is_refused() const {
-    return counts_.verdict != Verdict::valid &&
-           options_.invalid_features == InvalidFeatures::refuse_document;
-  }
 
   SolidStore& store_;
   delaunay::EngineWorkers* workers_;
@@ -64,6 +66,8 @@ class Ingestion {
   IngestProgress progress_;
   FeatureSpool spool_;
   std::unordered_set<std::string> ids_;
+  bool has_looked_up_ = false;
+  std::optional<Policy> new_policy_;   // of the collection that this write makes
   std::optional<std::uint32_t> srid_;  // that of the collection, or of the first feature
   std::uint64_t unnamed_ = 0;          // the number of features without an id
   IngestCounts counts_;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pipeline/container.h"
+#include "pipeline/outcome_json.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
 #include "server/items/ranges.h"
@@ -20,12 +21,13 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 6> kFormats{{{"cityjson", kCityJson},
+constexpr std::array<ItemFormat, 7> kFormats{{{"cityjson", kCityJson},
                                               {"json", kJson},
                                               {"cityjsonseq", kCityJsonSeq},
                                               {"obj", kObj},
                                               {"wt", kContainer},
-                                              {"blob", kBlob}}};
+                                              {"blob", kBlob},
+                                              {"proof", kJson}}};
 
 std::optional<ItemFormat> chosen_format(const RoutedRequest& request) {
   const std::string* wanted = request.target.parameter("f");
@@ -80,12 +82,21 @@ Result<Bytes> blob_of(const StoredFeature& feature, const std::string& text) {
                  "this feature has " + count +
                      " solids: choose one with solid=0, ..., or use f=wt for all in one file"};
   }
+  if (!feature.solids[solid].is_proven) {
+    return Error{ErrorCode::not_encodable, "this solid is not proven, so there is no blob of it"};
+  }
   return feature.solids[solid].blob;
+}
+
+Bytes bytes_of(std::string_view text) {
+  const ByteView bytes = as_bytes(text);
+  return {bytes.begin(), bytes.end()};
 }
 
 Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
   const std::string_view format = item.format.parameter;
   if (format == "blob") return blob_of(feature, item.solid);
+  if (format == "proof") return bytes_of(pipeline::proof_json(feature) + "\n");
   if (format == "wt") {
     auto encoded = pipeline::unpack(std::move(feature));
     if (!encoded) return std::move(encoded).error();
@@ -164,7 +175,7 @@ Response get_item(const RoutedRequest& request) {
         406, "not-acceptable",
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
         "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
-        "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob)");
+        "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs and findings with f=proof");
   }
   const std::string* solid = request.target.parameter("solid");
   if (solid != nullptr && format->parameter != "blob") {

@@ -15,13 +15,15 @@ constexpr const char* kCountsLock = "x'636f756e74626f78'::bigint";
 
 const char* const kCounts =
     "c.features, c.solids, c.blob_bytes, c.min_x, c.min_y, c.min_z, c.max_x, c.max_y, c.max_z,"
-    " c.generation, c.changes";
+    " c.generation, c.changes, c.unproven, c.unproven_features, c.policy::int8";
 
 /// The changes of each collection, summed up, from a table of changes.
 std::string summed(const char* changes) {
   return std::string(
              "SELECT collection, sum(features)::int8 AS features, sum(solids)::int8 AS solids,"
-             " sum(blob_bytes)::int8 AS blob_bytes, min(min_x) AS min_x, min(min_y) AS min_y,"
+             " sum(blob_bytes)::int8 AS blob_bytes, sum(unproven)::int8 AS unproven,"
+             " sum(unproven_features)::int8 AS unproven_features,"
+             " min(min_x) AS min_x, min(min_y) AS min_y,"
              " min(min_z) AS min_z, max(max_x) AS max_x, max(max_y) AS max_y,"
              " max(max_z) AS max_z, count(*) AS changes FROM ") +
          changes;
@@ -33,7 +35,9 @@ std::string collections_from(const char* collections) {
          " c.solids + coalesce(d.solids, 0), c.blob_bytes + coalesce(d.blob_bytes, 0),"
          " least(c.min_x, d.min_x), least(c.min_y, d.min_y), least(c.min_z, d.min_z),"
          " greatest(c.max_x, d.max_x), greatest(c.max_y, d.max_y), greatest(c.max_z, d.max_z),"
-         " c.generation, c.changes + coalesce(d.changes, 0)"
+         " c.generation, c.changes + coalesce(d.changes, 0),"
+         " c.unproven + coalesce(d.unproven, 0),"
+         " c.unproven_features + coalesce(d.unproven_features, 0), c.policy::int8"
          " FROM " +
          std::string(collections) +
          " c JOIN watertight.document_header h ON h.digest = c.header"
@@ -53,6 +57,9 @@ StoredCollection collection_of(const Rows& rows, int row) {
   if (found.features > 0) found.box = box_of(rows, row, 6);
   found.state = std::to_string(rows.int8(row, 12));
   found.state.append("-").append(std::to_string(rows.int8(row, 13)));
+  found.unproven = static_cast<std::uint64_t>(rows.int8(row, 14));
+  found.unproven_features = static_cast<std::uint64_t>(rows.int8(row, 15));
+  found.policy = static_cast<Policy>(rows.int8(row, 16));
   return found;
 }
 
@@ -104,7 +111,8 @@ Result<Done> fold_changes(DatabaseSession& connection) {
       summed("gone") +
       " GROUP BY collection) UPDATE watertight.collection c SET features = c.features + d.features,"
       " solids = c.solids + d.solids, blob_bytes = c.blob_bytes + d.blob_bytes,"
-      " changes = c.changes + d.changes,"
+      " changes = c.changes + d.changes, unproven = c.unproven + d.unproven,"
+      " unproven_features = c.unproven_features + d.unproven_features,"
       " min_x = CASE WHEN c.features + d.features > 0 THEN least(c.min_x, d.min_x) END,"
       " min_y = CASE WHEN c.features + d.features > 0 THEN least(c.min_y, d.min_y) END,"
       " min_z = CASE WHEN c.features + d.features > 0 THEN least(c.min_z, d.min_z) END,"
@@ -124,12 +132,15 @@ Result<StoredCollection> recount_collection(DatabaseSession& connection, const s
                   " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)"
                   " RETURNING 1),"
                   " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
-                  " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes, min(min_x) AS min_x,"
+                  " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes,"
+                  " coalesce(sum(unproven), 0)::int8 AS unproven,"
+                  " count(*) FILTER (WHERE NOT is_proven) AS unproven_features,"
+                  " min(min_x) AS min_x,"
                   " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
                   " max(max_y) AS max_y, max(max_z) AS max_z"
                   " FROM watertight.feature WHERE collection = (SELECT id FROM k))"
-                  " UPDATE watertight.collection c SET (features, solids, blob_bytes,"
-                  " min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d),"
+                  " UPDATE watertight.collection c SET (features, solids, blob_bytes, unproven,"
+                  " unproven_features, min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d),"
                   " changes = c.changes + (SELECT count(*) FROM gone)"
                   " FROM watertight.document_header h WHERE c.name = $1 AND h.digest = c.header"
                   " RETURNING c.name, c.srid, h.content, ") +

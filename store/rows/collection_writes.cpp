@@ -38,6 +38,18 @@ Result<Done> rename_collection(DatabaseSession& connection, const std::string& i
   return Done{};
 }
 
+Result<Done> set_policy(DatabaseSession& connection, const std::string& id, Policy policy) {
+  send_gate(connection, id, Gate::shared);
+  const Result<Rows> rows = connection.ask(
+      "UPDATE watertight.collection SET policy = $2, changes = changes + 1"
+      " WHERE name = $1 AND policy <> $2 RETURNING 1::int8",
+      Parameters().text(id).int8(static_cast<std::int64_t>(policy)));
+  if (!rows) return rows.error();
+  const Result<StoredCollection> found = read_collection(connection, id);
+  if (!found) return found.error();
+  return Done{};
+}
+
 Result<std::string> read_hidden_collection(DatabaseSession& connection) {
   const Result<Rows> rows =
       connection.ask("SELECT id FROM watertight.collection WHERE name IS NULL LIMIT 1");

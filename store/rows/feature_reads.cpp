@@ -34,6 +34,7 @@ std::string matching(const FeatureQuery& query) {
   clauses.append(is_small ? "collection || '' " : "collection ").append(kOfCollection);
   if (query.box && query.share < 1) clauses.append(kCandidates);
   if (query.box) clauses.append(kInBox);
+  if (query.is_proven) clauses.append(*query.is_proven ? " AND is_proven" : " AND NOT is_proven");
   return clauses;
 }
 
@@ -42,7 +43,7 @@ constexpr const char* kSolidColumns =
 
 const char* const kFeatureColumns =
     "SELECT id, version, type, format, srid, header, skeleton,"
-    " min_x, min_y, min_z, max_x, max_y, max_z";
+    " min_x, min_y, min_z, max_x, max_y, max_z, findings::text";
 
 /// The feature in a row, whose columns are kFeatureColumns, without solids. Its header is what is
 /// in the header's column.
@@ -58,6 +59,7 @@ StoredFeature feature_of(const Rows& rows, int row, const std::string& collectio
   const ByteView skeleton = as_bytes(rows.text(row, 6));
   feature.skeleton.bytes.assign(skeleton.begin(), skeleton.end());
   feature.box = box_of(rows, row, 7);
+  feature.findings = rows.text(row, 13);
   return feature;
 }
 
@@ -143,7 +145,8 @@ Result<Rows> summary_rows(DatabaseSession& connection, const FeatureQuery& query
   const char* const rest =
       query.box ? " AND id > $8 ORDER BY id LIMIT $9" : " AND id > $2 ORDER BY id LIMIT $3";
   return connection.ask(
-      "SELECT id, type, version, solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z" +
+      "SELECT id, type, version, solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z,"
+      " unproven, is_proven::int::int8" +
           matching(query) + rest,
       parameters);
 }
@@ -156,6 +159,8 @@ FeatureSummary summary_of(const Rows& rows, int row) {
   summary.solids = static_cast<std::uint64_t>(rows.int8(row, 3));
   summary.blob_bytes = static_cast<std::uint64_t>(rows.int8(row, 4));
   summary.box = box_of(rows, row, 5);
+  summary.unproven = static_cast<std::uint64_t>(rows.int8(row, 11));
+  summary.is_proven = rows.int8(row, 12) != 0;
   return summary;
 }
 
@@ -248,7 +253,7 @@ Result<StoredFeature> read_feature(DatabaseSession& connection, const std::strin
           "SELECT f.id, f.version, f.type, f.format, f.srid,"
           " CASE WHEN coalesce(s.position, 0) = 0 THEN h.content END,"
           " CASE WHEN coalesce(s.position, 0) = 0 THEN f.skeleton END,"
-          " f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z, s.position, ") +
+          " f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z, f.findings::text, s.position, ") +
       kSolidColumns +
       " FROM watertight.feature f JOIN watertight.document_header h ON h.digest = f.header"
       " LEFT JOIN watertight.solid s ON s.collection = f.collection AND s.feature = f.id"
@@ -259,7 +264,7 @@ Result<StoredFeature> read_feature(DatabaseSession& connection, const std::strin
   if (rows->size() == 0) return no_feature(collection, id);
   StoredFeature feature = feature_of(*rows, 0, collection);
   for (int row = 0; row < rows->size(); ++row) {
-    if (!rows->is_null(row, 13)) feature.solids.push_back(solid_of(*rows, row, 14));
+    if (!rows->is_null(row, 14)) feature.solids.push_back(solid_of(*rows, row, 15));
   }
   return feature;
 }
@@ -311,7 +316,7 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
     batch.features.push_back(feature_of(*rows, row, collection));
   }
   if (!size->is_last) {
-    batch.next = to_string({rows->int8(rows->size() - 1, 13), batch.features.back().id});
+    batch.next = to_string({rows->int8(rows->size() - 1, 14), batch.features.back().id});
   }
   if (Status done = fill(connection, collection, batch.features); !done) {
     return std::move(done).error();

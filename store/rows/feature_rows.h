@@ -64,6 +64,8 @@ void send_gate(DatabaseSession& connection, std::string_view collection, Gate ga
 /// for the writers of the collection. Errors: not_found.
 Result<std::string> hide_collection(DatabaseSession& connection, const std::string& id);
 /// Errors: not_found, conflict.
+/// Sets the policy of a collection. Errors: not_found.
+Result<Done> set_policy(DatabaseSession& connection, const std::string& id, Policy policy);
 Result<Done> rename_collection(DatabaseSession& connection, const std::string& id,
                                const std::string& new_id);
 /// The key of a collection without a name; "" when there is none.

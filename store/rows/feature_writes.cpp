@@ -187,9 +187,9 @@ Status check_condition(DatabaseSession& connection, FeatureRefs features,
 
 /// The columns of the table `feature` for one statement.
 struct FeatureColumns {
-  std::vector<std::string_view> id, type, format;
+  std::vector<std::string_view> id, type, format, findings;
   std::vector<ByteView> header, skeleton;
-  std::vector<std::int64_t> srid, solids, blob_bytes, place;
+  std::vector<std::int64_t> srid, solids, blob_bytes, place, unproven, is_proven;
   std::array<std::vector<std::optional<double>>, 6> box;
   std::size_t bytes = 0;
 
@@ -205,11 +205,14 @@ struct FeatureColumns {
     for (const StoredSolid& solid : feature.solids) blobs += solid.blob.size();
     blob_bytes.push_back(static_cast<std::int64_t>(blobs));
     place.push_back(place_number(feature.box));
+    unproven.push_back(static_cast<std::int64_t>(feature.unproven()));
+    is_proven.push_back(feature.is_proven() ? 1 : 0);
+    findings.push_back(feature.findings);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box[axis].push_back(feature.box ? std::optional(feature.box->min[axis]) : std::nullopt);
       box[axis + 3].push_back(feature.box ? std::optional(feature.box->max[axis]) : std::nullopt);
     }
-    bytes += feature.id.size() + feature.skeleton.bytes.size() + 512;
+    bytes += feature.id.size() + feature.skeleton.bytes.size() + feature.findings.size() + 512;
   }
   Parameters parameters(std::string_view collection, const WriteCondition& condition) const {
     Parameters p;
@@ -217,27 +220,32 @@ struct FeatureColumns {
     p.int8_array(srid).bytea_array(header).bytea_array(skeleton);
     p.int8_array(solids).int8_array(blob_bytes);
     for (const auto& side : box) p.float8_array(side);
-    p.int8_array(place).int8(condition.kind == WriteCondition::Kind::absent ? 0 : 1);
+    p.int8_array(place).int8_array(unproven).int8_array(is_proven).text_array(findings);
+    p.int8(condition.kind == WriteCondition::Kind::absent ? 0 : 1);
     return p;
   }
 };
 
 // PostgreSQL draws the new version after it locked the row, so the version is above every earlier
-// version of the row. Where $17 is 0, a feature that exists is left as it is and not returned.
+// version of the row. Where $20 is 0, a feature that exists is left as it is and not returned.
 constexpr const char* kPutFeatures = R"(
   INSERT INTO watertight.feature AS f (collection, id, type, format, srid, header, skeleton,
-    solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)
-  SELECT (SELECT id FROM watertight.collection WHERE name = $1), u.*
+    solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place,
+    unproven, is_proven, findings)
+  SELECT (SELECT id FROM watertight.collection WHERE name = $1), i, t, m, s, h, k, n, b,
+    x0, y0, z0, x1, y1, z1, p, w, v = 1, nullif(r, '')::jsonb
   FROM unnest($2::text[], $3::text[], $4::text[], $5::int8[], $6::bytea[],
     $7::bytea[], $8::int8[], $9::int8[], $10::float8[], $11::float8[], $12::float8[],
-    $13::float8[], $14::float8[], $15::float8[], $16::int8[]) AS u
+    $13::float8[], $14::float8[], $15::float8[], $16::int8[], $17::int8[], $18::int8[], $19::text[])
+    AS u (i, t, m, s, h, k, n, b, x0, y0, z0, x1, y1, z1, p, w, v, r)
   ON CONFLICT (collection, id) DO UPDATE SET
     version = nextval('watertight.feature_version'), type = excluded.type,
     format = excluded.format, srid = excluded.srid, header = excluded.header,
     skeleton = excluded.skeleton, solids = excluded.solids, blob_bytes = excluded.blob_bytes,
     min_x = excluded.min_x, min_y = excluded.min_y, min_z = excluded.min_z,
-    max_x = excluded.max_x, max_y = excluded.max_y, max_z = excluded.max_z, place = excluded.place
-    WHERE $17 = 1
+    max_x = excluded.max_x, max_y = excluded.max_y, max_z = excluded.max_z, place = excluded.place,
+    unproven = excluded.unproven, is_proven = excluded.is_proven, findings = excluded.findings
+    WHERE $20 = 1
   RETURNING f.version, f.id)";
 
 constexpr const char* kDropSolids = R"(

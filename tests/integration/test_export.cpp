@@ -29,7 +29,7 @@ std::string ingest_tile(SolidStore& store) {
   REQUIRE(document);
   pipeline::IngestOptions options;
   options.collection = "delft";
-  options.invalid_features = pipeline::InvalidFeatures::skip;
+  options.policy = store::Policy::skip;
   const auto outcome = pipeline::ingest(*std::move(document), store, nullptr, options);
   REQUIRE(outcome);
   REQUIRE(outcome->stored > 20);

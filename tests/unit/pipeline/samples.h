@@ -96,6 +96,13 @@ class MemoryStore : public SolidStore {
     features_.insert(std::move(moved));
     return Done{};
   }
+  Status set_policy(const std::string& id, store::Policy policy) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
+    policies_[id] = policy;
+    return Done{};
+  }
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
                                          const store::WriteCondition& condition = {}) override {
     const std::lock_guard lock(mutex_);
@@ -141,6 +148,7 @@ class MemoryStore : public SolidStore {
     for (const auto& [id, feature] : features_[query.collection]) {
       if (query.box && !(feature.box && overlap(*query.box, *feature.box))) continue;
       if (id <= query.after) continue;
+      if (query.is_proven && feature.is_proven() != *query.is_proven) continue;
       if (page.features.size() == query.limit) {
         page.next = page.features.back().id;
         break;
@@ -148,7 +156,8 @@ class MemoryStore : public SolidStore {
       std::uint64_t bytes = 0;
       for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
       page.features.push_back(
-          {id, feature.type, feature.version, feature.solids.size(), bytes, feature.box});
+          {id, feature.type, feature.version, feature.solids.size(), bytes, feature.box,
+           feature.unproven(), feature.is_proven()});
     }
     return page;
   }
@@ -235,13 +244,17 @@ class MemoryStore : public SolidStore {
       collection.header = feature.header;
       ++collection.features;
       collection.solids += feature.solids.size();
+      collection.unproven += feature.unproven();
+      collection.unproven_features += feature.is_proven() ? 0 : 1;
     }
+    if (policies_.contains(id)) collection.policy = policies_.at(id);
     collection.state = std::to_string(version_) + "-" + std::to_string(collection.features);
     return collection;
   }
 
   std::mutex mutex_;
   std::map<std::string, std::map<std::string, StoredFeature>> features_;
+  std::map<std::string, store::Policy> policies_;
   std::uint64_t version_ = 0;
 };
 

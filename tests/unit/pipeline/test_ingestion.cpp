@@ -162,7 +162,7 @@ TEST_CASE("nothing of a long document is stored when its last feature is not goo
   CHECK(refused->stored == 0);
   for (const std::string& last : {samples::feature("f7"), std::string("{\"type\":")}) {
     pipeline::IngestOptions skip = into("town");
-    skip.invalid_features = pipeline::InvalidFeatures::skip;
+    skip.policy = store::Policy::skip;
     const auto failed = ingest_text(good + last, store, skip);
     REQUIRE_FALSE(failed);
     CHECK(failed.error().code == ErrorCode::malformed);
@@ -175,7 +175,7 @@ TEST_CASE("the valid features of a long document are stored when the others are 
   std::vector<std::string> features = boxes(60);
   features.insert(features.begin() + 30, samples::feature("open", samples::kOpenFacets));
   pipeline::IngestOptions skip = into("town");
-  skip.invalid_features = pipeline::InvalidFeatures::skip;
+  skip.policy = store::Policy::skip;
   skip.threads = 2;
   const auto outcome = ingest_text(samples::sequence(features), store, skip);
   REQUIRE(outcome);
@@ -192,7 +192,7 @@ TEST_CASE("the answer to a long document keeps the outcomes of features that are
   std::vector<std::string> features = boxes(20);
   features[12] = samples::feature("open", samples::kOpenFacets);
   pipeline::IngestOptions skip = into("town");
-  skip.invalid_features = pipeline::InvalidFeatures::skip;
+  skip.policy = store::Policy::skip;
   const auto outcome = ingest_text(samples::sequence(features), store, skip, 5);
   REQUIRE(outcome);
   REQUIRE(outcome->features.size() == 1);

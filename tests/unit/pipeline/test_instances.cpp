@@ -209,7 +209,7 @@ TEST_CASE("ingest skips the features whose instances are not valid") {
   samples::MemoryStore store;
   pipeline::IngestOptions options;
   options.collection = "c";
-  options.invalid_features = pipeline::InvalidFeatures::skip;
+  options.policy = store::Policy::skip;
   const auto outcome = pipeline::ingest(read(city({{0, kSame}, {0, kMirror}, {1, kTenth}}), true),
                                         store, nullptr, options);
   REQUIRE(outcome);

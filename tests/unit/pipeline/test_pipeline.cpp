@@ -78,7 +78,7 @@ TEST_CASE("ingest refuses the whole document when one feature is invalid") {
 TEST_CASE("ingest can skip invalid features and reports which were stored") {
   samples::MemoryStore store;
   pipeline::IngestOptions options = into("town");
-  options.invalid_features = pipeline::InvalidFeatures::skip;
+  options.policy = store::Policy::skip;
   const std::string text =
       samples::sequence({samples::feature("open", samples::kOpenFacets), samples::feature("a")});
   const auto outcome = pipeline::ingest(read(text), store, nullptr, options);

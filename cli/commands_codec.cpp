@@ -279,6 +279,12 @@ Status explain_features(const std::vector<pipeline::EncodedFeature>& features, s
   return Done{};
 }
 
+std::string counted(std::uint64_t count, std::string_view noun) {
+  std::string text = std::to_string(count);
+  text += ' ';
+  return text += noun;
+}
+
 /// Says what of a document is not proven, and what became of it.
 void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& encoded) {
   const std::string name = printable(command.input);
@@ -289,11 +295,12 @@ void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& 
                  name.c_str(), left_out);
     return;
   }
-  std::fprintf(
-      stderr,
-      "watertight: %s: %llu solids are kept as they came, unproven; see the findings above, "
-      "or `watertight validate`\n",
-      name.c_str(), static_cast<unsigned long long>(encoded.outcome.unproven));
+  const std::uint64_t solids = encoded.outcome.unproven;
+  std::fprintf(stderr,
+               "watertight: %s: %s kept as %s came, unproven; `watertight validate` says why, "
+               "`watertight info` lists them\n",
+               name.c_str(), solids == 1 ? "1 solid is" : counted(solids, "solids are").c_str(),
+               solids == 1 ? "it" : "they");
 }
 
 }  // namespace

@@ -282,12 +282,26 @@ TEST_CASE_METHOD(Fixture,
   CHECK(refused.output.find("2 documents") != std::string::npos);
 }
 
-TEST_CASE_METHOD(Fixture, "encode writes nothing when a solid is invalid") {
+TEST_CASE_METHOD(Fixture, "encode --invalid refuse writes nothing when a solid is invalid") {
   write("in.city.jsonl", kInvalid);
   write("x.wt", "old");
-  CHECK(run("encode in.city.jsonl -o x.wt").status == 1);
+  CHECK(run("encode in.city.jsonl -o x.wt --invalid refuse").status == 1);
   CHECK(read("x.wt") == "old");
   CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "encode keeps what is not proven as it came, and says so") {
+  write("in.city.jsonl", kInvalid);
+  const Ran kept = run("encode in.city.jsonl -o x.wt");
+  CHECK(kept.status == 1);
+  CHECK(kept.output.find("1 solid is kept as it came, unproven") != std::string::npos);
+  const Ran info = run("info x.wt --json");
+  CHECK(info.status == 0);
+  CHECK(info.output.find(R"("unproven":{"features":1,"count":1,"solids":[{)") != std::string::npos);
+  CHECK(info.output.find(R"("code":302)") != std::string::npos);
+  REQUIRE(run("decode x.wt -o back.city.jsonl").status == 0);
+  CHECK(read("back.city.jsonl") == kInvalid);
+  CHECK(run("encode in.city.jsonl -o y.wt --bare").status == 2);
 }
 
 TEST_CASE_METHOD(Fixture, "a bare blob is read as one solid") {
@@ -415,8 +429,11 @@ TEST_CASE_METHOD(Fixture, "a document without solids is not written where only s
 
 TEST_CASE_METHOD(Fixture, "findings do not mix with a file on standard output") {
   write("bad.city.jsonl", kInvalid);
-  run("encode bad.city.jsonl -o - 2>errors.txt | cat >out.wt");
+  run("encode bad.city.jsonl --invalid refuse -o - 2>errors.txt | cat >out.wt");
   CHECK(read("out.wt").empty());
+  CHECK(read("errors.txt").find("error 302") != std::string::npos);
+  run("encode bad.city.jsonl -o - 2>errors.txt | cat >out.wt");
+  CHECK(run("decode out.wt -o back.city.jsonl").status == 0);
   CHECK(read("errors.txt").find("error 302") != std::string::npos);
 }
 

@@ -95,7 +95,7 @@ Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
   REQUIRE(packed);
   ByteWriter writer;
   writer.append(pipeline::kContainerMagic);
-  writer.u8(pipeline::kContainerVersion);
+  writer.u8(1);
   writer.varint(packed->bytes.size());
   writer.append(packed->bytes);
   writer.varint(page_file.size());

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "pipeline/container.h"
+#include "pipeline/export.h"
 #include "pipeline/unproven_solid.h"
 #include "tests/unit/pipeline/samples.h"
 
@@ -63,6 +64,100 @@ TEST_CASE(
         "2 1 0 1 0 1 0 0 0 0 0 0 0 0 0 1 4294967295",
         "2 1 0 1 0 1 0 0 0 0 0 0 0 0 1 0 nan nan inf"}) {
     CHECK_FALSE(pipeline::read_unproven(hostile));
+  }
+}
+
+pipeline::IngestOptions keeping() {
+  pipeline::IngestOptions options;
+  options.collection = "town";
+  options.policy = store::Policy::keep;
+  return options;
+}
+
+Document document_of(const std::string& text) {
+  formats::ReadOptions read;
+  read.keep_text = true;
+  auto document = formats::read_document(as_bytes(text), Format::city_json_seq, read);
+  REQUIRE(document);
+  return *std::move(document);
+}
+
+const std::string kMixed =
+    samples::sequence({samples::feature("good"), samples::feature("open", samples::kOpenFacets)});
+
+TEST_CASE("a file keeps solids that are not proven with their findings, and its bytes come back") {
+  auto encoded = pipeline::encode_document(document_of(kMixed), nullptr, keeping());
+  REQUIRE(encoded);
+  CHECK(encoded->outcome.unproven == 1);
+  CHECK(encoded->outcome.unproven_features == 1);
+  const auto file = pipeline::write_container(encoded->document);
+  REQUIRE(file);
+  const auto info = pipeline::describe_container(*file);
+  REQUIRE(info);
+  CHECK(info->solids == 2);
+  CHECK(info->unproven_features == 1);
+  REQUIRE(info->unproven.size() == 1);
+  CHECK(info->unproven.front().object_id == "open");
+  CHECK(info->unproven.front().report.find("\"code\":302") != std::string::npos);
+  const auto documents = pipeline::decode_container(*file);
+  REQUIRE(documents);
+  const auto text = formats::write_document(documents->front(), Format::city_json_seq);
+  REQUIRE(text);
+  CHECK(as_text(*text) == kMixed);
+}
+
+TEST_CASE("a file in which all is proven is of version 1, which older programs read") {
+  auto encoded = pipeline::encode_document(
+      document_of(samples::sequence({samples::feature("good")})), nullptr, keeping());
+  REQUIRE(encoded);
+  const auto file = pipeline::write_container(encoded->document);
+  REQUIRE(file);
+  CHECK((*file)[8] == 1);
+}
+
+TEST_CASE("a collection takes the policy of the write that makes it, and later writes follow it") {
+  samples::MemoryStore store;
+  REQUIRE(pipeline::ingest(document_of(kMixed), store, nullptr, keeping()));
+  auto collection = store.collection("town");
+  REQUIRE(collection);
+  CHECK(collection->policy == store::Policy::keep);
+  CHECK(collection->features == 2);
+  CHECK(collection->unproven == 1);
+  pipeline::IngestOptions silent = keeping();
+  silent.policy = std::nullopt;
+  const auto more = pipeline::ingest(
+      document_of(samples::sequence({samples::feature("other", samples::kOpenFacets)})), store,
+      nullptr, silent);
+  REQUIRE(more);
+  CHECK(more->stored == 1);
+  CHECK(store.collection("town")->unproven_features == 2);
+  pipeline::IngestOptions refusing = keeping();
+  refusing.policy = store::Policy::refuse;
+  const auto refused = pipeline::ingest(document_of(kMixed), store, nullptr, refusing);
+  REQUIRE(refused);
+  CHECK(refused->stored == 0);
+  CHECK(store.collection("town")->policy == store::Policy::keep);
+  // The default for a collection that nobody gave a policy is to refuse.
+  silent.collection = "village";
+  CHECK(pipeline::ingest(document_of(kMixed), store, nullptr, silent)->stored == 0);
+}
+
+TEST_CASE("an export of what is proven leaves the other features out") {
+  samples::MemoryStore store;
+  REQUIRE(pipeline::ingest(document_of(kMixed), store, nullptr, keeping()));
+  for (const auto scope : {pipeline::ExportScope::all, pipeline::ExportScope::proven}) {
+    auto exporting =
+        pipeline::CollectionExport::start(store, "town", pipeline::ExportFormat::sequence, {},
+                                          pipeline::SolidLayout::pages, scope);
+    REQUIRE(exporting);
+    std::string text;
+    while (!exporting->is_at_end()) {
+      const auto bytes = exporting->next();
+      REQUIRE(bytes);
+      text += as_text(*bytes);
+    }
+    CHECK(text.find("\"good\"") != std::string::npos);
+    CHECK((text.find("\"open\"") != std::string::npos) == (scope == pipeline::ExportScope::all));
   }
 }
 

@@ -131,9 +131,11 @@ TEST_CASE("a database of before the counts gets them when it is opened") {
         "DROP TABLE watertight.collection_change", "DROP INDEX watertight.feature_document",
         "ALTER TABLE watertight.collection DROP features, DROP solids, DROP blob_bytes,"
         " DROP min_x, DROP min_y, DROP min_z, DROP max_x, DROP max_y, DROP max_z, DROP name,"
-        " DROP generation, DROP changes,"
+        " DROP generation, DROP changes, DROP unproven, DROP unproven_features, DROP policy,"
         " ADD CONSTRAINT collection_id_check CHECK (id <> '')",
-        "DROP SEQUENCE watertight.collection_key"}) {
+        "DROP SEQUENCE watertight.collection_key",
+        "ALTER TABLE watertight.feature DROP unproven, DROP is_proven, DROP findings",
+        "ALTER TABLE watertight.solid ALTER COLUMN blob SET NOT NULL"}) {
     database.ask(statement);
   }
   const auto store = database.store();

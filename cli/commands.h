@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/rules.h"
 #include "cli/summary.h"
 
 namespace watertight::cli {
@@ -19,13 +20,9 @@ struct ValidateCommand {
   std::string geojson;                       // file for a layer of the findings, "" for none
   std::string html;                          // file for an HTML page, "" for none
   std::vector<std::string> interior_shells;  // files with cavities of the document's only solid
-  double planarity_metres = 0.01;
-  double planarity_degrees = 20;
-  double overlap_metres = 0;
+  RuleChoice rules;
   double seconds_per_solid = 0;  // the time that engines may take; 0: by the size of the solid
-  std::string proof = "tetrahedralization";
-  std::string engine = "auto";  // "auto", "cgal" or "tetgen"
-  bool is_strict = false;
+  std::string engine = "auto";   // "auto", "cgal" or "tetgen"
   bool also_tolerant = false;
   bool leaves_times_out = false;
   bool is_quiet = false;  // no line per finding
@@ -41,6 +38,8 @@ struct EncodeCommand {
   bool keeps_steiner = false;
   std::string contract = "exact";
   std::string invalid = "keep";
+  std::string rejected;  // file for what --invalid skip leaves out, "" for none
+  RuleChoice rules;
   bool is_bare = false;   // one blob instead of a Watertight file
   bool explains = false;  // print the bytes that the solids take in each mode
   std::size_t jobs = 1;
@@ -84,7 +83,8 @@ struct IngestCommand {
   StoreChoice store;
   std::vector<std::string> files;
   std::string collection;
-  std::string invalid = "refuse";
+  std::string invalid;  // "" for the policy of the collection
+  RuleChoice rules;
   std::string contract = "exact";
   bool is_json = false;
   bool is_quiet = false;
@@ -96,16 +96,18 @@ struct ExportCommand {
   StoreChoice store;
   std::string collection;
   std::string output;
+  bool is_proven_only = false;
 };
 Exit run(const ExportCommand& command);
 
 struct CollectionsCommand {
-  enum class Action : std::uint8_t { list, remove, rename, recount };
+  enum class Action : std::uint8_t { list, info, policy, remove, rename, recount };
   StoreChoice store;
   Action action = Action::list;
   std::string id;
   std::string new_id;    // of rename
-  bool is_json = false;  // of list and recount
+  std::string policy;    // of policy
+  bool is_json = false;  // of list, info and recount
 };
 Exit run(const CollectionsCommand& command);
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 
+#include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
@@ -218,6 +219,25 @@ Json unproven_json(const pipeline::ContainerInfo& info) {
           {"solids", std::move(list)}};
 }
 
+/// Prints a line for each solid that is not proven, with the codes of its errors.
+void print_unproven(const Json& unproven) {
+  std::printf("%-20s %s\n", "unproven solids", unproven["count"].dump().c_str());
+  for (const Json& solid : unproven["solids"]) {
+    std::string line = "  " + printable(solid["object"].get<std::string>());
+    if (solid.contains("lod")) line += " LoD " + printable(solid["lod"].get<std::string>());
+    line += " geometry " + solid["geometry"].dump() + " solid " + solid["solid"].dump() + ":";
+    const Json* codes = solid["report"].is_object() && solid["report"].contains("all_errors")
+                            ? &solid["report"]["all_errors"]
+                            : nullptr;
+    if (codes != nullptr && !codes->empty()) {
+      for (const Json& code : *codes) line += ' ' + code.dump();
+    } else {
+      line += " undecided";
+    }
+    std::puts(line.c_str());
+  }
+}
+
 Result<Json> info_of_container(ByteView bytes) {
   const auto info = pipeline::describe_container(bytes);
   if (!info) return info.error();
@@ -279,12 +299,6 @@ Status explain_features(const std::vector<pipeline::EncodedFeature>& features, s
   return Done{};
 }
 
-std::string counted(std::uint64_t count, std::string_view noun) {
-  std::string text = std::to_string(count);
-  text += ' ';
-  return text += noun;
-}
-
 /// Says what of a document is not proven, and what became of it.
 void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& encoded) {
   const std::string name = printable(command.input);
@@ -299,7 +313,7 @@ void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& 
   std::fprintf(stderr,
                "watertight: %s: %s kept as %s came, unproven; `watertight validate` says why, "
                "`watertight info` lists them\n",
-               name.c_str(), solids == 1 ? "1 solid is" : counted(solids, "solids are").c_str(),
+               name.c_str(), quantity(solids, "solid is", "solids are").c_str(),
                solids == 1 ? "it" : "they");
 }
 
@@ -317,6 +331,7 @@ Exit run(const EncodeCommand& command) {
   options.threads = command.jobs;
   options.contract = *contract;
   options.policy = *pipeline::policy_named(command.invalid);
+  apply(command.rules, options.certify, options.groups);
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
   options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
                                           : pipeline::SteinerVertices::leave_out;
@@ -372,13 +387,16 @@ Exit run(const ConvertCommand& command) {
 Exit run(const InfoCommand& command) {
   const auto bytes = read_file(command.input, {});
   if (!bytes) return fail(command.input, bytes.error());
-  const auto json = info_of(*bytes);
+  auto json = info_of(*bytes);
   if (!json) return fail(command.input, json.error());
   if (command.is_json) {
     std::printf("%s\n", json->dump().c_str());
-  } else {
-    print_info(*json, "");
+    return Exit::valid;
   }
+  Json unproven = std::move((*json)["unproven"]);
+  json->erase("unproven");
+  print_info(*json, "");
+  if (!unproven.is_null()) print_unproven(unproven);
   return Exit::valid;
 }
 

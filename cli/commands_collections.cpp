@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The command collections: lists, deletes, renames and counts the collections of a store.
+// The command collections: lists, shows, deletes, renames and counts the collections of a store.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/opened_store.h"
 #include "cli/printable.h"
+#include "pipeline/pipeline.h"
 
 namespace watertight::cli {
 namespace {
@@ -23,6 +24,10 @@ std::string json_of(const store::StoredCollection& collection) {
                               {"features", collection.features},
                               {"solids", collection.solids},
                               {"blobBytes", collection.blob_bytes},
+                              {"unproven",
+                               {{"features", collection.unproven_features},
+                                {"solids", collection.unproven}}},
+                              {"invalid", pipeline::to_string(collection.policy)},
                               {"srid", collection.srid}};
   if (collection.box) {
     json["boxMin"] = collection.box->min;
@@ -31,10 +36,17 @@ std::string json_of(const store::StoredCollection& collection) {
   return json.dump();
 }
 
+std::string unproven_text(const store::StoredCollection& collection) {
+  if (collection.unproven_features == 0) return {};
+  return ", " + quantity(collection.unproven_features, "feature") + " and " +
+         quantity(collection.unproven, "solid") + " not proven";
+}
+
 std::string line_of(const store::StoredCollection& collection) {
   return printable(collection.id) + ": " + quantity(collection.features, "feature") + ", " +
          quantity(collection.solids, "solid") + ", " + quantity(collection.blob_bytes, "byte") +
-         " of blobs, " + crs_of(collection);
+         " of blobs, " + crs_of(collection) + unproven_text(collection) + ", invalid features: " +
+         std::string(pipeline::to_string(collection.policy));
 }
 
 void print(const CollectionsCommand& command, const store::StoredCollection& collection) {
@@ -52,6 +64,13 @@ Status list(const CollectionsCommand& command, SolidStore& store) {
   return Done{};
 }
 
+Status show(const CollectionsCommand& command, SolidStore& store) {
+  const auto found = store.collection(command.id);
+  if (!found) return found.error();
+  print(command, *found);
+  return Done{};
+}
+
 Status recount(const CollectionsCommand& command, SolidStore& store) {
   const auto counted = store.recount(command.id);
   if (!counted) return counted.error();
@@ -63,6 +82,10 @@ Status act(const CollectionsCommand& command, SolidStore& store) {
   switch (command.action) {
     case CollectionsCommand::Action::list:
       return list(command, store);
+    case CollectionsCommand::Action::info:
+      return show(command, store);
+    case CollectionsCommand::Action::policy:
+      return store.set_policy(command.id, *pipeline::policy_named(command.policy));
     case CollectionsCommand::Action::remove:
       return store.remove_collection(command.id, [] { return false; });
     case CollectionsCommand::Action::rename:

@@ -9,6 +9,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
@@ -25,7 +26,8 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
   options.collection = command.collection;
   options.threads = command.jobs;
   options.contract = contract;
-  options.policy = *pipeline::policy_named(command.invalid);
+  if (!command.invalid.empty()) options.policy = *pipeline::policy_named(command.invalid);
+  apply(command.rules, options.certify, options.groups);
   return options;
 }
 
@@ -126,6 +128,18 @@ void IngestRun::tell_replaced(std::size_t number, const FileRun& run) {
   }
 }
 
+void tell_invalid(const std::string& file, const pipeline::IngestCounts& counts) {
+  std::string text = "not all features are valid; " + std::to_string(counts.stored) + " of " +
+                     std::to_string(counts.total) + " were stored";
+  if (counts.unproven_features > 0 && counts.stored > 0) {
+    text += ", among them " + quantity(counts.unproven_features, "feature") + " with " +
+            quantity(counts.unproven, "solid") + " kept as they came, unproven";
+  } else if (counts.stored == 0) {
+    text += "; --invalid keep stores all, with what is not proven as it came";
+  }
+  std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), text.c_str());
+}
+
 Exit IngestRun::run() {
   const auto start = std::chrono::steady_clock::now();
   // As root, opening a private cluster gives up the right to open other users' files.
@@ -148,9 +162,7 @@ Exit IngestRun::run() {
       continue;
     }
     if (counts->verdict != Verdict::valid) {
-      std::fprintf(stderr, "watertight: %s: not all features are valid; %s of %s were stored\n",
-                   printable(file).c_str(), std::to_string(counts->stored).c_str(),
-                   std::to_string(counts->total).c_str());
+      tell_invalid(file, *counts);
     }
     if (counts->stored > 0) tell_replaced(i, run);
     run.summary.add_stored(counts->stored);

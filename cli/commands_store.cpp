@@ -98,7 +98,9 @@ Exit run(const ExportCommand& command) {
   if (!opened) return fail("store", opened.error());
   auto exporting = pipeline::CollectionExport::start(
       *opened->store, command.collection,
-      is_container ? pipeline::ExportFormat::container : pipeline::ExportFormat::sequence);
+      is_container ? pipeline::ExportFormat::container : pipeline::ExportFormat::sequence, {},
+      pipeline::SolidLayout::pages,
+      command.is_proven_only ? pipeline::ExportScope::proven : pipeline::ExportScope::all);
   if (!exporting) return fail(command.collection, exporting.error());
   const std::string output = command.output == "-" ? "standard output" : command.output;
   auto writer = FileWriter::open(command.output);

@@ -27,13 +27,9 @@ delaunay::Engine engine_of(const std::string& name) {
 pipeline::StreamOptions options_of(const ValidateCommand& command) {
   pipeline::StreamOptions options;
   options.threads = command.jobs;
-  options.groups.overlap_metres = command.overlap_metres;
-  options.certify.tolerances.planarity_metres = command.planarity_metres;
-  options.certify.tolerances.planarity_degrees = command.planarity_degrees;
-  options.certify.proof = command.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
+  apply(command.rules, options.certify, options.groups);
   options.certify.also_tolerant = command.also_tolerant;
   options.certify.ladder.engine = engine_of(command.engine);
-  options.certify.ladder.strict = command.is_strict;
   options.certify.ladder.seconds_in_all = command.seconds_per_solid;
   return options;
 }
@@ -52,8 +48,8 @@ report::ReportHead head_of(const ValidateCommand& command, const pipeline::Strea
   head.program_version = command.program_version;
   if (!command.leaves_times_out) head.time = time_now();
   head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
-  head.is_strict = command.is_strict;
-  head.overlap_metres = command.overlap_metres;
+  head.is_strict = command.rules.is_strict;
+  head.overlap_metres = command.rules.overlap_metres;
   head.also_tolerant = command.also_tolerant;
   return head;
 }

@@ -57,6 +57,25 @@ void require_store(const StoreChoice& store) {
   throw CLI::ValidationError("--data-dir DIR or --database-url URL is required");
 }
 
+/// Adds the rules by which solids are judged.
+void add_rules(CLI::App& sub, RuleChoice& rules) {
+  sub.add_option("--planarity", rules.planarity_metres, "largest distance from a plane, metres")
+      ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
+      ->capture_default_str();
+  sub.add_option("--planarity-angle", rules.planarity_degrees,
+                  "largest angle within a facet, degrees")
+      ->check(in_range(1e-6, 90, "from 1e-6 to 90"))
+      ->capture_default_str();
+  sub.add_option("--proof", rules.proof, "proof of validity")
+      ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
+      ->capture_default_str();
+  sub.add_option("--overlap", rules.overlap_metres,
+                  "depth to which building parts and composite members may overlap, metres")
+      ->check(in_range(0, 1000, "from 0 to 1000"))
+      ->capture_default_str();
+  sub.add_flag("--strict", rules.is_strict, "only the canonical triangles of facets count");
+}
+
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
@@ -67,10 +86,6 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   sub->add_option("--interior-shell", command.interior_shells,
                   "file with a cavity of the file's one solid; can be repeated")
       ->allow_extra_args(false);
-  sub->add_option("--overlap", command.overlap_metres,
-                  "depth to which building parts and composite members may overlap, metres")
-      ->check(in_range(0, 1000, "from 0 to 1000"))
-      ->capture_default_str();
   sub->add_option("--seconds", command.seconds_per_solid,
                   "CPU time of engines for a solid; 0: by its size")
       ->check(in_range(0, 86400, "from 0 to 86400"))
@@ -79,20 +94,10 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
                 "also report the verdict under a snap tolerance of 1 mm");
   sub->add_flag("--no-times", command.leaves_times_out,
                 "reports without times: same input, same bytes");
-  sub->add_option("--planarity", command.planarity_metres, "largest distance from a plane, metres")
-      ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
-      ->capture_default_str();
-  sub->add_option("--planarity-angle", command.planarity_degrees,
-                  "largest angle within a facet, degrees")
-      ->check(in_range(1e-6, 90, "from 1e-6 to 90"))
-      ->capture_default_str();
-  sub->add_option("--proof", command.proof, "proof of validity")
-      ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
-      ->capture_default_str();
+  add_rules(*sub, command.rules);
   sub->add_option("--engine", command.engine, "engine that is asked first for tetrahedralizations")
       ->check(CLI::IsMember({"auto", "cgal", "tetgen"}))
       ->capture_default_str();
-  sub->add_flag("--strict", command.is_strict, "only the canonical triangles of facets count");
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
   add_jobs(*sub, command.jobs);
   command.program_version = WATERTIGHT_VERSION;
@@ -122,9 +127,13 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
       ->excludes(mode);
   sub->add_option("--invalid", command.invalid,
                   "what is not proven to be valid: keep, as it came and marked as unproven; skip, "
-                  "leave its feature out; refuse, write nothing")
+                  "leave it out; refuse, write nothing")
       ->check(CLI::IsMember({"keep", "skip", "refuse"}))
       ->capture_default_str();
+  sub->add_option("--rejected", command.rejected,
+                  "with --invalid skip: write what is left out to this CityJSON file, and the "
+                  "findings to FILE.report.json");
+  add_rules(*sub, command.rules);
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
   add_contract(*sub, command.contract);
   sub->add_flag("--explain", command.explains,
@@ -187,10 +196,11 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
       ->check(is_collection_id);
   add_store(*sub, command.store);
   sub->add_option("--invalid", command.invalid,
-                  "documents with invalid features: refuse them, skip those features, or keep what is "
-                  "not proven as it came")
-      ->check(CLI::IsMember({"refuse", "skip", "keep"}))
-      ->capture_default_str();
+                  "documents with invalid features: refuse them, skip those features, or keep what "
+                  "is not proven as it came; default: the policy of the collection, refuse for a "
+                  "new one")
+      ->check(CLI::IsMember({"refuse", "skip", "keep"}));
+  add_rules(*sub, command.rules);
   add_contract(*sub, command.contract);
   sub->add_flag("--json", command.is_json, "the table as one line of JSON");
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
@@ -207,6 +217,8 @@ void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
   sub->add_option("-o,--output", command.output,
                   "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl)")
       ->required();
+  sub->add_flag("--proven", command.is_proven_only,
+                "only features whose solids are all proven to be valid");
   add_store(*sub, command.store);
   sub->callback([&] {
     require_store(command.store);
@@ -235,11 +247,19 @@ CLI::App* add_action(CLI::App& collections, const std::string& name, const std::
 void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen) {
   using Action = CollectionsCommand::Action;
   CLI::App* sub =
-      app.add_subcommand("collections", "List, delete, rename or count collections of a store");
+      app.add_subcommand("collections", "List, show, delete, rename or count collections of a store");
   sub->require_subcommand(1);
   add_store(*sub, command.store);
   CLI::App* list =
       add_action(*sub, "list", "Print a line for each collection", command, Action::list);
+  CLI::App* info =
+      add_action(*sub, "info", "Print the line of one collection", command, Action::info);
+  add_action(*sub, "policy", "Set what becomes of features that are not valid", command,
+             Action::policy)
+      ->add_option("POLICY", command.policy,
+                   "refuse their documents, skip them, or keep them as they came")
+      ->required()
+      ->check(CLI::IsMember({"refuse", "skip", "keep"}));
   add_action(*sub, "delete", "Delete a collection with all its features", command, Action::remove);
   add_action(*sub, "rename", "Give a collection another id", command, Action::rename)
       ->add_option("NEW", command.new_id, "the new id")
@@ -247,7 +267,7 @@ void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen)
       ->check(is_collection_id);
   CLI::App* recount = add_action(*sub, "recount", "Count the features again, print the line",
                                  command, Action::recount);
-  for (CLI::App* action : {list, recount}) {
+  for (CLI::App* action : {list, info, recount}) {
     action->add_flag("--json", command.is_json, "a line of JSON for each collection");
   }
   sub->callback([&] {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The rules by which solids are judged, as options of the commands that validate.
+#pragma once
+
+#include <string>
+
+#include "validate/certify.h"
+#include "validate/groups.h"
+
+namespace watertight::cli {
+
+struct RuleChoice {
+  double planarity_metres = 0.01;
+  double planarity_degrees = 20;
+  double overlap_metres = 0;
+  std::string proof = "tetrahedralization";  // or "boundary"
+  bool is_strict = false;
+};
+
+/// Sets the rules of solids and of groups of them.
+inline void apply(const RuleChoice& rules, CertifyOptions& certify,
+                  validate::GroupOptions& groups) {
+  certify.tolerances.planarity_metres = rules.planarity_metres;
+  certify.tolerances.planarity_degrees = rules.planarity_degrees;
+  certify.proof = rules.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
+  certify.ladder.strict = rules.is_strict;
+  groups.overlap_metres = rules.overlap_metres;
+}
+
+}  // namespace watertight::cli

@@ -18,6 +18,7 @@
 #include "cli/progress.h"
 #include "codec/explain.h"
 #include "pipeline/container.h"
+#include "pipeline/outcome_json.h"
 #include "validate/finding_kinds.h"
 
 namespace watertight::cli {
@@ -302,19 +303,41 @@ Status explain_features(const std::vector<pipeline::EncodedFeature>& features, s
 /// Says what of a document is not proven, and what became of it.
 void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& encoded) {
   const std::string name = printable(command.input);
-  const std::size_t left_out = encoded.outcome.features.size() - encoded.document.features.size();
-  if (left_out > 0) {
+  if (command.invalid == "keep") {
+    const std::uint64_t solids = encoded.outcome.unproven;
     std::fprintf(stderr,
-                 "watertight: %s: %zu features were left out, because not all of them is valid\n",
-                 name.c_str(), left_out);
+                 "watertight: %s: %s kept as %s came, unproven; `watertight validate` says why, "
+                 "`watertight info` lists them\n",
+                 name.c_str(), quantity(solids, "solid is", "solids are").c_str(),
+                 solids == 1 ? "it" : "they");
     return;
   }
-  const std::uint64_t solids = encoded.outcome.unproven;
-  std::fprintf(stderr,
-               "watertight: %s: %s kept as %s came, unproven; `watertight validate` says why, "
-               "`watertight info` lists them\n",
-               name.c_str(), quantity(solids, "solid is", "solids are").c_str(),
-               solids == 1 ? "it" : "they");
+  std::uint64_t geometries = 0;
+  std::uint64_t features = 0;
+  for (const pipeline::FeatureOutcome& feature : encoded.outcome.features) {
+    if (feature.verdict == Verdict::valid) continue;
+    if (!feature.is_stored) ++features;
+    if (feature.is_stored) geometries += feature.left_out.size();
+  }
+  std::fprintf(stderr, "watertight: %s: left out: %s of features that are kept, and %s\n",
+               name.c_str(), quantity(geometries, "geometry", "geometries").c_str(),
+               quantity(features, "whole feature").c_str());
+}
+
+/// Writes what was left out as a document, and the findings beside it. `header` is that of the
+/// document. Errors: those of write_file().
+Status write_rejected(const EncodeCommand& command, const std::string& header,
+                      const pipeline::IngestOutcome& outcome) {
+  std::string text;
+  for (const pipeline::FeatureOutcome& feature : outcome.features) {
+    if (feature.rejected.empty()) continue;
+    if (text.empty() && !feature.id.empty()) text = header + '\n';
+    text += feature.rejected + '\n';
+  }
+  const Status written = write_file(command.rejected, as_bytes(text));
+  if (!written) return written;
+  const std::string report = pipeline::outcome_json(outcome) + '\n';
+  return write_file(command.rejected + ".report.json", as_bytes(report));
 }
 
 }  // namespace
@@ -354,6 +377,11 @@ Exit run(const EncodeCommand& command) {
       return exit;
     }
     tell_unproven(command, *encoded);
+    if (!command.rejected.empty()) {
+      const Status written =
+          write_rejected(command, encoded->document.header.str(), encoded->outcome);
+      if (!written) return fail_to_write(command.rejected, written.error());
+    }
   }
   tell_rounded(command.input, encoded->outcome);
   const auto packed = pack(command, encoded->document);

@@ -72,7 +72,7 @@ Status IngestRun::take(std::size_t number, pipeline::FeatureOutcome&& outcome, F
   }
   if (!command_.is_quiet && !command_.is_json) print_findings(command_.files[number], outcome);
   run.summary.add(outcome);
-  if (has_several_files() && outcome.verdict == Verdict::valid) {
+  if (has_several_files() && outcome.is_stored) {
     run.valid.push_back(std::move(outcome.id));
   }
   return Done{};

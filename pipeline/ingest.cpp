@@ -13,6 +13,8 @@
 namespace watertight::pipeline {
 namespace {
 
+using formats::GeometryPlace;
+
 constexpr std::size_t kVertexBytes = 24;  // three doubles
 constexpr std::size_t kCornerBytes = 4;   // one index
 
@@ -71,6 +73,85 @@ Result<std::vector<ProcessedFeature>> process_all(std::vector<Feature> features,
     all.push_back(**std::move(feature));
   }
   return all;
+}
+
+bool is_city_model(Format format) {
+  return format == Format::city_json || format == Format::city_json_seq;
+}
+
+GeometryPlace place_of(const SolidSource& source) { return {source.object_id, source.geometry}; }
+
+/// The geometries that are not proven, and those that a defect of a group names.
+std::set<GeometryPlace> unproven_geometries(const InspectedFeature& feature) {
+  std::set<GeometryPlace> places;
+  for (const InspectedSolid& solid : feature.solids) {
+    if (solid.inspection.report.verdict != Verdict::valid) places.insert(place_of(solid.source));
+  }
+  for (const InspectedGroup& group : feature.groups) {
+    if (group.report.verdict == Verdict::valid) continue;
+    const auto choose = [&](const Place& place) {
+      if (place.solid >= group.members.size()) return;
+      places.insert(place_of(feature.solids[group.members[place.solid]].source));
+    };
+    if (group.report.findings.empty()) {  // undecided: any member may be at fault
+      for (const std::size_t member : group.members) {
+        places.insert(place_of(feature.solids[member].source));
+      }
+    }
+    for (const Finding& finding : group.report.findings) {
+      choose(finding.place);
+      if (finding.other) choose(*finding.other);
+    }
+  }
+  return places;
+}
+
+/// Reads the text of a feature, or of a whole CityJSON, of the document that `shared` is a part of.
+Result<Feature> read_again(const std::string& text, const Document& shared, bool is_whole) {
+  const Limits no_limits{.bytes = ~0ULL, .nesting = 256};
+  if (!is_whole) {
+    const auto header = formats::read_city_json_header(shared.header.str(), no_limits);
+    if (!header) return header.error();
+    return formats::read_city_json_feature(*header, text, {no_limits, false, false});
+  }
+  auto document = formats::read_city_json(text, {no_limits, false, false});
+  if (!document) return std::move(document).error();
+  return std::move(document->features.front());
+}
+
+/// Encodes the feature without the geometries that are not proven, and notes these in the outcome.
+/// nullopt when no geometry is left, or when the rest is not valid either: then all is left out.
+Result<std::optional<EncodedFeature>> encode_rest(const InspectedFeature& feature,
+                                                  const Document& shared,
+                                                  delaunay::EngineWorkers* workers,
+                                                  const IngestOptions& options,
+                                                  TemplateInspector& templates,
+                                                  FeatureOutcome& outcome) {
+  if (!is_city_model(shared.format)) return std::optional<EncodedFeature>();
+  const bool is_whole = feature.feature.id.empty();
+  Feature own = feature.feature;  // without the solids of instances
+  own.solids.erase(own.solids.begin() + static_cast<std::ptrdiff_t>(feature.own),
+                   own.solids.end());
+  own.layout = {};
+  auto text = formats::write_feature(shared, own);
+  if (!text) return std::move(text).error();
+  const std::set<GeometryPlace> places = unproven_geometries(feature);
+  auto divided = formats::divide_city_model(*text, places, Limits{.bytes = ~0ULL, .nesting = 256});
+  if (!divided) return std::move(divided).error();
+  outcome.left_out.assign(places.begin(), places.end());
+  outcome.rejected = std::move(divided->chosen);
+  if (divided->geometries_left == 0) return std::optional<EncodedFeature>();
+  auto rest = read_again(divided->rest, shared, is_whole);
+  if (!rest) return std::move(rest).error();
+  const InspectedFeature inspected =
+      inspect(*std::move(rest), workers, options.certify, options.groups, &templates);
+  if (inspected.verdict() != Verdict::valid) {
+    outcome.rejected = *std::move(text);
+    return std::optional<EncodedFeature>();
+  }
+  auto encoded = encode_feature(inspected, shared, options);
+  if (!encoded) return std::move(encoded).error();
+  return std::optional(*std::move(encoded));
 }
 
 }  // namespace
@@ -166,11 +247,17 @@ Result<ProcessedFeature> process(Feature feature, const Document& shared,
       inspect(std::move(feature), workers, options.certify, options.groups, &templates);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
-  const bool is_kept = options.policy == Policy::keep;
-  if (is_kept || processed.outcome.verdict == Verdict::valid) {
+  const bool is_valid = processed.outcome.verdict == Verdict::valid;
+  if (is_valid || options.policy == Policy::keep) {
     auto encoded = encode_feature(inspected, shared, options);
     if (!encoded) return std::move(encoded).error();
     processed.encoded = *std::move(encoded);
+  }
+  std::optional<EncodedFeature> rest;
+  if (!is_valid && options.policy == Policy::skip) {
+    auto encoded = encode_rest(inspected, shared, workers, options, templates, processed.outcome);
+    if (!encoded) return std::move(encoded).error();
+    rest = *std::move(encoded);
   }
   for (std::size_t i = 0; i < inspected.solids.size(); ++i) {
     processed.outcome.solids.push_back(outcome_of(
@@ -178,6 +265,8 @@ Result<ProcessedFeature> process(Feature feature, const Document& shared,
         processed.encoded && i < inspected.own ? &processed.encoded->solids[i] : nullptr));
   }
   processed.outcome.groups = std::move(inspected.groups);
+  if (rest) processed.encoded = std::move(rest);
+  processed.outcome.is_stored = processed.encoded.has_value();
   return processed;
 }
 

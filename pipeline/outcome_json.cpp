@@ -138,6 +138,14 @@ std::string outcome_json(const IngestOutcome& outcome) {
     json.key("stored").value(feature.is_stored).key("solids").open('[');
     for (const SolidOutcome& solid : feature.solids) write_solid(json, solid);
     json.close(']');
+    if (!feature.left_out.empty()) {
+      json.key("leftOut").open('[');
+      for (const formats::GeometryPlace& place : feature.left_out) {
+        json.open('{').key("object").value(place.object_id);
+        json.key("geometry").value(place.geometry).close('}');
+      }
+      json.close(']');
+    }
     if (!feature.groups.empty()) {
       json.key("groups").open('[');
       for (const InspectedGroup& group : feature.groups) write_group(json, group);

@@ -15,6 +15,7 @@
 
 #include "base/cancel.h"
 #include "codec/blob.h"
+#include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "store/solid_store.h"
 #include "validate/certify.h"
@@ -85,6 +86,10 @@ struct FeatureOutcome {
   Verdict verdict = Verdict::undecided;
   std::vector<SolidOutcome> solids;
   std::vector<InspectedGroup> groups;
+  /// The geometries that Policy::skip has left out of the feature that is stored.
+  std::vector<formats::GeometryPlace> left_out;
+  /// A CityJSONFeature or CityJSON of what is left out; "" without it, and for other formats.
+  std::string rejected;
   bool is_stored = false;
   std::uint64_t version = 0;  // 0 unless stored
 };
@@ -181,7 +186,7 @@ struct IngestOutcome : IngestCounts {
 
 /// A document encoded feature by feature, but not stored.
 struct EncodeOutcome {
-  EncodedDocument document;  // features in document order; none unless all are valid
+  EncodedDocument document;  // features in document order; none if the policy is to refuse them
   IngestOutcome outcome;
 };
 

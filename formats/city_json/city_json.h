@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <compare>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +51,27 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
 Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& options);
 Result<std::string> write_city_json(const Document& document);
 Result<std::string> write_city_json_seq(const Document& document);
+
+/// A geometry of a city object: the index of it in the object's list.
+struct GeometryPlace {
+  std::string object_id;
+  std::uint32_t geometry = 0;
+  friend auto operator<=>(const GeometryPlace&, const GeometryPlace&) = default;
+};
+
+/// A city model in two texts: one without the chosen geometries, one with them alone and with the
+/// objects that have them. Both have the vertices that they use.
+struct DividedText {
+  std::string rest;
+  std::string chosen;
+  std::size_t geometries_left = 0;  // the geometries of `rest`
+};
+
+/// Divides a CityJSON or CityJSONFeature. Errors: malformed; limit_exceeded. Cost: linear, the text
+/// as JSON values.
+Result<DividedText> divide_city_model(std::string_view text,
+                                      const std::set<GeometryPlace>& chosen,
+                                      const Limits& limits = {});
 
 /// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the
 /// finest of their decimal grids. Errors: unsupported for coordinates on no decimal grid.

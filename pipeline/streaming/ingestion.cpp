@@ -148,7 +148,7 @@ Result<IngestCounts> Ingestion::finish() {
 
 void OutcomeKeeper::add(FeatureOutcome&& outcome) {
   const bool is_valid = outcome.verdict == Verdict::valid;
-  const std::uint64_t rank = is_valid ? valid_++ : valid_;
+  const std::uint64_t rank = outcome.is_stored ? stored_++ : stored_;
   if (has_all_ && kept_.size() == most_) {
     has_all_ = false;
     std::erase_if(kept_, [](const Kept& kept) { return kept.outcome.verdict == Verdict::valid; });
@@ -161,7 +161,7 @@ IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
                                      const std::vector<std::uint64_t>& versions) && {
   IngestOutcome all{counts, {}};
   for (Kept& kept : kept_) {
-    kept.outcome.is_stored = kept.outcome.verdict == Verdict::valid && kept.rank < versions.size();
+    kept.outcome.is_stored = kept.outcome.is_stored && kept.rank < versions.size();
     if (kept.outcome.is_stored) kept.outcome.version = versions[kept.rank];
     all.features.push_back(std::move(kept.outcome));
   }

@@ -86,11 +86,11 @@ class OutcomeKeeper {
  private:
   struct Kept {
     FeatureOutcome outcome;
-    std::uint64_t rank = 0;  // the number of valid features before it
+    std::uint64_t rank = 0;  // the number of features to be stored before it
   };
   std::size_t most_;
   bool has_all_ = true;
-  std::uint64_t valid_ = 0;
+  std::uint64_t stored_ = 0;
   std::vector<Kept> kept_;
 };
 

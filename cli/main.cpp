@@ -73,6 +73,8 @@ void add_rules(CLI::App& sub, RuleChoice& rules) {
                   "depth to which building parts and composite members may overlap, metres")
       ->check(in_range(0, 1000, "from 0 to 1000"))
       ->capture_default_str();
+  sub.add_flag("--exact-overlaps", rules.are_steps_errors,
+               "overlaps no deeper than a step of the coordinates are errors, not warnings");
   sub.add_flag("--strict", rules.is_strict, "only the canonical triangles of facets count");
 }
 

@@ -14,6 +14,7 @@ struct RuleChoice {
   double planarity_metres = 0.01;
   double planarity_degrees = 20;
   double overlap_metres = 0;
+  bool are_steps_errors = false;  // overlaps of a step of the coordinates or less
   std::string proof = "tetrahedralization";  // or "boundary"
   bool is_strict = false;
 };
@@ -26,6 +27,7 @@ inline void apply(const RuleChoice& rules, CertifyOptions& certify,
   certify.proof = rules.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
   certify.ladder.strict = rules.is_strict;
   groups.overlap_metres = rules.overlap_metres;
+  groups.do_steps_warn = !rules.are_steps_errors;
 }
 
 }  // namespace watertight::cli

@@ -99,6 +99,7 @@ std::set<GeometryPlace> unproven_geometries(const InspectedFeature& feature) {
       }
     }
     for (const Finding& finding : group.report.findings) {
+      if (finding.severity == Severity::warning) continue;
       choose(finding.place);
       if (finding.other) choose(*finding.other);
     }

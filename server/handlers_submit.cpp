@@ -81,6 +81,9 @@ Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
   if (!status) return status;
   status = read_tolerance(target, "overlap", kWidestMetres, ingest.groups.overlap_metres);
   if (!status) return status;
+  const auto exact_overlaps = parse_flag(target, "exact-overlaps");
+  if (!exact_overlaps) return exact_overlaps.error();
+  ingest.groups.do_steps_warn = !*exact_overlaps;
   const auto strict = parse_flag(target, "strict");
   if (!strict) return strict.error();
   options.ladder.strict = *strict;

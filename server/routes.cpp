@@ -105,7 +105,7 @@ const std::vector<Route>& routes() {
        "/collections/{collectionId}/items",
        Lane::computing,
        post_items,
-       {"f", "invalid", "planarity", "planarity-angle", "overlap", "proof", "strict"}},
+       {"f", "invalid", "planarity", "planarity-angle", "overlap", "exact-overlaps", "proof", "strict"}},
       {"GET",
        "/collections/{collectionId}/items/{itemId}",
        Lane::reading,
@@ -117,7 +117,7 @@ const std::vector<Route>& routes() {
        "/validate",
        Lane::computing,
        post_validate,
-       {"f", "planarity", "planarity-angle", "overlap", "proof", "strict"}},
+       {"f", "planarity", "planarity-angle", "overlap", "exact-overlaps", "proof", "strict"}},
   };
   return table;
 }

@@ -32,6 +32,9 @@ constexpr double kRoundedSteps = 16;
 /// A bound of the relative rounding error of placed vertices in the world, for their boxes.
 constexpr double kPlaceError = 1e-14;
 
+/// A bound of the relative rounding error of a depth.
+constexpr double kDepthError = 1e-9;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A common grid of two members or of all.
@@ -99,6 +102,7 @@ class GroupExaminer {
   Place place(Index member, Index facet) const;
   std::string named(Index member) const;
   std::string overlap_detail(const Pair& pair, const SolidRelation& relation) const;
+  double step(Index member, const GroupGrid& grid) const;
 
   std::span<const GroupMember> members_;
   std::span<const Index> unit_of_;
@@ -334,6 +338,20 @@ std::string GroupExaminer::overlap_detail(const Pair& pair, const SolidRelation&
   return detail;
 }
 
+/// The largest step of the coordinates of a member, metres; 0 when it has none.
+double GroupExaminer::step(Index member, const GroupGrid& grid) const {
+  if (members_[member].placement != nullptr) return 0;
+  const geometry::Lattice& own = members_[member].solid->solid().lattice();
+  if (own.kind == geometry::LatticeKind::float64) return 0;
+  double metres = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto row = static_cast<std::size_t>(axis);
+    const double steps = own.scale(axis) / grid.grid.lattice().scale(axis);
+    metres = std::max(metres, steps * std::abs(grid.step_metres[row][row]));
+  }
+  return std::min(metres, kCoarsestStep);
+}
+
 void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRelation& relation) {
   const Pair pair{compared.first, compared.second};
   const bool is_duplicate = relation.are_equal && is_composite();
@@ -342,8 +360,13 @@ void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRela
                       compared.grid->step_metres);
   const bool is_allowed = extent.depth > 0 && extent.depth <= options_.overlap_metres;
   if (is_allowed && !is_duplicate) return;
-  report_.verdict = Verdict::invalid;
+  const double least_step = std::min(step(pair.first, *compared.grid),
+                                     step(pair.second, *compared.grid));
+  const bool is_below_steps = options_.do_steps_warn && !is_duplicate && extent.depth > 0 &&
+                              extent.depth <= least_step * (1 + kDepthError);
+  if (!is_below_steps) report_.verdict = Verdict::invalid;
   Finding finding;
+  if (is_below_steps) finding.severity = Severity::warning;
   finding.code = is_duplicate     ? kDuplicatedSolids
                  : is_composite() ? kIntersectionSolids
                                   : kBuildingPartsOverlap;
@@ -352,10 +375,11 @@ void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRela
   if (extent.witness) finding.witness = compared.grid->grid.world(*extent.witness);
   if (!is_duplicate) {
     finding.measured = extent.depth;
-    finding.limit = options_.overlap_metres;
+    finding.limit = is_below_steps ? least_step : options_.overlap_metres;
     finding.unit = std::string("m");
   }
   finding.detail = overlap_detail(pair, relation);
+  if (is_below_steps) finding.detail += ", no deeper than a step of the coordinates";
   (is_duplicate ? duplicates_ : report_.findings).push_back(std::move(finding));
 }
 

@@ -17,12 +17,20 @@ namespace watertight::validate {
 
 enum class GroupKind : std::uint8_t { composite_solid, building_parts };
 
+/// The most that a step of coordinates counts for GroupOptions::do_steps_warn, metres: a solid in
+/// whole metres can overlap another one visibly.
+inline constexpr double kCoarsestStep = 0.01;
+
 struct GroupOptions {
   /// The depth in metres up to which overlaps are allowed; with 0 no overlap is (exact). An overlap
   /// reaches no deeper than d if each connected part of it fits between two parallel planes d
   /// apart. Planes across the axes and along the facets that meet the part are tried, so the depth
   /// is never too small; for a slab between two facets, the depth is the thickness of the slab.
   double overlap_metres = 0;
+  /// Whether an overlap no deeper than the steps of both solids' coordinates is a warning: the
+  /// coordinates cannot say that the solids are apart. A step counts up to kCoarsestStep. Solids
+  /// with placements, and those on no grid, have no steps.
+  bool do_steps_warn = true;
   Limits limits;
   CancelPoll cancel = {};
 };
@@ -48,7 +56,8 @@ struct GroupReport {
 /// valid is not compared, and not_run says so.
 ///
 /// 501, 601: the interiors of two solids have a point in common; the finding has both facets, the
-/// depth in metres (GroupOptions::overlap_metres) and, where one was found, a point inside both.
+/// depth in metres (GroupOptions::overlap_metres) and, where one was found, a point inside both. It
+/// is a warning if the depth is no more than the steps of the coordinates (do_steps_warn).
 /// 502: two members are the same points, however their facets are divided. 503: areas that two
 /// members have in common do not connect all members; there is one finding for each part but that
 /// of the first member; not tested if members overlap or are the same, as in val3dity.

@@ -77,6 +77,12 @@ struct TemplateInstance {
   geometry::Placement placement;
 };
 
+/// A part of a feature that could not be read, for validation only: the skeleton has it as it came.
+struct UnreadablePart {
+  SolidSource source;  // `pointer` leads to the fault or to the geometry that has it
+  Error error;
+};
+
 /// One feature: a top-level city object with its descendants; one `o` object of an OBJ file; one
 /// geometry elsewhere.
 struct Feature {
@@ -91,6 +97,7 @@ struct Feature {
   Bytes layout = {};
   /// Instances of geometry templates, also of templates that are no solids; in document order.
   std::vector<TemplateInstance> instances = {};
+  std::vector<UnreadablePart> unreadable = {};  // in document order
 };
 
 struct Document {

@@ -129,7 +129,8 @@ Status FeatureReader::read_header() {
   header_ = *std::move(header);
   auto templates = read_geometry_templates(header_, options_.limits);
   if (!templates) return in_line(std::move(templates).error(), **text);
-  document_.templates = *std::move(templates);
+  document_.templates = std::move(templates->solids);
+  for (std::string& note : templates->notes) document_.notes.push_back(std::move(note));
   document_.header = options_.keep_text ? header_line(*std::move(*text)) : header_.text;
   return Done{};
 }

@@ -8,12 +8,14 @@
 #include "pipeline/groups.h"
 #include "pipeline/instances.h"
 #include "pipeline/streaming/process.h"
+#include "validate/finding_kinds.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {
 namespace {
 
 using formats::GeometryPlace;
+using formats::UnreadablePart;
 
 constexpr std::size_t kVertexBytes = 24;  // three doubles
 constexpr std::size_t kCornerBytes = 4;   // one index
@@ -184,6 +186,27 @@ Verdict InspectedFeature::verdict() const {
   return verdict;
 }
 
+namespace {
+
+/// Adds an empty, invalid solid for each part of the feature that could not be read.
+void add_unreadable(InspectedFeature& inspected) {
+  for (UnreadablePart& part : inspected.feature.unreadable) {
+    auto nothing = Solid::make(SolidArrays{}, Lattice{}, inspected.feature.srid);
+    if (!nothing) continue;  // an empty solid breaks no rule of Solid
+    Finding finding;
+    finding.code = validate::kInvalidInputFile;
+    finding.detail = part.error.message;
+    Inspection inspection;
+    inspection.report.verdict = Verdict::invalid;
+    inspection.report.findings.push_back(std::move(finding));
+    inspected.solids.push_back({part.source, std::move(inspection)});
+    inspected.feature.solids.push_back({*std::move(nothing), std::move(part.source), {}});
+  }
+  inspected.feature.unreadable.clear();
+}
+
+}  // namespace
+
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups,
                          TemplateInspector* templates) {
@@ -201,6 +224,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
   } else {
     inspected.groups = inspect_groups(group_candidates(inspected), group_options(groups, options));
   }
+  add_unreadable(inspected);
   return inspected;
 }
 

@@ -152,7 +152,10 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
   }
   if (!is_exact) {
     if (feature.feature.skeleton.empty()) return encoded;
-    auto skeleton = formats::canonical_skeleton(feature.feature, options.contract);
+    Feature own = feature.feature;  // without the solids that inspect() has added
+    own.solids.erase(own.solids.begin() + static_cast<std::ptrdiff_t>(feature.own),
+                     own.solids.end());
+    auto skeleton = formats::canonical_skeleton(own, options.contract);
     if (!skeleton) return std::move(skeleton).error();
     encoded.skeleton += *skeleton;
     return encoded;

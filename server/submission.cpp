@@ -147,7 +147,7 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
   document.header = header;
   auto templates = formats::read_geometry_templates(*city_header, options.limits);
   if (!templates) return std::move(templates).error();
-  document.templates = *std::move(templates);
+  document.templates = std::move(templates->solids);
   document.features.push_back(*std::move(feature));
   return document;
 }

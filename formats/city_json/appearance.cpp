@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formats/city_json/appearance.h"
 
+#include <optional>
 #include <utility>
 
 namespace watertight::formats {
@@ -15,26 +16,31 @@ const Json* list_of(const Json* appearance, std::string_view name) {
 // Turns indices into a list into indices into `values`. Looks each value up once.
 class Renumbering {
  public:
-  Renumbering(const Json* list, DistinctValues& values, std::string_view what)
-      : list_(list), values_(values), what_(what) {}
+  Renumbering(const Json* list, DistinctValues& values, std::string_view what,
+              std::optional<Error>& fault)
+      : list_(list), values_(values), what_(what), fault_(fault) {}
 
-  Status apply(Json& index) {
-    if (index.is_null()) return Done{};
+  void apply(Json& index) {
+    if (index.is_null()) return;
     if (!index.is_number_unsigned() || list_ == nullptr ||
         index.get<std::uint64_t>() >= list_->size()) {
-      return Error{ErrorCode::malformed,
-                   "the index of a " + std::string(what_) + " is out of range"};
+      if (!fault_) {
+        fault_ = Error{ErrorCode::malformed,
+                       "the index of a " + std::string(what_) + " is out of range"};
+      }
+      index = kDangling;
+      return;
     }
     const auto [place, is_new] = position_.try_emplace(index.get<std::size_t>());
     if (is_new) place->second = values_.position_of((*list_)[place->first]);
     index = place->second;
-    return Done{};
   }
 
  private:
   const Json* list_;
   DistinctValues& values_;
   std::string_view what_;
+  std::optional<Error>& fault_;
   std::unordered_map<std::size_t, std::size_t> position_;  // index in values_, by index in the list
 };
 
@@ -48,19 +54,18 @@ bool is_flat(const Json& array) {
 // Calls `visit` with each array that holds no arrays. A stack of the arrays still to open replaces
 // recursion.
 template <class Visit>
-Status for_each_flat_array(Json& nested, Visit visit) {
+void for_each_flat_array(Json& nested, Visit visit) {
   std::vector<Json*> open{&nested};
   while (!open.empty()) {
     Json& array = *open.back();
     open.pop_back();
     if (!array.is_array()) continue;
     if (is_flat(array)) {
-      if (auto status = visit(array); !status) return status;
+      visit(array);
       continue;
     }
     for (std::size_t i = array.size(); i > 0; --i) open.push_back(&array[i - 1]);
   }
-  return Done{};
 }
 
 }  // namespace
@@ -83,42 +88,36 @@ void AppearanceCollector::include(const Json* appearance) {
 }
 
 Status AppearanceCollector::adopt(Json& geometry, const Json* source) {
-  Renumbering materials(list_of(source, "materials"), materials_, "material");
-  Renumbering textures(list_of(source, "textures"), textures_, "texture");
+  std::optional<Error> fault;
+  Renumbering materials(list_of(source, "materials"), materials_, "material", fault);
+  Renumbering textures(list_of(source, "textures"), textures_, "texture", fault);
   Renumbering texture_vertices(list_of(source, "vertices-texture"), texture_vertices_,
-                               "texture vertex");
-  const auto each_material = [&](Json& array) -> Status {
-    for (Json& index : array) {
-      if (auto status = materials.apply(index); !status) return status;
-    }
-    return Done{};
+                               "texture vertex", fault);
+  const auto each_material = [&](Json& array) {
+    for (Json& index : array) materials.apply(index);
   };
   // The array of a ring has the index of a texture, then the index of a texture vertex for each
   // vertex; [null] means no texture.
-  const auto each_texture_ring = [&](Json& array) -> Status {
+  const auto each_texture_ring = [&](Json& array) {
     for (std::size_t i = 0; i < array.size(); ++i) {
-      auto status = i == 0 ? textures.apply(array[i]) : texture_vertices.apply(array[i]);
-      if (!status) return status;
+      i == 0 ? textures.apply(array[i]) : texture_vertices.apply(array[i]);
     }
-    return Done{};
   };
   if (Json* themes = find_member(geometry, "material"); themes != nullptr && themes->is_object()) {
     for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) {
-      if (Json* value = find_member(theme, "value"); value != nullptr) {
-        if (auto status = materials.apply(*value); !status) return status;
-      }
+      if (Json* value = find_member(theme, "value"); value != nullptr) materials.apply(*value);
       if (Json* values = find_member(theme, "values"); values != nullptr) {
-        if (auto status = for_each_flat_array(*values, each_material); !status) return status;
+        for_each_flat_array(*values, each_material);
       }
     }
   }
   if (Json* themes = find_member(geometry, "texture"); themes != nullptr && themes->is_object()) {
     for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) {
       Json* values = find_member(theme, "values");
-      if (values == nullptr) continue;
-      if (auto status = for_each_flat_array(*values, each_texture_ring); !status) return status;
+      if (values != nullptr) for_each_flat_array(*values, each_texture_ring);
     }
   }
+  if (fault) return *std::move(fault);
   return Done{};
 }
 

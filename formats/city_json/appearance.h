@@ -26,6 +26,9 @@ class DistinctValues {
                                                            // the value
 };
 
+/// An index that refers to nothing.
+inline constexpr std::uint32_t kDangling = 0xFFFFFFFF;
+
 /// Collects the materials, textures and texture vertices to which geometries refer, and renumbers
 /// the references.
 class AppearanceCollector {
@@ -34,8 +37,10 @@ class AppearanceCollector {
   /// numbers (unless a value occurs twice). `appearance` is null when the document has none.
   void include(const Json* appearance);
 
-  /// Makes `geometry`, whose indices refer to `source`, refer to this collection.
-  /// Errors: malformed if an index is out of range (JSON Pointer within the geometry).
+  /// Makes `geometry`, whose indices refer to `source`, refer to this collection. An index that
+  /// refers to nothing becomes kDangling, which refers to nothing in any list.
+  /// Errors, after all other indices are changed: malformed for the first such index (JSON Pointer
+  /// within the geometry).
   Status adopt(Json& geometry, const Json* source);
 
   /// The `appearance` object, null when nothing was collected. `themes` gives the members that are

@@ -4,6 +4,7 @@
 // canonical facets and rings, and the vertices of the document get numbers in the order in which
 // the canonical solids use them.
 #include <algorithm>
+#include <numeric>
 #include <array>
 #include <utility>
 
@@ -173,10 +174,35 @@ class Canonicalizer {
     return Done{};
   }
 
+  /// Adds a solid that has no canonical form, in its own order.
+  void add_as_it_came(const Solid& source, const std::vector<Index>& document_vertices) {
+    const auto identity = [](std::size_t size) {
+      std::vector<Index> order(size);
+      std::iota(order.begin(), order.end(), Index{0});
+      return order;
+    };
+    Arranged solid;
+    solid.source = &source;
+    solid.order.vertex = identity(source.vertex_count());
+    solid.order.shell = identity(source.shell_count());
+    solid.order.facet = identity(source.facet_count());
+    solid.order.ring = identity(source.ring_count());
+    solid.order.ring_start.assign(source.ring_count(), 0);
+    for (const Index vertex : document_vertices) {
+      Index& number = number_of_[vertex];
+      if (number == kNone) number = next_++;
+      solid.document_vertex.push_back(number);
+    }
+    solids_.push_back(std::move(solid));
+  }
+
   Status add(const Solid& source, const std::vector<Index>& document_vertices) {
     const geometry::MergedSolid merged = geometry::merge_equal_vertices(source);
     auto boundary = OrientedBoundary::make(merged.solid);
-    if (!boundary) return std::move(boundary).error();
+    if (!boundary) {
+      add_as_it_came(source, document_vertices);
+      return Done{};
+    }
     std::vector<Index> number(merged.solid.vertex_count(), kNone);
     for (Index vertex = 0; vertex < source.vertex_count(); ++vertex) {
       if (merged.vertex_of[vertex] == kNone) continue;
@@ -244,7 +270,7 @@ class Canonicalizer {
 
   std::string print() const {
     const BoundaryPrinter print_boundary = [this](const Json& boundaries, std::string& out) {
-      if (boundaries.is_object()) return append_json(out, boundaries);
+      if (!boundaries.is_number_unsigned()) return append_json(out, boundaries);
       append_boundary(out, model_.boundary(boundaries.get<std::size_t>()), [this](Index vertex) {
         return vertex < number_of_.size() ? number_of_[vertex] : vertex;
       });

@@ -32,17 +32,23 @@ struct CityHeader {
 Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits = {});
 Result<Feature> read_city_json_feature(const CityHeader& header, std::string_view line,
                                        const ReadOptions& options = {});
+struct TemplateSolids {
+  std::vector<SubmittedSolid> solids;
+  std::vector<std::string> notes;  // the templates that cannot be read
+};
+
 /// The solids of the header's geometry templates (Document::templates), each template on a lattice
-/// of its own; most headers have none and cost nothing. Errors: malformed with JSON Pointer. Cost:
-/// linear.
-Result<std::vector<SubmittedSolid>> read_geometry_templates(const CityHeader& header,
+/// of its own; most headers have none and cost nothing. A template that cannot be read is a solid
+/// without facets (902), and a note. Errors: malformed with JSON Pointer, for the list of templates
+/// or of their vertices. Cost: linear.
+Result<TemplateSolids> read_geometry_templates(const CityHeader& header,
                                                             const Limits& limits = {});
 /// The text of write_feature(), without reading the header again.
 Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature);
 
 /// The skeleton of a feature of a city model for its solids in canonical form. `contract` is
-/// lattice or boundary. Errors: malformed when a solid is no oriented boundary or the skeleton does
-/// not fit.
+/// lattice or boundary. A solid that is no oriented boundary keeps its order. Errors: malformed when
+/// the skeleton does not fit.
 Result<std::string> canonical_skeleton(const Feature& feature, Contract contract);
 /// The header that goes with skeletons of contract boundary. Errors: malformed.
 Result<std::string> boundary_header(std::string_view header);

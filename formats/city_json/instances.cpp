@@ -42,6 +42,10 @@ Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const Instan
     return wrong("a geometry instance needs the vertex it stands on", pointer);
   }
   const VertexList& list = model.vertices;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    if (tokens[i] >= kClose || tokens[i] < list.size()) continue;
+    return wrong("vertex index is out of range", pointer + pointer_token(i > 0 ? i - 1 : 0));
+  }
   auto points = list.are_integers ? geometry::lattice_of_integers(
                                         {&list.integers[*vertex], 1},
                                         header.transform.value_or(geometry::Transform{}))
@@ -84,31 +88,52 @@ Result<InstanceRef> read_instance(const Json& geometry, const std::string& point
   return ref;
 }
 
-Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
-                                                     const ModelIndex& index,
-                                                     const CityHeader& header) {
+namespace {
+
+Result<TemplateInstance> place_instance(const CityModel& model, const ModelIndex& index,
+                                        const InstanceRef& ref, const CityHeader& header) {
+  TemplateInstance instance;
+  instance.template_number = ref.template_number;
+  instance.source = {index.ids[ref.object],
+                     "GeometryInstance",
+                     {},
+                     ref.geometry,
+                     0,
+                     "/CityObjects" + pointer_token(index.ids[ref.object]) + "/geometry" +
+                         pointer_token(ref.geometry)};
+  auto anchor = anchor_of(model, ref, header, instance.source.pointer + "/boundaries");
+  if (!anchor) return std::move(anchor).error();
+  auto placement = placement_of_matrix(ref.matrix, *anchor);
+  if (!placement) return std::move(placement).error();
+  instance.placement = *placement;
+  instance.placement.srid = header.srid;
+  const Index building = index.building_of[ref.object];
+  if (building != kNone) instance.source.building_id = index.ids[building];
+  return instance;
+}
+
+}  // namespace
+
+std::vector<TemplateInstance> city_instances(const CityModel& model, ModelIndex& index,
+                                             const CityHeader& header) {
   std::vector<TemplateInstance> instances;
-  instances.reserve(index.instances.size());
-  for (const InstanceRef& ref : index.instances) {
-    TemplateInstance instance;
-    instance.template_number = ref.template_number;
-    instance.source = {index.ids[ref.object],
-                       "GeometryInstance",
-                       {},
-                       ref.geometry,
-                       0,
-                       "/CityObjects" + pointer_token(index.ids[ref.object]) + "/geometry" +
-                           pointer_token(ref.geometry)};
-    auto anchor = anchor_of(model, ref, header, instance.source.pointer + "/boundaries");
-    if (!anchor) return std::move(anchor).error();
-    auto placement = placement_of_matrix(ref.matrix, *anchor);
-    if (!placement) return std::move(placement).error();
-    instance.placement = *placement;
-    instance.placement.srid = header.srid;
-    const Index building = index.building_of[ref.object];
-    if (building != kNone) instance.source.building_id = index.ids[building];
-    instances.push_back(std::move(instance));
+  std::vector<InstanceRef> placed;
+  for (InstanceRef& ref : index.instances) {
+    auto instance = place_instance(model, index, ref, header);
+    if (instance) {
+      instances.push_back(*std::move(instance));
+      placed.push_back(std::move(ref));
+      continue;
+    }
+    UnreadablePart part;
+    part.source.object_id = index.ids[ref.object];
+    part.source.geometry_type = "GeometryInstance";
+    part.source.geometry = ref.geometry;
+    part.source.pointer = instance.error().pointer;
+    part.error = std::move(instance).error();
+    index.unreadable.push_back({ref.object, std::move(part)});
   }
+  index.instances = std::move(placed);
   return instances;
 }
 

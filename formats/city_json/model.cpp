@@ -56,6 +56,26 @@ bool is_known_version(std::string_view version) {
   return false;
 }
 
+/// The JSON Pointer, within boundaries that were not captured, to the first value that is no vertex
+/// index and no array. Recursive; the reader's limit bounds the depth.
+std::optional<std::string> pointer_to_fault(const Json& boundaries) {
+  if (!boundaries.is_array()) {
+    const bool is_index =
+        boundaries.is_number_unsigned() && boundaries.get<std::uint64_t>() < kMostVertices;
+    return is_index ? std::nullopt : std::optional<std::string>("");
+  }
+  for (std::size_t i = 0; i < boundaries.size(); ++i) {
+    const auto within = pointer_to_fault(boundaries[i]);
+    if (within) return pointer_token(i) + *within;
+  }
+  return std::nullopt;
+}
+
+Error wrong_boundaries(const Json& boundaries, const std::string& pointer) {
+  return wrong("boundaries are nested arrays of vertex indices",
+               pointer + "/boundaries" + pointer_to_fault(boundaries).value_or(""));
+}
+
 Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref,
                       std::uint64_t template_count, ModelIndex& index) {
   const std::string pointer = geometry_pointer(id, ref.geometry);
@@ -66,6 +86,10 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
   if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
     ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
   }
+  const Json* boundaries = find_member(geometry, "boundaries");
+  if (boundaries != nullptr && !boundaries->is_number_unsigned()) {
+    return wrong_boundaries(*boundaries, pointer);
+  }
   if (ref.type == "GeometryInstance") {
     auto instance = read_instance(geometry, pointer, template_count);
     if (!instance) return std::move(instance).error();
@@ -73,7 +97,6 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
     instance->geometry = ref.geometry;
     index.instances.push_back(*std::move(instance));
   }
-  const Json* boundaries = find_member(geometry, "boundaries");
   if (boundaries == nullptr) {
     if (ref.is_of_solids()) return wrong("the geometry has no boundaries", pointer);
     return Done{};
@@ -81,6 +104,17 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
   ref.boundary = boundaries->get<std::size_t>();
   index.geometries.push_back(std::move(ref));
   return Done{};
+}
+
+void note_unreadable(ModelIndex& index, std::uint32_t object, const GeometryRef& ref, Error error) {
+  UnreadablePart part;
+  part.source.object_id = index.ids[object];
+  part.source.geometry_type = ref.type;
+  part.source.lod = ref.lod;
+  part.source.geometry = ref.geometry;
+  part.source.pointer = error.pointer;
+  part.error = std::move(error);
+  index.unreadable.push_back({object, std::move(part)});
 }
 
 Status index_object(const Json& object, std::uint32_t number, std::uint64_t template_count,
@@ -95,9 +129,11 @@ Status index_object(const Json& object, std::uint32_t number, std::uint64_t temp
   if (!geometries->is_array()) return wrong("geometry must be an array", pointer + "/geometry");
   std::uint32_t position = 0;
   for (const Json& geometry : geometries->get_ref<const Json::array_t&>()) {
-    auto status = index_geometry(geometry, id, GeometryRef{number, position++, 0, {}, {}},
-                                 template_count, index);
-    if (!status) return status;
+    GeometryRef ref{number, position++, 0, {}, {}};
+    auto status = index_geometry(geometry, id, ref, template_count, index);
+    if (status) continue;
+    ref.type = string_member(geometry, "type");
+    note_unreadable(index, number, ref, std::move(status).error());
   }
   return Done{};
 }
@@ -133,7 +169,8 @@ Status check_children(const Json& object, std::string_view id,
 }
 
 // Finds the top-level object of each object; follows each chain of parents once.
-Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
+// A cycle ends at the object where it was found, which becomes a top-level object.
+void find_roots(std::vector<Index>& parent, ModelIndex& index) {
   index.root_of.assign(parent.size(), kNone);
   std::vector<Index> chain;
   std::vector<bool> is_in_chain(parent.size(), false);
@@ -142,8 +179,11 @@ Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
     chain.clear();
     while (index.root_of[at] == kNone && parent[at] != kNone) {
       if (is_in_chain[at]) {
-        return wrong("the city object is its own ancestor",
-                     "/CityObjects" + pointer_token(index.ids[at]) + "/parents");
+        note_unreadable(index, at, {},
+                        wrong("the city object is its own ancestor",
+                              "/CityObjects" + pointer_token(index.ids[at]) + "/parents"));
+        parent[at] = kNone;
+        break;
       }
       is_in_chain[at] = true;
       chain.push_back(at);
@@ -155,7 +195,6 @@ Status find_roots(const std::vector<Index>& parent, ModelIndex& index) {
       is_in_chain[object] = false;
     }
   }
-  return Done{};
 }
 
 // The Building of each object: of a Building itself, of a BuildingPart the one that is reached
@@ -250,12 +289,16 @@ Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t templa
   std::vector<Index> parent;
   std::uint32_t number = 0;
   for (const auto& [id, object] : members) {
-    if (auto status = index_object(object, number++, template_count, index); !status)
-      return status.error();
-    if (auto status = check_children(object, id, by_id); !status) return status.error();
+    if (auto status = index_object(object, number, template_count, index); !status) {
+      note_unreadable(index, number, {}, std::move(status).error());
+    }
+    if (auto status = check_children(object, id, by_id); !status) {
+      note_unreadable(index, number, {}, std::move(status).error());
+    }
     parent.push_back(parent_of(object, by_id));
+    ++number;
   }
-  if (auto status = find_roots(parent, index); !status) return status.error();
+  find_roots(parent, index);
   index.building_of = buildings_of(parent, members);
   return index;
 }

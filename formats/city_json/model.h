@@ -32,11 +32,18 @@ struct GeometryRef {
   std::size_t boundary = 0;    // index into CityModel::boundary_begin
   std::string type;
   std::string lod;
+  bool is_unreadable = false;  // then it has no solids, and its boundaries stay as they came
 
   bool is_solid() const { return type == "Solid"; }
   bool is_of_solids() const {
-    return is_solid() || type == "MultiSolid" || type == "CompositeSolid";
+    return !is_unreadable && (is_solid() || type == "MultiSolid" || type == "CompositeSolid");
   }
+};
+
+/// A part of a city object that cannot be read.
+struct UnreadableRef {
+  std::uint32_t object = 0;
+  UnreadablePart part;
 };
 
 /// A geometry of a city object that is an instance of a geometry template.
@@ -57,6 +64,7 @@ struct ModelIndex {
   std::vector<std::uint32_t> building_of;
   std::vector<GeometryRef> geometries;  // sorted by object, then by geometry
   std::vector<InstanceRef> instances;   // sorted by object, then by geometry; also in `geometries`
+  std::vector<UnreadableRef> unreadable;
   std::vector<std::string> notes;
   bool are_templates = false;  // each "object" is a geometry template without id
 };
@@ -70,7 +78,8 @@ struct CitySolid {
 };
 
 /// Checks the shape of the document and finds geometries and top-level objects. Geometry instances
-/// may refer to `template_count` templates. Errors: malformed with JSON Pointer.
+/// may refer to `template_count` templates. Faults of one object become unreadable parts. Errors:
+/// malformed with JSON Pointer.
 Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count);
 
 /// Reads a GeometryInstance, except for the members `object` and `geometry` of the result. Errors:
@@ -79,15 +88,19 @@ Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t templa
 Result<InstanceRef> read_instance(const Json& geometry, const std::string& pointer,
                                   std::uint64_t template_count);
 
-/// The model's instances with their placements, in document order. Vertex indices must be in range.
-/// Errors: malformed with JSON Pointer.
-Result<std::vector<TemplateInstance>> city_instances(const CityModel& model,
-                                                     const ModelIndex& index,
-                                                     const CityHeader& header);
+/// The model's instances with their placements, in document order. Those that cannot be read leave
+/// index.instances and become unreadable parts.
+std::vector<TemplateInstance> city_instances(const CityModel& model, ModelIndex& index,
+                                             const CityHeader& header);
+
+/// Adds notes about references of materials, textures and addresses to values that do not exist.
+/// Cost: linear in the objects that have such references.
+void note_dangling_references(const CityModel& model, ModelIndex& index);
 
 /// The solids of the model in document order. Solids whose objects have the same top-level object
-/// share one lattice, as do all solids of a CityJSONFeature.
-Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIndex& index,
+/// share one lattice, as do all solids of a CityJSONFeature. Geometries whose boundaries are wrong
+/// become unreadable. Errors: limit_exceeded; not_encodable.
+Result<std::vector<CitySolid>> city_solids(const CityModel& model, ModelIndex& index,
                                            const CityHeader& header, const Limits& limits);
 
 /// Turns the vertices into grid integers, which a transform requires; 10.0 is an integer too.

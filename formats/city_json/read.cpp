@@ -25,8 +25,7 @@ Result<ReadModel> read_model(CityModel model, const CityHeader& header, const Li
   auto solids = city_solids(model, *index, header, limits);
   if (!solids) return std::move(solids).error();
   auto instances = city_instances(model, *index, header);
-  if (!instances) return std::move(instances).error();
-  return ReadModel{std::move(model), std::move(*index), std::move(*solids), std::move(*instances)};
+  return ReadModel{std::move(model), std::move(*index), std::move(*solids), std::move(instances)};
 }
 
 // For each boundary, the part of the skeleton that stands for it; "" where that is not solids.
@@ -52,6 +51,7 @@ std::vector<std::string> solid_references(const ReadModel& read) {
 std::string whole_skeleton(const ReadModel& read) {
   const std::vector<std::string> references = solid_references(read);
   const BoundaryPrinter print = [&](const Json& boundaries, std::string& out) {
+    if (!boundaries.is_number_unsigned()) return append_json(out, boundaries);
     const auto boundary = boundaries.get<std::size_t>();
     if (!references[boundary].empty()) {
       out += references[boundary];
@@ -91,8 +91,15 @@ void take_solids(std::vector<CitySolid>& solids, Feature& feature) {
   for (CitySolid& solid : solids) feature.solids.push_back(std::move(solid.submitted));
 }
 
-// Gives each feature the instances of its objects. `features` are those of split_city_model().
-void share_out(std::vector<TemplateInstance> instances, const ModelIndex& index,
+std::vector<UnreadablePart> parts_of(std::vector<UnreadableRef> refs) {
+  std::vector<UnreadablePart> parts;
+  for (UnreadableRef& ref : refs) parts.push_back(std::move(ref.part));
+  return parts;
+}
+
+// Gives each feature the instances and the unreadable parts of its objects. `features` are those of
+// split_city_model().
+void share_out(std::vector<TemplateInstance> instances, ModelIndex index,
                std::vector<Feature>& features) {
   std::vector<std::size_t> feature_of(index.ids.size(), 0);
   std::size_t count = 0;
@@ -102,6 +109,9 @@ void share_out(std::vector<TemplateInstance> instances, const ModelIndex& index,
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const std::uint32_t root = index.root_of[index.instances[i].object];
     features[feature_of[root]].instances.push_back(std::move(instances[i]));
+  }
+  for (UnreadableRef& ref : index.unreadable) {
+    features[feature_of[index.root_of[ref.object]]].unreadable.push_back(std::move(ref.part));
   }
 }
 
@@ -183,6 +193,7 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
   feature.instances = std::move(read->instances);
+  feature.unreadable = parts_of(std::move(read->index.unreadable));
   return feature;
 }
 
@@ -238,17 +249,19 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   note_vertices_without_transform(*header, document.notes);
   auto templates = read_geometry_templates(*header, options.limits);
   if (!templates) return std::move(templates).error();
-  document.templates = std::move(*templates);
+  document.templates = std::move(templates->solids);
+  for (std::string& note : templates->notes) document.notes.push_back(std::move(note));
 
   auto read = read_model(std::move(*model), *header, options.limits);
   if (!read) return std::move(read).error();
+  note_dangling_references(read->model, read->index);
   for (std::string& note : read->index.notes) document.notes.push_back(std::move(note));
   if (options.split_features) {
     auto features =
         split_city_model(std::move(read->model), read->index, std::move(read->solids), *header);
     if (!features) return std::move(features).error();
     document.features = std::move(*features);
-    share_out(std::move(read->instances), read->index, document.features);
+    share_out(std::move(read->instances), std::move(read->index), document.features);
     return document;
   }
   Feature feature;
@@ -257,6 +270,7 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
   feature.instances = std::move(read->instances);
+  feature.unreadable = parts_of(std::move(read->index.unreadable));
   if (options.keep_text) keep_text(*header, text, feature);
   document.features.push_back(std::move(feature));
   return document;

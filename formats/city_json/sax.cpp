@@ -75,7 +75,7 @@ class CitySax {
   bool binary(Json::binary_t&) { return fail(ErrorCode::malformed, "binary value"); }
 
   bool start_object(std::size_t) {
-    if (capture_ != Capture::none) return not_captured();
+    if (!leave_capture()) return false;
     return open(false);
   }
   bool key(std::string& key) {
@@ -136,15 +136,37 @@ class CitySax {
   }
 
   bool scalar(Json value) {
-    if (capture_ != Capture::none) return not_captured();
+    if (!leave_capture()) return false;
     add(std::move(value));
     return true;
   }
 
   bool not_captured() {
-    return fail(ErrorCode::malformed, capture_ == Capture::vertices
-                                          ? "a vertex is an array of three numbers"
-                                          : "boundaries are nested arrays of vertex indices");
+    return fail(ErrorCode::malformed, "a vertex is an array of three numbers");
+  }
+
+  // Ends the capture before a value that cannot be in what is captured. Boundaries become Json
+  // values, from their start on; vertices are for all objects, so the document cannot be read.
+  bool leave_capture() {
+    if (capture_ == Capture::none) return true;
+    if (capture_ == Capture::vertices) return not_captured();
+    capture_ = Capture::none;
+    counters_.clear();
+    const std::size_t begin = model_.boundary_begin.back();
+    for (std::size_t i = begin; i < model_.tokens.size(); ++i) {
+      const BoundaryToken token = model_.tokens[i];
+      if (token == kOpen) {
+        frames_.push_back(Frame{true, Role::other, {}, {}, {}});
+      } else if (token == kClose) {
+        Json array(Json::array_t(std::move(frames_.back().values)));
+        frames_.pop_back();
+        add(std::move(array));
+      } else {
+        add(std::uint64_t{token});
+      }
+    }
+    model_.tokens.resize(begin);
+    return true;
   }
 
   void add(Json value) {
@@ -202,15 +224,20 @@ class CitySax {
     if (role == Role::geometry) {
       // A number in the source would be mistaken for the index of a captured boundary.
       const Json* boundaries = find_member(value, "boundaries");
-      const bool is_ours =
-          kind_ == CityText::skeleton && boundaries != nullptr && boundaries->is_object();
-      if (boundaries != nullptr && !was_captured_ && !is_ours) {
+      if (boundaries != nullptr && !was_captured_ && !is_kept(*boundaries)) {
         return fail(ErrorCode::malformed, "the boundaries of a geometry must be an array");
       }
       was_captured_ = false;
     }
     add(std::move(value));
     return true;
+  }
+
+  // Whether boundaries that were not captured are no index of captured ones, and refer to solids in
+  // a skeleton alone.
+  bool is_kept(const Json& boundaries) const {
+    if (boundaries.is_object()) return kind_ == CityText::skeleton;
+    return !boundaries.is_number_unsigned();
   }
 
   bool open_captured() {
@@ -254,7 +281,7 @@ class CitySax {
   }
 
   bool vertex_index(std::uint64_t value) {
-    if (value >= kMostVertices) return fail(ErrorCode::malformed, "vertex index is out of range");
+    if (value >= kMostVertices) return scalar(value);
     model_.tokens.push_back(static_cast<BoundaryToken>(value));
     ++counters_.back();
     return true;
@@ -329,8 +356,6 @@ class CitySax {
                            [](const std::string* a, const std::string* b) { return *a == *b; });
     return twice == sorted.end() ? nullptr : *twice;
   }
-
-  static constexpr std::uint64_t kMostVertices = 0xFFFFFFF0;
 
   bool is_city_;
   CityText kind_;

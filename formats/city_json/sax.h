@@ -26,6 +26,9 @@ using BoundaryToken = std::uint32_t;
 inline constexpr BoundaryToken kOpen = 0xFFFFFFFF;
 inline constexpr BoundaryToken kClose = 0xFFFFFFFE;
 
+/// Vertex indices and the number of vertices are below this.
+inline constexpr std::uint64_t kMostVertices = 0xFFFFFFF0;
+
 /// The `vertices` of a city model: integers, or exact decimals as soon as one number is no integer.
 struct VertexList {
   bool are_integers = true;

@@ -105,24 +105,33 @@ std::string boundary_pointer(const ModelIndex& index, const GeometryRef& ref) {
          pointer_token(ref.geometry) + "/boundaries";
 }
 
-Result<std::vector<CutSolid>> cut_solids(const CityModel& model, const ModelIndex& index) {
+std::vector<CutSolid> cut_solids(const CityModel& model, ModelIndex& index) {
   std::vector<CutSolid> all;
   std::vector<Index> number_of(model.vertices.size(), kNone);
-  for (const GeometryRef& ref : index.geometries) {
+  for (GeometryRef& ref : index.geometries) {
     const std::string pointer = boundary_pointer(index, ref);
-    const auto within = [&](Error error) {
-      error.pointer = pointer + error.pointer;
-      return error;
+    const auto note_unreadable = [&](Error error) {
+      UnreadablePart part;
+      part.source = {index.ids[ref.object], ref.type, ref.lod, ref.geometry, 0,
+                     pointer + error.pointer};
+      error.pointer = part.source.pointer;
+      part.error = std::move(error);
+      ref.is_unreadable = true;
+      index.unreadable.push_back({ref.object, std::move(part)});
     };
     const auto tokens = model.boundary(ref.boundary);
+    if (ref.type == "GeometryInstance") continue;  // city_instances() checks them
     if (!ref.is_of_solids()) {
       if (auto status = check_range(tokens, model.vertices.size()); !status) {
-        return within(status.error());
+        note_unreadable(std::move(status).error());
       }
       continue;
     }
     SolidCutter cutter(tokens, ref.is_solid() ? 0 : 1);
-    if (auto status = cutter.cut(model.vertices.size()); !status) return within(status.error());
+    if (auto status = cutter.cut(model.vertices.size()); !status) {
+      note_unreadable(std::move(status).error());
+      continue;
+    }
     std::uint32_t ordinal = 0;
     for (SolidArrays& arrays : cutter.solids()) {
       CutSolid cut;
@@ -244,16 +253,15 @@ class FeatureLattice {
 
 }  // namespace
 
-Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIndex& index,
+Result<std::vector<CitySolid>> city_solids(const CityModel& model, ModelIndex& index,
                                            const CityHeader& header, const Limits& limits) {
-  auto cut = cut_solids(model, index);
-  if (!cut) return std::move(cut).error();
+  std::vector<CutSolid> cut = cut_solids(model, index);
   const bool is_one_feature = string_member(model.root, "type") == "CityJSONFeature";
 
-  std::vector<std::size_t> order(cut->size());
+  std::vector<std::size_t> order(cut.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto root_of = [&](std::size_t i) {
-    return is_one_feature ? 0 : index.root_of[(*cut)[i].object];
+    return is_one_feature ? 0 : index.root_of[cut[i].object];
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return root_of(a) < root_of(b); });
@@ -261,13 +269,13 @@ Result<std::vector<CitySolid>> city_solids(const CityModel& model, const ModelIn
   // The loop assigns every entry, because each solid belongs to one top-level object.
   auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
   if (!nothing) return std::move(nothing).error();
-  std::vector<CitySolid> solids(cut->size(), CitySolid{SubmittedSolid{*nothing, {}, {}}, {}, 0, 0});
+  std::vector<CitySolid> solids(cut.size(), CitySolid{SubmittedSolid{*nothing, {}, {}}, {}, 0, 0});
   FeatureLattice feature(model, header, limits);
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin;
     while (end < order.size() && root_of(order[end]) == root_of(order[begin])) ++end;
     const std::span<const std::size_t> members(order.data() + begin, end - begin);
-    if (auto status = feature.place(*cut, members, solids); !status) return status.error();
+    if (auto status = feature.place(cut, members, solids); !status) return status.error();
     begin = end;
   }
   return solids;

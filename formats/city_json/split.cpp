@@ -13,7 +13,9 @@ class LocalVertices {
  public:
   explicit LocalVertices(std::size_t vertex_count) : local_of_(vertex_count, kNone) {}
 
+  /// An index that is out of range stays as it is: in the feature it is out of range too.
   Index local(Index vertex) {
+    if (vertex >= local_of_.size()) return vertex;
     if (local_of_[vertex] == kNone) {
       local_of_[vertex] = static_cast<Index>(vertices_.size());
       vertices_.push_back(vertex);
@@ -86,13 +88,14 @@ class Splitter {
 
     AppearanceCollector appearance;
     for (const Index number : members) {
-      if (auto status = localize(number, appearance); !status) return status.error();
+      localize(number, appearance);
     }
     std::string& out = feature.skeleton;
     out = "{\"type\":\"CityJSONFeature\",\"id\":";
     append_json_string(out, feature.id);
     out += ",\"CityObjects\":{";
     const BoundaryPrinter print = [&](const Json& boundaries, std::string& text) {
+      if (!boundaries.is_number_unsigned()) return append_json(text, boundaries);
       append_reference(boundaries.get<std::size_t>(), feature, text);
     };
     for (const Index number : members) {
@@ -112,34 +115,25 @@ class Splitter {
 
   // Numbers the vertices that the object uses within the feature, and makes the object's addresses
   // and appearance refer to the lists of the feature.
-  Status localize(Index number, AppearanceCollector& appearance) {
-    const std::string pointer = "/CityObjects" + pointer_token(index_.ids[number]);
+  void localize(Index number, AppearanceCollector& appearance) {
     const Json* source = find_member(model_.root, "appearance");
     Json* geometries = find_member(object(number), "geometry");
-    if (geometries != nullptr) {
-      std::size_t position = 0;
-      for (Json& geometry : *geometries) {
-        if (auto status = appearance.adopt(geometry, source); !status) {
-          Error error = status.error();
-          error.pointer = pointer + "/geometry" + pointer_token(position) + error.pointer;
-          return error;
-        }
-        ++position;
-      }
+    if (geometries != nullptr && geometries->is_array()) {
+      // note_dangling_references() has told of the indices that refer to nothing.
+      for (Json& geometry : *geometries) static_cast<void>(appearance.adopt(geometry, source));
     }
     for (std::size_t i = first_geometry_[number]; i < first_geometry_[number + 1]; ++i) {
       for (const BoundaryToken token : model_.boundary(index_.geometries[i].boundary)) {
         if (token < kClose) local_.local(token);
       }
     }
-    return for_each_address_vertex(object(number), [&](Json& vertex) -> Status {
-      if (!vertex.is_number_unsigned() || vertex.get<std::uint64_t>() >= local_.document_count()) {
-        return Error{
-            ErrorCode::malformed, "vertex index is out of range", {}, pointer + "/address"};
-      }
-      vertex = local_.local(vertex.get<Index>());
+    const auto renumber = [&](Json& vertex) -> Status {
+      const bool exists =
+          vertex.is_number_unsigned() && vertex.get<std::uint64_t>() < local_.document_count();
+      vertex = exists ? local_.local(vertex.get<Index>()) : kDangling;
       return Done{};
-    });
+    };
+    static_cast<void>(for_each_address_vertex(object(number), renumber));
   }
 
   void append_reference(std::size_t boundary, Feature& feature, std::string& out) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
+#include <algorithm>
 #include <utility>
 
 #include "formats/city_json/model.h"
@@ -31,7 +32,8 @@ class TemplateReader {
     for (std::uint32_t i = 0; i < templates->size(); ++i) {
       index.ids.emplace_back();
       index.root_of.push_back(i);
-      if (auto status = read_template((*templates)[i], i, index); !status) return status.error();
+      const auto status = read_template((*templates)[i], i, index);
+      if (!status) add_empty(i, status.error(), index);
     }
     return index;
   }
@@ -39,6 +41,16 @@ class TemplateReader {
   CityModel& model() { return model_; }
 
  private:
+  /// Adds a solid without facets in place of a template that cannot be read.
+  void add_empty(std::uint32_t number, const Error& error, ModelIndex& index) {
+    index.notes.push_back("the template cannot be read: " + error.message + " at " + error.pointer);
+    model_.tokens.resize(model_.boundary_begin.back());
+    index.geometries.push_back({number, number, model_.boundary_begin.size() - 1, "Solid", {}});
+    model_.tokens.push_back(kOpen);
+    model_.tokens.push_back(kClose);
+    model_.boundary_begin.push_back(model_.tokens.size());
+  }
+
   Status read_vertices() {
     const std::string pointer = "/geometry-templates/vertices-templates";
     const Json* vertices = find_member(section_, "vertices-templates");
@@ -129,24 +141,35 @@ class TemplateReader {
 
 }  // namespace
 
-Result<std::vector<SubmittedSolid>> read_geometry_templates(const CityHeader& header,
-                                                            const Limits& limits) {
-  if (header.template_count == 0) return std::vector<SubmittedSolid>{};
+Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const Limits& limits) {
+  TemplateSolids found;
+  if (header.template_count == 0) return found;
   Limits unlimited = limits;
   unlimited.bytes = ~0ULL;  // the header was within the limit when it was read
   const auto root = parse_json(header.text, unlimited);
   if (!root) return root.error();
   const Json* section = find_member(*root, "geometry-templates");
-  if (section == nullptr) return std::vector<SubmittedSolid>{};
+  if (section == nullptr) return found;
   TemplateReader reader(*section);
   auto index = reader.read();
   if (!index) return std::move(index).error();
   auto solids = city_solids(reader.model(), *index, CityHeader{}, limits);
   if (!solids) return std::move(solids).error();
-  std::vector<SubmittedSolid> submitted;
-  submitted.reserve(solids->size());
-  for (CitySolid& solid : *solids) submitted.push_back(std::move(solid.submitted));
-  return submitted;
+  found.notes = std::move(index->notes);
+  found.solids.reserve(solids->size());
+  for (CitySolid& solid : *solids) found.solids.push_back(std::move(solid.submitted));
+  for (UnreadableRef& ref : index->unreadable) {
+    auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
+    if (!nothing) return std::move(nothing).error();
+    found.notes.push_back("the template cannot be read: " + ref.part.error.message + " at " +
+                          ref.part.error.pointer);
+    found.solids.push_back({*std::move(nothing), std::move(ref.part.source), {}});
+  }
+  std::stable_sort(found.solids.begin(), found.solids.end(),
+                   [](const SubmittedSolid& a, const SubmittedSolid& b) {
+                     return a.source.geometry < b.source.geometry;
+                   });
+  return found;
 }
 
 }  // namespace watertight::formats

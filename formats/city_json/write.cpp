@@ -204,6 +204,9 @@ void append_solid(std::string& out, const Solid& solid, const std::vector<Index>
 
 BoundaryPrinter boundary_printer(const OpenFeature& open, std::uint64_t offset) {
   return [&open, offset](const Json& boundaries, std::string& out) {
+    if (!boundaries.is_object() && !boundaries.is_number_unsigned()) {
+      return append_json(out, boundaries);
+    }
     if (!boundaries.is_object()) {
       append_boundary(out, open.model.boundary(boundaries.get<std::size_t>()),
                       [offset](Index vertex) { return vertex + offset; });
@@ -281,7 +284,7 @@ class Merger {
       }
       if (auto status = shift_addresses(object, vertex_count_); !status) return status;
       if (source != nullptr) {
-        if (auto status = adopt(object, source); !status) return status;
+        adopt(object, source);
       }
       if (!objects_.empty()) objects_ += ',';
       append_json_string(objects_, id);
@@ -313,13 +316,10 @@ class Merger {
   }
 
  private:
-  Status adopt(Json& object, const Json* source) {
+  void adopt(Json& object, const Json* source) {
     Json* geometries = find_member(object, "geometry");
-    if (geometries == nullptr || !geometries->is_array()) return Done{};
-    for (Json& geometry : *geometries) {
-      if (auto status = appearance_.adopt(geometry, source); !status) return status;
-    }
-    return Done{};
+    if (geometries == nullptr || !geometries->is_array()) return;
+    for (Json& geometry : *geometries) static_cast<void>(appearance_.adopt(geometry, source));
   }
 
   const Json& header_;

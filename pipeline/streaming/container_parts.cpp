@@ -53,7 +53,7 @@ Status ContainerParts::add(ContainerDocument added) {
   if (!header) return std::move(header).error();
   auto templates = formats::read_geometry_templates(*header, limits_);
   if (!templates) return std::move(templates).error();
-  shared.document.templates = *std::move(templates);
+  shared.document.templates = std::move(templates->solids);
   shared.header = *std::move(header);
   return Done{};
 }

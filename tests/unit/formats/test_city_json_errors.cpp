@@ -18,6 +18,18 @@ Error error_of(const std::string& text, Format format = Format::city_json) {
   return document.error();
 }
 
+/// The error of the one part of the document that cannot be read.
+Error part_of(const std::string& text, Format format = Format::city_json) {
+  const auto document = read(text, format);
+  REQUIRE(document);
+  std::vector<Error> errors;
+  for (const Feature& feature : document->features) {
+    for (const auto& part : feature.unreadable) errors.push_back(part.error);
+  }
+  REQUIRE(errors.size() == 1);
+  return errors.front();
+}
+
 std::string with_object(const std::string& object) {
   return R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],)"
          R"("translate":[0,0,0]},"CityObjects":{"a":)" +
@@ -60,27 +72,49 @@ TEST_CASE("content errors name the place by JSON Pointer") {
   CHECK(error_of(R"({"type":"CityJSON","version":"3.0"})").code == ErrorCode::unsupported);
   CHECK(error_of(R"({"type":"CityJSON","version":"1.0"})").pointer == "/CityObjects");
   CHECK(error_of(R"({"type":"CityJSON","version":"1.0","CityObjects":{}})").pointer == "/vertices");
-  CHECK(error_of(with_object("1")).pointer == "/CityObjects/a");
-  CHECK(error_of(with_object("{}")).pointer == "/CityObjects/a");
-  CHECK(error_of(with_object(R"({"type":"Road","geometry":{}})")).pointer ==
+  // Faults of one object do not keep the others from being read.
+  CHECK(part_of(with_object("1")).pointer == "/CityObjects/a");
+  CHECK(part_of(with_object("{}")).pointer == "/CityObjects/a");
+  CHECK(part_of(with_object(R"({"type":"Road","geometry":{}})")).pointer ==
         "/CityObjects/a/geometry");
-  CHECK(error_of(with_object(R"({"type":"Road","geometry":[{}]})")).pointer ==
+  CHECK(part_of(with_object(R"({"type":"Road","geometry":[{}]})")).pointer ==
         "/CityObjects/a/geometry/0");
-  CHECK(error_of(with_object(R"({"type":"Road","geometry":[{"type":"Solid"}]})")).pointer ==
+  CHECK(part_of(with_object(R"({"type":"Road","geometry":[{"type":"Solid"}]})")).pointer ==
         "/CityObjects/a/geometry/0");
 }
 
-TEST_CASE("boundaries that are not nested indices are errors") {
+TEST_CASE("boundaries that are not nested indices are unreadable parts") {
   const std::string at = "/CityObjects/a/geometry/0/boundaries";
-  CHECK(error_of(with_boundaries("[[[[0,1,4]]]]")).pointer == at + "/0/0/0/2");
-  CHECK(error_of(with_boundaries("[[[[0,1,-1]]]]")).pointer == at + "/0/0/0/2");
-  CHECK(error_of(with_boundaries("[[[[0,1.5]]]]")).pointer == at + "/0/0/0/1");
-  CHECK(error_of(with_boundaries("[[[[0,null]]]]")).pointer == at + "/0/0/0/1");
-  CHECK(error_of(with_boundaries("[[[0,1,2]]]")).pointer == at + "/0/0/0");
-  CHECK(error_of(with_boundaries("[[[[[0,1,2]]]]]")).pointer == at + "/0/0/0/0");
-  CHECK(error_of(with_boundaries("[[[[4294967295]]]]")).pointer == at + "/0/0/0/0");
+  CHECK(part_of(with_boundaries("[[[[0,1,4]]]]")).pointer == at + "/0/0/0/2");
+  CHECK(part_of(with_boundaries("[[[[0,1,-1]]]]")).pointer == at + "/0/0/0/2");
+  CHECK(part_of(with_boundaries("[[[[0,1.5]]]]")).pointer == at + "/0/0/0/1");
+  CHECK(part_of(with_boundaries("[[[[0,null]]]]")).pointer == at + "/0/0/0/1");
+  CHECK(part_of(with_boundaries("[[[0,1,2]]]")).pointer == at + "/0/0/0");
+  CHECK(part_of(with_boundaries("[[[[[0,1,2]]]]]")).pointer == at + "/0/0/0/0");
+  CHECK(part_of(with_boundaries("[[[[4294967295]]]]")).pointer == at + "/0/0/0/0");
   CHECK(error_of(with_boundaries("0")).pointer == "/CityObjects/a/geometry/0");
   CHECK(error_of(with_boundaries(R"({"solid":0})")).pointer == "/CityObjects/a/geometry/0");
+}
+
+TEST_CASE("unreadable parts come back as they came, in whole documents and in features") {
+  for (const char* boundaries :
+       {"[[[[0,1,4]]]]", "[[[[0,1,-1]]]]", "[[[[0,1.50]]]]", "[[[[0,null]]]]", "[[[0,1,2]]]",
+        "[[[[4294967295]]]]", R"("text")", R"([{"solid":0},[],[[7]]])", "1.0"}) {
+    const std::string text = with_boundaries(boundaries);
+    CAPTURE(text);
+    for (const bool is_split : {false, true}) {
+      const auto document = read(text, Format::city_json, is_split);
+      REQUIRE(document);
+      REQUIRE(document->features.size() == 1);
+      CHECK(document->features[0].unreadable.size() == 1);
+      CHECK(document->features[0].solids.empty());
+      const auto again = formats::write_document(*document, Format::city_json);
+      REQUIRE(again);
+      const std::string kept = std::string("\"boundaries\":") + boundaries + "}";
+      CHECK(as_text(*again).find(kept) != std::string_view::npos);
+      if (!is_split) CHECK(as_text(*again) == text);
+    }
+  }
 }
 
 TEST_CASE("empty boundaries, facets and rings are left to the validator") {
@@ -152,12 +186,12 @@ TEST_CASE("nesting and size are limited") {
   CHECK(small.error().code == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("a city object that is its own ancestor is an error") {
+TEST_CASE("a city object that is its own ancestor is an unreadable part") {
   const std::string text =
       R"({"type":"CityJSON","version":"1.1","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
       R"("CityObjects":{"a":{"type":"BuildingPart","parents":["b"]},)"
       R"("b":{"type":"BuildingPart","parents":["a"]}},"vertices":[]})";
-  CHECK(error_of(text).pointer == "/CityObjects/a/parents");
+  CHECK(part_of(text).pointer == "/CityObjects/a/parents");
 }
 
 TEST_CASE("coordinates that had to be rounded are not written on the grid they came from") {

@@ -38,6 +38,28 @@ std::string instance(const std::string& number, const std::string& boundaries = 
          R"(,"transformationMatrix":)" + matrix + "}";
 }
 
+/// The error of the one part of the document that cannot be read.
+Error part_of(const std::string& text) {
+  const auto document = read(text, Format::city_json);
+  REQUIRE(document);
+  std::vector<Error> errors;
+  for (const Feature& feature : document->features) {
+    for (const auto& part : feature.unreadable) errors.push_back(part.error);
+  }
+  REQUIRE(errors.size() == 1);
+  return errors.front();
+}
+
+/// The note about a template that cannot be read; there is a solid without facets in its place.
+std::string note_of(const std::string& text) {
+  const auto document = read(text, Format::city_json);
+  REQUIRE(document);
+  REQUIRE(document->templates.size() == 1);
+  CHECK(document->templates[0].solid.facet_count() == 0);
+  REQUIRE(document->notes.size() == 1);
+  return document->notes.front();
+}
+
 Error error_of(const std::string& text) {
   const auto document = read(text, Format::city_json);
   REQUIRE_FALSE(document);
@@ -80,8 +102,8 @@ TEST_CASE("the header of a sequence gives its templates") {
   CHECK(header->template_count == 1);
   const auto templates = formats::read_geometry_templates(*header);
   REQUIRE(templates);
-  REQUIRE(templates->size() == 1);
-  CHECK((*templates)[0].solid == document->templates[0].solid);
+  REQUIRE(templates->solids.size() == 1);
+  CHECK(templates->solids[0].solid == document->templates[0].solid);
   const auto sequence = formats::write_document(*document, Format::city_json_seq);
   REQUIRE(sequence);
   const auto again = read(std::string(as_text(*sequence)), Format::city_json_seq);
@@ -90,24 +112,22 @@ TEST_CASE("the header of a sequence gives its templates") {
   const std::string feature =
       R"({"type":"CityJSONFeature","id":"t","CityObjects":{"t":{"type":"Tree","geometry":[)" +
       instance("1") + R"(]}},"vertices":[[0,0,0]]})";
-  CHECK(formats::read_city_json_feature(*header, feature).error().pointer ==
-        "/CityObjects/t/geometry/0/template");
+  const auto read_feature = formats::read_city_json_feature(*header, feature);
+  REQUIRE(read_feature);
+  REQUIRE(read_feature->unreadable.size() == 1);
+  CHECK(read_feature->unreadable.front().error.pointer == "/CityObjects/t/geometry/0/template");
 }
 
 TEST_CASE("errors in templates name the place") {
   const std::string good = instance("0");
   const std::string base = "/geometry-templates/templates";
-  CHECK(error_of(model(section(geometry("Solid", "[[[[0,2,4]]]]")), good)).pointer ==
-        base + "/0/boundaries/0/0/0/2");
-  CHECK(error_of(model(section(geometry("Solid", "[[[0,2,1]]]")), good)).pointer ==
-        base + "/0/boundaries/0/0/0");
-  CHECK(error_of(model(section(geometry("MultiSurface", "[[[0,1,4]]]")), good)).pointer ==
-        base + "/0/boundaries/0/0/2");
-  CHECK(error_of(model(section(geometry("Solid", "[[[[0,-2,1]]]]")), good)).pointer ==
-        base + "/0/boundaries/0/0/0/1");
-  CHECK(error_of(model(section(geometry("Solid", "5")), good)).pointer == base + "/0");
-  CHECK(error_of(model(section("5"), good)).pointer == base + "/0");
-  CHECK(error_of(model(section("{}"), good)).pointer == base + "/0");
+  CHECK(note_of(model(section(geometry("Solid", "[[[[0,2,4]]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/0/2"));
+  CHECK(note_of(model(section(geometry("Solid", "[[[0,2,1]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/0"));
+  CHECK(note_of(model(section(geometry("MultiSurface", "[[[0,1,4]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/2"));
+  CHECK(note_of(model(section(geometry("Solid", "[[[[0,-2,1]]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/0/1"));
+  CHECK(note_of(model(section(geometry("Solid", "5")), good)).ends_with(" at " + base + "/0"));
+  CHECK(note_of(model(section("5"), good)).ends_with(" at " + base + "/0"));
+  CHECK(note_of(model(section("{}"), good)).ends_with(" at " + base + "/0"));
   CHECK(error_of(model(R"("geometry-templates":{},)", good)).pointer == base);
   CHECK(error_of(model(R"("geometry-templates":{"templates":[{}]},)", good)).pointer ==
         "/geometry-templates/vertices-templates");
@@ -120,22 +140,21 @@ TEST_CASE("errors in templates name the place") {
 TEST_CASE("errors in geometry instances name the place") {
   const std::string templates = section(geometry("Solid", kTetrahedron));
   const std::string base = "/CityObjects/tree/geometry/0";
-  CHECK(error_of(model(templates, instance("1"))).pointer == base + "/template");
-  CHECK(error_of(model(templates, instance("-1"))).pointer == base + "/template");
-  CHECK(error_of(model(templates, instance("\"0\""))).pointer == base + "/template");
-  CHECK(error_of(model("", instance("0"))).message.find("0 templates") != std::string::npos);
-  CHECK(error_of(model(templates, instance("0", "[1]"))).pointer == base + "/boundaries/0");
-  CHECK(error_of(model(templates, instance("0", "[0]", "[1,2,3]"))).pointer ==
+  CHECK(part_of(model(templates, instance("1"))).pointer == base + "/template");
+  CHECK(part_of(model(templates, instance("-1"))).pointer == base + "/template");
+  CHECK(part_of(model(templates, instance("\"0\""))).pointer == base + "/template");
+  CHECK(part_of(model("", instance("0"))).message.find("0 templates") != std::string::npos);
+  CHECK(part_of(model(templates, instance("0", "[1]"))).pointer == base + "/boundaries/0");
+  CHECK(part_of(model(templates, instance("0", "[0]", "[1,2,3]"))).pointer ==
         base + "/transformationMatrix");
-  CHECK(error_of(model(templates, R"({"type":"GeometryInstance","template":0})")).pointer ==
+  CHECK(part_of(model(templates, R"({"type":"GeometryInstance","template":0})")).pointer ==
         base + "/boundaries");
-  CHECK(error_of(model(templates, instance("0", "[]"))).pointer == base + "/boundaries");
-  CHECK(error_of(model(templates, instance("0", "[0]", "[1,0,0,0,0,1,0,0,0,0,1,0,5,6,7,1]")))
+  CHECK(part_of(model(templates, instance("0", "[]"))).pointer == base + "/boundaries");
+  CHECK(part_of(model(templates, instance("0", "[0]", "[1,0,0,0,0,1,0,0,0,0,1,0,5,6,7,1]")))
             .pointer == base + "/transformationMatrix");
-  CHECK(error_of(model(templates, instance("0", "[0]", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]")))
+  CHECK(part_of(model(templates, instance("0", "[0]", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]")))
             .pointer == base + "/transformationMatrix");
-  CHECK_FALSE(read(model(templates, instance("0", "[0]", "[1e400,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]")),
-                   Format::city_json));
+  CHECK_FALSE(read(model(templates, instance("0", "[0]", "[1e400,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]")), Format::city_json));
 }
 
 TEST_CASE(
@@ -166,9 +185,9 @@ TEST_CASE("a child that the document does not hold is an error") {
            children + R"(},"b":{"type":"BuildingPart","parents":["a"]}},"vertices":[]})";
   };
   CHECK(read(with_children("[\"b\"]"), Format::city_json));
-  CHECK(error_of(with_children("[\"b\",\"c\"]")).pointer == "/CityObjects/a/children/1");
-  CHECK(error_of(with_children("[7]")).pointer == "/CityObjects/a/children/0");
-  CHECK(error_of(with_children("{}")).pointer == "/CityObjects/a/children");
+  CHECK(part_of(with_children("[\"b\",\"c\"]")).pointer == "/CityObjects/a/children/1");
+  CHECK(part_of(with_children("[7]")).pointer == "/CityObjects/a/children/0");
+  CHECK(part_of(with_children("{}")).pointer == "/CityObjects/a/children");
 }
 
 TEST_CASE("empty boundaries and a missing lod are read without an error") {

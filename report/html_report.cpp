@@ -8,6 +8,7 @@
 #include "report/feature_report.h"
 #include "report/footprints.h"
 #include "report/html_page.h"
+#include "report/number_text.h"
 #include "report/picture.h"
 #include "report/tally.h"
 #include "validate/finding_kinds.h"
@@ -47,37 +48,11 @@ std::string counted(std::uint64_t count, std::string_view noun) {
   return text;
 }
 
-std::string coordinates_text(const std::array<double, 3>& point) {
-  std::string text;
-  for (const double coordinate : point) {
-    std::array<char, 32> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), coordinate).ptr;
-    if (!text.empty()) text += ' ';
-    text.append(buffer.data(), end);
-  }
-  return text;
-}
-
 std::string solid_name(const SolidSource& source) {
   if (!source.object_id.empty()) return source.object_id;
   std::string name = "solid ";
   name += std::to_string(source.ordinal);
   return name;
-}
-
-std::string place_words(const Place& place, const Solid* solid) {
-  std::string text;
-  const auto add = [&](std::string_view name, Index index) {
-    if (!text.empty()) text += ' ';
-    text += name;
-    text += ' ';
-    text += std::to_string(index);
-  };
-  const bool has_shells = solid != nullptr && solid->shell_count() > 1;
-  if (place.shell != kNone && (has_shells || place.facet == kNone)) add("shell", place.shell);
-  if (place.facet != kNone) add("facet", place.facet);
-  if (place.ring != kNone && place.ring > 0) add("ring", place.ring);
-  return text;
 }
 
 void append_fact(std::string& html, std::string_view name, const std::string& value,
@@ -228,7 +203,7 @@ std::string HtmlReport::place_cell(const pipeline::InspectedFeature& feature,
     append_fact(cell, "other", feature.solids[placed.other_solid].source.object_id);
   }
   const auto point = point_of(feature, placed);
-  if (point) append_fact(cell, "at", coordinates_text(*point), true);
+  if (point) append_fact(cell, "at", point_text(*point), true);
   append_fact(cell, "pointer", pointer_of(feature, placed.solid, finding.place), true);
   if (finding.other) {
     append_fact(cell, "other", pointer_of(feature, placed.other_solid, *finding.other), true);

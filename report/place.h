@@ -33,6 +33,10 @@ const Solid* submitted_solid(const pipeline::InspectedFeature& feature, Index so
 std::optional<std::array<double, 3>> point_of(const pipeline::InspectedFeature& feature,
                                               const PlacedFinding& placed);
 
+/// A place in a solid as words: "shell 1 facet 5 ring 2 vertex 7". The shell is left out where the
+/// solid has only one and a facet is named, or where the solid is unknown (null).
+std::string place_words(const Place& place, const Solid* solid);
+
 /// val3dity's path of a solid: "coid=b|geom=0|solid=1".
 std::string solid_id(const SolidSource& source);
 

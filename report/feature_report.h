@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Reports of whole runs, written while features arrive: the JSON report (a superset of val3dity's),
-// the GeoJSON layer of findings, the CSV table, the SARIF log and the HTML page. For command line and
-// service. All are described in docs/report.md.
+// the GeoJSON layer of findings, the CSV table, the SARIF log and the HTML page. For command line
+// and service. All are described in docs/report.md.
 #pragma once
 
 #include <cstdint>

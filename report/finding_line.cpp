@@ -66,42 +66,43 @@ std::string object_words(const SolidSource& source) {
   return words;
 }
 
-std::vector<std::string> finding_lines(const pipeline::InspectedFeature& feature) {
+std::vector<FindingLine> finding_lines(const pipeline::InspectedFeature& feature) {
   const auto side_of = [&](Index solid, const Place& place) -> Side {
     if (solid >= feature.solids.size()) return {nullptr, nullptr, place};
     return {&feature.solids[solid].source, submitted_solid(feature, solid), place};
   };
-  std::vector<std::string> lines;
+  std::vector<FindingLine> lines;
   for (const PlacedFinding& placed : findings_of(feature)) {
     const Finding& finding = *placed.finding;
     LineParts parts{&finding, side_of(placed.solid, finding.place), {}, {}};
     if (finding.other) parts.other = side_of(placed.other_solid, *finding.other);
     parts.point = point_of(feature, placed);
-    lines.push_back(line_of(parts));
+    lines.push_back({&finding, line_of(parts)});
   }
   return lines;
 }
 
-std::vector<std::string> finding_lines(const pipeline::FeatureOutcome& feature) {
-  std::vector<std::string> lines;
+std::vector<FindingLine> finding_lines(const pipeline::FeatureOutcome& feature) {
+  std::vector<FindingLine> lines;
   for (const pipeline::SolidOutcome& solid : feature.solids) {
     for (const Finding& finding : solid.report.findings) {
       LineParts parts{&finding, {&solid.source, nullptr, finding.place}, {}, {}};
       if (finding.other) parts.other = Side{&solid.source, nullptr, *finding.other};
       parts.point = finding.witness;
-      lines.push_back(line_of(parts));
+      lines.push_back({&finding, line_of(parts)});
     }
   }
   for (const pipeline::InspectedGroup& group : feature.groups) {
     const auto side_of = [&](const Place& place) -> Side {
-      const std::size_t member = place.solid < group.members.size() ? group.members[place.solid] : 0;
+      const std::size_t member =
+          place.solid < group.members.size() ? group.members[place.solid] : 0;
       const bool is_known = place.solid < group.members.size() && member < feature.solids.size();
       return {is_known ? &feature.solids[member].source : nullptr, nullptr, place};
     };
     for (const Finding& finding : group.report.findings) {
       LineParts parts{&finding, side_of(finding.place), {}, finding.witness};
       if (finding.other) parts.other = side_of(*finding.other);
-      lines.push_back(line_of(parts));
+      lines.push_back({&finding, line_of(parts)});
     }
   }
   return lines;

@@ -101,7 +101,13 @@ MeasureText measure_of(const Finding& finding, const Write& write) {
 
 }  // namespace
 
-MeasureText readable_measure(const Finding& finding) { return measure_of(finding, readable); }
+/// The limit has the unit of the measured value, unless both are lengths in units of their own.
+MeasureText readable_measure(const Finding& finding) {
+  MeasureText text = measure_of(finding, readable);
+  const bool repeats = finding.unit != "m" && !finding.unit.empty() && !text.measured.empty();
+  if (repeats) text.limit.resize(std::min(text.limit.find(' '), text.limit.size()));
+  return text;
+}
 
 MeasureText measure_columns(const Finding& finding) {
   MeasureText text = measure_of(finding, column);

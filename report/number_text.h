@@ -19,8 +19,8 @@ struct MeasureText {
   std::string unit;
 };
 
-/// Both with their own units: {"0.1 mm", "10 mm", ""}. Metres are rounded to centimetres from 1 m
-/// on, else to a tenth of a millimetre, or of a smaller unit where that would be 0.
+/// With units: {"0.1 mm", "10 mm", ""}, {"72 edges", "0", ""}. Metres are rounded to centimetres
+/// from 1 m on, else to a tenth of a millimetre, or of a smaller unit where that would be 0.
 MeasureText readable_measure(const Finding& finding);
 
 /// The same digits as plain numbers in the unit of the finding, which stands apart: {"0.0001",

@@ -111,13 +111,12 @@ class SarifReport final : public FeatureReport {
   Status add(const pipeline::ValidatedFeature& feature) override {
     const std::vector<PlacedFinding> findings = findings_of(feature.inspected);
     if (findings.empty()) return Done{};
-    const std::vector<IdentifiedFinding> identified =
-        identified_findings(file_, feature.inspected);
-    const std::vector<std::string> lines = finding_lines(feature.inspected);
+    const std::vector<IdentifiedFinding> identified = identified_findings(file_, feature.inspected);
+    const std::vector<FindingLine> lines = finding_lines(feature.inspected);
     std::string text;
     for (std::size_t i = 0; i < findings.size(); ++i) {
       JsonText json;
-      begin_result(json, findings[i].finding->code, findings[i].finding->severity, lines[i]);
+      begin_result(json, findings[i].finding->code, findings[i].finding->severity, lines[i].text);
       write_places(json, feature, findings[i]);
       json.key("partialFingerprints").open('{').key("watertightFinding/v1");
       json.value(hex_of(identified[i].fingerprint)).close('}');

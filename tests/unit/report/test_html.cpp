@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/html/scene.h"
 #include "report/place.h"
-#include "report/scene.h"
 #include "tests/unit/report/samples.h"
 
 using namespace watertight;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/html_page.h"
+#include "report/html/html_page.h"
 
 #include "base/json_text.h"
 

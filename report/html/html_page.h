@@ -16,8 +16,8 @@ std::string html_text(std::string_view text);
 /// Appends the parts one after the other.
 void append(std::string& html, std::initializer_list<std::string_view> parts);
 
-/// Content of the page's <style> and <script>: the files report/page.css and report/page.js, which
-/// report/CMakeLists.txt embeds.
+/// Content of the page's <style> and <script>: the files report/html/page.css and
+/// report/html/page.js, which report/CMakeLists.txt embeds.
 extern const std::string_view kPageStyle;
 extern const std::string_view kPageScript;
 

@@ -6,10 +6,10 @@
 
 #include "geometry/measures.h"
 #include "report/feature_report.h"
-#include "report/footprints.h"
-#include "report/html_page.h"
+#include "report/html/footprints.h"
+#include "report/html/html_page.h"
+#include "report/html/picture.h"
 #include "report/number_text.h"
-#include "report/picture.h"
 #include "report/tally.h"
 #include "validate/finding_kinds.h"
 

@@ -60,10 +60,18 @@ void require_store(const StoreChoice& store) {
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
-  sub->add_option("FILE", command.files, "documents; - for standard input")->required();
+  sub->add_option("FILE", command.files, "documents; - for standard input");
   sub->add_option("--report", command.report, "write the reports as JSON, a line per document");
   sub->add_option("--geojson", command.geojson, "write the findings as a GeoJSON layer");
   sub->add_option("--html", command.html, "write the report as a page with pictures");
+  sub->add_option("--csv", command.csv, "write the findings as a table, a row for each");
+  sub->add_option("--sarif", command.sarif, "write the findings as SARIF 2.1.0, for code hosts");
+  sub->add_option("--baseline", command.baseline,
+                  "an earlier --report: only findings that it does not have give status 1");
+  sub->add_option("--explain", command.explain,
+                  "print what a finding means, its cause and its remedy, for a code or a name");
+  sub->add_flag("--require-solids", command.requires_solids,
+                "status 1 for a file without solids, in which nothing is checked");
   sub->add_option("--interior-shell", command.interior_shells,
                   "file with a cavity of the file's one solid; can be repeated")
       ->allow_extra_args(false);
@@ -93,10 +101,15 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
       ->check(CLI::IsMember({"auto", "cgal", "tetgen"}))
       ->capture_default_str();
   sub->add_flag("--strict", command.is_strict, "only the canonical triangles of facets count");
-  sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
+  sub->add_flag("-q,--quiet", command.is_quiet, "the summary and the table only");
   add_jobs(*sub, command.jobs);
   command.program_version = WATERTIGHT_VERSION;
-  sub->callback([&] { chosen = [&] { return run(command); }; });
+  sub->callback([&] {
+    if (command.files.empty() == command.explain.empty()) {
+      throw CLI::ValidationError("either FILE or --explain CODE is required");
+    }
+    chosen = [&] { return run(command); };
+  });
 }
 
 void add_contract(CLI::App& sub, std::string& contract) {

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/quantity.h"
+
 namespace watertight::cli {
 namespace {
 
@@ -55,6 +57,12 @@ void Summary::add(const Summary& part) {
   invalid_ += part.invalid_;
   undecided_ += part.undecided_;
   features_ += part.features_;
+  invalid_features_ += part.invalid_features_;
+  undecided_features_ += part.undecided_features_;
+  empty_features_ += part.empty_features_;
+  files_ += part.files_;
+  empty_files_ += part.empty_files_;
+  if (part.baseline_) add(*part.baseline_);
   unreadable_ += part.unreadable_;
   stored_ += part.stored_;
   file_bytes_ += part.file_bytes_;
@@ -65,8 +73,27 @@ void Summary::add(const Summary& part) {
   for (const auto& [rung, count] : part.by_rung_) by_rung_[rung] += count;
 }
 
-void Summary::add(const pipeline::FeatureOutcome& feature) {
+void Summary::add_file(bool has_solids) {
+  ++files_;
+  if (!has_solids) ++empty_files_;
+}
+
+void Summary::add(const BaselineCounts& counts) {
+  if (!baseline_) baseline_.emplace();
+  baseline_->fresh += counts.fresh;
+  baseline_->known += counts.known;
+  baseline_->gone += counts.gone;
+}
+
+void Summary::add_feature(Verdict verdict, bool has_solids) {
   ++features_;
+  if (verdict == Verdict::invalid) ++invalid_features_;
+  if (verdict == Verdict::undecided) ++undecided_features_;
+  if (!has_solids && verdict == Verdict::valid) ++empty_features_;
+}
+
+void Summary::add(const pipeline::FeatureOutcome& feature) {
+  add_feature(feature.verdict, !feature.solids.empty());
   for (const pipeline::SolidOutcome& solid : feature.solids) {
     add(solid.report);
     if (solid.blob_bytes == 0) continue;
@@ -77,7 +104,7 @@ void Summary::add(const pipeline::FeatureOutcome& feature) {
 }
 
 void Summary::add(const pipeline::InspectedFeature& feature) {
-  ++features_;
+  add_feature(feature.verdict(), !feature.solids.empty());
   for (const pipeline::InspectedSolid& solid : feature.solids) add(solid.inspection.report);
   add(feature.groups);
 }
@@ -101,12 +128,46 @@ void Summary::add(const std::vector<pipeline::InspectedGroup>& groups) {
   }
 }
 
-std::string Summary::table(double seconds) const {
-  std::string text = row("features", features_);
-  for (const auto& [code, count] : groups_by_code_) {
-    text += row("  with " + std::to_string(code) + " " + std::string(validate::finding_name(code)),
-                count);
+std::string Summary::headline() const {
+  std::string text;
+  const std::uint64_t checked = features_ - empty_features_;
+  if (solids() == 0) {
+    text = "Nothing was checked: there are no solids.\n";
+  } else if (invalid_features_ + undecided_features_ == 0) {
+    text = checked == 1 ? "The feature with solids is valid.\n"
+                        : "All " + quantity(checked, "feature") + " with solids are valid.\n";
+  } else {
+    text = quantity(invalid_features_, "feature") + " of " + std::to_string(checked) +
+           (invalid_features_ == 1 ? " is invalid" : " are invalid");
+    if (undecided_features_ > 0) text += ", " + std::to_string(undecided_features_) + " undecided";
+    text += ".\n";
   }
+  if (unreadable_ > 0) {
+    text += quantity(unreadable_, "part") + " of the input could not be read.\n";
+  }
+  if (solids() > 0 && empty_files_ > 0) {
+    text += "Nothing was checked in " + quantity(empty_files_, "file") + " of " +
+            std::to_string(files_) + (empty_files_ == 1 ? ", which has" : ", which have") +
+            " no solids.\n";
+  }
+  if (!baseline_) return text;
+  return text + "Against the baseline: " + quantity(baseline_->fresh, "new finding") + ", " +
+         std::to_string(baseline_->known) + " known, " + std::to_string(baseline_->gone) +
+         " gone.\n";
+}
+
+std::string Summary::table(double seconds) const {
+  std::string text;
+  if (files_ > 0) text += row("files", files_);
+  if (empty_files_ > 0) text += row("  without solids: nothing was checked", empty_files_);
+  text += row("features", features_) + row("  invalid", invalid_features_);
+  for (const auto& [code, count] : groups_by_code_) {
+    text +=
+        row("    with " + std::to_string(code) + " " + std::string(validate::finding_name(code)),
+            count);
+  }
+  if (undecided_features_ > 0) text += row("  undecided", undecided_features_);
+  if (empty_features_ > 0) text += row("  without solids: nothing was checked", empty_features_);
   if (unreadable_ > 0) text += row("  that could not be read", unreadable_);
   text += row("solids", solids()) + row("  valid", valid_);
   if (with_warnings_ > 0) text += row("    with warnings", with_warnings_);
@@ -119,6 +180,10 @@ std::string Summary::table(double seconds) const {
         row("    " + std::to_string(code) + " " + std::string(validate::finding_name(code)), count);
   }
   text += row("  undecided", undecided_);
+  if (baseline_) {
+    text += row("new findings", baseline_->fresh) + row("known findings", baseline_->known) +
+            row("findings gone", baseline_->gone);
+  }
   if (stored_ > 0) text += row("features stored", stored_);
   text += row("bytes of the files", file_bytes_);
   if (blob_bytes_ > 0) {

@@ -30,7 +30,7 @@ struct ValidateCommand {
   std::string proof = "tetrahedralization";
   std::string engine = "auto";  // "auto", "cgal" or "tetgen"
   bool is_strict = false;
-  bool also_tolerant = false;
+  std::optional<double> tolerant_metres;  // the snap distance of a tolerant verdict as well
   bool leaves_times_out = false;
   bool is_quiet = false;         // no line per finding
   bool requires_solids = false;  // a file without solids is status 1

@@ -33,7 +33,8 @@ pipeline::StreamOptions options_of(const ValidateCommand& command) {
   options.certify.tolerances.planarity_metres = command.planarity_metres;
   options.certify.tolerances.planarity_degrees = command.planarity_degrees;
   options.certify.proof = command.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
-  options.certify.also_tolerant = command.also_tolerant;
+  options.certify.also_tolerant = command.tolerant_metres.has_value();
+  if (command.tolerant_metres) options.certify.tolerant_snap_metres = *command.tolerant_metres;
   options.certify.ladder.engine = engine_of(command.engine);
   options.certify.ladder.strict = command.is_strict;
   options.certify.ladder.seconds_in_all = command.seconds_per_solid;
@@ -56,7 +57,8 @@ report::ReportHead head_of(const ValidateCommand& command, const pipeline::Strea
   head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
   head.is_strict = command.is_strict;
   head.overlap_metres = command.overlap_metres;
-  head.also_tolerant = command.also_tolerant;
+  head.also_tolerant = options.certify.also_tolerant;
+  head.tolerant_snap_metres = options.certify.tolerant_snap_metres;
   return head;
 }
 
@@ -320,6 +322,7 @@ void Validation::validate_file(const std::string& file) {
     summary_.add_file_bytes(input->reader.bytes_read());
   } else if (status) {
     fail(file, input.error());
+    summary_.add_unreadable_file();
     status = tell_reports(
         [&](report::FeatureReport& report) { return report.add_error(input.error()); });
   }

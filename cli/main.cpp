@@ -83,8 +83,11 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
                   "CPU time of engines for a solid; 0: by its size")
       ->check(in_range(0, 86400, "from 0 to 86400"))
       ->capture_default_str();
-  sub->add_flag("--tolerant", command.also_tolerant,
-                "also report the verdict under a snap tolerance of 1 mm");
+  sub->add_option("--tolerant", command.tolerant_metres,
+                  "also report the verdict on the solid with vertices snapped within M metres; "
+                  "val3dity has 0.001")
+      ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
+      ->type_name("M");
   sub->add_flag("--no-times", command.leaves_times_out,
                 "reports without times: same input, same bytes");
   sub->add_option("--planarity", command.planarity_metres, "largest distance from a plane, metres")

@@ -56,12 +56,15 @@ void Summary::add(const Summary& part) {
   with_warnings_ += part.with_warnings_;
   invalid_ += part.invalid_;
   undecided_ += part.undecided_;
+  has_tolerant_ = has_tolerant_ || part.has_tolerant_;
+  valid_snapped_ += part.valid_snapped_;
   features_ += part.features_;
   invalid_features_ += part.invalid_features_;
   undecided_features_ += part.undecided_features_;
   empty_features_ += part.empty_features_;
   files_ += part.files_;
   empty_files_ += part.empty_files_;
+  unreadable_files_ += part.unreadable_files_;
   if (part.baseline_) add(*part.baseline_);
   unreadable_ += part.unreadable_;
   stored_ += part.stored_;
@@ -76,6 +79,11 @@ void Summary::add(const Summary& part) {
 void Summary::add_file(bool has_solids) {
   ++files_;
   if (!has_solids) ++empty_files_;
+}
+
+void Summary::add_unreadable_file() {
+  ++files_;
+  ++unreadable_files_;
 }
 
 void Summary::add(const BaselineCounts& counts) {
@@ -110,6 +118,10 @@ void Summary::add(const pipeline::InspectedFeature& feature) {
 }
 
 void Summary::add(const Report& report) {
+  if (report.tolerant) {
+    has_tolerant_ = true;
+    if (report.tolerant->verdict == Verdict::valid) ++valid_snapped_;
+  }
   if (report.verdict == Verdict::valid) {
     ++valid_;
     if (!report.findings.empty()) ++with_warnings_;
@@ -132,7 +144,8 @@ std::string Summary::headline() const {
   std::string text;
   const std::uint64_t checked = features_ - empty_features_;
   if (solids() == 0) {
-    text = "Nothing was checked: there are no solids.\n";
+    const bool is_read = unreadable_ + unreadable_files_ == 0;
+    text = is_read ? "Nothing was checked: there are no solids.\n" : "Nothing was checked.\n";
   } else if (invalid_features_ + undecided_features_ == 0) {
     text = checked == 1 ? "The feature with solids is valid.\n"
                         : "All " + quantity(checked, "feature") + " with solids are valid.\n";
@@ -141,6 +154,9 @@ std::string Summary::headline() const {
            (invalid_features_ == 1 ? " is invalid" : " are invalid");
     if (undecided_features_ > 0) text += ", " + std::to_string(undecided_features_) + " undecided";
     text += ".\n";
+  }
+  if (unreadable_files_ > 0) {
+    text += quantity(unreadable_files_, "file") + " could not be read.\n";
   }
   if (unreadable_ > 0) {
     text += quantity(unreadable_, "part") + " of the input could not be read.\n";
@@ -159,6 +175,7 @@ std::string Summary::headline() const {
 std::string Summary::table(double seconds) const {
   std::string text;
   if (files_ > 0) text += row("files", files_);
+  if (unreadable_files_ > 0) text += row("  that could not be read", unreadable_files_);
   if (empty_files_ > 0) text += row("  without solids: nothing was checked", empty_files_);
   text += row("features", features_) + row("  invalid", invalid_features_);
   for (const auto& [code, count] : groups_by_code_) {
@@ -180,6 +197,7 @@ std::string Summary::table(double seconds) const {
         row("    " + std::to_string(code) + " " + std::string(validate::finding_name(code)), count);
   }
   text += row("  undecided", undecided_);
+  if (has_tolerant_) text += row("  valid when snapped (--tolerant)", valid_snapped_);
   if (baseline_) {
     text += row("new findings", baseline_->fresh) + row("known findings", baseline_->known) +
             row("findings gone", baseline_->gone);

@@ -38,6 +38,8 @@ class Summary {
   void add_unreadable() { ++unreadable_; }
   /// Counts a file, and whether a solid of it was checked.
   void add_file(bool has_solids);
+  /// Counts a file that could not be opened or read at all.
+  void add_unreadable_file();
   void add(const BaselineCounts& counts);
 
   /// The result in a sentence or a few, one on each line.
@@ -63,12 +65,15 @@ class Summary {
   std::uint64_t empty_features_ = 0;  // features without solids, in which nothing was checked
   std::uint64_t files_ = 0;           // 0: files are not counted
   std::uint64_t empty_files_ = 0;     // files without solids
+  std::uint64_t unreadable_files_ = 0;
   std::optional<BaselineCounts> baseline_;
   std::uint64_t unreadable_ = 0;  // features and rests of documents that could not be read
   std::uint64_t stored_ = 0;
   std::uint64_t file_bytes_ = 0;
   std::uint64_t plain_bytes_ = 0;  // the size of the encoded solids as plain arrays
   std::uint64_t blob_bytes_ = 0;
+  bool has_tolerant_ = false;
+  std::uint64_t valid_snapped_ = 0;       // solids whose tolerant verdict is valid
   std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; a solid may have several
   std::map<int, std::uint64_t> groups_by_code_;  // invalid composite solids and buildings
   std::map<delaunay::Rung, std::uint64_t> by_rung_;

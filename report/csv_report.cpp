@@ -38,11 +38,11 @@ class CsvReport final : public FeatureReport {
   }
 
   Status add(const pipeline::ValidatedFeature& feature) override {
-    std::string rows;
     for (const PlacedFinding& placed : findings_of(feature.inspected)) {
-      rows += row(feature.inspected, placed);
+      Status status = write(row(feature.inspected, placed));
+      if (!status) return status;
     }
-    return rows.empty() ? Status(Done{}) : write(rows);
+    return Done{};
   }
 
   Status add_error(const Error& error) override {

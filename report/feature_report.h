@@ -25,9 +25,10 @@ struct ReportHead {
   std::string program_version;  // "0.1.0"
   std::string time;             // when the run began, RFC 3339; "" leaves all times out
   Acceptance acceptance;
-  bool is_strict = false;      // LadderOptions::strict
-  double overlap_metres = 0;   // GroupOptions::overlap_metres
-  bool also_tolerant = false;  // CertifyOptions::also_tolerant
+  bool is_strict = false;               // LadderOptions::strict
+  double overlap_metres = 0;            // GroupOptions::overlap_metres
+  bool also_tolerant = false;           // CertifyOptions::also_tolerant
+  double tolerant_snap_metres = 0.001;  // CertifyOptions::tolerant_snap_metres
 };
 
 /// The facts about a document that are known before its features.

@@ -42,7 +42,7 @@ std::string line_of(const LineParts& parts) {
     if (!other.empty()) line.append(" and ").append(other);
   }
   if (parts.point) line.append(", at ").append(point_text(*parts.point));
-  if (!finding.detail.empty()) line.append(": ").append(finding.detail);
+  if (!finding.detail.empty()) line.append(": ").append(shortened(finding.detail));
   const std::string measured = measure_words(finding);
   if (!measured.empty()) line.append(" (").append(measured).append(1, ')');
   if (finding.uncertain) line += " [uncertain: an earlier finding concerns the same place]";
@@ -57,10 +57,10 @@ std::string object_words(const SolidSource& source) {
     if (!details.empty()) details += ", ";
     details.append(name).append(1, ' ').append(value);
   };
-  if (!source.lod.empty()) add("LoD", source.lod);
+  if (!source.lod.empty()) add("LoD", shortened(source.lod));
   if (source.geometry > 0) add("geometry", std::to_string(source.geometry));
   if (source.ordinal > 0 && !source.object_id.empty()) add("solid", std::to_string(source.ordinal));
-  std::string words = source.object_id;
+  std::string words = shortened(source.object_id);
   if (words.empty()) words.append("solid ").append(std::to_string(source.ordinal));
   if (!details.empty()) words.append(" (").append(details).append(1, ')');
   return words;

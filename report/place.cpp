@@ -75,6 +75,14 @@ std::string place_words(const Place& place, const Solid* solid) {
   return text;
 }
 
+std::string shortened(std::string_view text) {
+  constexpr std::size_t kMost = 300;
+  if (text.size() <= kMost) return std::string(text);
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
 std::string solid_id(const SolidSource& source) {
   std::string id = "coid=";
   id += source.object_id;

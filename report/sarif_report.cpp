@@ -113,7 +113,6 @@ class SarifReport final : public FeatureReport {
     if (findings.empty()) return Done{};
     const std::vector<IdentifiedFinding> identified = identified_findings(file_, feature.inspected);
     const std::vector<FindingLine> lines = finding_lines(feature.inspected);
-    std::string text;
     for (std::size_t i = 0; i < findings.size(); ++i) {
       JsonText json;
       begin_result(json, findings[i].finding->code, findings[i].finding->severity, lines[i].text);
@@ -121,9 +120,10 @@ class SarifReport final : public FeatureReport {
       json.key("partialFingerprints").open('{').key("watertightFinding/v1");
       json.value(hex_of(identified[i].fingerprint)).close('}');
       write_properties(json, feature.inspected, findings[i]);
-      text += separator() + json.close('}').take();
+      Status status = sink_(separator() + json.close('}').take());
+      if (!status) return status;
     }
-    return sink_(text);
+    return Done{};
   }
 
   Status add_error(const Error& error) override {

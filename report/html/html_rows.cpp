@@ -58,7 +58,7 @@ std::string finding_cell(const Finding& finding) {
   append(html, {code, "</span> <b>"});
   html += html_text(kind == nullptr ? std::string_view("unknown") : kind->summary);
   append(html, {"</b></p><p class=\"soft\"><code>", html_text(validate::finding_name(finding.code)),
-                "</code></p><p>", html_text(finding.detail), "</p>"});
+                "</code></p><p>", html_text(shortened(finding.detail)), "</p>"});
   if (finding.uncertain) {
     html += "<p><span class=\"tag\">uncertain: an earlier finding concerns this place</span></p>";
   }
@@ -70,7 +70,7 @@ std::string place_cell(const pipeline::InspectedFeature& feature, const PlacedFi
   std::string cell = "<td>";
   const SolidSource* source = source_of(feature, placed.solid);
   if (source != nullptr && !source->lod.empty()) {
-    append(cell, {"<p><span class=\"tag\">LoD ", html_text(source->lod), "</span></p>"});
+    append(cell, {"<p><span class=\"tag\">LoD ", html_text(shortened(source->lod)), "</span></p>"});
   }
   std::string place = place_words(finding.place, submitted_solid(feature, placed.solid));
   if (finding.other) {
@@ -81,13 +81,14 @@ std::string place_cell(const pipeline::InspectedFeature& feature, const PlacedFi
   append(cell, {"<p class=\"soft\">", place, "</p>"});
   std::string facts;
   if (placed.group != nullptr && source_of(feature, placed.other_solid) != nullptr) {
-    append_fact(facts, "other", source_of(feature, placed.other_solid)->object_id);
+    append_fact(facts, "other", shortened(source_of(feature, placed.other_solid)->object_id));
   }
   const auto point = point_of(feature, placed);
   if (point) append_fact(facts, "at", point_text(*point), FactStyle::code);
-  append_fact(facts, "pointer", pointer_of(feature, placed.solid, finding.place), FactStyle::code);
+  append_fact(facts, "pointer", shortened(pointer_of(feature, placed.solid, finding.place)),
+              FactStyle::code);
   if (finding.other) {
-    append_fact(facts, "other", pointer_of(feature, placed.other_solid, *finding.other),
+    append_fact(facts, "other", shortened(pointer_of(feature, placed.other_solid, *finding.other)),
                 FactStyle::code);
   }
   if (!facts.empty()) {

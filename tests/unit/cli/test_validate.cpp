@@ -48,6 +48,13 @@ TEST_CASE_METHOD(Fixture, "a file without solids is status 1 where solids are re
         std::string::npos);
 }
 
+TEST_CASE_METHOD(Fixture, "a file that cannot be read is in the summary") {
+  const Ran ran = run("validate missing.obj");
+  CHECK(ran.status == 2);
+  CHECK(ran.output.find("\nNothing was checked.\n1 file could not be read.\n") !=
+        std::string::npos);
+}
+
 TEST_CASE_METHOD(Fixture, "the text begins with the summary and has the worst features first") {
   write("in.city.jsonl",
         samples::sequence({samples::feature("good"), samples::feature("one", samples::kOpenFacets),
@@ -155,6 +162,27 @@ TEST_CASE_METHOD(Fixture, "a baseline that is no report is an error, and is neve
   CHECK(read("old.json") == old);
 }
 
+TEST_CASE("a baseline nested deeply is refused") {
+  const std::string open(1'000'000, '[');
+  CHECK_FALSE(cli::Baseline::read(as_bytes(open)));
+  const std::string whole = open + std::string(open.size(), ']');
+  CHECK_FALSE(cli::Baseline::read(as_bytes(whole)));
+  const std::string inside = R"({"type":"val3dity_report","schema":2,"features":)" + whole + "}";
+  CHECK_FALSE(cli::Baseline::read(as_bytes(inside)));
+}
+
+TEST_CASE("the lines of a feature with a very long name are short") {
+  pipeline::FeatureOutcome feature;
+  feature.verdict = Verdict::invalid;
+  feature.solids.resize(1);
+  feature.solids[0].source.object_id.assign(1'000'000, 'x');
+  feature.solids[0].report.findings.resize(1);
+  feature.solids[0].report.findings[0].code = 302;
+  const cli::FeatureLines lines = cli::lines_of("a", feature);
+  REQUIRE(lines.lines.size() == 2);  // the finding, and that the solid is undecided
+  for (const std::string& line : lines.lines) CHECK(line.size() < 1000);
+}
+
 TEST_CASE("findings that a solid has beyond the limit are new where the baseline has fewer") {
   const std::string report =
       R"({"type":"val3dity_report","schema":2,"input_file":"a","features":[],"findings_omitted":7})";
@@ -163,6 +191,24 @@ TEST_CASE("findings that a solid has beyond the limit are new where the baseline
   CHECK(baseline->newly_omitted("a", 7) == 0);
   CHECK(baseline->newly_omitted("./a", 9) == 2);
   CHECK(baseline->newly_omitted("b", 9) == 9);
+}
+
+TEST_CASE_METHOD(Fixture, "the snap distance of the tolerant verdict is given in metres") {
+  // A corner of the top is 5 mm off in one of its facets.
+  write("in.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 1.005 1 1\n"
+        "f 1 4 3 2\nf 5 6 9 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::string row = "  valid when snapped (--tolerant)" + std::string(22, ' ');
+  const Ran small = run("validate in.obj --tolerant 0.001 --report r.json");
+  CHECK(small.status == 1);
+  CHECK(small.output.find(row + "0\n") != std::string::npos);
+  CHECK(nlohmann::json::parse(read("r.json"))["parameters"]["tolerant_snap_tol"] == 0.001);
+  const Ran large = run("validate in.obj --tolerant 0.01 --report r.json");
+  CHECK(large.status == 1);
+  CHECK(large.output.find(row + "1\n") != std::string::npos);
+  CHECK(run("validate in.obj --tolerant").status == 2);
+  CHECK(run("validate --tolerant in.obj").status == 2);
+  CHECK(run("validate --tolerant 0 in.obj").status == 2);
 }
 
 TEST_CASE_METHOD(Fixture, "tables and logs are written beside the other reports") {

@@ -80,10 +80,21 @@ struct OpenReport {
 };
 
 using ReportMaker = std::unique_ptr<report::FeatureReport> (*)(report::TextSink,
-                                                               report::ReportHead);
+                                                               const report::ReportHead&);
 
-std::unique_ptr<report::FeatureReport> page_report(report::TextSink sink, report::ReportHead head) {
-  return report::html_report(std::move(sink), std::move(head), {});
+template <auto make>
+std::unique_ptr<report::FeatureReport> made(report::TextSink sink, const report::ReportHead& head) {
+  return make(std::move(sink), head);
+}
+
+std::unique_ptr<report::FeatureReport> page_report(report::TextSink sink,
+                                                   const report::ReportHead& head) {
+  return report::html_report(std::move(sink), head, {});
+}
+
+std::unique_ptr<report::FeatureReport> table_report(report::TextSink sink,
+                                                    const report::ReportHead& /*head*/) {
+  return report::csv_report(std::move(sink));
 }
 
 /// A run of `watertight validate`: all files, one after the other.
@@ -101,11 +112,11 @@ class Validation {
  private:
   /// The options that name a file for a report, with the report's maker.
   std::array<std::pair<const std::string*, ReportMaker>, 5> outputs() const {
-    return {{{&command_.report, report::json_report},
-             {&command_.geojson, report::geojson_report},
+    return {{{&command_.report, made<report::json_report>},
+             {&command_.geojson, made<report::geojson_report>},
              {&command_.html, page_report},
-             {&command_.csv, report::csv_report},
-             {&command_.sarif, report::sarif_report}}};
+             {&command_.csv, table_report},
+             {&command_.sarif, made<report::sarif_report>}}};
   }
   bool has_output(std::string_view path) const {
     const auto all = outputs();

@@ -102,7 +102,7 @@ class CsvReport final : public FeatureReport {
 
 }  // namespace
 
-std::unique_ptr<FeatureReport> csv_report(TextSink sink, ReportHead /*head*/) {
+std::unique_ptr<FeatureReport> csv_report(TextSink sink) {
   return std::make_unique<CsvReport>(std::move(sink));
 }
 

@@ -69,7 +69,7 @@ std::unique_ptr<FeatureReport> geojson_report(TextSink sink, ReportHead head);
 
 /// Writes one table for all documents as CSV (RFC 4180, UTF-8): a header, then a row for each
 /// finding. A text that a spreadsheet would take for a formula gets an apostrophe in front.
-std::unique_ptr<FeatureReport> csv_report(TextSink sink, ReportHead head);
+std::unique_ptr<FeatureReport> csv_report(TextSink sink);
 
 /// Writes one SARIF 2.1.0 log with one run for all documents: all findings as rules, and a result
 /// for each finding and for each part of a document that could not be read.

@@ -9,7 +9,7 @@ namespace {
 std::string table_of(const std::vector<pipeline::ValidatedFeature>& features,
                      const std::string& name = "a.city.json") {
   Written written;
-  const auto report = report::csv_report(written.sink(), head_without_times());
+  const auto report = report::csv_report(written.sink());
   write_document(*report, name, features);
   REQUIRE(report->finish());
   return written.text;
@@ -76,7 +76,7 @@ TEST_CASE("a spreadsheet takes no id for a formula") {
 
 TEST_CASE("a document that cannot be read is a row, and an empty run has the header") {
   Written written;
-  const auto report = report::csv_report(written.sink(), head_without_times());
+  const auto report = report::csv_report(written.sink());
   REQUIRE(report->begin_document({"a", std::nullopt}));
   REQUIRE(report->add_error({ErrorCode::malformed, "no vertices", 17, "/vertices"}));
   REQUIRE(report->end_document({}));

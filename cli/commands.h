@@ -19,13 +19,18 @@ struct ValidateCommand {
   std::string report;                        // file for the JSON report, "" for none
   std::string geojson;                       // file for a layer of the findings, "" for none
   std::string html;                          // file for an HTML page, "" for none
+  std::string csv;                           // file for a table of the findings, "" for none
+  std::string sarif;                         // file for a SARIF log, "" for none
+  std::string baseline;                      // an earlier JSON report, "" for none
+  std::string explain;                       // a code to explain instead of validating, "" for none
   std::vector<std::string> interior_shells;  // files with cavities of the document's only solid
   RuleChoice rules;
   double seconds_per_solid = 0;  // the time that engines may take; 0: by the size of the solid
-  std::string engine = "auto";   // "auto", "cgal" or "tetgen"
-  bool also_tolerant = false;
+  std::string engine = "auto";            // "auto", "cgal" or "tetgen"
+  std::optional<double> tolerant_metres;  // the snap distance of a tolerant verdict as well
   bool leaves_times_out = false;
-  bool is_quiet = false;  // no line per finding
+  bool is_quiet = false;         // no line per finding
+  bool requires_solids = false;  // a file without solids is status 1
   std::size_t jobs = 1;
   std::string program_version;
 };
@@ -114,8 +119,7 @@ Exit run(const CollectionsCommand& command);
 /// "watertight: <file>: <what> (at <place>)" on standard error.
 void complain(const std::string& file, const Error& error);
 
-/// The findings of a feature's solids and groups, as lines on standard output.
-void print_findings(const std::string& file, const pipeline::InspectedFeature& feature);
+/// The findings of a feature's solids and groups, as lines.
 void print_findings(const std::string& file, const pipeline::FeatureOutcome& feature,
                     std::FILE* out = stdout);
 

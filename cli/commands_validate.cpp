@@ -8,13 +8,15 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/findings/baseline.h"
+#include "cli/findings/explain.h"
+#include "cli/findings/finding_list.h"
 #include "cli/inputs.h"
 #include "cli/printable.h"
 #include "cli/progress.h"
 #include "formats/mesh/interior_shells.h"
 #include "pipeline/validate_stream.h"
 #include "report/feature_report.h"
-#include "validate/report_json.h"
 
 namespace watertight::cli {
 namespace {
@@ -28,7 +30,8 @@ pipeline::StreamOptions options_of(const ValidateCommand& command) {
   pipeline::StreamOptions options;
   options.threads = command.jobs;
   apply(command.rules, options.certify, options.groups);
-  options.certify.also_tolerant = command.also_tolerant;
+  options.certify.also_tolerant = command.tolerant_metres.has_value();
+  if (command.tolerant_metres) options.certify.tolerant_snap_metres = *command.tolerant_metres;
   options.certify.ladder.engine = engine_of(command.engine);
   options.certify.ladder.seconds_in_all = command.seconds_per_solid;
   return options;
@@ -50,7 +53,8 @@ report::ReportHead head_of(const ValidateCommand& command, const pipeline::Strea
   head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
   head.is_strict = command.rules.is_strict;
   head.overlap_metres = command.rules.overlap_metres;
-  head.also_tolerant = command.also_tolerant;
+  head.also_tolerant = options.certify.also_tolerant;
+  head.tolerant_snap_metres = options.certify.tolerant_snap_metres;
   return head;
 }
 
@@ -58,35 +62,8 @@ void print(const std::string& text, std::FILE* out = stdout) {
   std::fwrite(text.data(), 1, text.size(), out);
 }
 
-std::string place_of(const SolidSource& source) {
-  if (!source.pointer.empty()) return source.pointer;
-  return source.object_id.empty() ? "solid " + std::to_string(source.ordinal) : source.object_id;
-}
-
-void print_solid(const std::string& file, const SolidSource& source, const Report& report,
-                 std::FILE* out) {
-  if (report.verdict == Verdict::valid && report.findings.empty()) return;
-  print(printable(file + ": " + place_of(source)) + "\n", out);
-  for (const std::string& line : validate::report_text(report))
-    print("  " + printable(line) + "\n", out);
-}
-
-/// Prints the findings of groups. `source_of(i)` is the source of the feature's solid i.
-template <class SourceOf>
-void print_groups(const std::string& file, const std::vector<pipeline::InspectedGroup>& groups,
-                  const SourceOf& source_of, std::FILE* out) {
-  for (const pipeline::InspectedGroup& group : groups) {
-    for (const Finding& finding : group.report.findings) {
-      std::string line = file + ": " + group.object_id;
-      if (!group.lod.empty()) line += " (LoD " + group.lod + ")";
-      line = printable(line) + "\n  " + printable(validate::finding_text(finding));
-      for (const auto& place : {std::optional(finding.place), finding.other}) {
-        if (!place || place->solid >= group.members.size()) continue;
-        line += "\n    " + printable(place_of(source_of(group.members[place->solid])));
-      }
-      print(line + "\n", out);
-    }
-  }
+void note(const std::string& file, const std::string& text) {
+  std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), text.c_str());
 }
 
 std::string output_name(const std::string& path) { return path == "-" ? "standard output" : path; }
@@ -99,10 +76,21 @@ struct OpenReport {
 };
 
 using ReportMaker = std::unique_ptr<report::FeatureReport> (*)(report::TextSink,
-                                                               report::ReportHead);
+                                                               const report::ReportHead&);
 
-std::unique_ptr<report::FeatureReport> page_report(report::TextSink sink, report::ReportHead head) {
-  return report::html_report(std::move(sink), std::move(head), {});
+template <auto make>
+std::unique_ptr<report::FeatureReport> made(report::TextSink sink, const report::ReportHead& head) {
+  return make(std::move(sink), head);
+}
+
+std::unique_ptr<report::FeatureReport> page_report(report::TextSink sink,
+                                                   const report::ReportHead& head) {
+  return report::html_report(std::move(sink), head, {});
+}
+
+std::unique_ptr<report::FeatureReport> table_report(report::TextSink sink,
+                                                    const report::ReportHead& /*head*/) {
+  return report::csv_report(std::move(sink));
 }
 
 /// A run of `watertight validate`: all files, one after the other.
@@ -112,13 +100,29 @@ class Validation {
       : command_(command),
         options_(options_of(command)),
         workers_(delaunay::EngineWorkers::Options{{}, {}, command.jobs}),
-        is_output_taken_(command.report == "-" || command.geojson == "-" || command.html == "-"),
+        is_output_taken_(has_output("-")),
         is_quiet_(command.is_quiet || is_output_taken_) {}
 
   Exit run();
 
  private:
+  /// The options that name a file for a report, with the report's maker.
+  std::array<std::pair<const std::string*, ReportMaker>, 5> outputs() const {
+    return {{{&command_.report, made<report::json_report>},
+             {&command_.geojson, made<report::geojson_report>},
+             {&command_.html, page_report},
+             {&command_.csv, table_report},
+             {&command_.sarif, made<report::sarif_report>}}};
+  }
+  bool has_output(std::string_view path) const {
+    const auto all = outputs();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const auto& output) { return *output.first == path; });
+  }
   bool open_reports();
+  bool open_baseline();
+  void take_feature(const std::string& file, const pipeline::InspectedFeature& feature);
+  void end_file(const std::string& file, bool has_solids);
   bool is_in_use(const std::string& path) const;
   void validate_file(const std::string& file);
   Result<OpenedInput> open_file(const std::string& file);
@@ -137,6 +141,10 @@ class Validation {
   bool is_output_taken_ = false;  // a report goes to the standard output
   bool is_quiet_ = false;
   std::vector<OpenReport> reports_;
+  std::optional<Baseline> baseline_;
+  std::size_t file_number_ = 0;  // of the file in work, from 1
+  std::uint64_t omitted_ = 0;    // findings of that file that are only counted
+  FindingList findings_;
   Summary summary_;
   Exit exit_ = Exit::valid;
 };
@@ -148,16 +156,13 @@ bool Validation::is_in_use(const std::string& path) const {
   if (std::any_of(reports_.begin(), reports_.end(), is_report)) return true;
   if (path == "-") return false;
   const auto& cavities = command_.interior_shells;
+  if (!command_.baseline.empty() && is_it(command_.baseline)) return true;
   return std::any_of(command_.files.begin(), command_.files.end(), is_it) ||
          std::any_of(cavities.begin(), cavities.end(), is_it);
 }
 
 bool Validation::open_reports() {
-  const std::array<std::pair<const std::string*, ReportMaker>, 3> wanted{
-      {{&command_.report, report::json_report},
-       {&command_.geojson, report::geojson_report},
-       {&command_.html, page_report}}};
-  for (const auto& [path, make] : wanted) {
+  for (const auto& [path, make] : outputs()) {
     if (path->empty()) continue;
     if (is_in_use(*path)) {
       fail(output_name(*path), {ErrorCode::invalid_argument,
@@ -175,6 +180,60 @@ bool Validation::open_reports() {
     reports_.push_back({std::move(writer), std::move(report), *path});
   }
   return true;
+}
+
+bool Validation::open_baseline() {
+  if (command_.baseline.empty()) return true;
+  const auto bytes = read_file(command_.baseline, options_.certify.limits);
+  auto baseline = bytes ? Baseline::read(*bytes) : Result<Baseline>(bytes.error());
+  if (!baseline) {
+    fail(command_.baseline, baseline.error());
+    return false;
+  }
+  baseline_ = *std::move(baseline);
+  return true;
+}
+
+/// The status that a feature gives. With a baseline an invalid feature counts if it has an error
+/// that the baseline does not have.
+Exit exit_of_feature(const pipeline::InspectedFeature& feature, const FeatureLines& lines,
+                     bool has_baseline) {
+  if (!has_baseline) return exit_of(feature.verdict());
+  if (lines.errors > 0) return Exit::invalid;
+  const auto& solids = feature.solids;
+  const bool is_undecided = std::any_of(solids.begin(), solids.end(), [](const auto& solid) {
+    return solid.inspection.report.verdict == Verdict::undecided;
+  });
+  return is_undecided ? Exit::undecided : Exit::valid;
+}
+
+void Validation::take_feature(const std::string& file, const pipeline::InspectedFeature& feature) {
+  std::vector<bool> is_known;
+  if (baseline_) {
+    is_known = baseline_->take(file, feature);
+    const auto known =
+        static_cast<std::uint64_t>(std::count(is_known.begin(), is_known.end(), true));
+    summary_.add(BaselineCounts{is_known.size() - known, known, 0});
+  }
+  for (const auto& solid : feature.solids) omitted_ += solid.inspection.report.findings_omitted;
+  for (const auto& group : feature.groups) omitted_ += group.report.findings_omitted;
+  FeatureLines lines = lines_of(file, feature, is_known);
+  exit_ = worse(exit_, exit_of_feature(feature, lines, baseline_.has_value()));
+  if (!is_quiet_) findings_.add(std::move(lines));
+  summary_.add(feature);
+}
+
+/// The part of a file's result that is known at its end.
+void Validation::end_file(const std::string& file, bool has_solids) {
+  summary_.add_file(has_solids);
+  if (!has_solids && command_.requires_solids) {
+    note(file, "nothing was checked, and --require-solids asks for solids");
+    exit_ = worse(exit_, Exit::invalid);
+  }
+  if (!baseline_) return;
+  const std::uint64_t omitted = baseline_->newly_omitted(file, omitted_);
+  if (omitted > 0) exit_ = worse(exit_, Exit::invalid);
+  summary_.add(BaselineCounts{omitted, 0, baseline_->gone(file)});
 }
 
 /// Passes a call to all reports. Errors: the first report's error, naming its file.
@@ -226,7 +285,10 @@ Result<OpenedInput> Validation::open_file(const std::string& file) {
 }
 
 Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, OpenedInput& input) {
-  ProgressBar bar(file);
+  const std::size_t files = command_.files.size();
+  ProgressBar bar(
+      file,
+      files < 2 ? "" : "file " + std::to_string(file_number_) + " of " + std::to_string(files));
   const auto count = input.reader.feature_count();
   options_.progress = [&](std::uint64_t features, std::uint64_t bytes) {
     bar.show(features, share_done(features, count, bytes, input.bytes));
@@ -234,8 +296,7 @@ Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, Open
   return pipeline::validate_stream(
       input.reader, &workers_, options_,
       [&](pipeline::ValidatedFeature&& feature) -> Status {
-        if (!is_quiet_) print_findings(file, feature.inspected);
-        summary_.add(feature.inspected);
+        take_feature(file, feature.inspected);
         return tell_reports([&](report::FeatureReport& report) { return report.add(feature); });
       },
       [&](const Error& error) -> Status {
@@ -248,6 +309,7 @@ Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, Open
 void Validation::validate_file(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t solids_before = summary_.solids();
+  omitted_ = 0;
   auto input = open_file(file);
   report::DocumentHead head{file, {}};
   if (input) head.format = input->reader.document().format;
@@ -256,20 +318,18 @@ void Validation::validate_file(const std::string& file) {
   report::DocumentEnd end;
   if (status && input) {
     const auto outcome = stream(file, *input);
-    if (outcome) {
-      exit_ = worse(exit_, exit_of(outcome->verdict));
-    } else {
-      status = outcome.error();
-    }
+    if (!outcome) status = outcome.error();
     end.notes = input->reader.document().notes;
-    if (outcome && outcome->unreadable == 0 && summary_.solids() == solids_before) {
+    const bool has_solids = summary_.solids() > solids_before;
+    if (outcome && outcome->unreadable == 0 && !has_solids) {
       end.notes.emplace_back("the document has no solids; surfaces are not validated");
-      std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(),
-                   end.notes.back().c_str());
+      note(file, end.notes.back());
     }
+    if (outcome) end_file(file, has_solids);
     summary_.add_file_bytes(input->reader.bytes_read());
   } else if (status) {
     fail(file, input.error());
+    summary_.add_unreadable_file();
     status = tell_reports(
         [&](report::FeatureReport& report) { return report.add_error(input.error()); });
   }
@@ -285,8 +345,11 @@ void Validation::validate_file(const std::string& file) {
 
 Exit Validation::run() {
   const auto start = std::chrono::steady_clock::now();
-  if (!open_reports()) return exit_;
-  for (const std::string& file : command_.files) validate_file(file);
+  if (!open_baseline() || !open_reports()) return exit_;
+  for (const std::string& file : command_.files) {
+    ++file_number_;
+    validate_file(file);
+  }
   for (OpenReport& open : reports_) {
     Status status = open.report->finish();
     if (status) status = open.file->commit();
@@ -294,7 +357,11 @@ Exit Validation::run() {
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!is_output_taken_) print(summary_.table(seconds));
+  if (!is_output_taken_) {
+    print(summary_.headline() + "\n" + summary_.table(seconds));
+    const std::string findings = findings_.text();
+    if (!findings.empty()) print("\n" + findings);
+  }
   return exit_;
 }
 
@@ -306,23 +373,20 @@ void complain(const std::string& file, const Error& error) {
   std::fprintf(stderr, "watertight: %s: %s\n", name.c_str(), text.c_str());
 }
 
-void print_findings(const std::string& file, const pipeline::InspectedFeature& feature) {
-  for (const pipeline::InspectedSolid& solid : feature.solids) {
-    print_solid(file, solid.source, solid.inspection.report, stdout);
-  }
-  const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
-  print_groups(file, feature.groups, source_of, stdout);
-}
-
 void print_findings(const std::string& file, const pipeline::FeatureOutcome& feature,
                     std::FILE* out) {
-  for (const pipeline::SolidOutcome& solid : feature.solids) {
-    print_solid(file, solid.source, solid.report, out);
-  }
-  const auto source_of = [&](std::size_t i) { return feature.solids[i].source; };
-  print_groups(file, feature.groups, source_of, out);
+  print(text_of(lines_of(file, feature)), out);
 }
 
-Exit run(const ValidateCommand& command) { return Validation(command).run(); }
+Exit run(const ValidateCommand& command) {
+  if (command.explain.empty()) return Validation(command).run();
+  const auto text = explained(command.explain);
+  if (!text) {
+    complain(command.explain, text.error());
+    return Exit::error;
+  }
+  print(*text);
+  return Exit::valid;
+}
 
 }  // namespace watertight::cli

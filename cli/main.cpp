@@ -81,10 +81,18 @@ void add_rules(CLI::App& sub, RuleChoice& rules) {
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
-  sub->add_option("FILE", command.files, "documents; - for standard input")->required();
+  sub->add_option("FILE", command.files, "documents; - for standard input");
   sub->add_option("--report", command.report, "write the reports as JSON, a line per document");
   sub->add_option("--geojson", command.geojson, "write the findings as a GeoJSON layer");
   sub->add_option("--html", command.html, "write the report as a page with pictures");
+  sub->add_option("--csv", command.csv, "write the findings as a table, a row for each");
+  sub->add_option("--sarif", command.sarif, "write the findings as SARIF 2.1.0, for code hosts");
+  sub->add_option("--baseline", command.baseline,
+                  "an earlier --report: only findings that it does not have give status 1");
+  sub->add_option("--explain", command.explain,
+                  "print what a finding means, its cause and its remedy, for a code or a name");
+  sub->add_flag("--require-solids", command.requires_solids,
+                "status 1 for a file without solids, in which nothing is checked");
   sub->add_option("--interior-shell", command.interior_shells,
                   "file with a cavity of the file's one solid; can be repeated")
       ->allow_extra_args(false);
@@ -92,18 +100,26 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
                   "CPU time of engines for a solid; 0: by its size")
       ->check(in_range(0, 86400, "from 0 to 86400"))
       ->capture_default_str();
-  sub->add_flag("--tolerant", command.also_tolerant,
-                "also report the verdict under a snap tolerance of 1 mm");
+  sub->add_option("--tolerant", command.tolerant_metres,
+                  "also report the verdict on the solid with vertices snapped within M metres; "
+                  "val3dity has 0.001")
+      ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
+      ->type_name("M");
   sub->add_flag("--no-times", command.leaves_times_out,
                 "reports without times: same input, same bytes");
   add_rules(*sub, command.rules);
   sub->add_option("--engine", command.engine, "engine that is asked first for tetrahedralizations")
       ->check(CLI::IsMember({"auto", "cgal", "tetgen"}))
       ->capture_default_str();
-  sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
+  sub->add_flag("-q,--quiet", command.is_quiet, "the summary and the table only");
   add_jobs(*sub, command.jobs);
   command.program_version = WATERTIGHT_VERSION;
-  sub->callback([&] { chosen = [&] { return run(command); }; });
+  sub->callback([&] {
+    if (command.files.empty() == command.explain.empty()) {
+      throw CLI::ValidationError("either FILE or --explain CODE is required");
+    }
+    chosen = [&] { return run(command); };
+  });
 }
 
 void add_contract(CLI::App& sub, std::string& contract) {

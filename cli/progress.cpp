@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/progress.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,10 +17,46 @@ namespace {
 constexpr double kWidthOfBar = 30;
 constexpr std::chrono::milliseconds kInterval{100};
 
+/// The columns where the terminal does not say how many it has.
+constexpr std::size_t kUsualColumns = 80;
+
+/// The least of a label that is kept.
+constexpr std::size_t kLeastLabel = 12;
+
+/// The columns of the terminal at standard error, less one: a full line would move the cursor to
+/// the next.
+std::size_t columns() {
+  winsize size{};
+  const bool is_known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return (is_known ? size.ws_col : kUsualColumns) - 1;
+}
+
+bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
+
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts_character));
+}
+
+/// The first characters of a text.
+std::string first_of(const std::string& text, std::size_t count) {
+  std::size_t end = 0;
+  for (; end < text.size(); ++end) {
+    if (starts_character(text[end]) && count-- == 0) break;
+  }
+  return text.substr(0, end);
+}
+
+/// The last characters of a text.
+std::string last_of(const std::string& text, std::size_t count) {
+  const std::size_t width = width_of(text);
+  return width <= count ? text : text.substr(first_of(text, width - count).size());
+}
+
 }  // namespace
 
-ProgressBar::ProgressBar(const std::string& label)
+ProgressBar::ProgressBar(const std::string& label, const std::string& position)
     : label_(printable(label)),
+      position_(position),
       is_terminal_(::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_ - kInterval) {}
@@ -34,7 +71,9 @@ void ProgressBar::show(std::uint64_t features, std::optional<double> share) {
   drawn_ = now;
   is_drawn_ = true;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\033[K%s", progress_line(label_, features, share, seconds).c_str());
+  const std::string line =
+      fit_to_width(position_, label_, progress_line("", features, share, seconds), columns());
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
 }
 
 std::optional<double> share_done(std::uint64_t features, std::optional<std::uint64_t> all_features,
@@ -45,6 +84,16 @@ std::optional<double> share_done(std::uint64_t features, std::optional<std::uint
   };
   if (all_features) return share(features, *all_features);
   return all_bytes ? share(bytes, *all_bytes) : std::nullopt;
+}
+
+std::string fit_to_width(const std::string& position, const std::string& label,
+                         const std::string& rest, std::size_t columns) {
+  const std::string before = position.empty() ? "" : position + "  ";
+  const std::size_t fixed = width_of(before) + width_of(rest);
+  const std::size_t room = std::max(columns > fixed ? columns - fixed : 0, kLeastLabel);
+  std::string line = before;
+  line += width_of(label) <= room ? label : "\xE2\x80\xA6" + last_of(label, room - 1);
+  return first_of(line + rest, columns);
 }
 
 std::string progress_line(const std::string& label, std::uint64_t features,

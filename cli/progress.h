@@ -12,7 +12,8 @@ namespace watertight::cli {
 
 class ProgressBar {
  public:
-  explicit ProgressBar(const std::string& label);
+  /// `position` says which file of how many it is, "file 3 of 41"; "" for one file.
+  explicit ProgressBar(const std::string& label, const std::string& position = {});
   ~ProgressBar();  // wipes the line
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -23,6 +24,7 @@ class ProgressBar {
 
  private:
   std::string label_;
+  std::string position_;
   bool is_terminal_;
   bool is_drawn_ = false;
   std::chrono::steady_clock::time_point start_;
@@ -36,5 +38,11 @@ std::optional<double> share_done(std::uint64_t features, std::optional<std::uint
 /// The line that is shown, e.g. "x.jsonl [###...] 12000 features  850/s  2:05 left".
 std::string progress_line(const std::string& label, std::uint64_t features,
                           std::optional<double> share, double seconds);
+
+/// The position, the label and the rest of a line in at most `columns` columns: first the start of
+/// the label is cut off, down to its last 12 characters, then the end of the line. Each character
+/// of UTF-8 counts as one column.
+std::string fit_to_width(const std::string& position, const std::string& label,
+                         const std::string& rest, std::size_t columns);
 
 }  // namespace watertight::cli

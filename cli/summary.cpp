@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/quantity.h"
+
 namespace watertight::cli {
 namespace {
 
@@ -54,7 +56,16 @@ void Summary::add(const Summary& part) {
   with_warnings_ += part.with_warnings_;
   invalid_ += part.invalid_;
   undecided_ += part.undecided_;
+  has_tolerant_ = has_tolerant_ || part.has_tolerant_;
+  valid_snapped_ += part.valid_snapped_;
   features_ += part.features_;
+  invalid_features_ += part.invalid_features_;
+  undecided_features_ += part.undecided_features_;
+  empty_features_ += part.empty_features_;
+  files_ += part.files_;
+  empty_files_ += part.empty_files_;
+  unreadable_files_ += part.unreadable_files_;
+  if (part.baseline_) add(*part.baseline_);
   unreadable_ += part.unreadable_;
   stored_ += part.stored_;
   file_bytes_ += part.file_bytes_;
@@ -65,8 +76,32 @@ void Summary::add(const Summary& part) {
   for (const auto& [rung, count] : part.by_rung_) by_rung_[rung] += count;
 }
 
-void Summary::add(const pipeline::FeatureOutcome& feature) {
+void Summary::add_file(bool has_solids) {
+  ++files_;
+  if (!has_solids) ++empty_files_;
+}
+
+void Summary::add_unreadable_file() {
+  ++files_;
+  ++unreadable_files_;
+}
+
+void Summary::add(const BaselineCounts& counts) {
+  if (!baseline_) baseline_.emplace();
+  baseline_->fresh += counts.fresh;
+  baseline_->known += counts.known;
+  baseline_->gone += counts.gone;
+}
+
+void Summary::add_feature(Verdict verdict, bool has_solids) {
   ++features_;
+  if (verdict == Verdict::invalid) ++invalid_features_;
+  if (verdict == Verdict::undecided) ++undecided_features_;
+  if (!has_solids && verdict == Verdict::valid) ++empty_features_;
+}
+
+void Summary::add(const pipeline::FeatureOutcome& feature) {
+  add_feature(feature.verdict, !feature.solids.empty());
   for (const pipeline::SolidOutcome& solid : feature.solids) {
     add(solid.report);
     if (solid.blob_bytes == 0) continue;
@@ -77,12 +112,16 @@ void Summary::add(const pipeline::FeatureOutcome& feature) {
 }
 
 void Summary::add(const pipeline::InspectedFeature& feature) {
-  ++features_;
+  add_feature(feature.verdict(), !feature.solids.empty());
   for (const pipeline::InspectedSolid& solid : feature.solids) add(solid.inspection.report);
   add(feature.groups);
 }
 
 void Summary::add(const Report& report) {
+  if (report.tolerant) {
+    has_tolerant_ = true;
+    if (report.tolerant->verdict == Verdict::valid) ++valid_snapped_;
+  }
   if (report.verdict == Verdict::valid) {
     ++valid_;
     if (!report.findings.empty()) ++with_warnings_;
@@ -101,12 +140,51 @@ void Summary::add(const std::vector<pipeline::InspectedGroup>& groups) {
   }
 }
 
-std::string Summary::table(double seconds) const {
-  std::string text = row("features", features_);
-  for (const auto& [code, count] : groups_by_code_) {
-    text += row("  with " + std::to_string(code) + " " + std::string(validate::finding_name(code)),
-                count);
+std::string Summary::headline() const {
+  std::string text;
+  const std::uint64_t checked = features_ - empty_features_;
+  if (solids() == 0) {
+    const bool is_read = unreadable_ + unreadable_files_ == 0;
+    text = is_read ? "Nothing was checked: there are no solids.\n" : "Nothing was checked.\n";
+  } else if (invalid_features_ + undecided_features_ == 0) {
+    text = checked == 1 ? "The feature with solids is valid.\n"
+                        : "All " + quantity(checked, "feature") + " with solids are valid.\n";
+  } else {
+    text = quantity(invalid_features_, "feature") + " of " + std::to_string(checked) +
+           (invalid_features_ == 1 ? " is invalid" : " are invalid");
+    if (undecided_features_ > 0) text += ", " + std::to_string(undecided_features_) + " undecided";
+    text += ".\n";
   }
+  if (unreadable_files_ > 0) {
+    text += quantity(unreadable_files_, "file") + " could not be read.\n";
+  }
+  if (unreadable_ > 0) {
+    text += quantity(unreadable_, "part") + " of the input could not be read.\n";
+  }
+  if (solids() > 0 && empty_files_ > 0) {
+    text += "Nothing was checked in " + quantity(empty_files_, "file") + " of " +
+            std::to_string(files_) + (empty_files_ == 1 ? ", which has" : ", which have") +
+            " no solids.\n";
+  }
+  if (!baseline_) return text;
+  return text + "Against the baseline: " + quantity(baseline_->fresh, "new finding") + ", " +
+         std::to_string(baseline_->known) + " known, " + std::to_string(baseline_->gone) +
+         " gone.\n";
+}
+
+std::string Summary::table(double seconds) const {
+  std::string text;
+  if (files_ > 0) text += row("files", files_);
+  if (unreadable_files_ > 0) text += row("  that could not be read", unreadable_files_);
+  if (empty_files_ > 0) text += row("  without solids: nothing was checked", empty_files_);
+  text += row("features", features_) + row("  invalid", invalid_features_);
+  for (const auto& [code, count] : groups_by_code_) {
+    text +=
+        row("    with " + std::to_string(code) + " " + std::string(validate::finding_name(code)),
+            count);
+  }
+  if (undecided_features_ > 0) text += row("  undecided", undecided_features_);
+  if (empty_features_ > 0) text += row("  without solids: nothing was checked", empty_features_);
   if (unreadable_ > 0) text += row("  that could not be read", unreadable_);
   text += row("solids", solids()) + row("  valid", valid_);
   if (with_warnings_ > 0) text += row("    with warnings", with_warnings_);
@@ -119,6 +197,11 @@ std::string Summary::table(double seconds) const {
         row("    " + std::to_string(code) + " " + std::string(validate::finding_name(code)), count);
   }
   text += row("  undecided", undecided_);
+  if (has_tolerant_) text += row("  valid when snapped (--tolerant)", valid_snapped_);
+  if (baseline_) {
+    text += row("new findings", baseline_->fresh) + row("known findings", baseline_->known) +
+            row("findings gone", baseline_->gone);
+  }
   if (stored_ > 0) text += row("features stored", stored_);
   text += row("bytes of the files", file_bytes_);
   if (blob_bytes_ > 0) {

@@ -40,9 +40,9 @@ class Stream {
         options_.progress(outcome_.features, bytes);
       };
     }
-    const FeatureWork work = [this](std::uint64_t number, const formats::FeaturePlace&,
+    const FeatureWork work = [this](std::uint64_t number, const formats::FeaturePlace& place,
                                     Result<Feature> feature) {
-      return validate(number, std::move(feature));
+      return validate(number, place, std::move(feature));
     };
     const auto count = stream_features(reader_, stream, work);
     if (!count) return count.error();
@@ -51,7 +51,8 @@ class Stream {
   }
 
  private:
-  Delivery validate(std::uint64_t number, Result<Feature> feature) {
+  Delivery validate(std::uint64_t number, const formats::FeaturePlace& place,
+                    Result<Feature> feature) {
     if (!feature) {
       return [this, error = std::move(feature).error()]() -> Status {
         ++outcome_.unreadable;
@@ -59,7 +60,8 @@ class Stream {
       };
     }
     const auto validated = std::make_shared<ValidatedFeature>(ValidatedFeature{
-        number, inspect(*std::move(feature), workers_, certify_, options_.groups, &templates_)});
+        number, inspect(*std::move(feature), workers_, certify_, options_.groups, &templates_),
+        place});
     return [this, validated] { return hand_on(std::move(*validated)); };
   }
 
@@ -73,7 +75,7 @@ class Stream {
   Status add_templates(std::uint64_t number) {
     auto inspected = templates_.inspect_templates(reader_.document().instances);
     if (!inspected) return Done{};
-    return hand_on({number, *std::move(inspected)});
+    return hand_on({number, *std::move(inspected), {}});
   }
 
   formats::FeatureReader& reader_;

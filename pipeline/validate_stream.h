@@ -17,6 +17,7 @@ namespace watertight::pipeline {
 struct ValidatedFeature {
   std::uint64_t number = 0;  // number in the document, from 0
   InspectedFeature inspected;
+  formats::FeaturePlace place = {};  // the line, in a sequence
 };
 
 /// Takes features in document order, from one thread at a time. An error ends the run.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Reports of whole runs, written while features arrive: the JSON report (a superset of val3dity's),
-// the GeoJSON layer of findings and the HTML page. For command line and service. All are described
-// in docs/report.md.
+// the GeoJSON layer of findings, the CSV table, the SARIF log and the HTML page. For command line
+// and service. All are described in docs/report.md.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +25,10 @@ struct ReportHead {
   std::string program_version;  // "0.1.0"
   std::string time;             // when the run began, RFC 3339; "" leaves all times out
   Acceptance acceptance;
-  bool is_strict = false;      // LadderOptions::strict
-  double overlap_metres = 0;   // GroupOptions::overlap_metres
-  bool also_tolerant = false;  // CertifyOptions::also_tolerant
+  bool is_strict = false;               // LadderOptions::strict
+  double overlap_metres = 0;            // GroupOptions::overlap_metres
+  bool also_tolerant = false;           // CertifyOptions::also_tolerant
+  double tolerant_snap_metres = 0.001;  // CertifyOptions::tolerant_snap_metres
 };
 
 /// The facts about a document that are known before its features.
@@ -65,6 +66,14 @@ std::unique_ptr<FeatureReport> json_report(TextSink sink, ReportHead head);
 /// Writes one GeoJSON FeatureCollection for all documents: a point for each finding, in the
 /// coordinates of the document, whose reference system is named by the member "crs".
 std::unique_ptr<FeatureReport> geojson_report(TextSink sink, ReportHead head);
+
+/// Writes one table for all documents as CSV (RFC 4180, UTF-8): a header, then a row for each
+/// finding. A text that a spreadsheet would take for a formula gets an apostrophe in front.
+std::unique_ptr<FeatureReport> csv_report(TextSink sink);
+
+/// Writes one SARIF 2.1.0 log with one run for all documents: all findings as rules, and a result
+/// for each finding and for each part of a document that could not be read.
+std::unique_ptr<FeatureReport> sarif_report(TextSink sink, ReportHead head);
 
 struct HtmlOptions {
   std::size_t most_rows = 5000;     // findings in the table; the page says how many there are

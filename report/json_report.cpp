@@ -203,6 +203,7 @@ class JsonReport final : public FeatureReport {
     json.key("snap_tol").value(tolerances.snap_metres);
     json.key("proof").value(is_boundary ? "boundary" : "tetrahedralization");
     json.key("strict").value(head_.is_strict).key("tolerant").value(head_.also_tolerant);
+    if (head_.also_tolerant) json.key("tolerant_snap_tol").value(head_.tolerant_snap_metres);
     json.key("rule_set").value(int{head_.acceptance.rule_set}).close('}');
   }
 

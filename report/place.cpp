@@ -59,6 +59,30 @@ std::optional<std::array<double, 3>> point_of(const pipeline::InspectedFeature& 
   return middle_of_ring(*solid, rings.begin);
 }
 
+std::string place_words(const Place& place, const Solid* solid) {
+  std::string text;
+  const auto add = [&](std::string_view name, Index index) {
+    if (!text.empty()) text += ' ';
+    text += name;
+    text += ' ';
+    text += std::to_string(index);
+  };
+  const bool has_shells = solid != nullptr && solid->shell_count() > 1;
+  if (place.shell != kNone && (has_shells || place.facet == kNone)) add("shell", place.shell);
+  if (place.facet != kNone) add("facet", place.facet);
+  if (place.ring != kNone && place.ring > 0) add("ring", place.ring);
+  if (place.vertex != kNone) add("vertex", place.vertex);
+  return text;
+}
+
+std::string shortened(std::string_view text) {
+  constexpr std::size_t kMost = 300;
+  if (text.size() <= kMost) return std::string(text);
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
 std::string solid_id(const SolidSource& source) {
   std::string id = "coid=";
   id += source.object_id;

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/pipeline.h"
@@ -32,6 +33,14 @@ const Solid* submitted_solid(const pipeline::InspectedFeature& feature, Index so
 /// exterior ring, else nullopt. World coordinates.
 std::optional<std::array<double, 3>> point_of(const pipeline::InspectedFeature& feature,
                                               const PlacedFinding& placed);
+
+/// A place in a solid as words: "shell 1 facet 5 ring 2 vertex 7". The shell is left out where the
+/// solid has only one and a facet is named, or where the solid is unknown (null).
+std::string place_words(const Place& place, const Solid* solid);
+
+/// A text of a document, with "..." after 300 bytes. Findings of one solid all have its name: so
+/// their memory stays in proportion to the document, however long the name is.
+std::string shortened(std::string_view text);
 
 /// val3dity's path of a solid: "coid=b|geom=0|solid=1".
 std::string solid_id(const SolidSource& source);

@@ -260,21 +260,25 @@ Inspection Certifier::finish() {
 
 namespace {
 
-/// val3dity's defaults.
-constexpr Tolerances kTolerant{
-    .planarity_metres = 0.01, .planarity_degrees = 20, .snap_metres = 0.001};
+/// val3dity's defaults, with the snap distance asked for.
+Tolerances tolerant_tolerances(const CertifyOptions& options) {
+  return {.planarity_metres = 0.01,
+          .planarity_degrees = 20,
+          .snap_metres = options.tolerant_snap_metres};
+}
 
-/// The verdict under kTolerant. `exact` is the verdict of the exact rules under `options`; both
-/// verdicts are the same if the tolerances differ at most in snapping and snapping moves nothing.
+/// The verdict under tolerant_tolerances(). `exact` is the verdict of the exact rules under
+/// `options`; both verdicts are the same if the tolerances differ at most in snapping and snapping
+/// moves nothing.
 TolerantVerdict tolerant_verdict(const Solid& solid, const CertifyOptions& options,
                                  const TolerantVerdict& exact) {
   CertifyOptions tolerant = options;
-  tolerant.tolerances = kTolerant;
-  if (options.tolerances == kTolerant) return exact;
+  tolerant.tolerances = tolerant_tolerances(options);
+  if (options.tolerances == tolerant.tolerances) return exact;
   const auto snapped =
-      snap_vertices(solid, kTolerant.snap_metres, options.ladder.cancel, options.placement);
+      snap_vertices(solid, options.tolerant_snap_metres, options.ladder.cancel, options.placement);
   if (!snapped) return {};
-  Tolerances unsnapped = kTolerant;
+  Tolerances unsnapped = tolerant.tolerances;
   unsnapped.snap_metres = 0;
   if (snapped->moved == 0 && options.tolerances == unsnapped) return exact;
   return Certifier(snapped->solid, tolerant).run_exact_rules();

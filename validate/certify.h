@@ -37,6 +37,8 @@ struct CertifyOptions {
   /// Inspection::certified is then absent.
   bool is_proven = false;
   bool also_tolerant = false;  // true: also fill Report::tolerant
+  /// The snap distance of Report::tolerant, metres, above 0; val3dity's default.
+  double tolerant_snap_metres = 0.001;
   /// The number of threads that search for intersections within the solid; the report does not
   /// depend on this number.
   unsigned threads = 1;

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Tests that run the executable on small files.
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -17,55 +13,15 @@
 
 #include "cli/progress.h"
 #include "pipeline/container.h"
-#include "tests/files.h"
+#include "tests/unit/cli/fixture.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Ran {
-  int status = -1;
-  std::string output;  // standard output and standard error together
-};
-
-class Fixture {
- public:
-  Fixture() {
-    std::string name = (fs::temp_directory_path() / "watertight-cli-XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    folder = name;
-  }
-  ~Fixture() {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-  }
-  Fixture(const Fixture&) = delete;
-  Fixture& operator=(const Fixture&) = delete;
-
-  Ran run(const std::string& arguments) const {
-    const std::string command = "cd " + folder.string() +
-                                " && env -u WATERTIGHT_DATABASE_URL " WATERTIGHT_EXECUTABLE " " +
-                                arguments + " 2>&1";
-    FILE* pipe = ::popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    Ran ran;
-    std::array<char, 4096> buffer{};
-    for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-      ran.output.append(buffer.data(), count);
-    }
-    const int status = ::pclose(pipe);
-    ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    INFO(arguments << "\n" << ran.output);
-    return ran;
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name, std::ios::binary) << text;
-  }
-  std::string read(const std::string& name) const { return test::read_text(folder / name); }
-  fs::path folder;
-};
+using test::Fixture;
+using test::Ran;
 
 const std::string kValid = samples::sequence({samples::feature("a"), samples::feature("b")});
 const std::string kInvalid =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/html/scene.h"
 #include "report/place.h"
-#include "report/scene.h"
 #include "tests/unit/report/samples.h"
 
 using namespace watertight;
@@ -78,6 +78,56 @@ TEST_CASE("rows and pictures are capped and the page says so") {
             "data-scene='{",
             page_of({feature_of("b", {finding_of(306, 1), finding_of(306, 2), finding_of(203, 2)})},
                     options)) == 2);
+}
+
+TEST_CASE("the codes share the pictures, and rows without one show the figure of their code") {
+  report::HtmlOptions options;
+  options.most_pictures = 4;
+  std::vector<pipeline::ValidatedFeature> features(10, feature_of("b", {finding_of(306, 1, 4)}));
+  features.push_back(feature_of("c", {finding_of(203, 2), finding_of(203, 3), finding_of(203, 4)}));
+  features.push_back(feature_of("d", {finding_of(104, 2)}));
+  const std::string page = page_of(features, options);
+  CHECK(count_of("data-scene='{", page) == 4);
+  const auto pictures_of = [&](const std::string& code) {
+    return count_of("data-code=\"" + code +
+                        "\" data-severity=\"error\" data-measured=\"\">"
+                        "<td class=\"pic\"><figure",
+                    page);
+  };
+  CHECK(pictures_of("306") == 2);
+  CHECK(pictures_of("203") == 1);
+  CHECK(pictures_of("104") == 1);
+  CHECK(count_of("<symbol id=\"figure-306\"", page) == 1);
+  CHECK(count_of("<use href=\"#figure-306\"", page) == 8);
+}
+
+TEST_CASE("the findings of an object are together, under its name and that of its file") {
+  pipeline::ValidatedFeature parts = overlapping_parts();
+  parts.inspected.solids[0].inspection.report.findings = {finding_of(203, 1)};
+  parts.inspected.solids[1].inspection.report.findings = {finding_of(203, 2)};
+  Written written;
+  const auto report = report::html_report(written.sink(), head_without_times());
+  write_document(*report, "a.json", {parts});
+  write_document(*report, "b.json", {feature_of("part-1", {finding_of(302, 0)})});
+  REQUIRE(report->finish());
+  CHECK(count_of("<h3>part-1 <span class=\"soft\">of building, in a.json</span>", written.text) ==
+        1);
+  CHECK(count_of("<h3>part-2 <span class=\"soft\">of building, in a.json</span>", written.text) ==
+        1);
+  CHECK(count_of("<h3>part-1 <span class=\"soft\">in b.json</span>", written.text) == 1);
+  const auto first = written.text.find("<h3>part-1");
+  const auto second = written.text.find("<h3>part-2");
+  REQUIRE(first < second);
+  CHECK(count_of("<tr class=\"error\"", written.text.substr(first, second - first)) == 2);
+}
+
+TEST_CASE("a page says when nothing was checked") {
+  pipeline::ValidatedFeature feature = feature_of("a", {});
+  feature.inspected.solids.clear();
+  feature.inspected.feature.solids.clear();
+  CHECK(page_of({feature}).find("Nothing was checked: there are no solids.") != std::string::npos);
+  CHECK(page_of({}).find("Nothing was checked") != std::string::npos);
+  CHECK(page_of({feature_of("a", {})}).find("Nothing was checked") == std::string::npos);
 }
 
 TEST_CASE("a picture of two solids colours both") {

@@ -158,6 +158,11 @@ TEST_CASE("the tolerant verdict snaps a millimetre and decides nothing") {
   REQUIRE(large.tolerant);
   CHECK(large.tolerant->verdict == Verdict::invalid);
   CHECK(large.tolerant->first_level == large.first_level);
+  options.tolerant_snap_metres = 0.02;
+  CHECK(report_at(0.01).verdict == Verdict::invalid);
+  CHECK(report_at(0.01).tolerant->verdict == Verdict::valid);
+  options.tolerant_snap_metres = 0.0001;
+  CHECK(report_at(0.0005).tolerant->verdict == Verdict::invalid);
   CHECK_FALSE(report_of({cube(4)}).tolerant);
 }
 

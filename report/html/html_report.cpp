@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <map>
 
 #include "geometry/measures.h"
 #include "report/feature_report.h"
-#include "report/footprints.h"
-#include "report/html_page.h"
-#include "report/picture.h"
+#include "report/html/footprints.h"
+#include "report/html/html_page.h"
+#include "report/html/html_rows.h"
 #include "report/tally.h"
 #include "validate/finding_kinds.h"
 
@@ -18,82 +15,10 @@ namespace {
 /// The most documents that the page lists by name; more documents are only counted.
 constexpr std::size_t kMostFiles = 200;
 
-/// The most errors of reading that get a row of their own.
-constexpr std::size_t kMostErrors = 200;
-
-/// The most facets that all pictures together look at, which limits the time for very large solids.
-constexpr std::uint64_t kMostFacetsVisited = 40'000'000;
-
-std::string number_text(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::general, 6)
-                       .ptr;
-  return {buffer.data(), end};
-}
-
-/// A count with separators, such as "12,345".
-std::string count_text(std::uint64_t count) {
-  std::string digits = std::to_string(count);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
-  return digits;
-}
-
-std::string counted(std::uint64_t count, std::string_view noun) {
-  std::string text = count_text(count);
-  text += ' ';
-  text += noun;
-  if (count != 1) text += 's';
-  return text;
-}
-
-std::string coordinates_text(const std::array<double, 3>& point) {
-  std::string text;
-  for (const double coordinate : point) {
-    std::array<char, 32> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), coordinate).ptr;
-    if (!text.empty()) text += ' ';
-    text.append(buffer.data(), end);
-  }
-  return text;
-}
-
-std::string solid_name(const SolidSource& source) {
-  if (!source.object_id.empty()) return source.object_id;
-  std::string name = "solid ";
-  name += std::to_string(source.ordinal);
-  return name;
-}
-
-std::string place_words(const Place& place, const Solid* solid) {
-  std::string text;
-  const auto add = [&](std::string_view name, Index index) {
-    if (!text.empty()) text += ' ';
-    text += name;
-    text += ' ';
-    text += std::to_string(index);
-  };
-  const bool has_shells = solid != nullptr && solid->shell_count() > 1;
-  if (place.shell != kNone && (has_shells || place.facet == kNone)) add("shell", place.shell);
-  if (place.facet != kNone) add("facet", place.facet);
-  if (place.ring != kNone && place.ring > 0) add("ring", place.ring);
-  return text;
-}
-
-void append_fact(std::string& html, std::string_view name, const std::string& value,
-                 bool is_code = false) {
-  if (value.empty()) return;
-  html += "<dt>";
-  html += name;
-  html += is_code ? "</dt><dd><code>" : "</dt><dd>";
-  html += html_text(value);
-  html += is_code ? "</code></dd>" : "</dd>";
-}
-
 class HtmlReport final : public FeatureReport {
  public:
   HtmlReport(TextSink sink, ReportHead head, const HtmlOptions& options)
-      : sink_(std::move(sink)), head_(std::move(head)), options_(options) {}
+      : sink_(std::move(sink)), head_(std::move(head)), rows_(options) {}
 
   Status begin_document(const DocumentHead& document) override {
     file_ = document.file;
@@ -105,17 +30,15 @@ class HtmlReport final : public FeatureReport {
   Status add(const pipeline::ValidatedFeature& feature) override {
     tally_.add(feature.inspected);
     footprints_.add(feature.inspected);
-    for (const PlacedFinding& placed : findings_of(feature.inspected)) {
-      ++findings_;
-      if (rows_.size() < options_.most_rows) rows_.push_back(row(feature.inspected, placed));
-    }
+    findings_ += findings_of(feature.inspected).size();
+    rows_.add(file_, feature.inspected);
     return Done{};
   }
 
   Status add_error(const Error& error) override {
     tally_.add_error(code_of(error));
     ++findings_;
-    if (++errors_ <= kMostErrors) rows_.push_back(error_row(error));
+    rows_.add_error(file_, error);
     return Done{};
   }
 
@@ -132,19 +55,11 @@ class HtmlReport final : public FeatureReport {
       const Status status = sink_(part);
       if (!status) return status;
     }
-    for (const std::string& row : rows_) {
-      const Status status = sink_(row);
-      if (!status) return status;
-    }
-    return sink_(bottom());
+    const Status status = rows_.write(sink_);
+    return status ? sink_(bottom()) : status;
   }
 
  private:
-  std::string row(const pipeline::InspectedFeature& feature, const PlacedFinding& placed);
-  std::string picture_cell(const pipeline::InspectedFeature& feature, const PlacedFinding& placed);
-  std::string place_cell(const pipeline::InspectedFeature& feature,
-                         const PlacedFinding& placed) const;
-  std::string error_row(const Error& error) const;
   std::string top() const;
   std::string banner() const;
   std::string cards() const;
@@ -156,152 +71,21 @@ class HtmlReport final : public FeatureReport {
 
   TextSink sink_;
   ReportHead head_;
-  HtmlOptions options_;
+  FindingRows rows_;
   Tally tally_;
   Footprints footprints_;
   std::string file_;
   std::vector<std::string> files_;
   std::vector<std::string> notes_;
-  std::vector<std::string> rows_;
-  std::map<int, std::size_t> pictures_of_;  // the number of pictures by code
   std::size_t documents_ = 0;
-  std::size_t pictures_ = 0;
-  std::size_t errors_ = 0;
   std::uint64_t findings_ = 0;
-  std::uint64_t facets_visited_ = 0;
   double seconds_ = 0;
 };
 
-std::string HtmlReport::picture_cell(const pipeline::InspectedFeature& feature,
-                                     const PlacedFinding& placed) {
-  const std::string none = "<td class=\"pic\"><div class=\"none\">";
-  const int code = placed.finding->code;
-  std::size_t& of_code = pictures_of_[code];
-  if (pictures_ >= options_.most_pictures || of_code >= options_.most_pictures_per_code ||
-      facets_visited_ > kMostFacetsVisited) {
-    return none + "not drawn</div></td>";
-  }
-  for (const Index solid : {placed.solid, placed.other_solid}) {
-    const Solid* visited = submitted_solid(feature, solid);
-    if (visited != nullptr) facets_visited_ += visited->facet_count();
-  }
-  PictureOptions options;
-  options.most_facets = options_.most_facets;
-  const auto picture = picture_of(feature, placed, options);
-  if (!picture) return none + "nothing to draw</div></td>";
-  ++pictures_;
-  ++of_code;
-  std::string cell = "<td class=\"pic\"><figure tabindex=\"0\" role=\"button\" ";
-  cell += "aria-label=\"Enlarge the view\" data-scene='";
-  cell += picture->scene;  // JSON without apostrophes
-  cell += "'>";
-  cell += picture->svg;
-  return cell + "</figure></td>";
-}
-
-std::string HtmlReport::place_cell(const pipeline::InspectedFeature& feature,
-                                   const PlacedFinding& placed) const {
-  const Finding& finding = *placed.finding;
-  std::string cell = "<td><p><b>";
-  const bool has_solid = placed.solid < feature.solids.size();
-  const SolidSource none;
-  const SolidSource& source = has_solid ? feature.solids[placed.solid].source : none;
-  cell += html_text(solid_name(source));
-  cell += "</b> ";
-  if (!source.lod.empty()) {
-    cell += "<span class=\"tag\">LoD ";
-    cell += html_text(source.lod);
-    cell += "</span>";
-  }
-  cell += "</p><p class=\"soft\">";
-  std::string place = place_words(finding.place, submitted_solid(feature, placed.solid));
-  if (finding.other) {
-    const std::string other =
-        place_words(*finding.other, submitted_solid(feature, placed.other_solid));
-    if (!other.empty()) append(place, {" and ", other});
-  }
-  cell += place;
-  cell += "</p><details><summary>where exactly</summary><dl class=\"facts\">";
-  if (documents_ > 1) append_fact(cell, "file", file_);
-  if (feature.feature.id != source.object_id) append_fact(cell, "feature", feature.feature.id);
-  if (placed.group != nullptr && placed.other_solid < feature.solids.size()) {
-    append_fact(cell, "other", feature.solids[placed.other_solid].source.object_id);
-  }
-  const auto point = point_of(feature, placed);
-  if (point) append_fact(cell, "at", coordinates_text(*point), true);
-  append_fact(cell, "pointer", pointer_of(feature, placed.solid, finding.place), true);
-  if (finding.other) {
-    append_fact(cell, "other", pointer_of(feature, placed.other_solid, *finding.other), true);
-  }
-  return cell + "</dl></details></td>";
-}
-
-std::string HtmlReport::row(const pipeline::InspectedFeature& feature,
-                            const PlacedFinding& placed) {
-  const Finding& finding = *placed.finding;
-  const validate::FindingKind* kind = validate::find_kind(finding.code);
-  const std::string code = std::to_string(finding.code);
-  std::string html = "<tr class=\"";
-  html += validate::to_string(finding.severity);
-  append(html, {"\" data-code=\"", code, "\" data-severity=\""});
-  html += validate::to_string(finding.severity);
-  html += "\" data-object=\"";
-  if (placed.solid < feature.solids.size()) {
-    html += html_text(feature.solids[placed.solid].source.object_id);
-  }
-  html += "\" data-measured=\"";
-  if (finding.measured) html += number_text(*finding.measured);
-  html += "\">";
-  html += picture_cell(feature, placed);
-  append(html, {"<td><p><span class=\"code\">", code, "</span> <b>"});
-  html += html_text(kind == nullptr ? std::string_view("unknown") : kind->summary);
-  html += "</b></p><p class=\"soft\"><code>";
-  html += html_text(validate::finding_name(finding.code));
-  html += "</code></p><p>";
-  html += html_text(finding.detail);
-  html += "</p>";
-  if (finding.uncertain) {
-    html += "<p><span class=\"tag\">uncertain: an earlier finding concerns this place</span></p>";
-  }
-  html += "</td>";
-  html += place_cell(feature, placed);
-  html += "<td class=\"num\">";
-  if (finding.measured) {
-    append(html,
-           {"<p><b>", number_text(*finding.measured), "</b> ", html_text(finding.unit), "</p>"});
-  }
-  if (finding.limit) {
-    append(html, {"<p class=\"soft\">limit ", number_text(*finding.limit), "</p>"});
-  }
-  html += "</td><td>";
-  if (kind != nullptr) {
-    html += "<p class=\"hint\">";
-    html += html_text(kind->hint);
-    html += "</p>";
-    if (kind->is_repairable) html += "<p><span class=\"tag\">repairable</span></p>";
-  }
-  return html + "</td></tr>\n";
-}
-
-std::string HtmlReport::error_row(const Error& error) const {
-  const std::string code = std::to_string(code_of(error));
-  std::string html = "<tr class=\"error\" data-code=\"";
-  html += code;
-  html += "\" data-severity=\"error\" data-object=\"\" data-measured=\"\">";
-  html +=
-      "<td class=\"pic\"><div class=\"none\">not readable</div></td><td><p><span class=\"code\">";
-  append(html, {code, "</span> <b>could not be read</b></p><p class=\"soft\"><code>"});
-  html += html_text(name_of(code_of(error)));
-  append(html, {"</code></p><p>", html_text(error.message), "</p></td><td><dl class=\"facts\">"});
-  append_fact(html, "file", file_);
-  if (error.byte_offset) append_fact(html, "byte", std::to_string(*error.byte_offset));
-  append_fact(html, "pointer", error.pointer, true);
-  return html + "</dl></td><td></td><td></td></tr>\n";
-}
-
 std::string HtmlReport::banner() const {
   const VerdictCount features = tally_.all_features();
-  const Verdict verdict = tally_.verdict();
+  const bool is_unchecked = tally_.all_solids().total() == 0 && tally_.findings().empty();
+  const Verdict verdict = is_unchecked ? Verdict::undecided : tally_.verdict();
   std::string html = "<div class=\"banner ";
   html += validate::to_string(verdict);
   html += "\"><svg viewBox=\"0 0 24 24\" fill=\"none\" stroke=\"#fff\" stroke-width=\"2.4\" ";
@@ -310,6 +94,7 @@ std::string HtmlReport::banner() const {
           : verdict == Verdict::invalid ? "<path d=\"M8.5 8.5l7 7M15.5 8.5l-7 7\"/>"
                                         : "<path d=\"M12 7v6M12 16.5v.1\"/>";
   html += "</svg><span>";
+  if (is_unchecked) return html + "Nothing was checked: there are no solids.</span></div>";
   if (tally_.unreadable() > 0) {
     append(html, {counted(tally_.unreadable(), "part"), " of the input could not be read. "});
   }
@@ -436,18 +221,24 @@ std::string HtmlReport::cards() const {
 }
 
 std::string HtmlReport::table_top() const {
-  if (rows_.empty()) return "<h2 id=\"findings\">No findings</h2>";
+  if (rows_.rows() == 0) return "<h2 id=\"findings\">No findings</h2>";
   std::string html = "<h2 id=\"findings\">Findings</h2>";
-  if (findings_ + tally_.omitted() > rows_.size()) {
+  if (findings_ + tally_.omitted() > rows_.rows()) {
     append(html,
-           {"<p class=\"soft\">The first ", count_text(rows_.size()), " of ",
+           {"<p class=\"soft\">The first ", count_text(rows_.rows()), " of ",
             count_text(findings_ + tally_.omitted()), " findings; the JSON report has more.</p>"});
   }
-  append(html, {"<p class=\"soft\">", counted(pictures_, "picture")});
+  append(html, {"<p class=\"soft\">", counted(rows_.pictures(), "picture")});
   html += ": <span class=\"key\" style=\"background:var(--a)\"></span>the facet concerned ";
   html += "<span class=\"key\" style=\"background:var(--b)\"></span>the other of a pair ";
   html += "<span class=\"key\" style=\"background:var(--w)\"></span>the exact place, or edges ";
-  html += "concerned. Select a picture to enlarge and turn it.</p>";
+  html +=
+      "concerned. Select a picture to enlarge and turn it. A finding without a picture of its own "
+      "shows ";
+  html += "the example of its code.</p>";
+  html += "<svg class=\"symbols\" aria-hidden=\"true\">";
+  for (const auto& [code, count] : tally_.findings()) html += figure_symbol(code);
+  html += "</svg>";
   html += "<div class=\"tools\"><input id=\"search\" type=\"search\" ";
   html += "placeholder=\"Filter by id, facet, words\" aria-label=\"Filter\">";
   html += "<select id=\"code\" aria-label=\"Code\"><option value=\"\">all codes</option>";
@@ -459,18 +250,18 @@ std::string HtmlReport::table_top() const {
     html += "</option>";
   }
   html += "</select><span id=\"shown\" class=\"soft\" role=\"status\">";
-  append(html, {counted(rows_.size(), "finding"), "</span></div>"});
+  append(html, {counted(rows_.rows(), "finding"), "</span></div>"});
   html += "<div class=\"findings\"><table><thead><tr><th>Picture</th>";
   html += "<th><button data-key=\"code\">Finding</button></th>";
   html += "<th><button data-key=\"object\">Where</button></th>";
   html += "<th><button data-key=\"measured\">Measured</button></th>";
-  return html + "<th>What to do</th></tr></thead><tbody>\n";
+  return html + "<th>What to do</th></tr></thead></table>\n";
 }
 
 std::string HtmlReport::bottom() const {
   std::string html;
-  if (!rows_.empty()) {
-    html += "</tbody></table></div><dialog aria-label=\"Finding\">";
+  if (rows_.rows() > 0) {
+    html += "</div><dialog aria-label=\"Finding\">";
     html += "<button class=\"close\">Close</button><figure></figure>";
     html += "<div class=\"text\"><p class=\"soft\">Drag to turn, scroll to zoom.</p>";
     html += "<div class=\"content\"></div></div></dialog>";

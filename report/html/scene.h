@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "report/picture.h"
+#include "report/html/picture.h"
 
 namespace watertight::report {
 

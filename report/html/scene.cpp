@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/scene.h"
+#include "report/html/scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,25 +6,76 @@
 (function() {
 'use strict';
 
-var rows = Array.prototype.slice.call(document.querySelectorAll('.findings tbody tr'));
+var list = document.querySelector('.findings');
+var sections =
+    Array.prototype.map.call(document.querySelectorAll('.findings section'), function(s) {
+      return {
+        element: s,
+        object: s.querySelector('h3').textContent,
+        body: s.querySelector('tbody'),
+        rows: Array.prototype.slice.call(s.querySelectorAll('tbody tr'))
+      };
+    });
+var total = sections.reduce(function(n, s) {
+  return n + s.rows.length;
+}, 0);
 var search = document.getElementById('search'), code = document.getElementById('code'),
     shown = document.getElementById('shown');
-var texts = rows.map(function(r) {
-  return r.textContent.toLowerCase();
-});
+var texts = null;  // of the rows of each section; made for the first search
+
+function textsOf(section) {
+  var head = section.object.toLowerCase();
+  return section.rows.map(function(r) {
+    return head + ' ' + r.textContent.toLowerCase();
+  });
+}
 
 function filter() {
   var words = search.value.toLowerCase().split(/\s+/).filter(Boolean), want = code.value, count = 0;
-  rows.forEach(function(row, i) {
-    var ok = (!want || row.dataset.code === want || row.dataset.severity === want) &&
-        words.every(function(w) {
-          return texts[i].indexOf(w) >= 0;
-        });
-    row.hidden = !ok;
-    if (ok) count++;
+  if (words.length && !texts) texts = sections.map(textsOf);
+  sections.forEach(function(section, s) {
+    var left = 0;
+    section.rows.forEach(function(row, i) {
+      var ok = (!want || row.dataset.code === want || row.dataset.severity === want) &&
+          words.every(function(w) {
+            return texts[s][i].indexOf(w) >= 0;
+          });
+      row.hidden = !ok;
+      if (ok) left++;
+    });
+    section.element.hidden = left === 0;
+    count += left;
   });
-  shown.textContent = count === rows.length ? rows.length + ' findings' :
-                                              count + ' of ' + rows.length + ' findings';
+  shown.textContent = count === total ? total + ' findings' : count + ' of ' + total + ' findings';
+}
+
+function numberOf(row, key) {
+  var value = row.dataset[key] || '';
+  return value === '' ? -1 : +value;
+}
+
+// Sorts the rows of each object, and the objects by their first rows.
+function sort(key, down) {
+  var sign = down ? -1 : 1;
+  var order = sections.map(function(section, i) {
+    var rows = section.rows.map(function(r, k) {
+      return [r, key === 'object' ? 0 : numberOf(r, key), k];
+    });
+    rows.sort(function(x, y) {
+      return sign * (x[1] - y[1]) || x[2] - y[2];
+    });
+    rows.forEach(function(r) {
+      section.body.appendChild(r[0]);
+    });
+    return [section, key === 'object' ? section.object : rows[0][1], i];
+  });
+  order.sort(function(x, y) {
+    var d = x[1] < y[1] ? -1 : x[1] > y[1] ? 1 : 0;
+    return sign * d || x[2] - y[2];
+  });
+  order.forEach(function(o) {
+    list.appendChild(o[0].element);
+  });
 }
 
 if (search) {
@@ -39,27 +90,12 @@ if (search) {
   });
   document.querySelectorAll('.findings th button').forEach(function(b) {
     b.addEventListener('click', function() {
-      var th = b.parentNode, down = th.getAttribute('aria-sort') === 'ascending',
-          key = b.dataset.key, body = rows.length ? rows[0].parentNode : null;
+      var th = b.parentNode, down = th.getAttribute('aria-sort') === 'ascending';
       document.querySelectorAll('.findings th').forEach(function(t) {
         t.removeAttribute('aria-sort');
       });
       th.setAttribute('aria-sort', down ? 'descending' : 'ascending');
-      var order = rows.map(function(r, i) {
-        return [r, i];
-      });
-      order.sort(function(x, y) {
-        var a = x[0].dataset[key] || '', c = y[0].dataset[key] || '', d;
-        if (key === 'object')
-          d = a < c ? -1 : a > c ? 1 : 0;
-        else
-          d = (a === '' ? -1 : +a) - (c === '' ? -1 : +c);
-        return (down ? -d : d) || x[1] - y[1];
-      });
-      if (body)
-        order.forEach(function(o) {
-          body.appendChild(o[0]);
-        });
+      sort(b.dataset.key, down);
     });
   });
 }
@@ -182,7 +218,7 @@ function open(row, data) {
   };
   view = raw.v.slice();
   zoom = 1;
-  text.replaceChildren();
+  text.replaceChildren(row.closest('section').querySelector('h3').cloneNode(true));
   row.querySelectorAll('td:not(.pic)').forEach(function(td) {
     var d = document.createElement('div');
     Array.prototype.forEach.call(td.childNodes, function(n) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/footprints.h"
+#include "report/html/footprints.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/crs/crs.h"
-#include "report/html_page.h"
+#include "report/html/html_page.h"
 
 namespace watertight::report {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/json_text.h"
 #include "geometry/vector3.h"
-#include "report/scene.h"
+#include "report/html/scene.h"
 
 namespace watertight::report {
 namespace {

@@ -6,14 +6,17 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/quantity.h"
 #include "formats/gml/model.h"
+#include "formats/gml/ring_texts.h"
 #include "formats/gml/shapes.h"
 #include "formats/surface.h"
+#include "formats/text/kept_text.h"
 #include "formats/text/numbers.h"
 
 namespace watertight::formats {
@@ -41,7 +44,10 @@ Result<geometry::Placement> read_placement(std::string_view text) {
 class GmlReader {
  public:
   GmlReader(const GmlModel& model, std::uint64_t byte_count, const Limits& limits)
-      : model_(model), limits_(limits), shapes_(model, byte_count, limits) {}
+      : model_(model),
+        limits_(limits),
+        shapes_(model, byte_count, limits),
+        ring_uses_(model.nodes.size()) {}
 
   Result<Document> read() {
     document_.format = Format::gml;
@@ -72,6 +78,9 @@ class GmlReader {
     return std::move(document_);
   }
 
+  /// After read(): the use of each node that is a ring.
+  std::span<const GmlRingUse> ring_uses() const { return ring_uses_; }
+
  private:
   static Error in_object(Error error, const std::string& id) {
     if (!id.empty()) error.message.append(", of object '").append(id).append("'");
@@ -83,6 +92,7 @@ class GmlReader {
   Status feature_of(const std::vector<Index>& geometries, const GmlGeometry& first) {
     drafts_.clear();
     positions_ = {};
+    is_y_first_ = false;
     geometries_of_.clear();
     for (const Index geometry : geometries) {
       auto status = add_geometry(model_.geometries[geometry]);
@@ -243,6 +253,7 @@ class GmlReader {
     if (source.geometry_type.empty()) source.geometry_type = model_.name(model_.nodes[node].name);
     auto solid = shapes_.solid(node, positions_);
     if (!solid) return std::move(solid).error();
+    source.line = solid->place.line;
     drafts_.push_back({std::move(*solid), std::move(source)});
     return Done{};
   }
@@ -276,6 +287,7 @@ class GmlReader {
       return;
     }
     latitude_first_.insert(model_.systems[system]);
+    is_y_first_ = true;
     for (auto& position : values) std::swap(position[0], position[1]);
   }
 
@@ -305,10 +317,21 @@ class GmlReader {
       for (std::size_t k = begin; k < end; ++k) {
         if (is_rounded[k]) own.rounded.push_back(static_cast<Index>(k - begin));
       }
+      if (!is_template) note_ring_uses(drafts_[i].solid);
       auto status = place(drafts_[i], own, feature);
       if (!status) return status;
     }
     return Done{};
+  }
+
+  // Notes which rings the next solid of the document uses first.
+  void note_ring_uses(const GmlSolid& solid) {
+    for (Index ring = 0; ring < solid.rings.size(); ++ring) {
+      const auto [node, is_reversed] = solid.rings[ring];
+      if (node == kNone || ring_uses_[node].solid != kNone) continue;
+      ring_uses_[node] = {solids_, ring, is_reversed, is_y_first_};
+    }
+    ++solids_;
   }
 
   Status place(Draft& draft, const geometry::LatticePoints& points, Feature& feature) {
@@ -318,13 +341,29 @@ class GmlReader {
       return error_at(draft.solid.place, solid.error().code, solid.error().message);
     }
     solid->unclosed_rings = std::move(draft.solid.unclosed_rings);
-    const auto& ids = draft.solid.facet_ids;
-    const auto has_id = [](const std::string& id) { return !id.empty(); };
-    if (std::any_of(ids.begin(), ids.end(), has_id)) {
-      solid->facet_ids = std::move(draft.solid.facet_ids);
-    }
+    name_elements(draft.solid, *solid);
     feature.solids.push_back(std::move(*solid));
     return Done{};
+  }
+
+  // Names the elements of facets and rings by gml:id and line.
+  void name_elements(const GmlSolid& draft, SubmittedSolid& solid) const {
+    const std::string_view none;
+    bool have_ids = false;
+    for (const Index node : draft.facets) {
+      solid.facet_ids.emplace_back(model_.name(model_.nodes[node].id));
+      solid.facet_lines.push_back(model_.nodes[node].place.line);
+      have_ids = have_ids || !solid.facet_ids.back().empty();
+    }
+    if (!have_ids) solid.facet_ids.clear();
+    have_ids = false;
+    for (const auto [node, is_reversed] : draft.rings) {
+      const bool is_missing = node == kNone;
+      solid.ring_ids.emplace_back(is_missing ? none : model_.name(model_.nodes[node].id));
+      solid.ring_lines.push_back(is_missing ? 0 : model_.nodes[node].place.line);
+      have_ids = have_ids || !solid.ring_ids.back().empty();
+    }
+    if (!have_ids) solid.ring_ids.clear();
   }
 
   void add_notes() {
@@ -359,15 +398,23 @@ class GmlReader {
   std::set<std::string> wrongly_ordered_;
   std::vector<Draft> drafts_;
   GmlPositions positions_;
+  bool is_y_first_ = false;            // the positions of the present feature were written y, x, z
+  std::vector<GmlRingUse> ring_uses_;  // by node
+  Index solids_ = 0;                   // the solids of features until now
   Document document_;
 };
 
 }  // namespace
 
-Result<Document> read_gml(ByteView bytes, const Limits& limits) {
-  auto model = read_gml_model(bytes, limits);
-  if (!model) return std::move(model).error();
-  return GmlReader(*model, bytes.size(), limits).read();
+Result<Document> read_gml(ByteView bytes, const ReadOptions& options) {
+  const auto model = read_gml_model(bytes, options.limits);
+  if (!model) return model.error();
+  GmlReader reader(*model, bytes.size(), options.limits);
+  auto document = reader.read();
+  if (!document || !options.keep_text || options.split_features) return document;
+  const auto texts = ring_texts(*model, reader.ring_uses(), bytes);
+  document->framing = keep_with_rings(bytes, texts, solids_of(*document));
+  return document;
 }
 
 }  // namespace watertight::formats

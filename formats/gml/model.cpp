@@ -413,6 +413,7 @@ class GmlBuilder : public XmlHandler {
                                                    : "coordinates";
     numbers_.at = model_.positions.size();
     numbers_.place = element.place;
+    model_.numbers_of_rings.push_back({frame.node, element.content});
     const auto separator = [&](std::string_view name, char& value) {
       const auto text = element.attribute("", name);
       if (text && text->size() == 1) value = text->front();

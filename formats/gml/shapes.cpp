@@ -180,7 +180,7 @@ Status GmlShapes::surface(std::vector<Step>& path, Index node, bool is_reversed,
 
 Status GmlShapes::facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositions& positions) {
   const GmlNode& element = model_.nodes[node];
-  if (solid.facet_ids.size() >= limits_.facets) {
+  if (solid.facets.size() >= limits_.facets) {
     return error_at(element.place, ErrorCode::limit_exceeded, "more facets than the limit");
   }
   std::size_t exteriors = 0;
@@ -190,7 +190,10 @@ Status GmlShapes::facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositi
       if (role == GmlRole::exterior && ++exteriors > 1) {
         return wrong(model_.links[link].place, title(node) + " has a second exterior ring");
       }
-      if (role == GmlRole::interior && exteriors == 0 && ++exteriors > 0) solid.arrays.end_ring();
+      if (role == GmlRole::interior && exteriors == 0 && ++exteriors > 0) {
+        solid.arrays.end_ring();
+        solid.rings.emplace_back();
+      }
       auto status = ring(model_.links[link], is_reversed, solid, positions);
       if (!status) {
         Error error = std::move(status).error();
@@ -200,7 +203,7 @@ Status GmlShapes::facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositi
     }
   }
   solid.arrays.end_facet();
-  solid.facet_ids.emplace_back(model_.name(element.id));
+  solid.facets.push_back(node);
   return Done{};
 }
 
@@ -233,6 +236,7 @@ Status GmlShapes::ring(const GmlLink& link, bool is_reversed, GmlSolid& solid,
     std::reverse(vertices.begin() + static_cast<std::ptrdiff_t>(start) + 1, vertices.end());
   }
   solid.arrays.end_ring();
+  solid.rings.push_back({*node, is_reversed});
   return Done{};
 }
 

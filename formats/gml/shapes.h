@@ -17,13 +17,20 @@
 
 namespace watertight::formats {
 
+/// The element of a ring of a solid.
+struct GmlRing {
+  Index node = kNone;  // kNone: the exterior ring of a polygon without one
+  bool is_reversed = false;
+};
+
 /// A solid whose ring vertices are indices into GmlPositions::values, counted from
 /// `first_position`, each used once.
 struct GmlSolid {
   SolidArrays arrays;
   std::size_t first_position = 0;
   std::vector<Index> unclosed_rings;
-  std::vector<std::string> facet_ids;  // the values of SubmittedSolid::facet_ids
+  std::vector<Index> facets;   // the node of each facet
+  std::vector<GmlRing> rings;  // one for each ring of `arrays`
   Index system = kNone;
   XmlPlace place;
 };

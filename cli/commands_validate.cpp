@@ -200,7 +200,11 @@ Result<formats::FeatureReader> Validation::with_cavities(const std::string& file
     auto input = bytes ? load_input(path, *bytes, {}) : Result<Input>(bytes.error());
     if (!input) return std::move(input).error();
     std::vector<Feature>& features = input->document.features;
-    if (features.size() == 1 && features[0].solids.size() == 1) return std::move(input->document);
+    if (features.size() == 1 && features[0].solids.size() == 1) {
+      const std::string& reason = features[0].solids[0].unreadable;
+      if (!reason.empty()) return Error{ErrorCode::malformed, reason};
+      return std::move(input->document);
+    }
     return Error{ErrorCode::invalid_argument, "--interior-shell needs files with one solid each"};
   };
   auto document = one_solid(file);
@@ -298,6 +302,9 @@ Exit Validation::run() {
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!is_quiet_ && summary_.has_findings()) {
+    print("places: solids, shells, facets, rings and vertices count from 0, lines from 1\n");
+  }
   if (!is_output_taken_) print(summary_.table(seconds));
   return exit_;
 }

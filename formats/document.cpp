@@ -22,8 +22,19 @@ bool is_city(Format format) {
   return format == Format::city_json || format == Format::city_json_seq;
 }
 
+// Errors: malformed for a solid that could not be read, and so cannot be written.
+Status all_readable(std::span<const Feature> features) {
+  for (const Feature& feature : features) {
+    for (const SubmittedSolid& solid : feature.solids) {
+      if (!solid.unreadable.empty()) return Error{ErrorCode::malformed, solid.unreadable};
+    }
+  }
+  return Done{};
+}
+
 // Writes the solids of all features, one after the other.
 Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
+  if (auto status = all_readable(features); !status) return std::move(status).error();
   const auto has_solids = [](const Feature& feature) { return !feature.solids.empty(); };
   if (std::none_of(features.begin(), features.end(), has_solids)) {
     return Error{ErrorCode::unsupported,
@@ -67,10 +78,12 @@ void keep_bytes(ByteView bytes, Document& document) {
   if (const auto written = write_solids(document.features, document.format)) {
     forms.push_back(keep_as_written(bytes, *written));
   }
-  const bool is_text = document.format != Format::stl || !is_binary_stl(bytes);
-  if (is_text && document.format != Format::ewkb) {
-    const auto end = document.format == Format::stl ? RingEnd::open : RingEnd::closed;
-    const auto solids = solids_of(document);
+  const bool is_stl = document.format == Format::stl;
+  const auto solids = solids_of(document);
+  if (is_stl && is_binary_stl(bytes)) {
+    forms.push_back(keep_with_rings(bytes, binary_stl_rings(bytes), solids));
+  } else if (document.format != Format::ewkb) {
+    const auto end = is_stl ? RingEnd::open : RingEnd::closed;
     forms.push_back(keep_with_rings(bytes, find_rings(as_text(bytes), solids, end), solids));
   }
   const auto is_shorter = [](const Bytes& a, const Bytes& b) { return a.size() < b.size(); };
@@ -222,6 +235,7 @@ Result<Bytes> write_document(const Document& document, Format format) {
     return is_kept ? write_kept(document) : write_solids(document.features, format);
   }
   if (!is_city(document.format)) {
+    if (auto status = all_readable(document.features); !status) return std::move(status).error();
     auto model = as_city_model(document);
     if (!model) return std::move(model).error();
     auto written = write_document(*model, format);

@@ -90,6 +90,15 @@ void append_fact(std::string& html, std::string_view name, const std::string& va
   html += is_code ? "</code></dd>" : "</dd>";
 }
 
+/// The gml:ids and the line of an element; `which` is "other " for the other place of a pair.
+void append_element(std::string& html, std::string_view which,
+                    const validate::SourceElement& element) {
+  const std::string name(which);
+  append_fact(html, name + "polygon", element.polygon, true);
+  append_fact(html, name + "ring", element.ring, true);
+  if (element.line != 0) append_fact(html, name + "line", std::to_string(element.line), true);
+}
+
 class HtmlReport final : public FeatureReport {
  public:
   HtmlReport(TextSink sink, ReportHead head, const HtmlOptions& options)
@@ -230,6 +239,8 @@ std::string HtmlReport::place_cell(const pipeline::InspectedFeature& feature,
   const auto point = point_of(feature, placed);
   if (point) append_fact(cell, "at", coordinates_text(*point), true);
   append_fact(cell, "pointer", pointer_of(feature, placed.solid, finding.place), true);
+  append_element(cell, "", finding.source);
+  append_element(cell, "other ", finding.other_source);
   if (finding.other) {
     append_fact(cell, "other", pointer_of(feature, placed.other_solid, *finding.other), true);
   }
@@ -480,7 +491,9 @@ std::string HtmlReport::bottom() const {
   html +=
       "<p>All decisions are exact, on the coordinates as written. Facets are numbered from 0 in "
       "the ";
-  html += "order of the document. This page holds everything it shows and loads nothing.</p>";
+  html +=
+      "order of the document, lines from 1. This page holds everything it shows and loads "
+      "nothing.</p>";
   html += "</footer></main><script>";
   html += kPageScript;
   return html + "</script></body></html>\n";

@@ -67,7 +67,9 @@ class GmlBuilder : public XmlHandler {
       case FrameKind::numbers:
         break;
     }
-    return error_at(element.place, ErrorCode::malformed, "an element inside of coordinates");
+    add_defect(parent.node, element.place, ErrorCode::malformed,
+               "an element inside of coordinates");
+    return skip();
   }
 
   Status text(std::string_view text) override {

@@ -141,7 +141,17 @@ Status GmlShapes::shell(const GmlLink& link, GmlSolid& solid, GmlPositions& posi
   auto target = resolve(link);
   if (!target) return std::move(target).error();
   std::vector<Step> path;
-  auto status = surface(path, *target, false, solid, positions);
+  auto status = follow(path, *target, solid, positions);
+  for (const Step& step : path) leave(step.node);
+  if (status) solid.arrays.end_shell();
+  return status;
+}
+
+// Adds the facets of a surface and of all surfaces in it. After an error the path has the surfaces
+// that were not left.
+Status GmlShapes::follow(std::vector<Step>& path, Index first, GmlSolid& solid,
+                         GmlPositions& positions) {
+  auto status = surface(path, first, false, solid, positions);
   while (status && !path.empty()) {
     Step& step = path.back();
     if (step.link == kNone) {
@@ -156,7 +166,6 @@ Status GmlShapes::shell(const GmlLink& link, GmlSolid& solid, GmlPositions& posi
     if (!node) return std::move(node).error();
     status = surface(path, *node, is_reversed, solid, positions);
   }
-  if (status) solid.arrays.end_shell();
   return status;
 }
 
@@ -169,11 +178,11 @@ Status GmlShapes::surface(std::vector<Step>& path, Index node, bool is_reversed,
     return wrong(element.place, title(node) + " where a surface is expected");
   }
   if (element.kind == GmlKind::polygon) return facet(node, is_reversed, solid, positions);
-  if (!enter(node)) return wrong(element.place, title(node) + " contains itself by xlink");
   const bool is_orientable = element.kind == GmlKind::orientable;
   if (is_orientable && element.first_link != element.last_link) {
     return wrong(element.place, title(node) + " has several base surfaces");
   }
+  if (!enter(node)) return wrong(element.place, title(node) + " contains itself by xlink");
   path.push_back({node, element.first_link, is_reversed != element.is_reversed});
   return Done{};
 }
@@ -253,8 +262,8 @@ Status GmlShapes::read_positions(const GmlNode& ring, GmlPositions& positions) {
       if (axis > 0) word = take_word(text);
       auto exact = exact_number(word);
       if (!exact) {
-        return error_at(ring.place, exact.error().code,
-                        std::string("a coordinate of the ring: ").append(exact.error().message));
+        return wrong(ring.place,
+                     std::string("a coordinate of the ring: ").append(exact.error().message));
       }
       position[axis] = exact->value;
       is_rounded = is_rounded || exact->is_rounded;

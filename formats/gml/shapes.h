@@ -83,6 +83,7 @@ class GmlShapes {
   };
 
   Status shell(const GmlLink& link, GmlSolid& solid, GmlPositions& positions);
+  Status follow(std::vector<Step>& path, Index first, GmlSolid& solid, GmlPositions& positions);
   Status surface(std::vector<Step>& path, Index node, bool is_reversed, GmlSolid& solid,
                  GmlPositions& positions);
   Status facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositions& positions);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -22,7 +23,8 @@ constexpr char kWholeRing = 1;      // all positions of the next ring
 constexpr char kFirstPosition = 2;  // the first position of the next ring
 constexpr char kNextPosition = 3;   // the next position of the same ring
 constexpr char kEscape = 4;         // the byte after it is a byte of the text
-constexpr std::string_view kMarks = "\x01\x02\x03\x04";
+constexpr char kFloatRing = 5;      // all positions of the next ring as 32-bit floats
+constexpr std::string_view kMarks = "\x01\x02\x03\x04\x05";
 
 /// A ring as it is written. `flags` is a sum of the values below.
 struct RingForm {
@@ -39,6 +41,17 @@ struct RingForm {
 /// The places between numbers.
 enum class Gap : std::uint8_t { before_first, between_axes, between_positions, after_last };
 constexpr std::size_t kGaps = 4;
+
+/// The positions of a ring as little-endian 32-bit floats.
+std::string floats_of(const Solid& solid, Index ring) {
+  ByteWriter writer;
+  for (const Index vertex : solid.ring(ring)) {
+    for (const double value : solid.world(vertex)) {
+      writer.u32(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+    }
+  }
+  return std::string(as_text(writer.bytes()));
+}
 
 /// The predictions, which the writer and the reader of a kept text teach in the same way.
 class Predictions {
@@ -57,6 +70,9 @@ class Predictions {
   bool is_ring(const RingForm& form) const {
     return form.solid < solids_.size() && form.ring < solids_[form.solid]->ring_count() &&
            !solids_[form.solid]->ring(form.ring).empty();
+  }
+  std::string floats_of_ring(const RingForm& form) const {
+    return floats_of(*solids_[form.solid], form.ring);
   }
   bool has_ring() const { return current_.has_value(); }
   /// The ring that was used last. Requires has_ring().
@@ -136,6 +152,10 @@ class Writer {
 
   void ring(const RingText& ring) {
     const std::string_view text = source_.substr(ring.at, ring.size);
+    if (ring.is_binary) {
+      float_ring(ring, text);
+      return;
+    }
     const std::vector<Number> numbers = numbers_of(text);
     const std::size_t count = numbers.size() - 1;
     if (!(ring.is_whole ? begin_ring(ring, count) : begin_position(ring, count))) {
@@ -166,6 +186,16 @@ class Writer {
     const int flags =
         (ring.is_reversed ? RingForm::kReversed : 0) + (ring.is_y_first ? RingForm::kYFirst : 0);
     return {ring.solid, ring.ring, static_cast<std::uint8_t>(flags)};
+  }
+
+  void float_ring(const RingText& ring, std::string_view bytes) {
+    const RingForm form = form_of(ring);
+    if (!predictions_.is_ring(form) || predictions_.floats_of_ring(form) != bytes) {
+      literal(bytes);
+      return;
+    }
+    add_ring(form);
+    kept_ += kFloatRing;
   }
 
   bool begin_ring(const RingText& ring, std::size_t count) {
@@ -295,6 +325,10 @@ class Reader {
     if (!predictions_.is_ring(form)) return false;
     predictions_.use_ring(form);
     if (mark == kFirstPosition) return take_positions(1);
+    if (mark == kFloatRing) {
+      text_ += predictions_.floats_of_ring(form);
+      return text_.size() <= size_;
+    }
     const bool is_open = (form.flags & RingForm::kOpen) != 0;
     return take_positions(predictions_.size_of(form) + (is_open ? 0 : 1));
   }

@@ -30,6 +30,7 @@ struct RingText {
   Index ring = 0;              // the number of the ring in the solid
   std::uint64_t position = 0;  // the number of the position in the ring, unless is_whole
   bool is_whole = true;        // all positions, of which the last may repeat the first
+  bool is_binary = false;      // all positions as little-endian 32-bit floats
   bool is_reversed = false;    // after the first position the others are in the opposite order
   bool is_y_first = false;     // x and y are exchanged
 };

@@ -250,6 +250,19 @@ TEST_CASE("kept documents: WKT, JSON-FG and STL refer to the rings of their soli
   CHECK(kept(stl, Format::stl).framing.size() < stl.size() * 3 / 4);
 }
 
+TEST_CASE("kept documents: a binary STL refers to its triangles, whatever other bytes it has") {
+  std::string stl = file_text("meshes/stl_box_binary.stl");
+  const std::size_t triangles = (stl.size() - 84) / 50;
+  CHECK(kept(stl, Format::stl).framing.size() < stl.size() - 30 * triangles);
+  for (std::size_t triangle = 0; triangle < triangles; ++triangle) {
+    for (std::size_t i = 0; i < 12; ++i) stl[84 + 50 * triangle + i] = static_cast<char>(i);
+    stl[84 + 50 * triangle + 48] = static_cast<char>(triangle);
+  }
+  CHECK(comes_back(stl, Format::stl));
+  stl[84 + 12 + 3] = '\x80';  // -0 where the solid has 0
+  CHECK(comes_back(stl, Format::stl));
+}
+
 TEST_CASE("kept documents: bytes that the writer would write take a few bytes") {
   for (const Format format : {Format::obj, Format::off, Format::wkt, Format::ewkb}) {
     INFO(formats::to_string(format));

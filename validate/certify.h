@@ -11,7 +11,7 @@
 #include "geometry/placement.h"
 #include "geometry/valid_solid.h"
 #include "validate/report.h"
-#include "validate/source_elements.h"
+#include "validate/source/source_elements.h"
 
 namespace watertight::validate {
 

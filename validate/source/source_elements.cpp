@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "validate/source_elements.h"
+#include "validate/source/source_elements.h"
 
 #include <cstddef>
 

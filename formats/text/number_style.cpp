@@ -65,6 +65,11 @@ std::string NumberStyle::print(const VertexCoordinate& coordinate) const {
       return digits_of(coordinate.value(), std::chars_format::fixed, digits_);
     case Form::scientific:
       return digits_of(coordinate.value(), std::chars_format::scientific, digits_);
+    case Form::capital: {
+      std::string text = digits_of(coordinate.value(), std::chars_format::scientific, digits_);
+      std::replace(text.begin(), text.end(), 'e', 'E');
+      return text;
+    }
     case Form::general:
       return digits_of(coordinate.value(), std::chars_format::general, digits_);
   }
@@ -75,7 +80,8 @@ void NumberStyle::learn(const VertexCoordinate& coordinate, std::string_view tex
   const std::size_t decimals = std::min(decimals_of(text), kMostDigits);
   const std::size_t significant = std::min(significant_digits_of(text), kMostDigits);
   NumberStyle style;
-  for (const Form form : {Form::exact, Form::fixed, Form::scientific, Form::general}) {
+  for (const Form form :
+       {Form::exact, Form::fixed, Form::scientific, Form::capital, Form::general}) {
     style.form_ = form;
     style.digits_ = form == Form::general ? significant : decimals;
     if (style.print(coordinate) != text) continue;

@@ -36,6 +36,7 @@ class NumberStyle {
     exact,       // the exact digits, with zeros up to a number of decimals
     fixed,       // the double, rounded to a number of decimals
     scientific,  // the double as 1.250000e+02
+    capital,     // the double as 1.250000E+02
     general      // the double, rounded to a number of significant digits, without zeros at the end
   };
   Form form_ = Form::exact;

@@ -246,6 +246,11 @@ TEST_CASE("kept documents: WKT, JSON-FG and STL refer to the rings of their soli
       [[[0,1.50,0],[0,0,0],[0,0,1.50],[0,1.50,0]]] ]]}})";
   CHECK(comes_back(json_fg, Format::json_fg));
   CHECK_FALSE(framing_has(kept(json_fg, Format::json_fg), "[0,1.50,0]"));
+  for (const std::string exponent : {"0e+00", "0E+00"}) {
+    const std::string text = replaced(wkt, "1.50", "1.5" + exponent);
+    CHECK(comes_back(text, Format::wkt));
+    CHECK(kept(text, Format::wkt).framing.size() < text.size());
+  }
   const std::string stl = file_text("meshes/stl_box_ascii.stl");
   CHECK(kept(stl, Format::stl).framing.size() < stl.size() * 3 / 4);
 }

@@ -21,6 +21,9 @@
 namespace watertight::cli {
 namespace {
 
+constexpr const char* kNumbering =
+    "places: solids, shells, facets, rings and vertices count from 0, lines from 1\n";
+
 delaunay::Engine engine_of(const std::string& name) {
   if (name == "cgal") return delaunay::Engine::cgal;
   return name == "tetgen" ? delaunay::Engine::tetgen : delaunay::Engine::automatic;
@@ -255,7 +258,11 @@ Result<formats::FeatureReader> Validation::with_cavities(const std::string& file
     auto input = bytes ? load_input(path, *bytes, {}) : Result<Input>(bytes.error());
     if (!input) return std::move(input).error();
     std::vector<Feature>& features = input->document.features;
-    if (features.size() == 1 && features[0].solids.size() == 1) return std::move(input->document);
+    if (features.size() == 1 && features[0].solids.size() == 1) {
+      const std::string& reason = features[0].solids[0].unreadable;
+      if (!reason.empty()) return Error{ErrorCode::malformed, reason};
+      return std::move(input->document);
+    }
     return Error{ErrorCode::invalid_argument, "--interior-shell needs files with one solid each"};
   };
   auto document = one_solid(file);
@@ -360,7 +367,7 @@ Exit Validation::run() {
   if (!is_output_taken_) {
     print(summary_.headline() + "\n" + summary_.table(seconds));
     const std::string findings = findings_.text();
-    if (!findings.empty()) print("\n" + findings);
+    if (!findings.empty()) print("\n" + findings + kNumbering);
   }
   return exit_;
 }

@@ -48,6 +48,9 @@ class Summary {
   std::string table(double seconds) const;
   /// The figures of the table as a JSON object.
   std::string json(double seconds) const;
+  bool has_findings() const {
+    return with_warnings_ > 0 || !by_code_.empty() || !groups_by_code_.empty();
+  }
   std::uint64_t solids() const { return valid_ + invalid_ + undecided_; }
 
  private:

@@ -10,6 +10,8 @@
 #include "formats/gml/gml.h"
 #include "formats/json_fg.h"
 #include "formats/mesh/mesh_text.h"
+#include "formats/text/kept_text.h"
+#include "formats/text/ring_search.h"
 
 namespace watertight::formats {
 namespace {
@@ -20,8 +22,19 @@ bool is_city(Format format) {
   return format == Format::city_json || format == Format::city_json_seq;
 }
 
+// Errors: malformed for a solid that could not be read, and so cannot be written.
+Status all_readable(std::span<const Feature> features) {
+  for (const Feature& feature : features) {
+    for (const SubmittedSolid& solid : feature.solids) {
+      if (!solid.unreadable.empty()) return Error{ErrorCode::malformed, solid.unreadable};
+    }
+  }
+  return Done{};
+}
+
 // Writes the solids of all features, one after the other.
 Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
+  if (auto status = all_readable(features); !status) return std::move(status).error();
   const auto has_solids = [](const Feature& feature) { return !feature.solids.empty(); };
   if (std::none_of(features.begin(), features.end(), has_solids)) {
     return Error{ErrorCode::unsupported,
@@ -45,6 +58,36 @@ Result<Bytes> write_solids(std::span<const Feature> features, Format format) {
     }
   }
   return out;
+}
+
+// The document as it was read with ReadOptions::keep_text.
+Result<Bytes> write_kept(const Document& document) {
+  Bytes written;
+  if (needs_written(document.framing)) {
+    auto solids = write_solids(document.features, document.format);
+    if (!solids) return solids;
+    written = *std::move(solids);
+  }
+  return restored_bytes(document.framing, solids_of(document), written, Limits{}.bytes);
+}
+
+// Keeps the bytes of a document whose reader does not keep them itself, in the form of fewest
+// bytes.
+void keep_bytes(ByteView bytes, Document& document) {
+  std::vector<Bytes> forms{keep_whole(bytes)};
+  if (const auto written = write_solids(document.features, document.format)) {
+    forms.push_back(keep_as_written(bytes, *written));
+  }
+  const bool is_stl = document.format == Format::stl;
+  const auto solids = solids_of(document);
+  if (is_stl && is_binary_stl(bytes)) {
+    forms.push_back(keep_with_rings(bytes, binary_stl_rings(bytes), solids));
+  } else if (document.format != Format::ewkb) {
+    const auto end = is_stl ? RingEnd::open : RingEnd::closed;
+    forms.push_back(keep_with_rings(bytes, find_rings(as_text(bytes), solids, end), solids));
+  }
+  const auto is_shorter = [](const Bytes& a, const Bytes& b) { return a.size() < b.size(); };
+  document.framing = std::move(*std::min_element(forms.begin(), forms.end(), is_shorter));
 }
 
 }  // namespace
@@ -131,7 +174,7 @@ Result<Document> read_as(ByteView bytes, Format format, const ReadOptions& optio
     case Format::ewkb:
       return read_ewkb_document(bytes, options.limits);
     case Format::gml:
-      return read_gml(bytes, options.limits);
+      return read_gml(bytes, options);
     default:
       break;
   }
@@ -162,14 +205,16 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
     return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +
                                                 std::to_string(options.limits.bytes)};
   }
-  if (!has_byte_order_mark(bytes, format)) return read_as(bytes, format, options);
-  auto document = read_as(bytes.subspan(kByteOrderMark.size()), format, options);
+  const bool has_mark = has_byte_order_mark(bytes, format);
+  auto document = read_as(has_mark ? bytes.subspan(kByteOrderMark.size()) : bytes, format, options);
   if (!document) {
     Error error = std::move(document).error();
-    if (error.byte_offset) *error.byte_offset += kByteOrderMark.size();
+    if (has_mark && error.byte_offset) *error.byte_offset += kByteOrderMark.size();
     return error;
   }
-  document->notes.emplace_back("byte order mark skipped");
+  if (has_mark) document->notes.emplace_back("byte order mark skipped");
+  const bool keeps_text = options.keep_text && !options.split_features;
+  if (keeps_text && !is_city(format) && format != Format::gml) keep_bytes(bytes, *document);
   return document;
 }
 
@@ -185,8 +230,12 @@ Result<std::string> write_feature(const Document& document, const Feature& featu
 }
 
 Result<Bytes> write_document(const Document& document, Format format) {
-  if (!is_city(format)) return write_solids(document.features, format);
+  if (!is_city(format)) {
+    const bool is_kept = format == document.format && !document.framing.empty();
+    return is_kept ? write_kept(document) : write_solids(document.features, format);
+  }
   if (!is_city(document.format)) {
+    if (auto status = all_readable(document.features); !status) return std::move(status).error();
     auto model = as_city_model(document);
     if (!model) return std::move(model).error();
     auto written = write_document(*model, format);

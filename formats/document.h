@@ -53,6 +53,7 @@ struct SolidSource {
   std::string pointer;         // JSON Pointer to the solid's array of shells; "" when not JSON
   /// The Building that the object is or is a part of (rule 601), "" for other objects.
   std::string building_id = {};
+  std::uint64_t line = 0;  // the line of a GML document on which the solid starts, from 1; else 0
 };
 
 struct SubmittedSolid {
@@ -64,6 +65,14 @@ struct SubmittedSolid {
   std::vector<Index> unclosed_rings = {};
   /// The gml:id of the polygon of each facet, "" where it has none; empty when no polygon has one.
   std::vector<std::string> facet_ids = {};
+  /// The gml:id of each ring, "" where it has none; empty when no ring has one.
+  std::vector<std::string> ring_ids = {};
+  /// The lines of a GML document on which the polygon of each facet and each ring start; from 1, 0
+  /// for a ring that is missing. Empty in other formats.
+  std::vector<std::uint64_t> facet_lines = {};
+  std::vector<std::uint64_t> ring_lines = {};
+  /// Why the solid could not be read, "" if it was. `solid` has no shell then, and is not valid.
+  std::string unreadable = {};
   /// Unused vertices of a file whose list of vertices is for this solid alone.
   geometry::UnusedVertices unused = {};
   bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
@@ -113,8 +122,9 @@ struct Document {
   std::vector<SubmittedSolid> templates = {};
   /// Instances that belong to no feature: in GML an object without solids is not a feature.
   std::vector<TemplateInstance> instances = {};
-  /// The bytes between the lines of a CityJSONSeq read with ReadOptions::keep_text; empty: line
-  /// feeds. Opaque.
+  /// Of a document read with ReadOptions::keep_text: the bytes between the lines of a CityJSONSeq,
+  /// empty for line feeds; in formats other than those of CityJSON the bytes of the document, with
+  /// references to the solids of all features (formats/text/kept_text.h). Opaque.
   Bytes framing = {};
 };
 
@@ -134,9 +144,8 @@ struct ReadOptions {
   /// Whether a CityJSON document becomes one feature per top-level object (stores), or one feature
   /// whose skeleton returns the whole document (files). The solids are equal either way.
   bool split_features = true;
-  /// Whether a whole CityJSON, a sequence and a CityJSONFeature of a sequence can be written byte
-  /// for byte as they were read. The features of a document that is split have no text of their
-  /// own.
+  /// Whether a document and a CityJSONFeature of a sequence can be written byte for byte as they
+  /// were read. A document other than a sequence keeps its text unless `split_features` is true.
   bool keep_text = false;
 };
 
@@ -152,9 +161,11 @@ Result<std::string> write_feature(const Document& document, const Feature& featu
 
 /// The bytes of a whole document. City models become a CityJSON of all features (city_json), or a
 /// header line and feature lines (city_json_seq); a document that kept its text returns it in its
-/// own format. For obj, off, wkt and ewkb: the solids of all features.
-/// Errors: unsupported when a format cannot hold the document (OFF: several solids; OBJ, OFF: rings
-/// with holes, which only `convert` triangulates).
+/// own format. For obj, off, wkt and ewkb: the solids of all features. Other formats can only be
+/// written as the text that was kept.
+/// Errors: malformed if the solids are not those of the text; unsupported when a format cannot hold
+/// the document (OFF: several solids; OBJ, OFF: rings with holes, which only `convert`
+/// triangulates).
 Result<Bytes> write_document(const Document& document, Format format);
 
 }  // namespace watertight::formats

@@ -20,6 +20,11 @@ using formats::UnreadablePart;
 constexpr std::size_t kVertexBytes = 24;  // three doubles
 constexpr std::size_t kCornerBytes = 4;   // one index
 
+validate::SourceElements elements_of(const SubmittedSolid& submitted) {
+  return {submitted.source.line, submitted.facet_ids, submitted.ring_ids, submitted.facet_lines,
+          submitted.ring_lines};
+}
+
 std::size_t plain_bytes(const Solid& solid) {
   return solid.vertex_count() * kVertexBytes + solid.arrays().ring_vertices.size() * kCornerBytes;
 }
@@ -30,6 +35,19 @@ bool is_cancelled(const IngestOptions& options) {
 
 Error cancelled() {
   return Error{ErrorCode::cancelled, "stopped before all features were validated"};
+}
+
+/// Names the elements of the findings about a group.
+void name_members(const InspectedFeature& inspected, InspectedGroup& group) {
+  const auto element = [&](const Place& place) {
+    if (place.solid >= group.members.size()) return validate::SourceElement{};
+    const SubmittedSolid& member = inspected.feature.solids[group.members[place.solid]];
+    return validate::element_at(place, member.solid, elements_of(member));
+  };
+  for (Finding& finding : group.report.findings) {
+    finding.source = element(finding.place);
+    if (finding.other) finding.other_source = element(*finding.other);
+  }
 }
 
 /// The outcome of a solid; `encoded` is the solid after encoding, or null.
@@ -224,6 +242,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
   } else {
     inspected.groups = inspect_groups(group_candidates(inspected), group_options(groups, options));
   }
+  for (InspectedGroup& group : inspected.groups) name_members(inspected, group);
   add_unreadable(inspected);
   return inspected;
 }
@@ -242,6 +261,8 @@ CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions
   own.is_origin_rounded = submitted.is_origin_rounded;
   own.unclosed_rings = submitted.unclosed_rings;
   own.unused = submitted.unused;
+  own.unreadable = submitted.unreadable;
+  own.elements = elements_of(submitted);
   return own;
 }
 

@@ -28,6 +28,18 @@ std::string side_words(const Side& side) {
   return words + place;
 }
 
+/// " (polygon 'a', ring 'b', line 12)"; "" for an unknown element.
+std::string element_words(const validate::SourceElement& element) {
+  std::string words;
+  const auto add = [&](const std::string& word) {
+    words.append(words.empty() ? " (" : ", ").append(word);
+  };
+  if (!element.polygon.empty()) add("polygon '" + shortened(element.polygon) + "'");
+  if (!element.ring.empty()) add("ring '" + shortened(element.ring) + "'");
+  if (element.line != 0) add("line " + std::to_string(element.line));
+  return words.empty() ? words : words + ")";
+}
+
 std::string line_of(const LineParts& parts) {
   const Finding& finding = *parts.finding;
   std::string line{validate::to_string(finding.severity)};
@@ -35,11 +47,13 @@ std::string line_of(const LineParts& parts) {
   line += validate::finding_name(finding.code);
   const std::string where = side_words(parts.side);
   if (!where.empty()) line.append(" in ").append(where);
+  line += element_words(finding.source);
   if (parts.other) {
     const bool is_same = parts.other->source == parts.side.source;
     const std::string other = is_same ? place_words(parts.other->place, parts.other->submitted)
                                       : side_words(*parts.other);
     if (!other.empty()) line.append(" and ").append(other);
+    line += element_words(finding.other_source);
   }
   if (parts.point) line.append(", at ").append(point_text(*parts.point));
   if (!finding.detail.empty()) line.append(": ").append(shortened(finding.detail));

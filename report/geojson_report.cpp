@@ -101,6 +101,9 @@ class GeoJsonReport final : public FeatureReport {
     json.key("is_repairable").value(kind != nullptr && kind->is_repairable);
     json.key("uncertain").value(finding.uncertain);
     json.key("pointer").value(pointer_of(feature, placed.solid, finding.place));
+    if (!finding.source.polygon.empty()) json.key("polygon").value(finding.source.polygon);
+    if (!finding.source.ring.empty()) json.key("ring").value(finding.source.ring);
+    if (finding.source.line != 0) json.key("line").value(finding.source.line);
     const bool has_other = finding.other.has_value();
     json.key("other_pointer");
     json.value(has_other ? pointer_of(feature, placed.other_solid, *finding.other) : "");

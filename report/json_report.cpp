@@ -10,6 +10,10 @@ namespace {
 /// The most errors of reading that are listed; more errors are only counted.
 constexpr std::size_t kMostErrors = 1000;
 
+constexpr std::string_view kNumbering =
+    "solids, shells, facets, rings and vertices count from 0; lines count from 1; a ring counts "
+    "within its facet, the others over the whole solid";
+
 template <class Codes>
 void write_codes(JsonText& json, std::string_view name, const Codes& codes) {
   json.key(name).open('[');
@@ -166,6 +170,7 @@ class JsonReport final : public FeatureReport {
     json.key("input_file").value(document.file);
     json.key("input_file_type").value(document.format ? format_name(*document.format) : "unknown");
     write_parameters(json);
+    json.key("numbering").value(kNumbering);
     json.key("features").open('[');
     return sink_(json.take());
   }

@@ -314,6 +314,22 @@ Inspection examine(const Solid& solid, delaunay::EngineWorkers* workers,
   return inspection;
 }
 
+/// The result for a solid of which nothing is known, because the reader could not read it.
+Inspection unread(const CertifyOptions& options) {
+  FindingCollector findings(options.limits.findings);
+  findings.add({.code = kInvalidInputFile, .detail = options.unreadable});
+  Inspection inspection;
+  Report& report = inspection.report;
+  report.verdict = Verdict::invalid;
+  report.acceptance = {options.tolerances, options.proof, geometry::kRuleSet};
+  report.first_level = first_level_codes(findings.all());
+  if (options.also_tolerant) {
+    report.tolerant = TolerantVerdict{Verdict::invalid, report.first_level};
+  }
+  std::move(findings).move_to(report);
+  return inspection;
+}
+
 /// The result for a solid that its placement flattens: a closed surface pressed into a plane meets
 /// itself and encloses nothing.
 Inspection flattened(const CertifyOptions& options) {
@@ -354,8 +370,13 @@ Inspection examine_placed(const Solid& solid, delaunay::EngineWorkers* workers,
 
 Inspection certify(const Solid& solid, delaunay::EngineWorkers* workers,
                    const CertifyOptions& options) {
-  return options.placement == nullptr ? examine(solid, workers, options)
-                                      : examine_placed(solid, workers, options);
+  Inspection inspection = !options.unreadable.empty()    ? unread(options)
+                          : options.placement == nullptr ? examine(solid, workers, options)
+                                                         : examine_placed(solid, workers, options);
+  for (Finding& finding : inspection.report.findings) {
+    name_elements(solid, options.elements, finding);
+  }
+  return inspection;
 }
 
 }  // namespace watertight::validate

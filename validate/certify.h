@@ -11,6 +11,7 @@
 #include "geometry/placement.h"
 #include "geometry/valid_solid.h"
 #include "validate/report.h"
+#include "validate/source/source_elements.h"
 
 namespace watertight::validate {
 
@@ -28,6 +29,11 @@ struct CertifyOptions {
   geometry::UnusedVertices unused = {};
   /// Rings that their source left open (SubmittedSolid::unclosed_rings): finding 103.
   std::span<const Index> unclosed_rings = {};
+  /// Why the reader could not read the solid (SubmittedSolid::unreadable), "" if it did: finding
+  /// 901 and no other.
+  std::string unreadable = {};
+  /// The elements that findings name.
+  SourceElements elements = {};
   /// The placement of an instance of a geometry template; null for other solids. The solid is
   /// judged as placed: the exact sign of the determinant gives the orientation, metres are measured
   /// in the world; a determinant of zero gives 306 and 806. The caller keeps the object alive.

@@ -30,6 +30,14 @@ struct Place {
   friend auto operator<=>(const Place&, const Place&) = default;
 };
 
+/// The element of a document in which a place is, for formats that name elements (GML).
+struct SourceElement {
+  std::string polygon = {};  // the gml:id of the facet's polygon, "" without one
+  std::string ring = {};     // the gml:id of the ring, "" without one
+  std::uint64_t line = 0;    // the line on which the element starts, from 1; 0 if unknown
+  friend auto operator<=>(const SourceElement&, const SourceElement&) = default;
+};
+
 struct Finding {
   int code = 0;  // the number of the finding in docs/findings.md
   Severity severity = Severity::error;
@@ -39,9 +47,11 @@ struct Finding {
       {};  // the world coordinates of the witness, correctly rounded
   std::optional<double> measured = {};
   std::optional<double> limit = {};
-  std::string unit = {};    // the unit of measured and limit: "m", "degree", "facets", ...
-  std::string detail = {};  // one clause, lower case, for a person
-  bool uncertain = false;   // a finding of a lower level makes this one unreliable
+  std::string unit = {};            // the unit of measured and limit: "m", "degree", "facets", ...
+  std::string detail = {};          // one clause, lower case, for a person
+  bool uncertain = false;           // a finding of a lower level makes this one unreliable
+  SourceElement source = {};        // the element of `place`
+  SourceElement other_source = {};  // the element of `other`
 };
 
 /// A rule that could not be evaluated, and why.

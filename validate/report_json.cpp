@@ -39,6 +39,28 @@ std::string place_text(const Place& place) {
   return text;
 }
 
+/// " (polygon 'a', ring 'b', line 12)"; "" for an unknown element.
+std::string element_text(const SourceElement& element) {
+  std::string text;
+  const auto add = [&](std::string_view words) {
+    text += text.empty() ? " (" : ", ";
+    text += words;
+  };
+  if (!element.polygon.empty()) add("polygon '" + element.polygon + "'");
+  if (!element.ring.empty()) add("ring '" + element.ring + "'");
+  if (element.line != 0) add("line " + std::to_string(element.line));
+  return text.empty() ? text : text + ")";
+}
+
+void add_element(Json& json, const char* name, const SourceElement& element) {
+  if (element == SourceElement{}) return;
+  Json entry = Json::object();
+  if (!element.polygon.empty()) entry["polygon"] = element.polygon;
+  if (!element.ring.empty()) entry["ring"] = element.ring;
+  if (element.line != 0) entry["line"] = element.line;
+  json[name] = std::move(entry);
+}
+
 Json place_json(const Place& place, const ReportJsonOptions& options) {
   Json json = Json::object();
   const auto add = [&](const char* name, Index index) {
@@ -82,12 +104,14 @@ Json make_finding(const Finding& finding, const PlacedSolid& here, const PlacedS
   json["id"] = id;
   json["info"] = finding.detail;
   json["place"] = place_json(finding.place, *here.options);
+  add_element(json, "source", finding.source);
   const bool has_pointers = !here.options->pointer_prefix.empty();
   if (has_pointers) {
     json["pointer"] = place_pointer(finding.place, *here.submitted, *here.options);
   }
   if (finding.other) {
     json["other"] = place_json(*finding.other, *there.options);
+    add_element(json, "other_source", finding.other_source);
     if (has_pointers) {
       json["other_pointer"] = place_pointer(*finding.other, *there.submitted, *there.options);
     }
@@ -167,9 +191,11 @@ std::string finding_text(const Finding& finding) {
   text += finding_name(finding.code);
   const std::string place = place_text(finding.place);
   if (!place.empty()) text += " at " + place;
+  text += element_text(finding.source);
   if (finding.other) {
     const std::string other = place_text(*finding.other);
     if (!other.empty()) text += " and " + other;
+    text += element_text(finding.other_source);
   }
   text += ": " + finding.detail;
   if (finding.measured) {

@@ -62,7 +62,8 @@ std::string place_pointer(const Place& place, const Solid& submitted,
                           const ReportJsonOptions& options);
 
 /// A finding as one line of text, for a person: "error 302 SHELL_NOT_CLOSED at shell 0 facet 5: a
-/// border of 4 edges ...".
+/// border of 4 edges ..."; with the elements of a GML document after the places: "shell 0 facet 5
+/// (polygon 'wall', line 12)".
 std::string finding_text(const Finding& finding);
 
 /// The report as lines of text: the verdict, then each finding.

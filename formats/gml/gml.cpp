@@ -6,14 +6,17 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/quantity.h"
 #include "formats/gml/model.h"
+#include "formats/gml/ring_texts.h"
 #include "formats/gml/shapes.h"
 #include "formats/surface.h"
+#include "formats/text/kept_text.h"
 #include "formats/text/numbers.h"
 
 namespace watertight::formats {
@@ -22,7 +25,11 @@ namespace {
 struct Draft {
   GmlSolid solid;
   SolidSource source;
+  std::string unreadable;  // SubmittedSolid::unreadable
 };
+
+// The most bytes of SubmittedSolid::unreadable, which may repeat long gml:ids.
+constexpr std::size_t kLongestReason = 512;
 
 // Reads the matrix "1 0 0 0 ...", row by row. The placement's shift is that of the matrix alone.
 Result<geometry::Placement> read_placement(std::string_view text) {
@@ -41,7 +48,10 @@ Result<geometry::Placement> read_placement(std::string_view text) {
 class GmlReader {
  public:
   GmlReader(const GmlModel& model, std::uint64_t byte_count, const Limits& limits)
-      : model_(model), limits_(limits), shapes_(model, byte_count, limits) {}
+      : model_(model),
+        limits_(limits),
+        shapes_(model, byte_count, limits),
+        ring_uses_(model.nodes.size()) {}
 
   Result<Document> read() {
     document_.format = Format::gml;
@@ -72,6 +82,9 @@ class GmlReader {
     return std::move(document_);
   }
 
+  /// After read(): the use of each node that is a ring.
+  std::span<const GmlRingUse> ring_uses() const { return ring_uses_; }
+
  private:
   static Error in_object(Error error, const std::string& id) {
     if (!id.empty()) error.message.append(", of object '").append(id).append("'");
@@ -83,6 +96,9 @@ class GmlReader {
   Status feature_of(const std::vector<Index>& geometries, const GmlGeometry& first) {
     drafts_.clear();
     positions_ = {};
+    is_y_first_ = false;
+    is_template_ = first.is_template;
+    system_ = kNone;
     geometries_of_.clear();
     for (const Index geometry : geometries) {
       auto status = add_geometry(model_.geometries[geometry]);
@@ -97,7 +113,7 @@ class GmlReader {
     } else {
       feature.id = drafts_.front().source.object_id;
     }
-    auto status = finish(feature, first.is_template);
+    auto status = finish(feature);
     if (!status) return in_object(std::move(status).error(), feature.id);
     if (first.is_template) {
       for (SubmittedSolid& solid : feature.solids) {
@@ -115,14 +131,14 @@ class GmlReader {
     // it.
     if (geometry.is_template && link.node == kNone) return Done{};
     auto target = shapes_.resolve(link);
-    if (!target) return in_object(std::move(target).error(), id_of(geometry, kNone));
     SolidSource source;
-    source.object_id = id_of(geometry, *target);
+    source.object_id = id_of(geometry, target ? *target : kNone);
     if (geometry.object != kNone && !geometry.is_template) {
       source.building_id = model_.objects[geometry.object].building_id;
     }
     if (geometry.lod != '\0') source.lod = geometry.lod;
     source.geometry = next_geometry(geometry.is_template, source.object_id);
+    if (!target) return add_unreadable(target.error(), link.place, std::move(source));
     auto status = add_solids(*target, geometry.is_template, source);
     if (geometry.is_template) templates_of_[*target] = {source.geometry, templates_};
     if (!status) return in_object(std::move(status).error(), source.object_id);
@@ -204,7 +220,10 @@ class GmlReader {
       return Done{};
     };
     const bool is_composite = is_composite_solid(root);
-    if (auto status = open(root); !status) return status;
+    source.geometry_type = model_.name(model_.nodes[root].name);
+    if (auto status = open(root); !status) {
+      return add_unreadable(status.error(), model_.nodes[root].place, source);
+    }
     while (!path.empty()) {
       const Step step = path.back();
       if (step.link == kNone) {
@@ -214,14 +233,15 @@ class GmlReader {
       }
       const GmlLink& link = model_.links[step.link];
       path.back().link = link.next;
-      auto node = shapes_.resolve(link);
-      if (!node) return std::move(node).error();
-      const GmlKind kind = model_.nodes[*node].kind;
+      const auto node = shapes_.resolve(link);
+      const GmlKind kind = node ? model_.nodes[*node].kind : GmlKind::unread;
       Status status = Done{};
-      if (kind == GmlKind::solid) {
-        source.geometry_type = model_.name(model_.nodes[root].name);
+      if (!node) {
+        status = node.error();
+      } else if (kind == GmlKind::solid) {
         status = add_solid(*node, source);
         ++source.ordinal;
+        if (!status) return status;
       } else if (is_composite_solid(*node) && !is_composite) {
         composites.push_back(*node);
       } else if (kind == GmlKind::solids || kind == GmlKind::mixed) {
@@ -230,7 +250,10 @@ class GmlReader {
         status = error_at(link.place, ErrorCode::malformed,
                           shapes_.title(*node) + " where a solid is expected");
       }
+      if (status) continue;
+      status = add_unreadable(status.error(), link.place, source);
       if (!status) return status;
+      ++source.ordinal;
     }
     return Done{};
   }
@@ -241,24 +264,45 @@ class GmlReader {
 
   Status add_solid(Index node, SolidSource source) {
     if (source.geometry_type.empty()) source.geometry_type = model_.name(model_.nodes[node].name);
+    const std::size_t positions = positions_.values.size();
+    const std::size_t rounded = positions_.rounded.size();
     auto solid = shapes_.solid(node, positions_);
-    if (!solid) return std::move(solid).error();
-    drafts_.push_back({std::move(*solid), std::move(source)});
+    if (solid) {
+      if (auto status = use_system(*solid); !status) solid = status.error();
+    }
+    if (!solid) {
+      positions_.values.resize(positions);
+      positions_.rounded.resize(rounded);
+      return add_unreadable(solid.error(), model_.nodes[node].place, std::move(source));
+    }
+    source.line = solid->place.line;
+    drafts_.push_back({std::move(*solid), std::move(source), {}});
     return Done{};
   }
 
-  // The one reference system of all drafts.
-  Result<Index> common_system() const {
-    Index system = kNone;
-    for (const Draft& draft : drafts_) {
-      if (system == kNone) system = draft.solid.system;
-      if (!shapes_.is_same_system(system, draft.solid.system)) {
-        return error_at(draft.solid.place, ErrorCode::unsupported,
-                        "a solid in '" + model_.systems[draft.solid.system] +
-                            "' beside solids in '" + model_.systems[system] + "'");
-      }
-    }
-    return system;
+  // Adds a solid of which only the place is known and why it could not be read. Errors: that of the
+  // solid if a limit was exceeded, because the rest of the document may exceed it too.
+  Status add_unreadable(const Error& error, XmlPlace place, SolidSource source) {
+    if (error.code == ErrorCode::limit_exceeded) return error;
+    Draft draft;
+    draft.solid.first_position = positions_.values.size();
+    draft.solid.place = place;
+    source.line = place.line;
+    draft.source = std::move(source);
+    draft.unreadable = in_object(error, draft.source.object_id).message.substr(0, kLongestReason);
+    drafts_.push_back(std::move(draft));
+    return Done{};
+  }
+
+  // Takes the system of the first solid for the feature. Errors: unsupported for a solid in another
+  // system. Templates have axes of their own, whatever the system of the document.
+  Status use_system(const GmlSolid& solid) {
+    if (is_template_) return Done{};
+    if (system_ == kNone) system_ = solid.system;
+    if (shapes_.is_same_system(system_, solid.system)) return Done{};
+    return error_at(solid.place, ErrorCode::unsupported,
+                    "a solid in '" + model_.systems[solid.system] + "' beside solids in '" +
+                        model_.systems[system_] + "'");
   }
 
   // Swaps the first two axes of latitude, longitude, height: as x, y, z these left-handed axes
@@ -276,19 +320,17 @@ class GmlReader {
       return;
     }
     latitude_first_.insert(model_.systems[system]);
+    is_y_first_ = true;
     for (auto& position : values) std::swap(position[0], position[1]);
   }
 
   // Puts the drafts on their common lattice.
-  Status finish(Feature& feature, bool is_template) {
+  Status finish(Feature& feature) {
     const Draft& first = drafts_.front();
-    // Templates have axes of their own, whatever the system of the document.
-    if (!is_template) {
-      const auto system = common_system();
-      if (!system) return system.error();
-      feature.srid = shapes_.srid(*system);
-      if (*system != kNone && feature.srid == 0) unknown_systems_.insert(model_.systems[*system]);
-      put_longitude_first(*system);
+    if (!is_template_) {
+      feature.srid = shapes_.srid(system_);
+      if (system_ != kNone && feature.srid == 0) unknown_systems_.insert(model_.systems[system_]);
+      if (system_ != kNone) put_longitude_first(system_);
     }
     auto points = geometry::lattice_of_decimals(positions_.values);
     if (!points) return error_at(first.solid.place, points.error().code, points.error().message);
@@ -305,10 +347,21 @@ class GmlReader {
       for (std::size_t k = begin; k < end; ++k) {
         if (is_rounded[k]) own.rounded.push_back(static_cast<Index>(k - begin));
       }
+      if (!is_template_) note_ring_uses(drafts_[i].solid);
       auto status = place(drafts_[i], own, feature);
       if (!status) return status;
     }
     return Done{};
+  }
+
+  // Notes which rings the next solid of the document uses first.
+  void note_ring_uses(const GmlSolid& solid) {
+    for (Index ring = 0; ring < solid.rings.size(); ++ring) {
+      const auto [node, is_reversed] = solid.rings[ring];
+      if (node == kNone || ring_uses_[node].solid != kNone) continue;
+      ring_uses_[node] = {solids_, ring, is_reversed, is_y_first_};
+    }
+    ++solids_;
   }
 
   Status place(Draft& draft, const geometry::LatticePoints& points, Feature& feature) {
@@ -318,13 +371,30 @@ class GmlReader {
       return error_at(draft.solid.place, solid.error().code, solid.error().message);
     }
     solid->unclosed_rings = std::move(draft.solid.unclosed_rings);
-    const auto& ids = draft.solid.facet_ids;
-    const auto has_id = [](const std::string& id) { return !id.empty(); };
-    if (std::any_of(ids.begin(), ids.end(), has_id)) {
-      solid->facet_ids = std::move(draft.solid.facet_ids);
-    }
+    name_elements(draft.solid, *solid);
+    solid->unreadable = std::move(draft.unreadable);
     feature.solids.push_back(std::move(*solid));
     return Done{};
+  }
+
+  // Names the elements of facets and rings by gml:id and line.
+  void name_elements(const GmlSolid& draft, SubmittedSolid& solid) const {
+    const std::string_view none;
+    bool have_ids = false;
+    for (const Index node : draft.facets) {
+      solid.facet_ids.emplace_back(model_.name(model_.nodes[node].id));
+      solid.facet_lines.push_back(model_.nodes[node].place.line);
+      have_ids = have_ids || !solid.facet_ids.back().empty();
+    }
+    if (!have_ids) solid.facet_ids.clear();
+    have_ids = false;
+    for (const auto [node, is_reversed] : draft.rings) {
+      const bool is_missing = node == kNone;
+      solid.ring_ids.emplace_back(is_missing ? none : model_.name(model_.nodes[node].id));
+      solid.ring_lines.push_back(is_missing ? 0 : model_.nodes[node].place.line);
+      have_ids = have_ids || !solid.ring_ids.back().empty();
+    }
+    if (!have_ids) solid.ring_ids.clear();
   }
 
   void add_notes() {
@@ -359,15 +429,25 @@ class GmlReader {
   std::set<std::string> wrongly_ordered_;
   std::vector<Draft> drafts_;
   GmlPositions positions_;
+  bool is_template_ = false;           // the drafts are those of a template
+  Index system_ = kNone;               // the reference system of the drafts
+  bool is_y_first_ = false;            // the positions of the present feature were written y, x, z
+  std::vector<GmlRingUse> ring_uses_;  // by node
+  Index solids_ = 0;                   // the solids of features until now
   Document document_;
 };
 
 }  // namespace
 
-Result<Document> read_gml(ByteView bytes, const Limits& limits) {
-  auto model = read_gml_model(bytes, limits);
-  if (!model) return std::move(model).error();
-  return GmlReader(*model, bytes.size(), limits).read();
+Result<Document> read_gml(ByteView bytes, const ReadOptions& options) {
+  const auto model = read_gml_model(bytes, options.limits);
+  if (!model) return model.error();
+  GmlReader reader(*model, bytes.size(), options.limits);
+  auto document = reader.read();
+  if (!document || !options.keep_text || options.split_features) return document;
+  const auto texts = ring_texts(*model, reader.ring_uses(), bytes);
+  document->framing = keep_with_rings(bytes, texts, solids_of(*document));
+  return document;
 }
 
 }  // namespace watertight::formats

@@ -18,7 +18,7 @@ namespace watertight::formats {
 /// Errors: malformed, unsupported, limit_exceeded; with byte offset, line, and gml:id where there
 /// is one. Cost: n log n in the gml:ids, else linear; xlinks may not repeat more geometry than a
 /// document of this size could write out.
-Result<Document> read_gml(ByteView bytes, const Limits& limits);
+Result<Document> read_gml(ByteView bytes, const ReadOptions& options);
 
 /// The EPSG code of an srsName, 0 when there is none. Known are "EPSG:25832", URNs and URLs of the
 /// OGC (of a compound system the first, horizontal code), and the codes of the German survey

@@ -67,7 +67,9 @@ class GmlBuilder : public XmlHandler {
       case FrameKind::numbers:
         break;
     }
-    return error_at(element.place, ErrorCode::malformed, "an element inside of coordinates");
+    add_defect(parent.node, element.place, ErrorCode::malformed,
+               "an element inside of coordinates");
+    return skip();
   }
 
   Status text(std::string_view text) override {
@@ -413,6 +415,7 @@ class GmlBuilder : public XmlHandler {
                                                    : "coordinates";
     numbers_.at = model_.positions.size();
     numbers_.place = element.place;
+    model_.numbers_of_rings.push_back({frame.node, element.content});
     const auto separator = [&](std::string_view name, char& value) {
       const auto text = element.attribute("", name);
       if (text && text->size() == 1) value = text->front();

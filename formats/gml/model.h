@@ -85,8 +85,15 @@ struct GmlImplicit {
   XmlPlace place;
 };
 
+/// The content of a pos, posList or coordinates element of a ring.
+struct GmlNumbers {
+  Index ring = kNone;         // a node
+  std::uint64_t content = 0;  // the first byte after the start tag
+};
+
 struct GmlModel {
   std::vector<GmlNode> nodes;
+  std::vector<GmlNumbers> numbers_of_rings;  // in document order
   std::vector<GmlLink> links;
   std::vector<GmlGeometry> geometries;  // in document order
   std::vector<GmlImplicit> implicits;

@@ -141,7 +141,17 @@ Status GmlShapes::shell(const GmlLink& link, GmlSolid& solid, GmlPositions& posi
   auto target = resolve(link);
   if (!target) return std::move(target).error();
   std::vector<Step> path;
-  auto status = surface(path, *target, false, solid, positions);
+  auto status = follow(path, *target, solid, positions);
+  for (const Step& step : path) leave(step.node);
+  if (status) solid.arrays.end_shell();
+  return status;
+}
+
+// Adds the facets of a surface and of all surfaces in it. After an error the path has the surfaces
+// that were not left.
+Status GmlShapes::follow(std::vector<Step>& path, Index first, GmlSolid& solid,
+                         GmlPositions& positions) {
+  auto status = surface(path, first, false, solid, positions);
   while (status && !path.empty()) {
     Step& step = path.back();
     if (step.link == kNone) {
@@ -156,7 +166,6 @@ Status GmlShapes::shell(const GmlLink& link, GmlSolid& solid, GmlPositions& posi
     if (!node) return std::move(node).error();
     status = surface(path, *node, is_reversed, solid, positions);
   }
-  if (status) solid.arrays.end_shell();
   return status;
 }
 
@@ -169,18 +178,18 @@ Status GmlShapes::surface(std::vector<Step>& path, Index node, bool is_reversed,
     return wrong(element.place, title(node) + " where a surface is expected");
   }
   if (element.kind == GmlKind::polygon) return facet(node, is_reversed, solid, positions);
-  if (!enter(node)) return wrong(element.place, title(node) + " contains itself by xlink");
   const bool is_orientable = element.kind == GmlKind::orientable;
   if (is_orientable && element.first_link != element.last_link) {
     return wrong(element.place, title(node) + " has several base surfaces");
   }
+  if (!enter(node)) return wrong(element.place, title(node) + " contains itself by xlink");
   path.push_back({node, element.first_link, is_reversed != element.is_reversed});
   return Done{};
 }
 
 Status GmlShapes::facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositions& positions) {
   const GmlNode& element = model_.nodes[node];
-  if (solid.facet_ids.size() >= limits_.facets) {
+  if (solid.facets.size() >= limits_.facets) {
     return error_at(element.place, ErrorCode::limit_exceeded, "more facets than the limit");
   }
   std::size_t exteriors = 0;
@@ -190,7 +199,10 @@ Status GmlShapes::facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositi
       if (role == GmlRole::exterior && ++exteriors > 1) {
         return wrong(model_.links[link].place, title(node) + " has a second exterior ring");
       }
-      if (role == GmlRole::interior && exteriors == 0 && ++exteriors > 0) solid.arrays.end_ring();
+      if (role == GmlRole::interior && exteriors == 0 && ++exteriors > 0) {
+        solid.arrays.end_ring();
+        solid.rings.emplace_back();
+      }
       auto status = ring(model_.links[link], is_reversed, solid, positions);
       if (!status) {
         Error error = std::move(status).error();
@@ -200,7 +212,7 @@ Status GmlShapes::facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositi
     }
   }
   solid.arrays.end_facet();
-  solid.facet_ids.emplace_back(model_.name(element.id));
+  solid.facets.push_back(node);
   return Done{};
 }
 
@@ -233,6 +245,7 @@ Status GmlShapes::ring(const GmlLink& link, bool is_reversed, GmlSolid& solid,
     std::reverse(vertices.begin() + static_cast<std::ptrdiff_t>(start) + 1, vertices.end());
   }
   solid.arrays.end_ring();
+  solid.rings.push_back({*node, is_reversed});
   return Done{};
 }
 
@@ -249,8 +262,8 @@ Status GmlShapes::read_positions(const GmlNode& ring, GmlPositions& positions) {
       if (axis > 0) word = take_word(text);
       auto exact = exact_number(word);
       if (!exact) {
-        return error_at(ring.place, exact.error().code,
-                        std::string("a coordinate of the ring: ").append(exact.error().message));
+        return wrong(ring.place,
+                     std::string("a coordinate of the ring: ").append(exact.error().message));
       }
       position[axis] = exact->value;
       is_rounded = is_rounded || exact->is_rounded;

@@ -17,13 +17,20 @@
 
 namespace watertight::formats {
 
+/// The element of a ring of a solid.
+struct GmlRing {
+  Index node = kNone;  // kNone: the exterior ring of a polygon without one
+  bool is_reversed = false;
+};
+
 /// A solid whose ring vertices are indices into GmlPositions::values, counted from
 /// `first_position`, each used once.
 struct GmlSolid {
   SolidArrays arrays;
   std::size_t first_position = 0;
   std::vector<Index> unclosed_rings;
-  std::vector<std::string> facet_ids;  // the values of SubmittedSolid::facet_ids
+  std::vector<Index> facets;   // the node of each facet
+  std::vector<GmlRing> rings;  // one for each ring of `arrays`
   Index system = kNone;
   XmlPlace place;
 };
@@ -76,6 +83,7 @@ class GmlShapes {
   };
 
   Status shell(const GmlLink& link, GmlSolid& solid, GmlPositions& positions);
+  Status follow(std::vector<Step>& path, Index first, GmlSolid& solid, GmlPositions& positions);
   Status surface(std::vector<Step>& path, Index node, bool is_reversed, GmlSolid& solid,
                  GmlPositions& positions);
   Status facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositions& positions);

@@ -67,7 +67,10 @@ class Events {
                       "elements are nested deeper than " + std::to_string(nesting_));
     }
     const auto [space, local] = split_name(name);
-    return handler_.start(XmlElement{space, local, attributes, place()});
+    const auto tag_bytes =
+        static_cast<std::uint64_t>(std::max(0, XML_GetCurrentByteCount(parser_)));
+    const XmlPlace tag = place();
+    return handler_.start(XmlElement{space, local, attributes, tag, tag.byte + tag_bytes});
   }
 
   static void on_start(void* self, const char* name, const char** attributes) {

@@ -31,6 +31,7 @@ struct XmlElement {
   std::string_view name;   // local name
   const char** attributes = nullptr;
   XmlPlace place;
+  std::uint64_t content = 0;  // the byte after the start tag
 
   /// The value of an attribute, if there is one. Cost: linear in the number of attributes.
   std::optional<std::string_view> attribute(std::string_view attribute_space,

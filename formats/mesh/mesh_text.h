@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/document.h"
+#include "formats/text/kept_text.h"
 
 namespace watertight::formats {
 
@@ -21,6 +22,8 @@ Result<Document> read_off(std::string_view text, const Limits& limits);
 /// Reads text or binary; corners with equal coordinates become one vertex.
 Result<Document> read_stl(ByteView bytes, const Limits& limits);
 bool is_binary_stl(ByteView bytes);
+/// The places of the triangles in a binary STL, which are the rings of its one solid, in order.
+std::vector<RingText> binary_stl_rings(ByteView bytes);
 Result<Document> read_ply(ByteView bytes, const Limits& limits);
 Result<Document> read_poly(std::string_view text, const Limits& limits);
 /// Reads a text of geometries, one after the other. Each geometry becomes a feature.

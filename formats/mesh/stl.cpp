@@ -291,6 +291,17 @@ bool is_binary_stl(ByteView bytes) {
          bytes.size() == kHeader + kTriangle * std::uint64_t{word_at(bytes, 80)};
 }
 
+std::vector<RingText> binary_stl_rings(ByteView bytes) {
+  std::vector<RingText> rings((bytes.size() - kHeader) / kTriangle);
+  for (std::size_t triangle = 0; triangle < rings.size(); ++triangle) {
+    rings[triangle].at = kHeader + triangle * kTriangle + kNormal;
+    rings[triangle].size = kTriangle - kNormal - 2;
+    rings[triangle].ring = static_cast<Index>(triangle);
+    rings[triangle].is_binary = true;
+  }
+  return rings;
+}
+
 Result<Document> read_stl(ByteView bytes, const Limits& limits) {
   if (is_binary_stl(bytes)) return read_binary_stl(bytes, limits);
   if (is_text_stl(bytes)) return TextStlReader(as_text(bytes), limits).read();

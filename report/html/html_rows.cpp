@@ -65,6 +65,16 @@ std::string finding_cell(const Finding& finding) {
   return html + "</td>";
 }
 
+/// The gml:ids and the line of an element; `which` is "other " for the other place of a pair.
+void append_element(std::string& facts, std::string_view which,
+                    const validate::SourceElement& element) {
+  const std::string name(which);
+  append_fact(facts, name + "polygon", shortened(element.polygon), FactStyle::code);
+  append_fact(facts, name + "ring", shortened(element.ring), FactStyle::code);
+  if (element.line == 0) return;
+  append_fact(facts, name + "line", std::to_string(element.line), FactStyle::code);
+}
+
 std::string place_cell(const pipeline::InspectedFeature& feature, const PlacedFinding& placed) {
   const Finding& finding = *placed.finding;
   std::string cell = "<td>";
@@ -87,6 +97,8 @@ std::string place_cell(const pipeline::InspectedFeature& feature, const PlacedFi
   if (point) append_fact(facts, "at", point_text(*point), FactStyle::code);
   append_fact(facts, "pointer", shortened(pointer_of(feature, placed.solid, finding.place)),
               FactStyle::code);
+  append_element(facts, "", finding.source);
+  append_element(facts, "other ", finding.other_source);
   if (finding.other) {
     append_fact(facts, "other", shortened(pointer_of(feature, placed.other_solid, *finding.other)),
                 FactStyle::code);

@@ -10,6 +10,10 @@ namespace watertight::fuzz {
 
 void check_submitted(const SubmittedSolid& submitted) {
   const Solid& solid = submitted.solid;
+  require(submitted.unreadable.empty() || solid.shell_count() == 0);
+  require(submitted.facet_lines.size() == solid.facet_count());
+  require(submitted.ring_lines.size() == solid.ring_count());
+  require(submitted.ring_ids.empty() || submitted.ring_ids.size() == solid.ring_count());
   require(submitted.facet_ids.empty() || submitted.facet_ids.size() == solid.facet_count());
   require(std::is_sorted(submitted.unclosed_rings.begin(), submitted.unclosed_rings.end()));
   for (const Index ring : submitted.unclosed_rings) require(ring < solid.ring_count());
@@ -19,7 +23,8 @@ void check_submitted(const SubmittedSolid& submitted) {
 void check_written(const Document& document, Format format) {
   const auto written = formats::write_document(document, format);
   if (!written) {
-    require(written.error().code == ErrorCode::unsupported);
+    const bool is_unreadable = written.error().code == ErrorCode::malformed;
+    require(is_unreadable || written.error().code == ErrorCode::unsupported);
     return;
   }
   formats::ReadOptions options;
@@ -44,6 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   for (const SubmittedSolid& solid : document->templates) fuzz::check_submitted(solid);
   fuzz::require(!formats::write_document(*document, Format::gml));
+  fuzz::check_kept(ByteView(data, size), Format::gml);
   fuzz::check_written(*document, Format::ewkb);
   fuzz::check_written(*document, Format::city_json);
   return 0;

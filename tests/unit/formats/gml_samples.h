@@ -31,6 +31,27 @@ inline Error gml_error(const std::string& text) {
   return document.error();
 }
 
+/// Why the first solid that could not be read could not be; the document itself is read.
+inline std::string unreadable(const std::string& text) {
+  const Document document = gml_of(text);
+  std::vector<const SubmittedSolid*> solids;
+  for (const Feature& feature : document.features) {
+    for (const SubmittedSolid& solid : feature.solids) solids.push_back(&solid);
+  }
+  for (const SubmittedSolid* solid : solids) {
+    if (solid->unreadable.empty()) continue;
+    CHECK(solid->unreadable.starts_with("line "));
+    CHECK(solid->source.line > 0);
+    CHECK(solid->solid.shell_count() == 0);
+    return solid->unreadable;
+  }
+  return "";
+}
+
+inline bool says(std::string_view text, std::string_view words) {
+  return text.find(words) != std::string_view::npos;
+}
+
 inline bool says(const Error& error, std::string_view words) {
   return error.message.find(words) != std::string::npos;
 }

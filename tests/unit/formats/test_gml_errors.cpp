@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "gml_samples.h"
 
@@ -9,18 +11,20 @@ namespace {
 
 using namespace test;
 
-Error solid_error(const std::string& members) {
-  return gml_error(model(building(solid_of(members, " g:id=\"s\""), "b7")));
+std::string sample(const std::string& members) {
+  return model(building(solid_of(members, " g:id=\"s\""), "b7"));
 }
 
+/// Why a solid of these members cannot be read.
+std::string solid_error(const std::string& members) { return unreadable(sample(members)); }
+
 TEST_CASE("GML: two-dimensional positions are refused with their place") {
-  const Error list = solid_error("\n\n" + member(polygon("0 0 0 1 1 0 0 0", " g:id=\"p\"")));
-  CHECK(list.code == ErrorCode::unsupported);
+  const std::string list = solid_error("\n\n" + member(polygon("0 0 0 1 1 0 0 0", " g:id=\"p\"")));
   CHECK(
       says(list, "line 3: a posList of 8 numbers, which is not a multiple of 3: two-dimensional"));
   CHECK(says(list, "in Polygon 'p', in Solid 's', of object 'b7'"));
 
-  const Error stated = solid_error(
+  const std::string stated = solid_error(
       member("<g:Polygon srsDimension=\"2\"><g:exterior><g:LinearRing><g:posList>0 0 0 1 1 1"
              "</g:posList></g:LinearRing></g:exterior></g:Polygon>"));
   CHECK(says(stated, "srsDimension 2"));
@@ -35,7 +39,7 @@ TEST_CASE("GML: two-dimensional positions are refused with their place") {
   // decide.
   const std::string envelope = "<g:boundedBy><g:Envelope srsDimension=\"2\"/></g:boundedBy>";
   const std::string flat = building(solid_of(member(polygon("0 0 4 0 4 4 2 5 0 4 0 0"))));
-  CHECK(says(gml_error(model(envelope + flat)), "srsDimension 2 of the Envelope"));
+  CHECK(says(unreadable(model(envelope + flat)), "srsDimension 2 of the Envelope"));
   CHECK(gml_of(model(envelope + building(kTetrahedron))).features.size() == 1);
   CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing srsDimension=\"x\">"
                                 "<g:posList>0 0 0</g:posList></g:LinearRing></g:exterior>"
@@ -43,19 +47,72 @@ TEST_CASE("GML: two-dimensional positions are refused with their place") {
              "srsDimension must be 3"));
 }
 
+TEST_CASE("GML: a solid that cannot be read leaves all others as they are") {
+  const std::string flat = solid_of(member(polygon("0 0 5 1 1 0 0 0")) + kSides, " g:id=\"flat\"");
+  const std::string half =
+      solid_of(member(polygon("9 9 9 8 8 8 7 7 7 9 9 9")) + member(polygon("1 2 x")),
+               " srsName=\"EPSG:4979\"");
+  const std::string loop = solid_of(
+      member("<g:CompositeSurface g:id=\"loop\">" + member_of("loop") + "</g:CompositeSurface>"));
+  const Document whole = gml_of(model(building(kTetrahedron, "a")));
+  for (const std::string& bad : {flat, half, loop}) {
+    const Document document = gml_of(model(
+        building("<g:MultiSolid>\n<g:solidMember>" + bad + "</g:solidMember>\n<g:solidMember>" +
+                     kTetrahedron + "</g:solidMember></g:MultiSolid>",
+                 "a") +
+        building(kTetrahedron, "b")));
+    REQUIRE(document.features.size() == 2);
+    REQUIRE(document.features[0].solids.size() == 2);
+    const SubmittedSolid& unread = document.features[0].solids[0];
+    CHECK(unread.unreadable.starts_with("line 2: "));
+    CHECK(says(unread.unreadable, ", of object 'a'"));
+    CHECK(unread.source.line == 2);
+    CHECK(unread.source.geometry_type == "MultiSolid");
+    CHECK(unread.solid.shell_count() == 0);
+    const SubmittedSolid& good = document.features[0].solids[1];
+    CHECK(good.unreadable.empty());
+    CHECK(good.source.line == 3);
+    CHECK(good.source.ordinal == 1);
+    CHECK(good.solid == whole.features[0].solids[0].solid);
+    CHECK(document.features[1].solids[0].solid == good.solid);
+    for (const Format format : {Format::wkt, Format::city_json}) {
+      CHECK(formats::write_document(document, format).error().code == ErrorCode::malformed);
+    }
+  }
+}
+
+TEST_CASE("GML: facets and rings have the ids and lines of their elements") {
+  const std::string ring =
+      "\n<g:LinearRing g:id=\"r\"><g:posList>0 0 0 0 9 0 9 0 0 0 0 0"
+      "</g:posList></g:LinearRing>";
+  const std::string hole = "<g:interior>\n<g:LinearRing/></g:interior></g:Polygon>";
+  std::string named = "\n<g:Polygon g:id=\"p\"><g:exterior>";
+  named.append(ring).append("</g:exterior>").append(hole);
+  std::string solid = "\n";
+  solid += solid_of(member(named) + member("<g:Polygon>" + hole));
+  const Document document = gml_of(model(building(solid)));
+  const SubmittedSolid& read = document.features.at(0).solids.at(0);
+  CHECK(read.source.line == 2);
+  CHECK(read.facet_ids == std::vector<std::string>{"p", ""});
+  CHECK(read.facet_lines == std::vector<std::uint64_t>{3, 5});
+  CHECK(read.ring_ids == std::vector<std::string>{"r", "", "", ""});
+  CHECK(read.ring_lines == std::vector<std::uint64_t>{4, 5, 0, 6});
+  CHECK(gml_of(model(building(kTetrahedron))).features[0].solids[0].ring_ids.empty());
+}
+
 TEST_CASE("GML: coordinates are finite numbers") {
   for (const char* word : {"nan", "NaN", "INF", "-inf", "1e400", "0x10", "1,5", "--1", "1e"}) {
-    const Error error = solid_error(member(polygon(std::string("0 0 0 1 0 0 0 1 ") + word)));
+    const std::string error = solid_error(member(polygon(std::string("0 0 0 1 0 0 0 1 ") + word)));
     CHECK(says(error, "a coordinate of the ring"));
   }
   CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:posList>0 0 <b/>0"
                                 "</g:posList></g:LinearRing></g:exterior></g:Polygon>")),
              "an element inside of coordinates"));
   for (const char* tuples : {"0,0,0,0", "0,,0,0", "0,0,0 ,1", "0,0,", "0,,0 0,,0 0,,0"}) {
-    const Error error =
+    const std::string error =
         solid_error(member(std::string("<g:Polygon><g:exterior><g:LinearRing><g:coordinates>") +
                            tuples + "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>"));
-    CHECK(error.code == ErrorCode::unsupported);
+    CHECK(says(error, "a position of"));
   }
   CHECK(says(solid_error(member("<g:Polygon><g:exterior><g:LinearRing><g:coordinates cs=\"ab\">"
                                 "</g:coordinates></g:LinearRing></g:exterior></g:Polygon>")),
@@ -66,8 +123,7 @@ TEST_CASE("GML: a reference must lead to one geometry of the document") {
   CHECK(says(solid_error(member_of("away")),
              "xlink:href '#away': no geometry of this document has this gml:id, in Solid 's', of "
              "object 'b7'"));
-  const Error elsewhere = solid_error("<g:surfaceMember x:href=\"roof.gml#r1\"/>");
-  CHECK(elsewhere.code == ErrorCode::unsupported);
+  const std::string elsewhere = solid_error("<g:surfaceMember x:href=\"roof.gml#r1\"/>");
   CHECK(says(elsewhere, "xlink:href 'roof.gml#r1' is not the gml:id of this document"));
   CHECK(says(solid_error(member(polygon("", " g:id=\"p\"")) + member(polygon("", " g:id=\"p\"")) +
                          member_of("p")),
@@ -76,8 +132,8 @@ TEST_CASE("GML: a reference must lead to one geometry of the document") {
   CHECK(says(solid_error("<g:surfaceMember x:href=\"#p\">" + polygon("", " g:id=\"p\"") +
                          "</g:surfaceMember>"),
              "both an xlink:href and a value"));
-  CHECK(says(gml_error(model("<cityObjectMember><Building g:id=\"b\"><lod1Solid x:href=\"#no\"/>"
-                             "</Building></cityObjectMember>")),
+  CHECK(says(unreadable(model("<cityObjectMember><Building g:id=\"b\"><lod1Solid x:href=\"#no\"/>"
+                              "</Building></cityObjectMember>")),
              "of object 'b'"));
 }
 
@@ -114,12 +170,12 @@ TEST_CASE("GML: geometry that contains itself by reference is refused") {
                                 "</g:CompositeSurface>") +
                          member("<g:Shell g:id=\"b\">" + member_of("a") + "</g:Shell>")),
              "contains itself by xlink"));
-  CHECK(says(gml_error(model(building("<g:MultiSolid g:id=\"m\"><g:solidMember x:href=\"#m\"/>"
-                                      "</g:MultiSolid>"))),
+  CHECK(says(unreadable(model(building("<g:MultiSolid g:id=\"m\"><g:solidMember x:href=\"#m\"/>"
+                                       "</g:MultiSolid>"))),
              "MultiSolid 'm' contains itself by xlink"));
-  CHECK(says(gml_error(model(building("<g:MultiSolid g:id=\"m\"><g:solidMember>"
-                                      "<g:CompositeSolid><g:solidMember x:href=\"#m\"/>"
-                                      "</g:CompositeSolid></g:solidMember></g:MultiSolid>"))),
+  CHECK(says(unreadable(model(building("<g:MultiSolid g:id=\"m\"><g:solidMember>"
+                                       "<g:CompositeSolid><g:solidMember x:href=\"#m\"/>"
+                                       "</g:CompositeSolid></g:solidMember></g:MultiSolid>"))),
              "contains itself by xlink"));
 }
 
@@ -133,15 +189,14 @@ TEST_CASE("GML: references cannot multiply geometry without bound") {
     for (int twice = 0; twice < 2; ++twice) surface += member_of(numbered(i - 1));
     members += member(surface.append("</g:CompositeSurface>"));
   }
-  const Error error = solid_error(members);
+  const Error error = gml_error(sample(members));
   CHECK(error.code == ErrorCode::limit_exceeded);
   CHECK(says(error, "xlinks repeat more geometry than a document of this size could hold"));
 }
 
 TEST_CASE("GML: elements of which a solid cannot be made are named") {
-  const Error ring = solid_error(
+  const std::string ring = solid_error(
       member("<g:Polygon><g:exterior><g:Ring><g:curveMember/></g:Ring></g:exterior></g:Polygon>"));
-  CHECK(ring.code == ErrorCode::unsupported);
   CHECK(says(ring, "Ring is not read as part of a solid"));
   CHECK(says(solid_error(member("<g:Surface><g:patches><g:Sphere/></g:patches></g:Surface>")),
              "Sphere is not read"));
@@ -155,8 +210,8 @@ TEST_CASE("GML: elements of which a solid cannot be made are named") {
   CHECK(says(solid_error(member("<g:Polygon><g:exterior/><g:exterior><g:LinearRing/></g:exterior>"
                                 "<g:exterior><g:LinearRing/></g:exterior></g:Polygon>")),
              "has a second exterior ring"));
-  CHECK(says(gml_error(model(building("<g:MultiSolid><g:solidMember>" + kBase +
-                                      "</g:solidMember></g:MultiSolid>"))),
+  CHECK(says(unreadable(model(building("<g:MultiSolid><g:solidMember>" + kBase +
+                                       "</g:solidMember></g:MultiSolid>"))),
              "Polygon where a solid is expected"));
 }
 
@@ -245,7 +300,7 @@ TEST_CASE("GML: a gml:id that every solid would repeat at length is refused") {
   CHECK(object.code == ErrorCode::limit_exceeded);
   CHECK(says(object, "a gml:id of more than 1024 bytes"));
   const std::string id = " g:id=\"" + longest + "i\"";
-  CHECK(solid_error(member(polygon("", id))).code == ErrorCode::limit_exceeded);
+  CHECK(gml_error(sample(member(polygon("", id)))).code == ErrorCode::limit_exceeded);
 }
 
 TEST_CASE(

@@ -13,6 +13,7 @@
 #include "pipeline/pipeline.h"
 #include "samples.h"
 #include "validate/certify.h"
+#include "validate/report_json.h"
 
 namespace watertight {
 namespace {
@@ -93,6 +94,67 @@ TEST_CASE("GML: overlapping parts of a building are finding 601") {
   };
   CHECK(codes(1) == std::vector<int>{601});
   CHECK(codes(2).empty());
+}
+
+/// What is found in the first feature of a document.
+pipeline::InspectedFeature inspected(const std::string& text) {
+  Document document = test::gml_of(text);
+  CertifyOptions options;
+  options.proof = Proof::boundary;
+  return pipeline::inspect(std::move(document.features.at(0)), nullptr, options);
+}
+
+TEST_CASE("GML: a finding names polygon, ring and line") {
+  const std::string base =
+      "\n<g:Polygon g:id=\"base\"><g:exterior>\n<g:LinearRing g:id=\"edge\">"
+      "<g:posList>0 0 0 0 1 0 1 0 0</g:posList></g:LinearRing></g:exterior>"
+      "</g:Polygon>";
+  const auto feature =
+      inspected(test::model(test::building(test::solid_of(test::member(base) + test::kSides))));
+  const Report& report = feature.solids.at(0).inspection.report;
+  REQUIRE(report.findings.size() == 1);
+  const Finding& finding = report.findings[0];
+  CHECK(finding.code == 103);
+  CHECK(finding.source == validate::SourceElement{"base", "edge", 3});
+  CHECK(validate::finding_text(finding).starts_with(
+      "error 103 RING_NOT_CLOSED at shell 0 facet 0 ring 0 vertex 0 (polygon 'base', ring 'edge', "
+      "line 3): "));
+  const std::string json = validate::report_json(report, feature.feature.solids[0].solid);
+  CHECK(json.find(R"("source":{"polygon":"base","ring":"edge","line":3})") != std::string::npos);
+}
+
+TEST_CASE("GML: a pair of facets names both, a finding about a shell the line of the solid") {
+  std::string pair = test::member(test::kBase);
+  pair.append("\n").append(test::member(test::kBase)).append(test::kSides);
+  const auto twice = inspected(test::model(test::building(test::solid_of(pair))));
+  bool has_pair = false;
+  for (const Finding& finding : twice.solids.at(0).inspection.report.findings) {
+    if (!finding.other) continue;
+    has_pair = true;
+    CHECK(finding.source.line == 1);
+    CHECK(finding.other_source.line == 2);
+  }
+  CHECK(has_pair);
+  std::string one = "\n\n";
+  one += test::solid_of(test::member(test::kBase));
+  const auto few = inspected(test::model(test::building(one)));
+  const Report& report = few.solids.at(0).inspection.report;
+  REQUIRE_FALSE(report.findings.empty());
+  CHECK(report.findings[0].place.facet == kNone);
+  CHECK(report.findings[0].source == validate::SourceElement{"", "", 3});
+}
+
+TEST_CASE("GML: a solid that cannot be read is 901 with its place, and is not valid") {
+  const auto feature = inspected(test::model(test::building(
+      test::solid_of(test::member(test::polygon("0 0 1 1", " g:id=\"p\"")) + test::kSides), "b")));
+  CHECK(feature.verdict() == Verdict::invalid);
+  const Report& report = feature.solids.at(0).inspection.report;
+  CHECK(report.verdict == Verdict::invalid);
+  CHECK(report.first_level == std::vector<int>{901});
+  REQUIRE(report.findings.size() == 1);
+  CHECK(report.findings[0].code == 901);
+  CHECK(report.findings[0].source.line == 1);
+  CHECK(report.findings[0].detail.find("in Polygon 'p', of object 'b'") != std::string::npos);
 }
 
 }  // namespace

@@ -423,4 +423,35 @@ TEST_CASE("an export ends with the first error, of the store or of a blob") {
         ErrorCode::unavailable);
 }
 
+TEST_CASE("a GML document of several features comes back from its file byte for byte") {
+  const auto polygon = [](const std::string& positions) {
+    return "<g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>" + positions +
+           "</g:posList></g:LinearRing></g:exterior></g:Polygon></g:surfaceMember>";
+  };
+  std::string text = "<!-- two -->\r\n<CityModel xmlns:g='http://www.opengis.net/gml'>";
+  for (const std::string x : {"1.50", "2.5e0"}) {
+    text +=
+        "<cityObjectMember><Building>\n<lod1Solid><g:Solid><g:exterior><g:CompositeSurface>" +
+        polygon("0 0 0 0 3 0 " + x + " 0 0 0 0 0") + polygon("0 0 0 " + x + " 0 0 0 0 9.25 0 0 0") +
+        polygon(x + " 0 0 0 3 0 0 0 9.25 " + x + " 0 0") + polygon("0 3 0 0 0 0 0 0 9.25 0 3 0") +
+        "</g:CompositeSurface></g:exterior></g:Solid></lod1Solid></Building></cityObjectMember>";
+  }
+  text += "</CityModel>\n";
+  formats::ReadOptions read;
+  read.keep_text = true;
+  read.split_features = false;
+  auto document = formats::read_document(as_bytes(text), Format::gml, read);
+  REQUIRE(document);
+  REQUIRE(document->features.size() == 2);
+  auto result = pipeline::encode_document(*std::move(document), nullptr, {});
+  REQUIRE(result);
+  REQUIRE(result->outcome.verdict == Verdict::valid);
+  const auto container = pipeline::write_container(result->document);
+  REQUIRE(container);
+  const auto documents = pipeline::decode_container(*container);
+  REQUIRE(documents);
+  CHECK(text_of(documents->front()) == text);
+  CHECK(as_text(documents->front().framing).find("0 9.25") == std::string_view::npos);
+}
+
 }  // namespace watertight

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/gml/city/city.h"
+
+#include <map>
+#include <utility>
+
+#include "base/quantity.h"
+#include "formats/city_json/city_json.h"
+#include "formats/gml/city/appearance.h"
+#include "formats/gml/city/objects.h"
+#include "formats/gml/city/tree.h"
+#include "formats/gml/city/writer.h"
+#include "formats/gml/elements.h"
+
+namespace watertight::formats {
+namespace {
+
+// The deepest nesting of the CityJSON: the XML's, with a few levels of CityJSON around it.
+constexpr std::uint32_t kNestingAround = 64;
+
+// Attributes whose meaning is in what was read, or that say nothing about the city.
+bool is_said_otherwise(const GmlTree& tree, Index attribute) {
+  const std::string_view space = tree.attribute_space(attribute);
+  const std::string_view name = tree.attribute_name(attribute);
+  if (space == "http://www.w3.org/2001/XMLSchema-instance") return true;
+  if (space == kXlinkSpace) return name != "href";
+  return space.empty() && (name == "srsName" || name == "srsDimension" || name == "orientation" ||
+                           name == "axisLabels" || name == "uomLabels" || name == "decimal" ||
+                           name == "cs" || name == "ts");
+}
+
+// The element with those around it up to the nearest object: "Building/lod2TerrainIntersection".
+std::string path_of(const GmlTree& tree, Index element) {
+  std::vector<std::string_view> names{tree.name(element)};
+  for (Index i = tree[element].parent; i != kNone; i = tree[i].parent) {
+    names.push_back(tree.name(i));
+    if (is_object_name(names.back())) break;
+  }
+  std::string path;
+  for (auto name = names.rbegin(); name != names.rend(); ++name) {
+    if (!path.empty()) path += '/';
+    path += *name;
+  }
+  return path;
+}
+
+// Counts what has no mark: the outermost elements of which nothing was read, and attributes.
+std::vector<GmlLoss> losses_of(const GmlTree& tree, const TreeMarks& marks) {
+  const auto& elements = tree.elements();
+  std::vector<bool> is_used(elements.size(), false);  // the element, or one below it, has a mark
+  for (std::size_t i = elements.size(); i-- > 0;) {
+    if (marks.is_marked(static_cast<Index>(i))) is_used[i] = true;
+    if (is_used[i] && elements[i].parent != kNone) is_used[elements[i].parent] = true;
+  }
+  std::map<std::string, std::uint64_t> counts;
+  for (Index i = 0; i < elements.size(); ++i) {
+    const bool is_below_used = elements[i].parent == kNone || is_used[elements[i].parent];
+    if (!is_used[i]) {
+      if (is_below_used) ++counts[path_of(tree, i)];
+      continue;
+    }
+    const Index end = elements[i].first_attribute + elements[i].attribute_count;
+    for (Index k = elements[i].first_attribute; k < end; ++k) {
+      if (marks.is_attribute_marked(k) || is_said_otherwise(tree, k)) continue;
+      std::string path(tree.name(i));
+      const bool is_id = tree.attribute_name(k) == "id" && is_gml_space(tree.attribute_space(k));
+      path.append(is_id ? "/@gml:" : "/@").append(tree.attribute_name(k));
+      ++counts[path];
+    }
+  }
+  std::vector<GmlLoss> losses;
+  for (auto& [path, count] : counts) losses.push_back({path, count});
+  return losses;
+}
+
+}  // namespace
+
+Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits) {
+  const auto tree = GmlTree::read(bytes, limits);
+  if (!tree) return tree.error();
+  TreeMarks marks(*tree);
+  GeometryReader geometry(*tree, bytes.size(), limits);
+  auto objects = ObjectReader(*tree, marks, geometry).read();
+  if (!objects) return std::move(objects).error();
+  GmlAppearance appearance(*tree, marks, geometry);
+  for (const Index element : objects->appearances) appearance.read(element);
+  const auto text = CityWriter(*tree, marks, *objects, geometry, appearance).write();
+  if (!text) return text.error();
+  ReadOptions options;
+  options.limits = limits;
+  options.limits.bytes = ~0ULL;
+  options.limits.nesting = limits.nesting + kNestingAround;
+  auto model = read_city_json(*text, options);
+  if (!model) return std::move(model).error();
+  GmlCityModel result{std::move(*model), losses_of(*tree, marks)};
+  auto& notes = result.model.notes;
+  for (std::string& note : geometry.notes()) notes.push_back(std::move(note));
+  for (std::string& note : objects->notes) notes.push_back(std::move(note));
+  for (const GmlLoss& loss : result.losses) {
+    std::string note = "not mapped: ";
+    note.append(loss.path).append(" (").append(quantity(loss.count, "time")).append(")");
+    notes.push_back(std::move(note));
+  }
+  return result;
+}
+
+}  // namespace watertight::formats

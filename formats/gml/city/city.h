@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// CityGML 1.0, 2.0 and 3.0 as CityJSON 2.0: types, ids, hierarchy, LoD, attributes, semantics of
+// surfaces, addresses, appearance. docs/formats.md has the mapping.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/limits.h"
+#include "base/result.h"
+#include "formats/document.h"
+
+namespace watertight::formats {
+
+/// Elements or attributes of a GML document that its CityJSON does not have.
+struct GmlLoss {
+  std::string path;  // "Building/lod2TerrainIntersection"; "Polygon/@gml:id" for an attribute
+  std::uint64_t count = 0;
+};
+
+struct GmlCityModel {
+  Document model;               // city_json; its notes name the losses too
+  std::vector<GmlLoss> losses;  // in order of their paths
+};
+
+/// The city model of a GML document, with the solids of read_gml() in the same order of facets,
+/// rings and vertices. Objects need not own solids. Errors: malformed, unsupported, limit_exceeded
+/// with byte offset and line (XML; geometry of a solid); unsupported when the document has several
+/// reference systems, or decimals that one grid does not hold. Geometry that is no solid and cannot
+/// be read is a loss. Cost: n log n; memory proportional to the document.
+Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits);
+
+}  // namespace watertight::formats

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The text of a CityJSON 2.0 from the objects of a GML tree. Internal to formats/.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "formats/gml/city/appearance.h"
+#include "formats/gml/city/objects.h"
+
+namespace watertight::formats {
+
+class CityWriter {
+ public:
+  /// All must outlive this object. Marks the surfaces that it writes.
+  CityWriter(const GmlTree& tree, TreeMarks& marks, GmlObjects& objects,
+             const GeometryReader& geometry, GmlAppearance& appearance);
+
+  /// Errors: unsupported when one grid of 18 digits does not hold all coordinates, or when the
+  /// objects have several reference systems. Cost: n log n.
+  Result<std::string> write();
+
+ private:
+  using Position = std::array<GridNumber, 3>;
+  struct PositionHash {
+    std::size_t operator()(const Position& position) const;
+  };
+
+  void find_surfaces_of_facets();
+  void append_object(std::string& out, GmlCityObject& object);
+  void append_ids(std::string& out, std::string_view member, const std::vector<Index>& objects);
+  void append_addresses(std::string& out, const GmlCityObject& object);
+  void append_geometry(std::string& out, const CityGeometry& geometry,
+                       std::string_view stated_surface);
+  void append_semantics(std::string& out, const CityGeometry& geometry,
+                        std::string_view stated_surface);
+  std::string surface_members(Index surface);
+  std::vector<CityGeometry> geometries_of_surfaces(const GmlCityObject& object) const;
+  std::string facet_text(const CityFacet& facet);
+  std::string line_text(const std::vector<Index>& positions);
+  Index vertex_of(Index position);
+  std::string header_text(std::uint32_t srid, const std::array<std::int32_t, 3>& exponents) const;
+  Result<std::string> vertices_text(const std::array<std::int32_t, 3>& exponents) const;
+  std::array<std::int32_t, 3> exponents() const;
+
+  const GmlTree& tree_;
+  TreeMarks& marks_;
+  GmlObjects& found_;
+  const GeometryReader& geometry_;
+  GmlAppearance& appearance_;
+  ValueReader values_;
+  std::unordered_map<Index, Index> surface_of_;  // by polygon
+  std::map<Index, std::string> surface_texts_;   // by surface
+  std::unordered_map<Position, Index, PositionHash> vertex_numbers_;
+  std::vector<Index> vertices_;  // positions
+};
+
+}  // namespace watertight::formats

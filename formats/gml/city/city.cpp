@@ -73,6 +73,29 @@ std::vector<GmlLoss> losses_of(const GmlTree& tree, const TreeMarks& marks) {
   return losses;
 }
 
+// Reads the city model on the finest grid that holds its coordinates.
+Result<Document> city_model_of(const CityWriter& writer, const Limits& limits) {
+  ReadOptions options;
+  options.limits = limits;
+  options.limits.bytes = ~0ULL;
+  options.limits.nesting = limits.nesting + kNestingAround;
+  for (const GridChoice choice : {GridChoice::common, GridChoice::by_axis, GridChoice::rounded}) {
+    const auto text = writer.text(choice);
+    if (!text && choice != GridChoice::rounded) continue;
+    if (!text) return text.error();
+    auto model = read_city_json(*text, options);
+    const bool is_too_fine = !model && model.error().code == ErrorCode::limit_exceeded;
+    if (is_too_fine && choice != GridChoice::rounded) continue;
+    if (!model) return model;
+    if (const std::uint64_t count = writer.count_rounded(choice); count > 0) {
+      model->notes.push_back(quantity(count, "coordinate was", "coordinates were")
+                                 .append(" rounded to the finest grid of 2^53 steps"));
+    }
+    return model;
+  }
+  return Error{ErrorCode::unsupported, "no grid holds the coordinates"};
+}
+
 }  // namespace
 
 Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits) {
@@ -84,13 +107,9 @@ Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits) {
   if (!objects) return std::move(objects).error();
   GmlAppearance appearance(*tree, marks, geometry);
   for (const Index element : objects->appearances) appearance.read(element);
-  const auto text = CityWriter(*tree, marks, *objects, geometry, appearance).write();
-  if (!text) return text.error();
-  ReadOptions options;
-  options.limits = limits;
-  options.limits.bytes = ~0ULL;
-  options.limits.nesting = limits.nesting + kNestingAround;
-  auto model = read_city_json(*text, options);
+  CityWriter writer(*tree, marks, *objects, geometry, appearance);
+  if (auto status = writer.prepare(); !status) return std::move(status).error();
+  auto model = city_model_of(writer, limits);
   if (!model) return std::move(model).error();
   GmlCityModel result{std::move(*model), losses_of(*tree, marks)};
   auto& notes = result.model.notes;

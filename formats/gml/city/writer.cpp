@@ -2,6 +2,7 @@
 #include "formats/gml/city/writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <set>
@@ -13,14 +14,20 @@
 namespace watertight::formats {
 namespace {
 
-// The integer number / 10^exponent; nothing when 64 bits do not hold it.
+constexpr double kMostSteps = 9007199254740992;  // 2^53, the most steps that readers tell apart
+
+// The integer nearest to number / 10^exponent; nothing when 64 bits do not hold it.
 std::optional<std::int64_t> integer_at(const GridNumber& number, std::int32_t exponent) {
   std::int64_t value = number.mantissa;
-  if (value == 0) return 0;
-  for (std::int32_t i = number.exponent; i > exponent; --i) {
+  for (std::int32_t i = number.exponent; i > exponent && value != 0; --i) {
     if (__builtin_mul_overflow(value, std::int64_t{10}, &value)) return std::nullopt;
   }
-  return value;
+  std::int64_t dropped = 0;  // the digit after the last
+  for (std::int32_t i = number.exponent; i < exponent && (value != 0 || dropped != 0); ++i) {
+    dropped = value % 10;
+    value /= 10;
+  }
+  return dropped >= 5 ? value + 1 : dropped <= -5 ? value - 1 : value;
 }
 
 // Appends a member whose value is JSON text already.
@@ -50,25 +57,30 @@ CityWriter::CityWriter(const GmlTree& tree, TreeMarks& marks, GmlObjects& object
       appearance_(appearance),
       values_(tree, marks) {}
 
-Result<std::string> CityWriter::write() {
+Status CityWriter::prepare() {
   const auto srid = geometry_.srid();
   if (!srid) return srid.error();
+  srid_ = *srid;
   find_surfaces_of_facets();
-  std::string objects;
   for (GmlCityObject& object : found_.objects) {
-    if (!objects.empty()) objects += ',';
-    append_json_string(objects, object.id);
-    objects += ':';
-    append_object(objects, object);
+    if (!objects_text_.empty()) objects_text_ += ',';
+    append_json_string(objects_text_, object.id);
+    objects_text_ += ':';
+    append_object(objects_text_, object);
   }
-  const std::array<std::int32_t, 3> steps = exponents();
+  const Json appearance = appearance_.take();
+  if (!appearance.is_null()) appearance_text_ = json_text(appearance);
+  return Done{};
+}
+
+Result<std::string> CityWriter::text(GridChoice choice) const {
+  const Exponents steps = exponents(choice);
   auto vertices = vertices_text(steps);
   if (!vertices) return vertices;
-  std::string out = header_text(*srid, steps);
-  const Json appearance = appearance_.take();
-  if (!appearance.is_null()) append_text_member(out, "appearance", json_text(appearance));
-  out.append(",\"CityObjects\":{").append(objects).append("},\"vertices\":[").append(*vertices);
-  return out.append("]}");
+  std::string out = header_text(steps);
+  if (!appearance_text_.empty()) append_text_member(out, "appearance", appearance_text_);
+  out.append(",\"CityObjects\":{").append(objects_text_).append("},\"vertices\":[");
+  return out.append(*vertices).append("]}");
 }
 
 void CityWriter::find_surfaces_of_facets() {
@@ -294,26 +306,44 @@ Index CityWriter::vertex_of(Index position) {
   return place->second;
 }
 
-// The finest decimal step of all coordinates for all axes; where 64 bits do not hold the integers,
-// the finest step of each axis.
-std::array<std::int32_t, 3> CityWriter::exponents() const {
-  std::array<std::int32_t, 3> finest{0, 0, 0};
-  for (const Index position : vertices_) {
+CityWriter::Exponents CityWriter::exponents(GridChoice choice) const {
+  Exponents finest{0, 0, 0};
+  std::array<double, 3> least{};
+  std::array<double, 3> most{};
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      finest[axis] = std::min(finest[axis], geometry_.positions()[position][axis].exponent);
+      const GridNumber& number = geometry_.positions()[vertices_[i]][axis];
+      finest[axis] = std::min(finest[axis], number.exponent);
+      const double value = static_cast<double>(number.mantissa) * std::pow(10, number.exponent);
+      least[axis] = i == 0 ? value : std::min(least[axis], value);
+      most[axis] = i == 0 ? value : std::max(most[axis], value);
     }
   }
-  const std::int32_t least = *std::min_element(finest.begin(), finest.end());
-  for (const Index position : vertices_) {
-    for (const GridNumber& number : geometry_.positions()[position]) {
-      if (!integer_at(number, least)) return finest;
-    }
+  if (choice == GridChoice::by_axis) return finest;
+  if (choice == GridChoice::common) {
+    const std::int32_t all = *std::min_element(finest.begin(), finest.end());
+    return {all, all, all};
   }
-  return {least, least, least};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double size = std::max(std::abs(least[axis]), std::abs(most[axis])) / 512;
+    const double span = std::max(most[axis] - least[axis], size);
+    while (span / std::pow(10, finest[axis]) > kMostSteps) ++finest[axis];
+  }
+  return finest;
 }
 
-std::string CityWriter::header_text(std::uint32_t srid,
-                                    const std::array<std::int32_t, 3>& exponents) const {
+std::uint64_t CityWriter::count_rounded(GridChoice choice) const {
+  const Exponents steps = exponents(choice);
+  std::uint64_t count = 0;
+  for (const Index position : vertices_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (geometry_.positions()[position][axis].exponent < steps[axis]) ++count;
+    }
+  }
+  return count;
+}
+
+std::string CityWriter::header_text(const Exponents& exponents) const {
   std::string out = R"({"type":"CityJSON","version":"2.0","transform":{"scale":[)";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis > 0) out += ',';
@@ -321,16 +351,16 @@ std::string CityWriter::header_text(std::uint32_t srid,
   }
   out += R"(],"translate":[0,0,0]})";
   Json metadata = found_.metadata;
-  if (srid != 0) {
+  if (srid_ != 0) {
     append_member(metadata, "referenceSystem",
                   std::string("https://www.opengis.net/def/crs/EPSG/0/")
-                      .append(std::to_string(srid)));
+                      .append(std::to_string(srid_)));
   }
   if (!metadata.empty()) append_text_member(out, "metadata", json_text(metadata));
   return out;
 }
 
-Result<std::string> CityWriter::vertices_text(const std::array<std::int32_t, 3>& exponents) const {
+Result<std::string> CityWriter::vertices_text(const Exponents& exponents) const {
   std::string out;
   for (const Index position : vertices_) {
     if (!out.empty()) out += ',';

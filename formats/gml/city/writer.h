@@ -16,18 +16,33 @@
 
 namespace watertight::formats {
 
+/// The steps of the coordinates.
+enum class GridChoice : std::uint8_t {
+  common,   // the finest decimal step of all coordinates for all axes
+  by_axis,  // the finest step of each axis
+  rounded   // steps of which 2^53 span the document; coordinates are rounded where that is coarser
+};
+
 class CityWriter {
  public:
   /// All must outlive this object. Marks the surfaces that it writes.
   CityWriter(const GmlTree& tree, TreeMarks& marks, GmlObjects& objects,
              const GeometryReader& geometry, GmlAppearance& appearance);
 
-  /// Errors: unsupported when one grid of 18 digits does not hold all coordinates, or when the
-  /// objects have several reference systems. Cost: n log n.
-  Result<std::string> write();
+  /// Makes the text of all but the vertices. Errors: unsupported when the objects have several
+  /// reference systems. Cost: n log n.
+  Status prepare();
+
+  /// The document. Requires prepare(). Errors: unsupported when 64 bits do not hold the coordinates.
+  /// Cost: linear.
+  Result<std::string> text(GridChoice choice) const;
+
+  /// How many coordinates text() rounds.
+  std::uint64_t count_rounded(GridChoice choice) const;
 
  private:
   using Position = std::array<GridNumber, 3>;
+  using Exponents = std::array<std::int32_t, 3>;
   struct PositionHash {
     std::size_t operator()(const Position& position) const;
   };
@@ -45,9 +60,9 @@ class CityWriter {
   std::string facet_text(const CityFacet& facet);
   std::string line_text(const std::vector<Index>& positions);
   Index vertex_of(Index position);
-  std::string header_text(std::uint32_t srid, const std::array<std::int32_t, 3>& exponents) const;
-  Result<std::string> vertices_text(const std::array<std::int32_t, 3>& exponents) const;
-  std::array<std::int32_t, 3> exponents() const;
+  std::string header_text(const Exponents& exponents) const;
+  Result<std::string> vertices_text(const Exponents& exponents) const;
+  Exponents exponents(GridChoice choice) const;
 
   const GmlTree& tree_;
   TreeMarks& marks_;
@@ -59,6 +74,9 @@ class CityWriter {
   std::map<Index, std::string> surface_texts_;   // by surface
   std::unordered_map<Position, Index, PositionHash> vertex_numbers_;
   std::vector<Index> vertices_;  // positions
+  std::uint32_t srid_ = 0;
+  std::string objects_text_;
+  std::string appearance_text_;  // "" without materials and textures
 };
 
 }  // namespace watertight::formats

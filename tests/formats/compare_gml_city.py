@@ -111,6 +111,8 @@ class Document:
 
     def type_of(self, element):
         name = local(element.tag)
+        if is_gml(element) and name in SOLIDS:
+            return "GenericCityObject" if self.is_alone(element) else ""
         if is_gml(element) or not name[0].isupper() or name == "Geometry3D":
             return ""
         if name in OBJECTS:
@@ -118,6 +120,14 @@ class Document:
         if name in SURFACES or name in ("ImplicitGeometry", "Address", "ReliefFeature"):
             return ""
         return "GenericCityObject" if any(self.geometry(child) is not None for child in element) else ""
+
+    def is_alone(self, element):
+        """Whether a solid stands in a collection of objects, and in no object."""
+        while element in self.parent:
+            element = self.parent[element]
+            if local(element.tag)[0].isupper() and local(element.tag) != "CityModel":
+                return False
+        return True
 
     def geometry(self, prop):
         """The geometry element that a property holds or refers to."""
@@ -178,7 +188,10 @@ def positions_of(element):
         if local(child.tag) in ("pos", "posList"):
             numbers += [Decimal(word) for word in (child.text or "").split()]
         elif local(child.tag) == "coordinates":
-            numbers += [Decimal(word) for word in re.split(r"[\s,]+", (child.text or "").strip())]
+            text = (child.text or "").strip()
+            for sign, usual, plain in (("ts", " ", " "), ("cs", ",", " "), ("decimal", ".", ".")):
+                text = text.replace(child.attrib.get(sign, usual), plain)
+            numbers += [Decimal(word) for word in text.split()]
     return [tuple(numbers[i:i + 3]) for i in range(0, len(numbers), 3)]
 
 
@@ -223,6 +236,7 @@ class Comparison:
 
     def run(self):
         self.match_objects()
+        self.find_surfaces()
         for element, key in self.key_of.items():
             self.compare_object(element, self.objects[key])
         self.compare_every_text()
@@ -273,7 +287,7 @@ class Comparison:
         """The properties that must be attributes: (plain by name, generics)."""
         plain = collections.OrderedDict()
         generics = []
-        for prop in element:
+        for prop in ([] if is_geometry(element) else element):
             name = local(prop.tag)
             inner = [local(child.tag) for child in prop]
             if self.document.geometry(prop) is not None or name == "address" and inner:
@@ -425,6 +439,17 @@ class Comparison:
         return [(tuple(self.city_ring(ring) for ring in facet), None if value is None else surfaces[int(value)])
                 for facet, value in zip(facets, values)]
 
+    def find_surfaces(self):
+        """The type and id of the thematic surface of each polygon; the first counts."""
+        self.surface_of = {}
+        for element in self.document.objects:
+            for surface in self.surfaces_of(element):
+                for prop in surface:
+                    geometry = self.document.geometry(prop)
+                    for polygon, _ in [] if geometry is None else self.document.polygons(geometry):
+                        self.surface_of.setdefault(
+                            polygon, (SURFACES[local(surface.tag)], gml_id(surface)))
+
     def surfaces_of(self, element):
         """The thematic surfaces of an object with their openings, in order."""
         for prop in element:
@@ -445,8 +470,8 @@ class Comparison:
         own_polygons = set()
         semantics = collections.Counter()  # (LoD, type of surface, id, rings)
         stated = collections.Counter()
-        for prop in element:
-            geometry = self.document.geometry(prop)
+        for prop in ([element] if is_geometry(element) else element):
+            geometry = element if is_geometry(element) else self.document.geometry(prop)
             if geometry is None or self.is_listed(prop):
                 continue
             lod = self.lod_of(prop, element)
@@ -454,6 +479,8 @@ class Comparison:
                 keys = []
                 for polygon, reverse in facets:
                     own_polygons.add((lod, polygon))
+                    if polygon in self.surface_of:
+                        semantics[(lod,) + self.surface_of[polygon]] += 1
                     rings = self.document.rings(polygon, reverse)
                     keys.append(tuple(self.ring_key(r) for r in rings))
                     if local(prop.tag) in STATED:
@@ -462,7 +489,6 @@ class Comparison:
                 self.counts["geometries"] += 1
         rest = collections.defaultdict(list)
         surfaces = list(self.surfaces_of(element))
-        by_polygon = {}
         for surface in surfaces:
             for prop in surface:
                 geometry = self.document.geometry(prop)
@@ -470,11 +496,10 @@ class Comparison:
                     continue
                 lod = self.lod_of(prop, surface)
                 for polygon, reverse in self.document.polygons(geometry):
-                    by_polygon.setdefault(polygon, (lod, surface))
                     rings = tuple(self.ring_key(r) for r in self.document.rings(polygon, reverse))
                     if (lod, polygon) not in own_polygons:
                         rest[lod].append(rings)
-                    semantics[(lod, SURFACES[local(surface.tag)], gml_id(surface))] += 1
+                        semantics[(lod,) + self.surface_of[polygon]] += 1
         for lod, facets in rest.items():
             expected[("MultiSurface", lod, tuple(facets))] += 1
         own = collections.Counter()

@@ -59,6 +59,7 @@ std::vector<GmlLoss> losses_of(const GmlTree& tree, const TreeMarks& marks) {
       if (is_below_used) ++counts[path_of(tree, i)];
       continue;
     }
+    if (marks.is_lost(i)) ++counts[path_of(tree, i)];
     const Index end = elements[i].first_attribute + elements[i].attribute_count;
     for (Index k = elements[i].first_attribute; k < end; ++k) {
       if (marks.is_attribute_marked(k) || is_said_otherwise(tree, k)) continue;

@@ -34,4 +34,10 @@ struct GmlCityModel {
 /// be read is a loss. Cost: n log n; memory proportional to the document.
 Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits);
 
+/// Gives a document of read_gml() the header of its city model and its features their skeletons, so
+/// that a store can return them as CityJSON. The solids of a feature come into the order of the
+/// city model. A feature whose solids are not those of the city model gets no skeleton, and a
+/// document without city model no header; a note says so. Cost: that of city_model_of_gml().
+void keep_city_model(Document& document, ByteView bytes, const Limits& limits);
+
 }  // namespace watertight::formats

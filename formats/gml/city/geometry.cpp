@@ -143,30 +143,39 @@ Status GeometryReader::read_value(Index property, std::string_view lod) {
     if (!found) return std::move(found).error();
   }
   for (const Link& link : *found) {
-    const auto kind = tree_.is_gml(link.element) ? geometry_kind(tree_.name(link.element))
-                                                 : std::nullopt;
-    if (!kind) return wrong(link.element, ErrorCode::unsupported, "not a geometry of GML");
-    CityGeometry geometry;
-    geometry.lod = lod;
-    Status status = Done{};
-    if (*kind == GmlKind::solid) {
-      geometry.type = "Solid";
-      status = read_solid(link.element, geometry);
-    } else if (*kind == GmlKind::solids || *kind == GmlKind::mixed) {
-      status = read_solids(link.element, lod);
-    } else if (is_surface(*kind)) {
-      const std::string_view name = tree_.name(link.element);
-      const bool is_composite =
-          name == "CompositeSurface" || name == "TriangulatedSurface" || name == "Tin";
-      geometry.type = is_composite ? "CompositeSurface" : "MultiSurface";
-      status = read_surface(link.element, geometry);
-    } else {
-      status = read_lines(link.element, geometry);
-    }
-    if (!status) return status;
-    if (!geometry.type.empty()) result_.geometries.push_back(std::move(geometry));
+    if (auto status = read_element(link.element, lod); !status) return status;
   }
   return Done{};
+}
+
+Result<ReadGeometry> GeometryReader::read_alone(Index element, std::string_view lod) {
+  result_ = {};
+  if (auto status = read_element(element, lod); !status) return std::move(status).error();
+  return std::move(result_);
+}
+
+Status GeometryReader::read_element(Index element, std::string_view lod) {
+  const auto kind = tree_.is_gml(element) ? geometry_kind(tree_.name(element)) : std::nullopt;
+  if (!kind) return wrong(element, ErrorCode::unsupported, "not a geometry of GML");
+  CityGeometry geometry;
+  geometry.lod = lod;
+  Status status = Done{};
+  if (*kind == GmlKind::solid) {
+    geometry.type = "Solid";
+    status = read_solid(element, geometry);
+  } else if (*kind == GmlKind::solids || *kind == GmlKind::mixed) {
+    status = read_solids(element, lod);
+  } else if (is_surface(*kind)) {
+    const std::string_view name = tree_.name(element);
+    const bool is_composite =
+        name == "CompositeSurface" || name == "TriangulatedSurface" || name == "Tin";
+    geometry.type = is_composite ? "CompositeSurface" : "MultiSurface";
+    status = read_surface(element, geometry);
+  } else {
+    status = read_lines(element, geometry);
+  }
+  if (status && !geometry.type.empty()) result_.geometries.push_back(std::move(geometry));
+  return status;
 }
 
 Status GeometryReader::read_solid(Index element, CityGeometry& geometry) {

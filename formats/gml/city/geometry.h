@@ -62,6 +62,9 @@ class GeometryReader {
   /// limit_exceeded; with the line.
   Result<ReadGeometry> read(Index property, std::string_view lod);
 
+  /// The same for a geometry element that stands alone.
+  Result<ReadGeometry> read_alone(Index element, std::string_view lod);
+
   /// True if an error of read() for this property concerns a solid, which validation refuses too.
   bool holds_solid(Index property) const;
 
@@ -86,6 +89,7 @@ class GeometryReader {
   };
 
   Status read_value(Index property, std::string_view lod);
+  Status read_element(Index element, std::string_view lod);
   Result<Index> resolve(Index property);
   Result<std::vector<Link>> links(Index element, GmlKind kind);
   Result<std::vector<Link>> values(Index property, GmlRole role);

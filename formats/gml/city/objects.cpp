@@ -56,7 +56,7 @@ Result<GmlObjects> ObjectReader::read() {
 }
 
 Status ObjectReader::read_root() {
-  if (is_object_here(0)) return walk(0, kNone);
+  if (is_object_here(0) || tree_.is_gml(0)) return walk(0, kNone);
   for (const Index property : tree_.children(0)) {
     const std::string_view name = tree_.name(property);
     if (tree_.is_gml(property) && name == "boundedBy") {
@@ -81,6 +81,8 @@ Status ObjectReader::read_root() {
 
 // Reads the objects at and below an element; `parent` is the object that holds it.
 Status ObjectReader::walk(Index element, Index parent) {
+  if (tree_.name(element) == "ImplicitGeometry") return Done{};
+  if (tree_.is_gml(element) && geometry_kind(tree_.name(element))) return read_alone(element);
   if (!is_object_here(element)) {
     for (Index i = tree_[element].first_child; i != kNone; i = tree_[i].next) {
       if (auto status = walk(i, parent); !status) return status;
@@ -100,6 +102,27 @@ Status ObjectReader::walk(Index element, Index parent) {
   }
   if (status && parent == kNone) geometry_.end_feature();
   return status;
+}
+
+// Writes solids outside of any object as a GenericCityObject.
+Status ObjectReader::read_alone(Index element) {
+  const GmlKind kind = *geometry_kind(tree_.name(element));
+  if (kind != GmlKind::solid && kind != GmlKind::solids && kind != GmlKind::mixed) return Done{};
+  ++made_up_lods_;
+  auto read = geometry_.read_alone(element, "1");
+  if (!read) return std::move(read).error();
+  geometry_.end_feature();
+  for (const Index own : read->elements) marks_.mark(own);
+  for (const Index attribute : read->attributes) marks_.mark_attribute(attribute);
+  ++generic_names_[std::string(tree_.name(element))];
+  GmlCityObject object;
+  object.element = element;
+  object.type = "GenericCityObject";
+  object.id = new_id(element, object.type);
+  object.geometries = std::move(read->geometries);
+  object.stated_surface.resize(object.geometries.size());
+  found_.objects.push_back(std::move(object));
+  return Done{};
 }
 
 std::string ObjectReader::new_id(Index element, std::string_view type) {
@@ -153,7 +176,10 @@ Status ObjectReader::read_property(Index property, Index object, std::vector<Ind
     return Done{};
   }
   if (name == "address" && value != kNone) return read_address(property, object);
-  if (is_beyond_city_json(name) || name.ends_with("ImplicitRepresentation")) return Done{};
+  if (is_beyond_city_json(name) || name.ends_with("ImplicitRepresentation")) {
+    marks_.lose(property);
+    return Done{};
+  }
   if (holds_geometry(tree_, property)) return read_geometry(property, object);
   if (is_group_property(name)) {
     read_group_member(property, object);
@@ -228,6 +254,7 @@ Status ObjectReader::read_geometry(Index property, Index object) {
       return error;
     }
     ++unread_[read.error().message];
+    marks_.lose(property);
     return Done{};
   }
   for (const Index element : read->elements) marks_.mark(element);
@@ -278,11 +305,13 @@ Status ObjectReader::read_surface(Index element, Index object, Index parent) {
       auto read = geometry_.read(property, lod_of_property(property));
       if (!read) {
         ++unread_[read.error().message];
+        marks_.lose(property);
         continue;
       }
       const auto has_facets = [](const CityGeometry& own) { return own.lines.empty(); };
       if (!std::all_of(read->geometries.begin(), read->geometries.end(), has_facets)) {
         ++unread_["points and curves of a thematic surface"];
+        marks_.lose(property);
         continue;
       }
       GmlSurface& own = found_.surfaces[number];

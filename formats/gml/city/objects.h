@@ -82,6 +82,7 @@ class ObjectReader {
 
   Status walk(Index element, Index parent);
   Status read_root();
+  Status read_alone(Index element);
   Status read_object(Index element, Index parent, std::string_view type);
   Status read_property(Index property, Index object, std::vector<Index>& plain,
                        std::vector<Index>& generics);

@@ -171,7 +171,10 @@ std::vector<Index> GmlTree::children(Index element) const {
   return found;
 }
 
-TreeMarks::TreeMarks(const GmlTree& tree) : tree_(tree), elements_(tree.elements().size(), false) {
+TreeMarks::TreeMarks(const GmlTree& tree)
+    : tree_(tree),
+      elements_(tree.elements().size(), false),
+      is_lost_(tree.elements().size(), false) {
   const auto& elements = tree.elements();
   const std::size_t attributes =
       elements.empty() ? 0 : elements.back().first_attribute + elements.back().attribute_count;

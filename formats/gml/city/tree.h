@@ -111,6 +111,11 @@ class TreeMarks {
   /// Marks the element, its attributes, and everything below it. Cost: linear in these.
   void mark_all(Index element);
 
+  /// Says that what an element means did not reach the CityJSON, even if parts of it did through
+  /// references.
+  void lose(Index element) { is_lost_[element] = true; }
+  bool is_lost(Index element) const { return is_lost_[element]; }
+
   bool is_marked(Index element) const { return elements_[element]; }
   bool is_attribute_marked(Index attribute) const { return attributes_[attribute]; }
 
@@ -118,6 +123,7 @@ class TreeMarks {
   const GmlTree& tree_;
   std::vector<bool> elements_;
   std::vector<bool> attributes_;
+  std::vector<bool> is_lost_;
 };
 
 /// The text without blanks at both ends.

@@ -68,6 +68,9 @@ Status CityWriter::prepare() {
     objects_text_ += ':';
     append_object(objects_text_, object);
   }
+  for (Index surface = 0; surface < found_.surfaces.size(); ++surface) {
+    if (!surface_texts_.contains(surface)) marks_.lose(found_.surfaces[surface].element);
+  }
   const Json appearance = appearance_.take();
   if (!appearance.is_null()) appearance_text_ = json_text(appearance);
   return Done{};

@@ -321,8 +321,7 @@ bool makes_city_of_gml(const ConvertCommand& command, ByteView bytes) {
 
 void tell_notes(const std::string& file, const Document& document) {
   for (const std::string& note : document.notes) {
-    std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(),
-                 printable(note).c_str());
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(note).c_str());
   }
 }
 

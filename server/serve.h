@@ -24,10 +24,10 @@ struct ServeOptions {
   /// A second address that answers /healthz and /readyz only, with a thread and connections of its
   /// own.
   std::optional<ServerOptions> probes = {};
-  bool requires_preconditions = false;    // with every write of features
+  bool requires_preconditions = false;         // with every write of features
   std::uint64_t document_memory = 4ULL << 30;  // of the documents that are read whole, bytes
-  std::size_t cache_bytes = 64ULL << 20;  // of the answers for items that are kept
-  std::string connection;                 // libpq connection string or URL of the database
+  std::size_t cache_bytes = 64ULL << 20;       // of the answers for items that are kept
+  std::string connection;                      // libpq connection string or URL of the database
   std::size_t database_connections = 24;
   Limits limits;
   /// Whether the database can be used, answered at once; beside the answer of the store. Null:

@@ -30,8 +30,8 @@ struct StoredBox {
 /// which no URL can name. Errors: invalid_argument.
 Status check_collection_id(const std::string& id);
 
-/// Ok for an id that a feature can have: 1 to 1024 bytes of UTF-8 without NUL, neither "." nor "..",
-/// which no URL can name. Errors: invalid_argument.
+/// Ok for an id that a feature can have: 1 to 1024 bytes of UTF-8 without NUL, neither "." nor
+/// "..", which no URL can name. Errors: invalid_argument.
 Status check_feature_id(const std::string& id);
 
 struct StoredCollection {

@@ -17,8 +17,8 @@ using Delivery = std::function<Status()>;
 /// Works on a feature, or on the error of a feature or of the rest of the document that could not
 /// be read (then without a place). `number` is the number in the document, from 0. Called from
 /// several threads at once.
-using FeatureWork = std::function<Delivery(
-    std::uint64_t number, const formats::FeaturePlace& place, Result<Feature> feature)>;
+using FeatureWork = std::function<Delivery(std::uint64_t number, const formats::FeaturePlace& place,
+                                           Result<Feature> feature)>;
 
 struct FeatureStreamOptions {
   std::size_t threads = 1;

@@ -34,8 +34,8 @@ class Ingestion {
   /// Validates and encodes all features of a reader; may be called for several readers, whose
   /// features then count as one document. Nothing is stored yet, and nothing may be stored after an
   /// error. Errors: those of the reader and of encode(); malformed (two features of one id, an
-  /// empty id), invalid_argument (an id that the store cannot keep), with the place; conflict (another CRS than the collection's); cancelled; those of the sink;
-  /// unavailable (the spool).
+  /// empty id), invalid_argument (an id that the store cannot keep), with the place; conflict
+  /// (another CRS than the collection's); cancelled; those of the sink; unavailable (the spool).
   Status add(formats::FeatureReader& reader);
   /// The same for all documents of a Watertight file. City models are checked as their texts would
   /// be. Memory: one part of the file. Errors: those of add() and of ContainerParts.

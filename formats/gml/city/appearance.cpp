@@ -267,9 +267,8 @@ void GmlAppearance::append_members(std::string& out, const CityGeometry& geometr
     is_any = false;
     values.clear();
     if (theme.textures.empty()) continue;
-    append_by_facet(values, geometry, [&](const CityFacet& facet) {
-      return texture_text(theme, facet, is_any);
-    });
+    append_by_facet(values, geometry,
+                    [&](const CityFacet& facet) { return texture_text(theme, facet, is_any); });
     add(textures);
   }
   if (!materials.empty()) out.append(",\"material\":{").append(materials).append("}");

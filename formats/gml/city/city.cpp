@@ -29,7 +29,8 @@ bool is_said_otherwise(const GmlTree& tree, Index attribute) {
                            name == "cs" || name == "ts");
 }
 
-// The element with those around it up to the nearest object: "Building/lod2TerrainIntersection".
+// The element with those around it up to the nearest object, and with the object that it holds:
+// "Building/lod2TerrainIntersection", "CityModel/versionMember/Version".
 std::string path_of(const GmlTree& tree, Index element) {
   std::vector<std::string_view> names{tree.name(element)};
   for (Index i = tree[element].parent; i != kNone; i = tree[i].parent) {
@@ -41,6 +42,10 @@ std::string path_of(const GmlTree& tree, Index element) {
     if (!path.empty()) path += '/';
     path += *name;
   }
+  const Index held = tree[element].first_child;
+  const bool holds_object = held != kNone && tree[held].next == kNone && !tree.is_gml(held) &&
+                            is_object_name(tree.name(held)) && !is_object_name(tree.name(element));
+  if (holds_object) path.append("/").append(tree.name(held));
   return path;
 }
 
@@ -99,12 +104,12 @@ Result<Document> city_model_of(const CityWriter& writer, const Limits& limits) {
 
 }  // namespace
 
-Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits) {
+Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits, GroupMembers members) {
   const auto tree = GmlTree::read(bytes, limits);
   if (!tree) return tree.error();
   TreeMarks marks(*tree);
   GeometryReader geometry(*tree, bytes.size(), limits);
-  auto objects = ObjectReader(*tree, marks, geometry).read();
+  auto objects = ObjectReader(*tree, marks, geometry, members).read();
   if (!objects) return std::move(objects).error();
   GmlAppearance appearance(*tree, marks, geometry);
   for (const Index element : objects->appearances) appearance.read(element);

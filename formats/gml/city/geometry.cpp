@@ -63,8 +63,7 @@ Result<Index> GeometryReader::resolve(Index property) {
                  quoted + ": no geometry of this document has this gml:id");
   }
   if (found->second == kNone) {
-    return wrong(property, ErrorCode::malformed,
-                 quoted + ": several geometries have this gml:id");
+    return wrong(property, ErrorCode::malformed, quoted + ": several geometries have this gml:id");
   }
   result_.attributes.push_back(tree_.href_attribute(property));
   return found->second;
@@ -77,8 +76,7 @@ Result<std::vector<GeometryReader::Link>> GeometryReader::values(Index property,
   result_.elements.push_back(property);
   if (!tree_.href(property).empty()) {
     if (tree_[property].first_child != kNone) {
-      return wrong(property, ErrorCode::malformed,
-                   "a property has both an xlink:href and a value");
+      return wrong(property, ErrorCode::malformed, "a property has both an xlink:href and a value");
     }
     auto target = resolve(property);
     if (!target) return std::move(target).error();
@@ -284,8 +282,8 @@ Status GeometryReader::read_surface(Index root, CityGeometry& geometry) {
     is_entered_[step.element] = true;
     path.push_back({step.element, false, true});
     const bool is_reversed =
-        step.is_reversed != (kind == GmlKind::orientable &&
-                             tree_.attribute(step.element, "", "orientation") == "-");
+        step.is_reversed !=
+        (kind == GmlKind::orientable && tree_.attribute(step.element, "", "orientation") == "-");
     auto found = links(step.element, kind);
     if (!found) return std::move(found).error();
     for (auto link = found->rbegin(); link != found->rend(); ++link) {
@@ -368,7 +366,8 @@ Status GeometryReader::read_lines(Index root, CityGeometry& geometry) {
     result_.elements.push_back(element);
     std::vector<Index> members;
     for (Index i = tree_[element].first_child; i != kNone; i = tree_[i].next) {
-      const bool is_member = tree_.name(i).ends_with("Member") || tree_.name(i).ends_with("Members");
+      const bool is_member =
+          tree_.name(i).ends_with("Member") || tree_.name(i).ends_with("Members");
       if (!tree_.is_gml(i) || !is_member) continue;
       auto found = values(i, GmlRole::member);
       if (!found) return std::move(found).error();
@@ -393,8 +392,8 @@ Status GeometryReader::read_curve(Index element, CityGeometry& geometry) {
     }
     std::vector<Index> own;
     if (auto status = read_positions(i, own); !status) return status;
-    const bool joins = !line.empty() && !own.empty() &&
-                       positions_[line.back()] == positions_[own.front()];
+    const bool joins =
+        !line.empty() && !own.empty() && positions_[line.back()] == positions_[own.front()];
     line.insert(line.end(), own.begin() + (joins ? 1 : 0), own.end());
   }
   return Done{};

@@ -20,7 +20,9 @@ std::vector<std::size_t> matching_solids(const Feature& feature, const Feature& 
   }
   std::vector<std::size_t> numbers;
   for (const SubmittedSolid& solid : city.solids) {
-    const auto found = of_object.find(solid.source.object_id);
+    auto found = of_object.find(solid.source.object_id);
+    // An object without gml:id has an id that was made up.
+    if (found == of_object.end()) found = of_object.find("");
     if (found == of_object.end() || found->second.empty()) return {};
     numbers.push_back(found->second.back());
     found->second.pop_back();
@@ -44,7 +46,7 @@ bool adopt(Feature& feature, Feature& city) {
 
 void keep_city_model(Document& document, ByteView bytes, const Limits& limits) {
   if (document.features.empty()) return;
-  auto city = city_model_of_gml(bytes, limits);
+  auto city = city_model_of_gml(bytes, limits, GroupMembers::alone);
   if (!city) {
     document.notes.push_back("only solids are kept: " + city.error().message);
     return;

@@ -88,21 +88,27 @@ bool contains(const std::array<std::string_view, kSize>& names, std::string_view
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-constexpr std::array<std::string_view, 11> kNumbers{
-    "measuredHeight",      "storeysAboveGround",       "storeysBelowGround",
-    "yearOfConstruction",  "yearOfDemolition",         "storeyHeightsAboveGround",
-    "averageHeight",       "storeyHeightsBelowGround", "trunkDiameter",
-    "crownDiameter",       "lod"};
+constexpr std::array<std::string_view, 11> kNumbers{"measuredHeight",
+                                                    "storeysAboveGround",
+                                                    "storeysBelowGround",
+                                                    "yearOfConstruction",
+                                                    "yearOfDemolition",
+                                                    "storeyHeightsAboveGround",
+                                                    "averageHeight",
+                                                    "storeyHeightsBelowGround",
+                                                    "trunkDiameter",
+                                                    "crownDiameter",
+                                                    "lod"};
 constexpr std::array<std::string_view, 2> kLists{"storeyHeightsAboveGround",
                                                  "storeyHeightsBelowGround"};
 constexpr std::array<std::string_view, 1> kBooleans{"isMovable"};
 
 // The types of CityJSON that stand alone; all others need a parent.
 constexpr std::array<std::string_view, 15> kFirstLevel{
-    "Building",       "Bridge",       "Tunnel",          "OtherConstruction",
-    "Road",           "Railway",      "TransportSquare", "Waterway",
-    "WaterBody",      "LandUse",      "PlantCover",      "SolitaryVegetationObject",
-    "TINRelief",      "CityFurniture", "CityObjectGroup"};
+    "Building",  "Bridge",        "Tunnel",          "OtherConstruction",
+    "Road",      "Railway",       "TransportSquare", "Waterway",
+    "WaterBody", "LandUse",       "PlantCover",      "SolitaryVegetationObject",
+    "TINRelief", "CityFurniture", "CityObjectGroup"};
 
 }  // namespace
 

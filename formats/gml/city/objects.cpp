@@ -13,7 +13,8 @@ namespace {
 
 // Geometry with a meaning that CityJSON cannot state.
 bool is_beyond_city_json(std::string_view property) {
-  return property.ends_with("TerrainIntersection") || property.ends_with("TerrainIntersectionCurve");
+  return property.ends_with("TerrainIntersection") ||
+         property.ends_with("TerrainIntersectionCurve");
 }
 
 bool is_group_property(std::string_view name) { return name == "groupMember"; }
@@ -395,10 +396,10 @@ void ObjectReader::follow_references() {
     if (inlined != kNone && object_of_.contains(inlined)) target = object_of_[inlined];
     GmlCityObject& own = found_.objects[reference.object];
     const bool is_member = is_group_property(tree_.name(reference.property));
-    const bool is_child =
-        target != kNone && target != reference.object &&
-        (is_member || (needs_parent(found_.objects[target].type) &&
-                       found_.objects[target].parents.empty()));
+    if (is_member && members_ == GroupMembers::alone) continue;
+    const bool is_child = target != kNone && target != reference.object &&
+                          (is_member || (needs_parent(found_.objects[target].type) &&
+                                         found_.objects[target].parents.empty()));
     if (!is_child) {
       others[reference.object].push_back(reference.property);
       continue;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "formats/gml/city/city.h"
 #include "formats/gml/city/geometry.h"
 #include "formats/gml/city/tree.h"
 #include "formats/gml/city/values.h"
@@ -68,8 +69,9 @@ struct GmlObjects {
 /// Recursive; the depth of the XML bounds it.
 class ObjectReader {
  public:
-  ObjectReader(const GmlTree& tree, TreeMarks& marks, GeometryReader& geometry)
-      : tree_(tree), marks_(marks), geometry_(geometry), values_(tree, marks) {}
+  ObjectReader(const GmlTree& tree, TreeMarks& marks, GeometryReader& geometry,
+               GroupMembers members)
+      : tree_(tree), marks_(marks), geometry_(geometry), members_(members), values_(tree, marks) {}
 
   Result<GmlObjects> read();
 
@@ -102,6 +104,7 @@ class ObjectReader {
   const GmlTree& tree_;
   TreeMarks& marks_;
   GeometryReader& geometry_;
+  GroupMembers members_;
   ValueReader values_;
   GmlObjects found_;
   std::set<std::string> ids_;

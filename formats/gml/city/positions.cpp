@@ -93,7 +93,8 @@ Status GeometryReader::read_positions(Index element, std::vector<Index>& out) {
     } else if (name == "pointProperty" || name == "pointRep") {
       const Index point = tree_.child(i, "Point");
       const Index position = point == kNone ? kNone : tree_.child(point, "pos");
-      if (position == kNone) return wrong(i, ErrorCode::unsupported, "a Point with pos is expected");
+      if (position == kNone)
+        return wrong(i, ErrorCode::unsupported, "a Point with pos is expected");
       result_.elements.push_back(i);
       result_.elements.push_back(point);
       status = read_numbers(position, out);
@@ -210,18 +211,22 @@ std::vector<std::string> GeometryReader::notes() const {
     if (srid == 0) {
       notes.push_back(text.append("' has no known EPSG code"));
     } else if (system.find(',') != std::string_view::npos || system.find('*') != system.npos) {
-      notes.push_back(text.append("' is written as EPSG:").append(std::to_string(srid)).append(
-          ", without its vertical part"));
+      notes.push_back(text.append("' is written as EPSG:")
+                          .append(std::to_string(srid))
+                          .append(", without its vertical part"));
     }
   }
   for (const std::string_view system : latitude_first_) {
-    notes.push_back(std::string("positions in '").append(system).append(
-        "' are latitude, longitude; written as longitude, latitude"));
+    notes.push_back(std::string("positions in '")
+                        .append(system)
+                        .append("' are latitude, longitude; written as longitude, latitude"));
   }
   for (const std::string_view system : wrongly_ordered_) {
-    notes.push_back(std::string("positions in '").append(system).append(
-        "' should be latitude, longitude, but some begin beyond the poles; kept in the order "
-        "written"));
+    notes.push_back(std::string("positions in '")
+                        .append(system)
+                        .append("' should be latitude, longitude, but some begin beyond the poles; "
+                                "kept in the order "
+                                "written"));
   }
   if (rounded_ > 0) {
     notes.push_back(quantity(rounded_, "coordinate was", "coordinates were").append(" rounded"));

@@ -58,12 +58,12 @@ struct GenericKind {
   std::string_view type;  // where JSON cannot say it
 };
 constexpr std::array kGenerics{
-    GenericKind{"stringAttribute", false, ""},  GenericKind{"intAttribute", true, ""},
-    GenericKind{"doubleAttribute", true, ""},   GenericKind{"dateAttribute", false, "date"},
-    GenericKind{"uriAttribute", false, "uri"},  GenericKind{"measureAttribute", true, ""},
-    GenericKind{"StringAttribute", false, ""},  GenericKind{"IntAttribute", true, ""},
-    GenericKind{"DoubleAttribute", true, ""},   GenericKind{"DateAttribute", false, "date"},
-    GenericKind{"UriAttribute", false, "uri"},  GenericKind{"MeasureAttribute", true, ""},
+    GenericKind{"stringAttribute", false, ""}, GenericKind{"intAttribute", true, ""},
+    GenericKind{"doubleAttribute", true, ""},  GenericKind{"dateAttribute", false, "date"},
+    GenericKind{"uriAttribute", false, "uri"}, GenericKind{"measureAttribute", true, ""},
+    GenericKind{"StringAttribute", false, ""}, GenericKind{"IntAttribute", true, ""},
+    GenericKind{"DoubleAttribute", true, ""},  GenericKind{"DateAttribute", false, "date"},
+    GenericKind{"UriAttribute", false, "uri"}, GenericKind{"MeasureAttribute", true, ""},
     GenericKind{"CodeAttribute", false, ""},
 };
 

@@ -50,8 +50,8 @@ class ValueReader {
  private:
   struct Generic {
     std::string name;
-    std::string type;  // of the value, where JSON cannot say it: "date", "uri"
-    std::string space; // codeSpace
+    std::string type;   // of the value, where JSON cannot say it: "date", "uri"
+    std::string space;  // codeSpace
     Json value;
   };
   Json value_of(Index element);

@@ -143,9 +143,9 @@ void CityWriter::append_addresses(std::string& out, const GmlCityObject& object)
     std::string text = json_text(address.members);
     if (!address.location.empty()) {
       text.pop_back();
-      append_text_member(text, "location",
-                         R"({"type":"MultiPoint","lod":"0","boundaries":)" +
-                             line_text(address.location) + "}");
+      append_text_member(
+          text, "location",
+          R"({"type":"MultiPoint","lod":"0","boundaries":)" + line_text(address.location) + "}");
       text += '}';
     }
     addresses += text;
@@ -355,9 +355,9 @@ std::string CityWriter::header_text(const Exponents& exponents) const {
   out += R"(],"translate":[0,0,0]})";
   Json metadata = found_.metadata;
   if (srid_ != 0) {
-    append_member(metadata, "referenceSystem",
-                  std::string("https://www.opengis.net/def/crs/EPSG/0/")
-                      .append(std::to_string(srid_)));
+    append_member(
+        metadata, "referenceSystem",
+        std::string("https://www.opengis.net/def/crs/EPSG/0/").append(std::to_string(srid_)));
   }
   if (!metadata.empty()) append_text_member(out, "metadata", json_text(metadata));
   return out;

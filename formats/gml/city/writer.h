@@ -33,8 +33,8 @@ class CityWriter {
   /// reference systems. Cost: n log n.
   Status prepare();
 
-  /// The document. Requires prepare(). Errors: unsupported when 64 bits do not hold the coordinates.
-  /// Cost: linear.
+  /// The document. Requires prepare(). Errors: unsupported when 64 bits do not hold the
+  /// coordinates. Cost: linear.
   Result<std::string> text(GridChoice choice) const;
 
   /// How many coordinates text() rounds.

@@ -30,6 +30,7 @@ constexpr std::string_view kUnnamed = "unnamed";
 // Every theme repeats the structure of the geometries that it concerns, so themes multiply the
 // text. Further themes are losses.
 constexpr std::size_t kMostThemes = 64;
+constexpr std::size_t kLongestTheme = 256;  // bytes
 
 }  // namespace
 
@@ -39,6 +40,7 @@ void GmlAppearance::read(Index appearance) {
   const Index theme = tree_.child(appearance, "theme");
   const std::string_view stated = theme == kNone ? "" : tree_.text(theme);
   if (themes_.size() >= kMostThemes && !themes_.contains(std::string(stated))) return;
+  if (stated.size() > kLongestTheme) return;
   marks_.mark(appearance);
   if (theme != kNone) {
     marks_.mark(theme);
@@ -247,7 +249,8 @@ std::string GmlAppearance::texture_text(const Theme& theme, const CityFacet& fac
 void GmlAppearance::append_members(std::string& out, const CityGeometry& geometry) {
   std::string materials;
   std::string textures;
-  for (const auto& [name, theme] : themes_) {
+  for (const auto& named : themes_) {
+    const Theme& theme = named.second;
     bool is_any = false;
     std::string values;
     append_by_facet(values, geometry, [&](const CityFacet& facet) -> std::string {
@@ -257,10 +260,10 @@ void GmlAppearance::append_members(std::string& out, const CityGeometry& geometr
       marks_.mark_all(material->target);
       return std::to_string(material->number);
     });
-    const auto add = [&, &own_name = name](std::string& members) {
+    const auto add = [&](std::string& members) {
       if (!is_any) return;
       if (!members.empty()) members += ',';
-      append_json_string(members, own_name);
+      append_json_string(members, named.first);
       members.append(":{\"values\":").append(values).append("}");
     };
     if (!theme.materials.empty()) add(materials);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formats/gml/city/city.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -18,6 +19,14 @@ namespace {
 // The deepest nesting of the CityJSON: the XML's, with a few levels of CityJSON around it.
 constexpr std::uint32_t kNestingAround = 64;
 
+constexpr std::size_t kLongestId = 1024;  // bytes, as for read_gml()
+
+// Paths in the list of losses stay short, and are not too many, whatever the names are.
+constexpr std::size_t kLongestName = 80;
+constexpr std::size_t kMostNames = 4;
+constexpr std::size_t kMostPaths = 10'000;
+constexpr std::string_view kOtherPaths = "(other elements)";
+
 // Attributes whose meaning is in what was read, or that say nothing about the city.
 bool is_said_otherwise(const GmlTree& tree, Index attribute) {
   const std::string_view space = tree.attribute_space(attribute);
@@ -29,6 +38,14 @@ bool is_said_otherwise(const GmlTree& tree, Index attribute) {
                            name == "cs" || name == "ts");
 }
 
+// The name, or its beginning and "..." when it is long.
+std::string short_name(std::string_view name) {
+  if (name.size() <= kLongestName) return std::string(name);
+  std::size_t end = kLongestName;
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0U) == 0x80U) --end;
+  return std::string(name.substr(0, end)).append("...");
+}
+
 // The element with those around it up to the nearest object, and with the object that it holds:
 // "Building/lod2TerrainIntersection", "CityModel/versionMember/Version".
 std::string path_of(const GmlTree& tree, Index element) {
@@ -37,16 +54,34 @@ std::string path_of(const GmlTree& tree, Index element) {
     names.push_back(tree.name(i));
     if (is_object_name(names.back())) break;
   }
-  std::string path;
-  for (auto name = names.rbegin(); name != names.rend(); ++name) {
-    if (!path.empty()) path += '/';
-    path += *name;
+  std::string path = short_name(names.back());
+  if (names.size() > kMostNames) path.append("/...");
+  for (std::size_t i = std::min(names.size() - 1, kMostNames - 1); i-- > 0;) {
+    path.append("/").append(short_name(names[i]));
   }
   const Index held = tree[element].first_child;
   const bool holds_object = held != kNone && tree[held].next == kNone && !tree.is_gml(held) &&
                             is_object_name(tree.name(held)) && !is_object_name(tree.name(element));
-  if (holds_object) path.append("/").append(tree.name(held));
+  if (holds_object) path.append("/").append(short_name(tree.name(held)));
   return path;
+}
+
+// Refuses XML that is not GML, and ids of which many copies would be made.
+Status check_gml(const GmlTree& tree) {
+  bool is_of_ogc = false;
+  for (Index i = 0; i < tree.elements().size(); ++i) {
+    const std::string_view id = tree.id(i);
+    is_of_ogc = is_of_ogc || !id.empty() || tree.space(i).starts_with("http://www.opengis.net/");
+    if (id.size() > kLongestId) {
+      return error_at(tree[i].place, ErrorCode::limit_exceeded,
+                      "a gml:id of more than " + std::to_string(kLongestId) + " bytes");
+    }
+  }
+  if (is_of_ogc || tree.elements().empty()) return Done{};
+  std::string text = "not GML: the root element is '";
+  text.append(tree.name(0));
+  return error_at(tree[0].place, ErrorCode::malformed,
+                  text.append("', and nothing is in a namespace http://www.opengis.net/..."));
 }
 
 // Counts what has no mark: the outermost elements of which nothing was read, and attributes.
@@ -58,24 +93,28 @@ std::vector<GmlLoss> losses_of(const GmlTree& tree, const TreeMarks& marks) {
     if (is_used[i] && elements[i].parent != kNone) is_used[elements[i].parent] = true;
   }
   std::map<std::string, std::uint64_t> counts;
+  const auto count = [&](std::string path) {
+    if (counts.size() >= kMostPaths && !counts.contains(path)) path = kOtherPaths;
+    ++counts[path];
+  };
   for (Index i = 0; i < elements.size(); ++i) {
     const bool is_below_used = elements[i].parent == kNone || is_used[elements[i].parent];
     if (!is_used[i]) {
-      if (is_below_used) ++counts[path_of(tree, i)];
+      if (is_below_used) count(path_of(tree, i));
       continue;
     }
-    if (marks.is_lost(i)) ++counts[path_of(tree, i)];
+    if (marks.is_lost(i)) count(path_of(tree, i));
     const Index end = elements[i].first_attribute + elements[i].attribute_count;
     for (Index k = elements[i].first_attribute; k < end; ++k) {
       if (marks.is_attribute_marked(k) || is_said_otherwise(tree, k)) continue;
-      std::string path(tree.name(i));
+      std::string path = short_name(tree.name(i));
       const bool is_id = tree.attribute_name(k) == "id" && is_gml_space(tree.attribute_space(k));
-      path.append(is_id ? "/@gml:" : "/@").append(tree.attribute_name(k));
-      ++counts[path];
+      path.append(is_id ? "/@gml:" : "/@").append(short_name(tree.attribute_name(k)));
+      count(std::move(path));
     }
   }
   std::vector<GmlLoss> losses;
-  for (auto& [path, count] : counts) losses.push_back({path, count});
+  for (const auto& [path, number] : counts) losses.push_back({path, number});
   return losses;
 }
 
@@ -107,6 +146,7 @@ Result<Document> city_model_of(const CityWriter& writer, const Limits& limits) {
 Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits, GroupMembers members) {
   const auto tree = GmlTree::read(bytes, limits);
   if (!tree) return tree.error();
+  if (auto status = check_gml(*tree); !status) return std::move(status).error();
   TreeMarks marks(*tree);
   GeometryReader geometry(*tree, bytes.size(), limits);
   auto objects = ObjectReader(*tree, marks, geometry, members).read();
@@ -114,7 +154,8 @@ Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits, Gro
   GmlAppearance appearance(*tree, marks, geometry);
   for (const Index element : objects->appearances) appearance.read(element);
   CityWriter writer(*tree, marks, *objects, geometry, appearance);
-  if (auto status = writer.prepare(); !status) return std::move(status).error();
+  const std::uint64_t most_surface_bytes = 16 * bytes.size() + (1U << 20U);
+  if (auto status = writer.prepare(most_surface_bytes); !status) return std::move(status).error();
   auto model = city_model_of(writer, limits);
   if (!model) return std::move(model).error();
   GmlCityModel result{std::move(*model), losses_of(*tree, marks)};

@@ -20,16 +20,37 @@ GeometryReader::GeometryReader(const GmlTree& tree, std::uint64_t byte_count, co
       limits_(limits),
       allowed_steps_(byte_count + 40'000),
       is_entered_(tree.elements().size(), false) {
+  std::unordered_map<Index, Index> envelopes;  // the Envelope of an object
   for (Index i = 0; i < tree.elements().size(); ++i) {
     if (!tree.is_gml(i)) continue;
     if (tree.name(i) == "Envelope" && tree[i].parent != kNone &&
         tree[tree[i].parent].parent != kNone) {
-      envelopes_.emplace(tree[tree[i].parent].parent, i);
+      envelopes.emplace(tree[tree[i].parent].parent, i);
     }
     if (!geometry_kind(tree.name(i)) || tree.id(i).empty()) continue;
     const auto [place, is_new] = by_id_.emplace(tree.id(i), i);
     if (!is_new) place->second = kNone;
   }
+  contexts_.resize(tree.elements().size());
+  for (Index i = 0; i < tree.elements().size(); ++i) {
+    Context& own = contexts_[i];
+    if (tree[i].parent != kNone) own = contexts_[tree[i].parent];
+    read_context(i, own);
+    const auto envelope = envelopes.find(i);
+    if (envelope == envelopes.end()) continue;
+    Context stated;
+    read_context(envelope->second, stated);
+    if (!stated.system.empty()) own.system = stated.system;
+    if (stated.dimension != 0) own.is_flat_envelope = stated.dimension == 2;
+  }
+}
+
+// Takes what an element says about positions below it.
+void GeometryReader::read_context(Index element, Context& context) const {
+  const std::string_view system = tree_.attribute(element, "", "srsName");
+  const std::string_view dimension = tree_.attribute(element, "", "srsDimension");
+  if (!system.empty()) context.system = system;
+  if (!dimension.empty()) context.dimension = dimension == "3" ? 3 : dimension == "2" ? 2 : -1;
 }
 
 Error GeometryReader::wrong(Index element, ErrorCode code, std::string_view message) const {
@@ -326,7 +347,8 @@ Status GeometryReader::read_ring(Index element, bool is_reversed, CityFacet& fac
     const auto& last = positions_[positions.back()];
     if (first == last) {
       positions.pop_back();
-    } else if (context_of(element).is_flat_envelope && first[0] == last[1] && first[1] == last[2]) {
+    } else if (contexts_[element].is_flat_envelope && contexts_[element].dimension == 0 &&
+               first[0] == last[1] && first[1] == last[2]) {
       return wrong(element, ErrorCode::unsupported,
                    "two-dimensional positions (srsDimension 2 of the Envelope) are not read");
     } else {

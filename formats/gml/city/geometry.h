@@ -109,10 +109,10 @@ class GeometryReader {
 
   struct Context {
     std::string_view system;
-    int dimension = 0;  // 0: not stated
-    bool is_flat_envelope = false;
+    int dimension = 0;              // 0: not stated
+    bool is_flat_envelope = false;  // the Envelope around it says srsDimension 2
   };
-  Context context_of(Index element) const;
+  void read_context(Index element, Context& context) const;
   Status note_system(std::string_view system, Index element);
 
   const GmlTree& tree_;
@@ -120,7 +120,7 @@ class GeometryReader {
   std::uint64_t allowed_steps_;
   std::uint64_t steps_ = 0;
   std::unordered_map<std::string_view, Index> by_id_;  // kNone: several geometries have the gml:id
-  std::unordered_map<Index, Index> envelopes_;         // the Envelope of an object
+  std::vector<Context> contexts_;                      // of each element
   std::vector<bool> is_entered_;
   std::vector<std::array<GridNumber, 3>> positions_;
   std::size_t first_of_feature_ = 0;

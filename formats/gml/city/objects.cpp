@@ -133,9 +133,10 @@ std::string ObjectReader::new_id(Index element, std::string_view type) {
   ++made_up_ids_;
   if (id.empty()) id = type;
   std::string unique;
-  for (std::size_t number = found_.objects.size() + 1;; ++number) {
+  made_up_number_ = std::max(made_up_number_, found_.objects.size());
+  while (true) {
     unique = id;
-    unique.append("-").append(std::to_string(number));
+    unique.append("-").append(std::to_string(++made_up_number_));
     if (ids_.insert(unique).second) return unique;
   }
 }
@@ -227,9 +228,12 @@ Status ObjectReader::read_relief(Index element) {
   if (!tree_.id(element).empty()) relief.add("id", std::string(tree_.id(element)), "");
   marks_.mark_attribute(tree_.id_attribute(element));
   values_.add_properties(plain, relief);
-  const Json members = relief.take();
-  for (std::size_t i = before; i < found_.objects.size(); ++i) {
-    found_.objects[i].attributes.add("ReliefFeature", members, "property:");
+  // The first component has what the relief says; all have its id.
+  found_.objects[before].attributes.add("ReliefFeature", relief.take(), "property:");
+  for (std::size_t i = before + 1; i < found_.objects.size(); ++i) {
+    Json id = Json::object();
+    append_member(id, "id", std::string(tree_.id(element)));
+    found_.objects[i].attributes.add("ReliefFeature", std::move(id), "property:");
   }
   return Done{};
 }
@@ -238,8 +242,14 @@ std::string ObjectReader::lod_of_property(Index property) {
   const char lod = lod_of(tree_.name(property));
   if (lod != '\0') return std::string(1, lod);
   if (tree_.name(property).starts_with("lod0")) return "0";
-  const Index stated = tree_.child(tree_[property].parent, "lod");
-  if (stated != kNone && tree_.text(stated).size() == 1) return std::string(tree_.text(stated));
+  const Index parent = tree_[property].parent;
+  auto stated = stated_lods_.find(parent);
+  if (stated == stated_lods_.end()) {
+    stated = stated_lods_.emplace(parent, tree_.child(parent, "lod")).first;
+  }
+  if (stated->second != kNone && tree_.text(stated->second).size() == 1) {
+    return std::string(tree_.text(stated->second));
+  }
   ++made_up_lods_;
   return "1";
 }
@@ -385,6 +395,10 @@ void ObjectReader::follow_references() {
     const std::string_view id = tree_.id(found_.objects[i].element);
     if (!id.empty()) by_id.emplace(id, i);
   }
+  std::set<std::pair<Index, Index>> linked;  // parents and children
+  for (Index i = 0; i < found_.objects.size(); ++i) {
+    for (const Index child : found_.objects[i].children) linked.emplace(i, child);
+  }
   std::map<Index, std::vector<Index>> others;  // the properties that stay attributes, by object
   for (const Reference& reference : references_) {
     const std::string_view href = tree_.href(reference.property);
@@ -406,7 +420,7 @@ void ObjectReader::follow_references() {
     }
     marks_.mark(reference.property);
     marks_.mark_attribute(tree_.href_attribute(reference.property));
-    if (std::find(own.children.begin(), own.children.end(), target) != own.children.end()) continue;
+    if (!linked.emplace(reference.object, target).second) continue;
     own.children.push_back(target);
     if (is_member) own.roles.push_back(reference.role);
     found_.objects[target].parents.push_back(reference.object);

@@ -111,6 +111,8 @@ class ObjectReader {
   std::unordered_map<Index, Index> object_of_;  // by element
   std::vector<Reference> references_;
   std::map<std::string, std::uint64_t> generic_names_;  // elements written as GenericCityObject
+  std::unordered_map<Index, Index> stated_lods_;        // the element "lod" of an object, or kNone
+  std::size_t made_up_number_ = 0;
   std::uint64_t made_up_ids_ = 0;
   std::uint64_t made_up_lods_ = 0;
   std::map<std::string, std::uint64_t> unread_;  // reasons why geometry was not read

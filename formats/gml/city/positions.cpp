@@ -38,28 +38,6 @@ double pole_of(std::string_view system) {
 
 }  // namespace
 
-// What the element and those around it say about its positions.
-GeometryReader::Context GeometryReader::context_of(Index element) const {
-  Context context;
-  for (Index i = element; i != kNone; i = tree_[i].parent) {
-    const auto envelope = envelopes_.find(i);
-    const Index stated = envelope == envelopes_.end() ? kNone : envelope->second;
-    if (stated != kNone && context.system.empty()) {
-      context.system = tree_.attribute(stated, "", "srsName");
-    }
-    if (stated != kNone && !context.is_flat_envelope) {
-      context.is_flat_envelope = tree_.attribute(stated, "", "srsDimension") == "2";
-    }
-    if (context.system.empty()) context.system = tree_.attribute(i, "", "srsName");
-    const std::string_view dimension = tree_.attribute(i, "", "srsDimension");
-    if (context.dimension == 0 && !dimension.empty()) {
-      context.dimension = dimension == "3" ? 3 : dimension == "2" ? 2 : -1;
-    }
-  }
-  if (context.dimension != 0) context.is_flat_envelope = false;
-  return context;
-}
-
 Status GeometryReader::note_system(std::string_view system, Index element) {
   if (system.empty()) return Done{};
   if (system_of_feature_.empty()) {
@@ -78,12 +56,12 @@ Status GeometryReader::note_system(std::string_view system, Index element) {
 }
 
 bool GeometryReader::is_latitude_first(Index element) const {
-  return pole_of(context_of(element).system) != 0;
+  return pole_of(contexts_[element].system) != 0;
 }
 
 Status GeometryReader::read_positions(Index element, std::vector<Index>& out) {
   result_.elements.push_back(element);
-  if (auto status = note_system(context_of(element).system, element); !status) return status;
+  if (auto status = note_system(contexts_[element].system, element); !status) return status;
   for (Index i = tree_[element].first_child; i != kNone; i = tree_[i].next) {
     const std::string_view name = tree_.name(i);
     if (!tree_.is_gml(i) || is_remark(name)) continue;
@@ -108,7 +86,7 @@ Status GeometryReader::read_positions(Index element, std::vector<Index>& out) {
 
 Status GeometryReader::read_numbers(Index element, std::vector<Index>& out) {
   result_.elements.push_back(element);
-  const Context context = context_of(element);
+  const Context& context = contexts_[element];
   if (context.dimension != 0 && context.dimension != 3) {
     return wrong(element, ErrorCode::unsupported, "two-dimensional positions are not read");
   }

@@ -52,6 +52,9 @@ bool is_bookkeeping(std::string_view space, std::string_view name) {
          (space == kXlinkSpace && name != "href");
 }
 
+// The most different attributes of XML for the elements of one name. Others are losses.
+constexpr std::size_t kMostBeside = 16;
+
 struct GenericKind {
   std::string_view element;
   bool is_number;
@@ -128,11 +131,13 @@ Json ValueReader::structure(Index element) {
       object.add("id", std::string(tree_.id(i)), "");
       marks_.mark_attribute(tree_.id_attribute(i));
     }
-    const Json own = structure(i);
+    Json own = structure(i);
     if (own.is_object()) {
-      for (const auto& [key, value] : own.items()) object.add(key, value, "property:");
+      for (auto& [key, value] : own.get_ref<Json::object_t&>()) {
+        object.add(key, std::move(value), "property:");
+      }
     } else if (!own.is_null()) {
-      object.add("value", own, "property:");
+      object.add("value", std::move(own), "property:");
     }
     objects.push_back(object.take());
   }
@@ -172,6 +177,8 @@ void ValueReader::add_properties(const std::vector<Index>& properties, ObjectBui
       const TreeElement& own = tree_[group[i]];
       for (Index k = own.first_attribute; k < own.first_attribute + own.attribute_count; ++k) {
         if (is_bookkeeping(tree_.attribute_space(k), tree_.attribute_name(k))) continue;
+        // Each list has an entry for every element of the group: only so many lists are linear.
+        if (beside.size() >= kMostBeside && !beside.contains(tree_.attribute_name(k))) continue;
         Json& list = beside.emplace(tree_.attribute_name(k), Json::array()).first->second;
         while (list.size() < i) list.push_back(nullptr);
         list.push_back(std::string(tree_.attribute_value(k)));

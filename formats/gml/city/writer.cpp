@@ -57,16 +57,22 @@ CityWriter::CityWriter(const GmlTree& tree, TreeMarks& marks, GmlObjects& object
       appearance_(appearance),
       values_(tree, marks) {}
 
-Status CityWriter::prepare() {
+Status CityWriter::prepare(std::uint64_t most_surface_bytes) {
   const auto srid = geometry_.srid();
   if (!srid) return srid.error();
   srid_ = *srid;
+  most_surface_bytes_ = most_surface_bytes;
   find_surfaces_of_facets();
   for (GmlCityObject& object : found_.objects) {
     if (!objects_text_.empty()) objects_text_ += ',';
     append_json_string(objects_text_, object.id);
     objects_text_ += ':';
     append_object(objects_text_, object);
+    if (surface_bytes_ > most_surface_bytes_) {
+      return Error{ErrorCode::limit_exceeded,
+                   "geometries share thematic surfaces so often that their texts would be longer "
+                   "than a document of this size"};
+    }
   }
   for (Index surface = 0; surface < found_.surfaces.size(); ++surface) {
     if (!surface_texts_.contains(surface)) marks_.lose(found_.surfaces[surface].element);
@@ -113,6 +119,7 @@ void CityWriter::append_object(std::string& out, GmlCityObject& object) {
   }
   std::string geometries;
   const auto append = [&](const CityGeometry& geometry, std::string_view stated_surface) {
+    if (surface_bytes_ > most_surface_bytes_) return;  // prepare() refuses the document
     if (!geometries.empty()) geometries += ',';
     append_geometry(geometries, geometry, stated_surface);
   };
@@ -221,7 +228,9 @@ void CityWriter::append_semantics(std::string& out, const CityGeometry& geometry
   std::string surfaces;
   for (const auto& [surface, number] : numbers) {
     if (!surfaces.empty()) surfaces += ',';
-    surfaces += surface_members(surface);
+    const std::string members = surface_members(surface);
+    surface_bytes_ += members.size();
+    surfaces += members;
     const Index parent = found_.surfaces[surface].parent;
     if (parent != kNone) {
       surfaces.append(",\"parent\":").append(std::to_string(numbers[parent]));

@@ -30,8 +30,9 @@ class CityWriter {
              const GeometryReader& geometry, GmlAppearance& appearance);
 
   /// Makes the text of all but the vertices. Errors: unsupported when the objects have several
-  /// reference systems. Cost: n log n.
-  Status prepare();
+  /// reference systems; limit_exceeded when the surfaces that geometries share would have more than
+  /// `most_surface_bytes`. Cost: n log n.
+  Status prepare(std::uint64_t most_surface_bytes);
 
   /// The document. Requires prepare(). Errors: unsupported when 64 bits do not hold the
   /// coordinates. Cost: linear.
@@ -73,7 +74,9 @@ class CityWriter {
   std::unordered_map<Index, Index> surface_of_;  // by polygon
   std::map<Index, std::string> surface_texts_;   // by surface
   std::unordered_map<Position, Index, PositionHash> vertex_numbers_;
-  std::vector<Index> vertices_;  // positions
+  std::vector<Index> vertices_;      // positions
+  std::uint64_t surface_bytes_ = 0;  // of the texts of surfaces, each as often as it is written
+  std::uint64_t most_surface_bytes_ = 0;
   std::uint32_t srid_ = 0;
   std::string objects_text_;
   std::string appearance_text_;  // "" without materials and textures

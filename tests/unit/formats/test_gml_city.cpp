@@ -249,6 +249,34 @@ TEST_CASE("GML to CityJSON: themes beyond the limit are listed") {
   CHECK(json_of(city.model)["CityObjects"]["b"]["geometry"][0]["material"].size() == 64);
 }
 
+TEST_CASE("GML to CityJSON: surfaces that many geometries share cannot multiply their text") {
+  std::string text = "<boundedBy><WallSurface g:id=\"w\"><name>" + std::string(200'000, 'n') +
+                     "</name><lod2MultiSurface><g:MultiSurface>" +
+                     member(polygon("0 0 0 0 1 0 1 0 0 0 0 0", " g:id=\"p\"")) +
+                     "</g:MultiSurface></lod2MultiSurface></WallSurface></boundedBy>";
+  for (int i = 0; i < 1000; ++i) {
+    text.append("<lod2MultiSurface><g:MultiSurface>").append(member_of("p"));
+    text.append("</g:MultiSurface></lod2MultiSurface>");
+  }
+  const auto city = formats::city_model_of_gml(as_bytes(object(text)), Limits{});
+  REQUIRE_FALSE(city);
+  CHECK(city.error().code == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("GML to CityJSON: long names are cut in the list of losses") {
+  const std::string name = std::string(300, 'a') + "TerrainIntersection";
+  const auto city = city_of(object("<" + name + "><g:Point/></" + name + ">"));
+  REQUIRE(city.losses.size() == 1);
+  CHECK(city.losses[0].path == "Building/" + std::string(80, 'a') + "...");
+}
+
+TEST_CASE("GML to CityJSON: XML that is not GML is refused as by the reader") {
+  const std::string page = "<html><body>404</body></html>";
+  const auto city = formats::city_model_of_gml(as_bytes(page), Limits{});
+  REQUIRE_FALSE(city);
+  CHECK(says(city.error(), "not GML: the root element is 'html'"));
+}
+
 TEST_CASE("GML to CityJSON: coordinates that no grid holds are rounded with a note") {
   const auto far = solid_of(member(polygon("0 0 0 0 1 0 1 0 0 0 0 0")) + kSides +
                             member(polygon("1e16 0 0 0 1e-3 0 1 0 0 1e16 0 0")));

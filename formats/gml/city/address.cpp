@@ -81,6 +81,7 @@ Json address_members(const GmlTree& tree, TreeMarks& marks, Index address) {
       continue;
     }
     marks.mark(i);
+    marks.mark_text(i);
     const std::string_view parent = i == address ? "" : tree.name(tree[i].parent);
     const std::string member = i == address ? "" : member_name(parent, name);
     const bool is_leaf = tree[i].first_child == kNone;

@@ -213,7 +213,10 @@ void GmlAppearance::mark_texture(const Texture& texture) {
   for (Index i = texture.coordinates; i != kNone; i = tree_[i].parent) {
     marks_.mark(i);
     const Index end = tree_[i].first_attribute + tree_[i].attribute_count;
-    for (Index k = tree_[i].first_attribute; k < end; ++k) marks_.mark_attribute(k);
+    for (Index k = tree_[i].first_attribute; k < end; ++k) {
+      const std::string_view name = tree_.attribute_name(k);
+      if (name == "ring" || name == "uri") marks_.mark_attribute(k);
+    }
     if (tree_.name(i) == "TextureAssociation") {
       const Index target = tree_.child(i, "target");
       if (target != kNone) marks_.mark(target);
@@ -257,7 +260,9 @@ void GmlAppearance::append_members(std::string& out, const CityGeometry& geometr
       const Material* material = material_of(theme, facet.polygon);
       if (material == nullptr) return "null";
       is_any = true;
-      marks_.mark_all(material->target);
+      marks_.mark(material->target);
+      marks_.mark_text(material->target);
+      marks_.mark_attribute(tree_.href_attribute(material->target));
       return std::to_string(material->number);
     });
     const auto add = [&](std::string& members) {

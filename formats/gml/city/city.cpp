@@ -104,6 +104,10 @@ std::vector<GmlLoss> losses_of(const GmlTree& tree, const TreeMarks& marks) {
       continue;
     }
     if (marks.is_lost(i)) count(path_of(tree, i));
+    const bool is_leaf = elements[i].first_child == kNone && tree.href(i).empty();
+    if (!is_leaf && !marks.is_text_marked(i) && !tree.text(i).empty()) {
+      count(short_name(tree.name(i)).append("/text()"));
+    }
     const Index end = elements[i].first_attribute + elements[i].attribute_count;
     for (Index k = elements[i].first_attribute; k < end; ++k) {
       if (marks.is_attribute_marked(k) || is_said_otherwise(tree, k)) continue;

@@ -17,7 +17,8 @@ namespace watertight::formats {
 
 /// Elements or attributes of a GML document that its CityJSON does not have.
 struct GmlLoss {
-  std::string path;  // "Building/lod2TerrainIntersection"; "Polygon/@gml:id" for an attribute
+  std::string path;  // "Building/lod2TerrainIntersection"; "Polygon/@gml:id" for an attribute,
+                     // "Polygon/text()" for text
   std::uint64_t count = 0;
 };
 

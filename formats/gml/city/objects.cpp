@@ -363,7 +363,10 @@ bool ObjectReader::read_extent(Index property, Json& extent) {
     if (geometry_.is_latitude_first(envelope)) std::swap(numbers[0], numbers[1]);
     for (Json& number : numbers) corners.push_back(std::move(number));
   }
-  marks_.mark_all(property);
+  for (const Index read : {property, envelope, tree_.child(envelope, "lowerCorner"),
+                           tree_.child(envelope, "upperCorner")}) {
+    marks_.mark(read);
+  }
   extent = std::move(corners);
   return true;
 }

@@ -172,24 +172,13 @@ std::vector<Index> GmlTree::children(Index element) const {
 }
 
 TreeMarks::TreeMarks(const GmlTree& tree)
-    : tree_(tree),
-      elements_(tree.elements().size(), false),
+    : elements_(tree.elements().size(), false),
+      texts_(tree.elements().size(), false),
       is_lost_(tree.elements().size(), false) {
   const auto& elements = tree.elements();
   const std::size_t attributes =
       elements.empty() ? 0 : elements.back().first_attribute + elements.back().attribute_count;
   attributes_.assign(attributes, false);
-}
-
-void TreeMarks::mark_all(Index element) {
-  // The elements below follow in document order, up to the first that is not below.
-  const auto& elements = tree_.elements();
-  for (Index i = element; i < elements.size(); ++i) {
-    if (i != element && elements[i].parent < element) break;
-    elements_[i] = true;
-    const Index end = elements[i].first_attribute + elements[i].attribute_count;
-    for (Index k = elements[i].first_attribute; k < end; ++k) attributes_[k] = true;
-  }
 }
 
 }  // namespace watertight::formats

@@ -108,21 +108,23 @@ class TreeMarks {
   void mark_attribute(Index attribute) {
     if (attribute != kNone) attributes_[attribute] = true;
   }
-  /// Marks the element, its attributes, and everything below it. Cost: linear in these.
-  void mark_all(Index element);
-
   /// Says that what an element means did not reach the CityJSON, even if parts of it did through
   /// references.
   void lose(Index element) { is_lost_[element] = true; }
   bool is_lost(Index element) const { return is_lost_[element]; }
 
+  /// Marks the text of an element that has children or a reference. The text of others goes with
+  /// the element.
+  void mark_text(Index element) { texts_[element] = true; }
+  bool is_text_marked(Index element) const { return texts_[element]; }
+
   bool is_marked(Index element) const { return elements_[element]; }
   bool is_attribute_marked(Index attribute) const { return attributes_[attribute]; }
 
  private:
-  const GmlTree& tree_;
   std::vector<bool> elements_;
   std::vector<bool> attributes_;
+  std::vector<bool> texts_;
   std::vector<bool> is_lost_;
 };
 

@@ -142,6 +142,7 @@ Json ValueReader::structure(Index element) {
     objects.push_back(object.take());
   }
   ObjectBuilder members;
+  marks_.mark_text(element);
   if (!tree_.text(element).empty()) members.add("text", std::string(tree_.text(element)), "");
   add_properties(properties, members);
   if (members.is_empty()) {
@@ -154,6 +155,7 @@ Json ValueReader::structure(Index element) {
 
 Json ValueReader::value_of(Index element) {
   marks_.mark(element);
+  marks_.mark_text(element);
   if (tree_[element].first_child == kNone) {
     if (tree_.text(element).empty() && !tree_.href(element).empty()) return nullptr;
     return scalar(element);

@@ -263,6 +263,17 @@ TEST_CASE("GML to CityJSON: surfaces that many geometries share cannot multiply 
   CHECK(city.error().code == ErrorCode::limit_exceeded);
 }
 
+TEST_CASE("GML to CityJSON: text and attributes that nothing reads are listed") {
+  const std::string point =
+      "<g:MultiPoint>stray<g:pointMember><g:Point><g:pos>0 0 0</g:pos>"
+      "</g:Point></g:pointMember></g:MultiPoint>";
+  const auto city = city_of(object("stray<lod0Point extra=\"1\">" + point + "</lod0Point>"));
+  CHECK(losses(city, "Building/text()") == 1);
+  CHECK(losses(city, "MultiPoint/text()") == 1);
+  CHECK(losses(city, "lod0Point/@extra") == 1);
+  CHECK(city.losses.size() == 3);
+}
+
 TEST_CASE("GML to CityJSON: long names are cut in the list of losses") {
   const std::string name = std::string(300, 'a') + "TerrainIntersection";
   const auto city = city_of(object("<" + name + "><g:Point/></" + name + ">"));

@@ -74,6 +74,7 @@ void GmlAppearance::read_material(Index element, Theme& theme) {
   own_name.append(std::to_string(number));
   if (name != kNone) {
     marks_.mark(name);
+    marks_.mark_text(name);
     own_name = tree_.text(name);
   } else if (!tree_.id(element).empty()) {
     marks_.mark_attribute(tree_.id_attribute(element));

@@ -84,6 +84,16 @@ Status check_gml(const GmlTree& tree) {
                   text.append("', and nothing is in a namespace http://www.opengis.net/..."));
 }
 
+// Whether the text of an element was read if the element was: not beside children or a reference,
+// and of GML only in coordinates.
+bool goes_with_element(const GmlTree& tree, Index element) {
+  if (tree[element].first_child != kNone || !tree.href(element).empty()) return false;
+  if (!tree.is_gml(element)) return true;
+  const std::string_view name = tree.name(element);
+  return name == "pos" || name == "posList" || name == "coordinates" || name == "lowerCorner" ||
+         name == "upperCorner";
+}
+
 // Counts what has no mark: the outermost elements of which nothing was read, and attributes.
 std::vector<GmlLoss> losses_of(const GmlTree& tree, const TreeMarks& marks) {
   const auto& elements = tree.elements();
@@ -104,8 +114,7 @@ std::vector<GmlLoss> losses_of(const GmlTree& tree, const TreeMarks& marks) {
       continue;
     }
     if (marks.is_lost(i)) count(path_of(tree, i));
-    const bool is_leaf = elements[i].first_child == kNone && tree.href(i).empty();
-    if (!is_leaf && !marks.is_text_marked(i) && !tree.text(i).empty()) {
+    if (!goes_with_element(tree, i) && !marks.is_text_marked(i) && !tree.text(i).empty()) {
       count(short_name(tree.name(i)).append("/text()"));
     }
     const Index end = elements[i].first_attribute + elements[i].attribute_count;

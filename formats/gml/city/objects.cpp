@@ -68,6 +68,7 @@ Status ObjectReader::read_root() {
     } else if (tree_.is_gml(property) && name == "name" &&
                find_member(found_.metadata, "title") == nullptr) {
       marks_.mark(property);
+      marks_.mark_text(property);
       append_member(found_.metadata, "title", std::string(tree_.text(property)));
     } else if (name == "appearanceMember") {
       for (const Index appearance : tree_.children(property)) {

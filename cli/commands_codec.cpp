@@ -17,6 +17,7 @@
 #include "cli/printable.h"
 #include "cli/progress.h"
 #include "codec/explain.h"
+#include "formats/gml/city/city.h"
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
 #include "validate/finding_kinds.h"
@@ -411,10 +412,35 @@ Exit run(const DecodeCommand& command) {
   return save(*documents, command.input, command.output);
 }
 
+/// Whether a GML document is to become a city model, which keeps more of it than its solids.
+bool makes_city_of_gml(const ConvertCommand& command, ByteView bytes) {
+  if (command.output == "-" || kind_of_input(bytes) != InputKind::document) return false;
+  const auto from = formats::detect_format(command.input, bytes);
+  const auto to = format_of_name(command.output);
+  return from && *from == Format::gml && to &&
+         (*to == Format::city_json || *to == Format::city_json_seq);
+}
+
+void tell_notes(const std::string& file, const Document& document) {
+  for (const std::string& note : document.notes) {
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(note).c_str());
+  }
+}
+
 Exit run(const ConvertCommand& command) {
   if (replaces(command.output, command.input))
     return refuse_to_replace(command.input, command.output);
-  const auto input = load(command.input);
+  formats::ReadOptions options;
+  options.split_features = false;
+  const auto bytes = read_file(command.input, options.limits);
+  if (!bytes) return fail(command.input, bytes.error());
+  if (makes_city_of_gml(command, *bytes)) {
+    const auto city = formats::city_model_of_gml(*bytes, options.limits);
+    if (!city) return fail(command.input, city.error());
+    tell_notes(command.input, city->model);
+    return save({&city->model, 1}, command.input, command.output);
+  }
+  const auto input = load_input(command.input, *bytes, options);
   if (!input) return fail(command.input, input.error());
   return save({&input->document, 1}, command.input, command.output);
 }

@@ -63,6 +63,14 @@ class IngestRun {
   Summary summary_;
 };
 
+/// Says what of a GML document the store does not keep.
+void tell_losses(const std::string& file, const Document& document) {
+  for (const std::string& note : document.notes) {
+    if (!note.starts_with("not mapped: ") && !note.starts_with("only solids ")) continue;
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(note).c_str());
+  }
+}
+
 Status IngestRun::take(std::size_t number, pipeline::FeatureOutcome&& outcome, FileRun& run) {
   const auto other = files_.find(outcome.id);
   if (!outcome.has_own_id && other != files_.end()) {
@@ -109,6 +117,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   auto opened = open_input(name, *std::move(input), read);
   if (!opened) return std::move(opened).error();
   count = opened->reader.feature_count();
+  if (!command_.is_quiet && !command_.is_json) tell_losses(name, opened->reader.document());
   if (Status added = ingestion.add(opened->reader); !added) return std::move(added).error();
   run.summary.add_file_bytes(opened->reader.bytes_read());
   return ingestion.finish();

@@ -7,6 +7,7 @@
 
 #include "formats/city_json/city_json.h"
 #include "formats/ewkb.h"
+#include "formats/gml/city/city.h"
 #include "formats/gml/gml.h"
 #include "formats/json_fg.h"
 #include "formats/mesh/mesh_text.h"
@@ -151,6 +152,14 @@ Result<Format> format_named(std::string_view name) {
 
 namespace {
 
+// A GML document; for a store, with the city model of its features.
+Result<Document> read_gml_document(ByteView bytes, const ReadOptions& options) {
+  auto document = read_gml(bytes, options);
+  if (!document || !options.keep_text || !options.split_features) return document;
+  keep_city_model(*document, bytes, options.limits);
+  return document;
+}
+
 Result<Document> read_as(ByteView bytes, Format format, const ReadOptions& options) {
   switch (format) {
     case Format::city_json:
@@ -174,7 +183,7 @@ Result<Document> read_as(ByteView bytes, Format format, const ReadOptions& optio
     case Format::ewkb:
       return read_ewkb_document(bytes, options.limits);
     case Format::gml:
-      return read_gml(bytes, options);
+      return read_gml_document(bytes, options);
     default:
       break;
   }

@@ -80,7 +80,8 @@ Result<DividedText> divide_city_model(std::string_view text,
                                       const Limits& limits = {});
 
 /// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the
-/// finest of their decimal grids. Errors: unsupported for coordinates on no decimal grid.
+/// finest of their decimal grids. Features of GML that keep their city model (keep_city_model())
+/// become that. Errors: unsupported for coordinates on no decimal grid.
 Result<Document> as_city_model(const Document& document);
 
 }  // namespace watertight::formats

@@ -85,9 +85,24 @@ bool is_utf8_name(const std::string& name) {
   return parse_json(quoted, Limits{}).has_value();
 }
 
+// The document of features that keep their city model: a GML document read for a store.
+Document kept_city_model(const Document& document) {
+  Document model;
+  model.format = Format::city_json;
+  model.header = document.header;
+  model.notes = document.notes;
+  for (const Feature& feature : document.features) {
+    model.features.push_back(feature.skeleton.empty() ? generic_feature(feature, feature.id)
+                                                      : feature);
+  }
+  return model;
+}
+
 }  // namespace
 
 Result<Document> as_city_model(const Document& document) {
+  const std::string_view header = document.header;
+  if (document.format == Format::gml && !header.empty()) return kept_city_model(document);
   const auto exponent = finest_exponent(document);
   if (!exponent) return exponent.error();
   Document model;

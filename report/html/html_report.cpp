@@ -271,7 +271,9 @@ std::string HtmlReport::bottom() const {
   html +=
       "<p>All decisions are exact, on the coordinates as written. Facets are numbered from 0 in "
       "the ";
-  html += "order of the document. This page holds everything it shows and loads nothing.</p>";
+  html +=
+      "order of the document, lines from 1. This page holds everything it shows and loads "
+      "nothing.</p>";
   html += "</footer></main><script>";
   html += kPageScript;
   return html + "</script></body></html>\n";

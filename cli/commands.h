@@ -26,7 +26,7 @@ struct ValidateCommand {
   std::vector<std::string> interior_shells;  // files with cavities of the document's only solid
   RuleChoice rules;
   double seconds_per_solid = 0;  // the time that engines may take; 0: by the size of the solid
-  std::string engine = "auto";            // "auto", "cgal" or "tetgen"
+  std::string engine = "auto";   // "auto", "cgal" or "tetgen"
   std::optional<double> tolerant_metres;  // the snap distance of a tolerant verdict as well
   bool leaves_times_out = false;
   bool is_quiet = false;         // no line per finding

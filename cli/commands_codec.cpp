@@ -307,10 +307,11 @@ void tell_unproven(const EncodeCommand& command, const pipeline::EncodeOutcome& 
   if (command.invalid == "keep") {
     const std::uint64_t solids = encoded.outcome.unproven;
     if (solids == 0) {
-      std::fprintf(stderr,
-                   "watertight: %s: all solids are proven, but there are defects between solids or "
-                   "parts that cannot be read: kept as they came; `watertight validate` lists them\n",
-                   name.c_str());
+      std::fprintf(
+          stderr,
+          "watertight: %s: all solids are proven, but there are defects between solids or "
+          "parts that cannot be read: kept as they came; `watertight validate` lists them\n",
+          name.c_str());
       return;
     }
     std::fprintf(stderr,

@@ -20,15 +20,14 @@ std::string crs_of(const store::StoredCollection& collection) {
 }
 
 std::string json_of(const store::StoredCollection& collection) {
-  nlohmann::ordered_json json{{"id", collection.id},
-                              {"features", collection.features},
-                              {"solids", collection.solids},
-                              {"blobBytes", collection.blob_bytes},
-                              {"unproven",
-                               {{"features", collection.unproven_features},
-                                {"solids", collection.unproven}}},
-                              {"invalid", pipeline::to_string(collection.policy)},
-                              {"srid", collection.srid}};
+  nlohmann::ordered_json json{
+      {"id", collection.id},
+      {"features", collection.features},
+      {"solids", collection.solids},
+      {"blobBytes", collection.blob_bytes},
+      {"unproven", {{"features", collection.unproven_features}, {"solids", collection.unproven}}},
+      {"invalid", pipeline::to_string(collection.policy)},
+      {"srid", collection.srid}};
   if (collection.box) {
     json["boxMin"] = collection.box->min;
     json["boxMax"] = collection.box->max;
@@ -45,8 +44,8 @@ std::string unproven_text(const store::StoredCollection& collection) {
 std::string line_of(const store::StoredCollection& collection) {
   return printable(collection.id) + ": " + quantity(collection.features, "feature") + ", " +
          quantity(collection.solids, "solid") + ", " + quantity(collection.blob_bytes, "byte") +
-         " of blobs, " + crs_of(collection) + unproven_text(collection) + ", invalid features: " +
-         std::string(pipeline::to_string(collection.policy));
+         " of blobs, " + crs_of(collection) + unproven_text(collection) +
+         ", invalid features: " + std::string(pipeline::to_string(collection.policy));
 }
 
 void print(const CollectionsCommand& command, const store::StoredCollection& collection) {

@@ -63,14 +63,14 @@ void add_rules(CLI::App& sub, RuleChoice& rules) {
       ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
       ->capture_default_str();
   sub.add_option("--planarity-angle", rules.planarity_degrees,
-                  "largest angle within a facet, degrees")
+                 "largest angle within a facet, degrees")
       ->check(in_range(1e-6, 90, "from 1e-6 to 90"))
       ->capture_default_str();
   sub.add_option("--proof", rules.proof, "proof of validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
       ->capture_default_str();
   sub.add_option("--overlap", rules.overlap_metres,
-                  "depth to which building parts and composite members may overlap, metres")
+                 "depth to which building parts and composite members may overlap, metres")
       ->check(in_range(0, 1000, "from 0 to 1000"))
       ->capture_default_str();
   sub.add_flag("--exact-overlaps", rules.are_steps_errors,
@@ -264,8 +264,8 @@ CLI::App* add_action(CLI::App& collections, const std::string& name, const std::
 
 void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen) {
   using Action = CollectionsCommand::Action;
-  CLI::App* sub =
-      app.add_subcommand("collections", "List, show, delete, rename or count collections of a store");
+  CLI::App* sub = app.add_subcommand("collections",
+                                     "List, show, delete, rename or count collections of a store");
   sub->require_subcommand(1);
   add_store(*sub, command.store);
   CLI::App* list =

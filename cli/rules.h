@@ -14,7 +14,7 @@ struct RuleChoice {
   double planarity_metres = 0.01;
   double planarity_degrees = 20;
   double overlap_metres = 0;
-  bool are_steps_errors = false;  // overlaps of a step of the coordinates or less
+  bool are_steps_errors = false;             // overlaps of a step of the coordinates or less
   std::string proof = "tetrahedralization";  // or "boundary"
   bool is_strict = false;
 };

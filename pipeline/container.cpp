@@ -226,8 +226,8 @@ void list_unproven(const EncodedFeature& feature, ContainerInfo& info) {
   if (!feature.is_proven()) ++info.unproven_features;
   for (const StoredSolid& solid : feature.solids) {
     if (solid.is_proven) continue;
-    info.unproven.push_back({feature.id, solid.object_id, solid.lod, solid.geometry, solid.ordinal,
-                             solid.report});
+    info.unproven.push_back(
+        {feature.id, solid.object_id, solid.lod, solid.geometry, solid.ordinal, solid.report});
   }
 }
 

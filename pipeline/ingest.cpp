@@ -142,17 +142,13 @@ Result<Feature> read_again(const std::string& text, const Document& shared, bool
 
 /// Encodes the feature without the geometries that are not proven, and notes these in the outcome.
 /// nullopt when no geometry is left, or when the rest is not valid either: then all is left out.
-Result<std::optional<EncodedFeature>> encode_rest(const InspectedFeature& feature,
-                                                  const Document& shared,
-                                                  delaunay::EngineWorkers* workers,
-                                                  const IngestOptions& options,
-                                                  TemplateInspector& templates,
-                                                  FeatureOutcome& outcome) {
+Result<std::optional<EncodedFeature>> encode_rest(
+    const InspectedFeature& feature, const Document& shared, delaunay::EngineWorkers* workers,
+    const IngestOptions& options, TemplateInspector& templates, FeatureOutcome& outcome) {
   if (!is_city_model(shared.format)) return std::optional<EncodedFeature>();
   const bool is_whole = feature.feature.id.empty();
   Feature own = feature.feature;  // without the solids of instances
-  own.solids.erase(own.solids.begin() + static_cast<std::ptrdiff_t>(feature.own),
-                   own.solids.end());
+  own.solids.erase(own.solids.begin() + static_cast<std::ptrdiff_t>(feature.own), own.solids.end());
   own.layout = {};
   auto text = formats::write_feature(shared, own);
   if (!text) return std::move(text).error();
@@ -181,7 +177,8 @@ Result<Policy> policy_named(const std::string& name) {
   if (name == "refuse") return Policy::refuse;
   if (name == "skip") return Policy::skip;
   if (name == "keep") return Policy::keep;
-  return Error{ErrorCode::invalid_argument, "the policy for invalid features is refuse, skip or keep"};
+  return Error{ErrorCode::invalid_argument,
+               "the policy for invalid features is refuse, skip or keep"};
 }
 
 std::string_view to_string(Policy policy) {

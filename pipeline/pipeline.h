@@ -134,7 +134,7 @@ struct IngestOptions : FeatureEncoding {
 struct EncodedFeature : store::FeatureRecord {
   /// Feature::skeleton; before it, a line for each solid that is not proven and for each whose
   /// equal vertices were merged; after it, a line feed and Feature::layout if the feature has one
-  /// (pipeline/stored_feature.cpp).
+  /// (pipeline/stored/stored_feature.cpp).
   std::string skeleton;
 };
 
@@ -175,7 +175,7 @@ struct IngestCounts {
   std::uint64_t stored = 0;
   std::uint64_t unproven = 0;           // the number of solids that were kept without proof
   std::uint64_t unproven_features = 0;  // the number of features that were kept without proof
-  Verdict verdict = Verdict::valid;  // the worst of all features
+  Verdict verdict = Verdict::valid;     // the worst of all features
 
   void add(Verdict of_feature);
 };

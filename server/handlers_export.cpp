@@ -186,8 +186,7 @@ Response get_export(const RoutedRequest& request) {
   const auto scope = *is_proven ? pipeline::ExportScope::proven : pipeline::ExportScope::all;
   auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  const ExportRequest wanted{request.service, file, scope, *std::move(collection),
-                             request.request};
+  const ExportRequest wanted{request.service, file, scope, *std::move(collection), request.request};
   auto unneeded = unless_needed(request.request, wanted.etag());
   if (unneeded) return *std::move(unneeded);
   // With a size of "all that there are", any range that is understood is a part.

@@ -227,7 +227,8 @@ Response post_items(const RoutedRequest& request) {
   const auto counts = ingestion.finish();
   if (!counts) return to_response(to_problem(counts.error()));
   const auto outcome = std::move(keeper).outcome(*counts, ingestion.versions());
-  return ingestion.is_refused() ? refused_document(outcome) : answer_of(outcome, options.collection);
+  return ingestion.is_refused() ? refused_document(outcome)
+                                : answer_of(outcome, options.collection);
 }
 
 Response post_validate(const RoutedRequest& request) {

@@ -360,8 +360,8 @@ void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRela
                       compared.grid->step_metres);
   const bool is_allowed = extent.depth > 0 && extent.depth <= options_.overlap_metres;
   if (is_allowed && !is_duplicate) return;
-  const double least_step = std::min(step(pair.first, *compared.grid),
-                                     step(pair.second, *compared.grid));
+  const double least_step =
+      std::min(step(pair.first, *compared.grid), step(pair.second, *compared.grid));
   const bool is_below_steps = options_.do_steps_warn && !is_duplicate && extent.depth > 0 &&
                               extent.depth <= least_step * (1 + kDepthError);
   if (!is_below_steps) report_.verdict = Verdict::invalid;

@@ -4,8 +4,8 @@
 // canonical facets and rings, and the vertices of the document get numbers in the order in which
 // the canonical solids use them.
 #include <algorithm>
-#include <numeric>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "formats/city_json/model.h"

@@ -4,8 +4,8 @@
 // contract. Callers that accept any format use formats/document.h.
 #pragma once
 
-#include <cstdint>
 #include <compare>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -41,14 +41,13 @@ struct TemplateSolids {
 /// of its own; most headers have none and cost nothing. A template that cannot be read is a solid
 /// without facets (902), and a note. Errors: malformed with JSON Pointer, for the list of templates
 /// or of their vertices. Cost: linear.
-Result<TemplateSolids> read_geometry_templates(const CityHeader& header,
-                                                            const Limits& limits = {});
+Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const Limits& limits = {});
 /// The text of write_feature(), without reading the header again.
 Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature);
 
 /// The skeleton of a feature of a city model for its solids in canonical form. `contract` is
-/// lattice or boundary. A solid that is no oriented boundary keeps its order. Errors: malformed when
-/// the skeleton does not fit.
+/// lattice or boundary. A solid that is no oriented boundary keeps its order. Errors: malformed
+/// when the skeleton does not fit.
 Result<std::string> canonical_skeleton(const Feature& feature, Contract contract);
 /// The header that goes with skeletons of contract boundary. Errors: malformed.
 Result<std::string> boundary_header(std::string_view header);
@@ -75,8 +74,7 @@ struct DividedText {
 
 /// Divides a CityJSON or CityJSONFeature. Errors: malformed; limit_exceeded. Cost: linear, the text
 /// as JSON values.
-Result<DividedText> divide_city_model(std::string_view text,
-                                      const std::set<GeometryPlace>& chosen,
+Result<DividedText> divide_city_model(std::string_view text, const std::set<GeometryPlace>& chosen,
                                       const Limits& limits = {});
 
 /// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the

@@ -11,7 +11,9 @@ namespace watertight::formats {
 namespace {
 
 Error wrong_index(const std::string& object) {
-  return {ErrorCode::malformed, "vertex index is out of range", {},
+  return {ErrorCode::malformed,
+          "vertex index is out of range",
+          {},
           "/CityObjects" + pointer_token(object)};
 }
 
@@ -127,8 +129,7 @@ void keep_objects_with_geometries(Json& objects) {
 
 }  // namespace
 
-Result<DividedText> divide_city_model(std::string_view text,
-                                      const std::set<GeometryPlace>& chosen,
+Result<DividedText> divide_city_model(std::string_view text, const std::set<GeometryPlace>& chosen,
                                       const Limits& limits) {
   auto root = parse_json(text, limits);
   if (!root) return std::move(root).error();
@@ -144,8 +145,7 @@ Result<DividedText> divide_city_model(std::string_view text,
   }
   Json& other = *find_member(part, "CityObjects");
   for (auto& [id, object] : other.get_ref<Json::object_t&>()) {
-    keep_geometries(id, object,
-                    [&](const GeometryPlace& place) { return chosen.contains(place); });
+    keep_geometries(id, object, [&](const GeometryPlace& place) { return chosen.contains(place); });
   }
   keep_objects_with_geometries(other);
   for (Json* half : {&*root, &part}) {

@@ -112,8 +112,8 @@ std::vector<CutSolid> cut_solids(const CityModel& model, ModelIndex& index) {
     const std::string pointer = boundary_pointer(index, ref);
     const auto note_unreadable = [&](Error error) {
       UnreadablePart part;
-      part.source = {index.ids[ref.object], ref.type, ref.lod, ref.geometry, 0,
-                     pointer + error.pointer};
+      part.source = {index.ids[ref.object], ref.type, ref.lod,
+                     ref.geometry,          0,        pointer + error.pointer};
       error.pointer = part.source.pointer;
       part.error = std::move(error);
       ref.is_unreadable = true;

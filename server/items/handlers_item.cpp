@@ -175,7 +175,8 @@ Response get_item(const RoutedRequest& request) {
         406, "not-acceptable",
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
         "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
-        "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs and findings with f=proof");
+        "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
+        "and findings with f=proof");
   }
   const std::string* solid = request.target.parameter("solid");
   if (solid != nullptr && format->parameter != "blob") {

@@ -128,22 +128,23 @@ Result<StoredCollection> recount_collection(DatabaseSession& connection, const s
   connection.send(std::string("SELECT pg_advisory_xact_lock(") + kCountsLock + ")");
   // One statement, so that the features that it counts are those whose changes it removes.
   const Result<Rows> counted = connection.ask(
-      std::string("WITH k AS (SELECT id FROM watertight.collection WHERE name = $1), gone AS"
-                  " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)"
-                  " RETURNING 1),"
-                  " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
-                  " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes,"
-                  " coalesce(sum(unproven), 0)::int8 AS unproven,"
-                  " count(*) FILTER (WHERE NOT is_proven) AS unproven_features,"
-                  " min(min_x) AS min_x,"
-                  " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
-                  " max(max_y) AS max_y, max(max_z) AS max_z"
-                  " FROM watertight.feature WHERE collection = (SELECT id FROM k))"
-                  " UPDATE watertight.collection c SET (features, solids, blob_bytes, unproven,"
-                  " unproven_features, min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d),"
-                  " changes = c.changes + (SELECT count(*) FROM gone)"
-                  " FROM watertight.document_header h WHERE c.name = $1 AND h.digest = c.header"
-                  " RETURNING c.name, c.srid, h.content, ") +
+      std::string(
+          "WITH k AS (SELECT id FROM watertight.collection WHERE name = $1), gone AS"
+          " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)"
+          " RETURNING 1),"
+          " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
+          " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes,"
+          " coalesce(sum(unproven), 0)::int8 AS unproven,"
+          " count(*) FILTER (WHERE NOT is_proven) AS unproven_features,"
+          " min(min_x) AS min_x,"
+          " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
+          " max(max_y) AS max_y, max(max_z) AS max_z"
+          " FROM watertight.feature WHERE collection = (SELECT id FROM k))"
+          " UPDATE watertight.collection c SET (features, solids, blob_bytes, unproven,"
+          " unproven_features, min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d),"
+          " changes = c.changes + (SELECT count(*) FROM gone)"
+          " FROM watertight.document_header h WHERE c.name = $1 AND h.digest = c.header"
+          " RETURNING c.name, c.srid, h.content, ") +
           kCounts,
       Parameters().text(id));
   if (!counted) return counted.error();

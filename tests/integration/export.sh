@@ -30,7 +30,7 @@ cp "$source/examples/delft.city.jsonl" in.city.jsonl
 chmod a+r in.city.jsonl
 store=(--data-dir "$folder/data")
 
-run "$program" ingest in.city.jsonl "${store[@]}" --collection delft --invalid skip -q >said 2>&1 ||
+run "$program" ingest in.city.jsonl "${store[@]}" --collection delft --invalid keep -q >said 2>&1 ||
   [ $? -eq 1 ] || fail "$(cat said)" # exit status 1: some features are invalid
 run "$program" export delft -o all.wt "${store[@]}" 2>said
 grep -Eq '^watertight: [1-9][0-9]* features with [1-9][0-9]* solids written$' said || fail "$(cat said)"
@@ -41,7 +41,7 @@ cmp all.city.jsonl back.city.jsonl
 # Each line is a line of the source, byte for byte, and occurs once; the order is another.
 [ "$(wc -l <all.city.jsonl)" -gt 100 ] || fail "$(wc -l <all.city.jsonl) lines"
 [ -z "$(sort all.city.jsonl | uniq -d)" ] || fail "a feature is there twice"
-[ -z "$(comm -23 <(sort all.city.jsonl) <(sort in.city.jsonl))" ] || fail "lines that never came in"
+cmp <(sort all.city.jsonl) <(sort in.city.jsonl) || fail "other lines than came in"
 [ "$(stat -c %s all.wt)" -lt "$(($(stat -c %s all.city.jsonl) / 4))" ] || fail "the pages save nothing"
 ! run "$program" export none -o none.wt "${store[@]}" 2>said || fail "exported a collection that is none"
 grep -q "there is no collection 'none'" said || fail "$(cat said)"

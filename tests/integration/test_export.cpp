@@ -19,9 +19,9 @@ namespace {
 
 using test::Database;
 
-/// Stores the sample tile in a collection, without the solids that need an engine. Returns its
-/// text.
-std::string ingest_tile(SolidStore& store) {
+/// Stores the sample tile in a collection; Policy::skip leaves out the solids that need an engine.
+/// Returns its text.
+std::string ingest_tile(SolidStore& store, store::Policy policy = store::Policy::skip) {
   const Bytes bytes = test::read_bytes(WATERTIGHT_EXAMPLES "/delft.city.jsonl");
   formats::ReadOptions read;
   read.keep_text = true;
@@ -29,7 +29,7 @@ std::string ingest_tile(SolidStore& store) {
   REQUIRE(document);
   pipeline::IngestOptions options;
   options.collection = "delft";
-  options.policy = store::Policy::skip;
+  options.policy = policy;
   const auto outcome = pipeline::ingest(*std::move(document), store, nullptr, options);
   REQUIRE(outcome);
   REQUIRE(outcome->stored > 20);
@@ -108,10 +108,12 @@ TEST_CASE(
 TEST_CASE("an export as a sequence has the very lines that came in, the same each time") {
   const Database database;
   const auto store = database.store();
-  const std::vector<std::string> source = lines_of(ingest_tile(*store));
+  const std::vector<std::string> source = lines_of(ingest_tile(*store, store::Policy::keep));
   const Bytes bytes = export_all(*store, pipeline::ExportFormat::sequence);
   const std::vector<std::string> lines = lines_of(as_text(bytes));
   REQUIRE(lines.size() == store->collection("delft")->features + 1);
+  CHECK(lines.size() == source.size());
+  CHECK(store->collection("delft")->unproven > 0);
   for (const std::string& line : lines) {
     CHECK(std::find(source.begin(), source.end(), line) != source.end());
   }

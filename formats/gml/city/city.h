@@ -33,10 +33,9 @@ enum class GroupMembers : std::uint8_t { with_group, alone };
 
 /// The city model of a GML document, with the solids of read_gml() in the same order of facets,
 /// rings and vertices. Objects need not own solids. Errors: malformed, unsupported, limit_exceeded
-/// with byte offset and line (XML; geometry of a solid); unsupported when the document has several
+/// with byte offset and line (XML); unsupported when the document has several
 /// reference systems. Coordinates that no grid of 2^53 steps holds are rounded, and a note says so.
-/// Geometry that is no solid and cannot
-/// be read is a loss. Cost: n log n; memory proportional to the document.
+/// Geometry that cannot be read is a loss. Cost: n log n; memory proportional to the document.
 Result<GmlCityModel> city_model_of_gml(ByteView bytes, const Limits& limits,
                                        GroupMembers members = GroupMembers::with_group);
 

@@ -135,15 +135,6 @@ Index GeometryReader::geometry_of(std::string_view href) const {
   return found == by_id_.end() ? kNone : found->second;
 }
 
-bool GeometryReader::holds_solid(Index property) const {
-  Index value = tree_[property].first_child;
-  if (value == kNone) value = geometry_of(tree_.href(property));
-  if (value != kNone && tree_.name(value) == "Geometry3D") value = tree_[value].first_child;
-  if (value == kNone) return is_geometry_property(tree_.name(property));
-  const auto kind = geometry_kind(tree_.name(value));
-  return kind == GmlKind::solid || kind == GmlKind::solids || kind == GmlKind::mixed;
-}
-
 Result<ReadGeometry> GeometryReader::read(Index property, std::string_view lod) {
   result_ = {};
   if (auto status = read_value(property, lod); !status) {

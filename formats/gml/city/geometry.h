@@ -65,9 +65,6 @@ class GeometryReader {
   /// The same for a geometry element that stands alone.
   Result<ReadGeometry> read_alone(Index element, std::string_view lod);
 
-  /// True if an error of read() for this property concerns a solid, which validation refuses too.
-  bool holds_solid(Index property) const;
-
   /// The geometry with this gml:id ("#id"); kNone for none and for several.
   Index geometry_of(std::string_view href) const;
 

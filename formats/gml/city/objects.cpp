@@ -259,12 +259,6 @@ Status ObjectReader::read_geometry(Index property, Index object) {
   const std::string lod = lod_of_property(property);
   auto read = geometry_.read(property, lod);
   if (!read) {
-    // A solid that cannot be read makes validation refuse the document; so does this reader.
-    if (geometry_.holds_solid(property)) {
-      Error error = std::move(read).error();
-      error.message.append(", of object '").append(found_.objects[object].id).append("'");
-      return error;
-    }
     ++unread_[read.error().message];
     marks_.lose(property);
     return Done{};

@@ -121,10 +121,14 @@ TEST_CASE("the header of a sequence gives its templates") {
 TEST_CASE("errors in templates name the place") {
   const std::string good = instance("0");
   const std::string base = "/geometry-templates/templates";
-  CHECK(note_of(model(section(geometry("Solid", "[[[[0,2,4]]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/0/2"));
-  CHECK(note_of(model(section(geometry("Solid", "[[[0,2,1]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/0"));
-  CHECK(note_of(model(section(geometry("MultiSurface", "[[[0,1,4]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/2"));
-  CHECK(note_of(model(section(geometry("Solid", "[[[[0,-2,1]]]]")), good)).ends_with(" at " + base + "/0/boundaries/0/0/0/1"));
+  CHECK(note_of(model(section(geometry("Solid", "[[[[0,2,4]]]]")), good))
+            .ends_with(" at " + base + "/0/boundaries/0/0/0/2"));
+  CHECK(note_of(model(section(geometry("Solid", "[[[0,2,1]]]")), good))
+            .ends_with(" at " + base + "/0/boundaries/0/0/0"));
+  CHECK(note_of(model(section(geometry("MultiSurface", "[[[0,1,4]]]")), good))
+            .ends_with(" at " + base + "/0/boundaries/0/0/2"));
+  CHECK(note_of(model(section(geometry("Solid", "[[[[0,-2,1]]]]")), good))
+            .ends_with(" at " + base + "/0/boundaries/0/0/0/1"));
   CHECK(note_of(model(section(geometry("Solid", "5")), good)).ends_with(" at " + base + "/0"));
   CHECK(note_of(model(section("5"), good)).ends_with(" at " + base + "/0"));
   CHECK(note_of(model(section("{}"), good)).ends_with(" at " + base + "/0"));
@@ -154,7 +158,8 @@ TEST_CASE("errors in geometry instances name the place") {
             .pointer == base + "/transformationMatrix");
   CHECK(part_of(model(templates, instance("0", "[0]", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]")))
             .pointer == base + "/transformationMatrix");
-  CHECK_FALSE(read(model(templates, instance("0", "[0]", "[1e400,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]")), Format::city_json));
+  CHECK_FALSE(read(model(templates, instance("0", "[0]", "[1e400,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]")),
+                   Format::city_json));
 }
 
 TEST_CASE(

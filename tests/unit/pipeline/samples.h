@@ -155,9 +155,8 @@ class MemoryStore : public SolidStore {
       }
       std::uint64_t bytes = 0;
       for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
-      page.features.push_back(
-          {id, feature.type, feature.version, feature.solids.size(), bytes, feature.box,
-           feature.unproven(), feature.is_proven()});
+      page.features.push_back({id, feature.type, feature.version, feature.solids.size(), bytes,
+                               feature.box, feature.unproven(), feature.is_proven()});
     }
     return page;
   }

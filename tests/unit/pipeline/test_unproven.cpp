@@ -5,7 +5,7 @@
 
 #include "pipeline/container.h"
 #include "pipeline/export.h"
-#include "pipeline/unproven_solid.h"
+#include "pipeline/stored/unproven_solid.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {
@@ -146,9 +146,8 @@ TEST_CASE("an export of what is proven leaves the other features out") {
   samples::MemoryStore store;
   REQUIRE(pipeline::ingest(document_of(kMixed), store, nullptr, keeping()));
   for (const auto scope : {pipeline::ExportScope::all, pipeline::ExportScope::proven}) {
-    auto exporting =
-        pipeline::CollectionExport::start(store, "town", pipeline::ExportFormat::sequence, {},
-                                          pipeline::SolidLayout::pages, scope);
+    auto exporting = pipeline::CollectionExport::start(
+        store, "town", pipeline::ExportFormat::sequence, {}, pipeline::SolidLayout::pages, scope);
     REQUIRE(exporting);
     std::string text;
     while (!exporting->is_at_end()) {

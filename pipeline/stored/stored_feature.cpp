@@ -12,10 +12,10 @@
 
 #include "formats/city_json/city_json.h"
 #include "formats/text/packed_text.h"
-#include "pipeline/merged_vertices.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
-#include "pipeline/unproven_solid.h"
+#include "pipeline/stored/merged_vertices.h"
+#include "pipeline/stored/unproven_solid.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {

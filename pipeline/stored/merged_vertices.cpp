@@ -2,7 +2,7 @@
 //
 // The line has the number of source vertices; for each its merged vertex, or "x:y:z" when no ring
 // uses it; then, for each ring vertex whose merged vertex has several sources, its source vertex.
-#include "pipeline/merged_vertices.h"
+#include "pipeline/stored/merged_vertices.h"
 
 #include <array>
 #include <charconv>

@@ -5,7 +5,7 @@
 // the vertices of the rings; the sizes of rings, facets and shells. Each list begins with its
 // length. Integer coordinates are written as differences to the vertex before, which compress well,
 // and doubles in the shortest digits that read back as the same doubles.
-#include "pipeline/unproven_solid.h"
+#include "pipeline/stored/unproven_solid.h"
 
 #include <array>
 #include <charconv>

@@ -30,10 +30,13 @@ bool is_refused(const std::string& text, Format format) {
   return true;
 }
 
-/// The codes of the errors of the first solid; {-1} if the document is refused or holds no solid.
+/// The codes of the errors of the first solid; {-1} if the document is refused or holds no solid;
+/// {901} if a part of the first feature cannot be read.
 std::set<int> codes_of(const std::string& text, Format format) {
   const auto document = formats::read_document(as_bytes(text), format);
-  if (!document || document->features.empty() || document->features[0].solids.empty()) return {-1};
+  if (!document || document->features.empty()) return {-1};
+  if (!document->features[0].unreadable.empty()) return {901};
+  if (document->features[0].solids.empty()) return {-1};
   CertifyOptions options;
   options.proof = Proof::boundary;
   return solids::codes_of(certify(document->features[0].solids[0].solid, nullptr, options).report,

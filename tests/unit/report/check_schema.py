@@ -86,6 +86,7 @@ def main():
     # The sample has a facet that is not planar and that the proof fills otherwise than the exact
     # tests.
     samples.append(root / "tests/golden/solids/slab-depends-on-diagonal.city.json")
+    samples.append(root / "tests/data/gml/defects.gml")  # polygons with ids, on lines
     failures = [f"{path}: no description" for path in undescribed(schema)]
     reports = reports_of(program, samples)
     if len(reports) != len(samples):

@@ -69,9 +69,10 @@ Status keep_used_vertices(Json& root) {
         if (boundaries != nullptr && !renumber_all(*boundaries, used)) return wrong_index(id);
       }
     }
-    const Status addresses = for_each_address_vertex(object, [&](Json& vertex) -> Status {
-      return used.renumber(vertex) ? Status(Done{}) : Status(wrong_index(id));
-    });
+    const auto renumber = [&used, &owner = id](Json& vertex) -> Status {
+      return used.renumber(vertex) ? Status(Done{}) : Status(wrong_index(owner));
+    };
+    const Status addresses = for_each_address_vertex(object, renumber);
     if (!addresses) return addresses;
   }
   used.finish();

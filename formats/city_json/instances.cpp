@@ -118,11 +118,11 @@ std::vector<TemplateInstance> city_instances(const CityModel& model, ModelIndex&
                                              const CityHeader& header) {
   std::vector<TemplateInstance> instances;
   std::vector<InstanceRef> placed;
-  for (InstanceRef& ref : index.instances) {
+  for (const InstanceRef& ref : index.instances) {
     auto instance = place_instance(model, index, ref, header);
     if (instance) {
       instances.push_back(*std::move(instance));
-      placed.push_back(std::move(ref));
+      placed.push_back(ref);
       continue;
     }
     UnreadablePart part;

@@ -207,7 +207,7 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
     source.lod = solid.lod;
     source.geometry = solid.geometry;
     source.ordinal = solid.ordinal;
-    auto whole = solid.is_proven ? source_of(*std::move(next_proven++), (*lines)[i].merged, limits)
+    auto whole = solid.is_proven ? source_of(std::move(*next_proven++), (*lines)[i].merged, limits)
                                  : read_unproven((*lines)[i].unproven, limits);
     if (!whole) return std::move(whole).error();
     feature.solids.push_back(SubmittedSolid{*std::move(whole), std::move(source), {}});

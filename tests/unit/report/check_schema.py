@@ -86,7 +86,9 @@ def main():
     # The sample has a facet that is not planar and that the proof fills otherwise than the exact
     # tests.
     samples.append(root / "tests/golden/solids/slab-depends-on-diagonal.city.json")
-    samples.append(root / "tests/data/gml/defects.gml")  # polygons with ids, on lines
+    # Findings between elements of the document, and in polygons with ids.
+    samples += [root / "tests/data/gml" / name
+                for name in ("defects.gml", "ogc_Building_LOD3-EPSG25832.gml")]
     failures = [f"{path}: no description" for path in undescribed(schema)]
     reports = reports_of(program, samples)
     if len(reports) != len(samples):

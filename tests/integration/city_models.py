@@ -20,7 +20,9 @@ def parse(text):
 
 
 def world(vertices, transform):
-    """The exact world coordinates of integer vertices."""
+    """The exact world coordinates of vertices; they are that already without a transform."""
+    if transform is None:
+        return [tuple(Decimal(x).normalize() for x in v) for v in vertices]
     scale, translate = transform["scale"], transform["translate"]
     return [tuple((v[k] * scale[k] + translate[k]).normalize() for k in range(3)) for v in vertices]
 
@@ -35,7 +37,7 @@ def resolve(boundaries, points):
 def resolved_objects(document, header):
     """The city objects of a feature (or document), which do not depend on the numbers of its
     vertices."""
-    transform = document.get("transform") or header["transform"]
+    transform = document.get("transform") or header.get("transform")
     points = world(document["vertices"], transform)
     objects = {}
     for name, value in document["CityObjects"].items():

@@ -69,6 +69,13 @@ struct ConvertCommand {
 };
 Exit run(const ConvertCommand& command);
 
+struct AdviseCommand {
+  std::string input;
+  RuleChoice rules;
+  std::size_t jobs = 1;
+};
+Exit run(const AdviseCommand& command);
+
 /// The choice of the store for the solids.
 struct StoreChoice {
   std::string data_directory;

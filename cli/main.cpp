@@ -122,6 +122,15 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   });
 }
 
+void add_advise(CLI::App& app, AdviseCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand(
+      "advise", "Find the fewest decimals at which every valid solid of a document stays valid");
+  sub->add_option("FILE", command.input, "document; - for standard input")->required();
+  add_rules(*sub, command.rules);
+  add_jobs(*sub, command.jobs);
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
 void add_contract(CLI::App& sub, std::string& contract) {
   sub.add_option(
          "--contract", contract,
@@ -302,6 +311,7 @@ int run_command_line(int argc, char** argv) {
   app.footer(
       "Exit status: 0 all valid (warnings allowed), 1 something invalid, 2 error, 3 undecided");
   ValidateCommand validate_command;
+  AdviseCommand advise_command;
   EncodeCommand encode_command;
   DecodeCommand decode_command;
   InfoCommand info_command;
@@ -312,6 +322,7 @@ int run_command_line(int argc, char** argv) {
   CollectionsCommand collections_command;
   Chosen chosen;
   add_validate(app, validate_command, chosen);
+  add_advise(app, advise_command, chosen);
   add_encode(app, encode_command, chosen);
   add_decode(app, decode_command, chosen);
   add_info(app, info_command, chosen);

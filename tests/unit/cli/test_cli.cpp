@@ -260,6 +260,18 @@ TEST_CASE_METHOD(Fixture, "encode keeps what is not proven as it came, and says 
   CHECK(run("encode in.city.jsonl -o y.wt --bare").status == 2);
 }
 
+TEST_CASE_METHOD(Fixture, "advise prints a row for each number of decimals") {
+  write("in.city.jsonl", kValid);
+  const Ran advice = run("advise in.city.jsonl");
+  CHECK(advice.status == 0);
+  CHECK(advice.output.find("decimals are enough: every valid solid stays valid") !=
+        std::string::npos);
+  CHECK(advice.output.find("first to break") != std::string::npos);
+  write("bad.city.jsonl", kInvalid);
+  CHECK(run("advise bad.city.jsonl").status == 1);
+  CHECK(run("advise none.city.jsonl").status == 2);
+}
+
 TEST_CASE_METHOD(Fixture, "a bare blob is read as one solid") {
   write("cube.obj", kCubeObj);
   REQUIRE(run("encode cube.obj --bare -o cube.blob").status == 0);

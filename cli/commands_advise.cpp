@@ -8,7 +8,7 @@
 #include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/inputs.h"
-#include "cli/printable.h"
+#include "cli/terminal/printable.h"
 #include "pipeline/advise.h"
 #include "validate/finding_kinds.h"
 

@@ -7,7 +7,7 @@
 #include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/opened_store.h"
-#include "cli/printable.h"
+#include "cli/terminal/printable.h"
 #include "pipeline/pipeline.h"
 
 namespace watertight::cli {

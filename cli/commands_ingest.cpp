@@ -14,8 +14,8 @@
 #include "cli/files.h"
 #include "cli/inputs.h"
 #include "cli/opened_store.h"
-#include "cli/printable.h"
-#include "cli/progress.h"
+#include "cli/terminal/printable.h"
+#include "cli/terminal/progress.h"
 #include "pipeline/streaming/ingestion.h"
 
 namespace watertight::cli {

@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "cli/printable.h"
+#include "cli/terminal/printable.h"
 
 namespace watertight::cli {
 namespace {

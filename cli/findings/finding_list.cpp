@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "base/quantity.h"
-#include "cli/printable.h"
+#include "cli/terminal/printable.h"
 #include "report/finding_line.h"
 
 namespace watertight::cli {

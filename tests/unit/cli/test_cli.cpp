@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/progress.h"
+#include "cli/terminal/progress.h"
 #include "pipeline/container.h"
 #include "tests/unit/cli/fixture.h"
 #include "tests/unit/pipeline/samples.h"

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "cli/printable.h"
+#include "cli/terminal/printable.h"
 #include "tests/files.h"
 
 namespace watertight {

@@ -7,7 +7,7 @@
 #include "cli/findings/baseline.h"
 #include "cli/findings/explain.h"
 #include "cli/findings/finding_list.h"
-#include "cli/progress.h"
+#include "cli/terminal/progress.h"
 #include "tests/unit/cli/fixture.h"
 #include "tests/unit/pipeline/samples.h"
 

@@ -10,51 +10,17 @@
 #include "server/handlers.h"
 #include "tests/unit/pipeline/samples.h"
 #include "tests/unit/server/answers.h"
+#include "tests/unit/server/routes_fixture.h"
 
 namespace watertight {
 namespace {
 
-using Json = nlohmann::json;
-
-class Fixture {
- public:
-  server::Response send(server::Request request) const {
-    const CancelPoll never = [] { return false; };
-    server::Response response =
-        server::respond(server::Service{&store, nullptr, {}}, request, never);
-    while (response.further) response = std::shared_ptr(response.further)->make(never);
-    return response;
-  }
-  server::Response get(const std::string& target,
-                       std::vector<server::HeaderField> headers = {}) const {
-    return send({"GET", target, std::move(headers), ""});
-  }
-  server::Response post(const std::string& target, std::string body,
-                        const std::string& type = "application/city+json-seq") const {
-    return send({"POST", target, {{"content-type", type}}, std::move(body)});
-  }
-  mutable samples::MemoryStore store;
-};
-
-Json problem_of(const server::Response& response) {
-  CHECK(response.content_type == "application/problem+json");
-  Json json = Json::parse(response.body, nullptr, false);
-  REQUIRE(json.is_object());
-  CHECK(json["status"] == response.status);
-  CHECK(json.contains("type"));
-  return json;
-}
-
-const std::string* header_of(const server::Response& response, std::string_view name) {
-  for (const server::HeaderField& field : response.headers) {
-    if (field.name == name) return &field.value;
-  }
-  return nullptr;
-}
-
-const std::string kTwo = samples::sequence({samples::feature("a"), samples::feature("b")});
-const std::string kOneOpen =
-    samples::sequence({samples::feature("a"), samples::feature("open", samples::kOpenFacets)});
+using samples::header_of;
+using samples::Json;
+using samples::kOneOpen;
+using samples::kTwo;
+using samples::problem_of;
+using Fixture = samples::RoutesFixture;
 
 /// The value, or the part of the document that it refers to.
 Json resolved(const Json& document, const Json& value) {
@@ -200,89 +166,6 @@ TEST_CASE_METHOD(Fixture, "invalid=skip stores the valid features and reports th
   CHECK(get("/collections/town/items/a").status == 200);
   CHECK(get("/collections/town/items/open").status == 404);
   CHECK(post("/collections/town/items?invalid=maybe", kOneOpen).status == 400);
-}
-
-TEST_CASE_METHOD(Fixture, "invalid=keep stores all, and every reader sees what is proven") {
-  const server::Response stored = post("/collections/town/items?invalid=keep", kOneOpen);
-  REQUIRE(stored.status == 201);
-  const Json outcome = Json::parse(stored.body);
-  CHECK(outcome["verdict"] == "invalid");
-  CHECK(outcome["stored"] == 2);
-  CHECK(outcome["unproven"] == Json{{"features", 1}, {"solids", 1}});
-
-  const Json collection = Json::parse(get("/collections/town").body);
-  CHECK(collection["unproven"] == Json{{"features", 1}, {"solids", 1}});
-  CHECK(collection["invalid"] == "keep");
-
-  const auto ids_of = [&](const std::string& query) {
-    std::set<std::string> ids;
-    const Json page = Json::parse(get("/collections/town/items" + query).body);
-    for (const Json& item : page["features"]) ids.insert(item["id"].get<std::string>());
-    CHECK(page["numberMatched"] == ids.size());
-    return ids;
-  };
-  using Ids = std::set<std::string>;
-  CHECK(ids_of("") == Ids{"a", "open"});
-  CHECK(ids_of("?proven=true") == Ids{"a"});
-  CHECK(ids_of("?proven=false") == Ids{"open"});
-  CHECK(get("/collections/town/items?proven=maybe").status == 400);
-
-  const Json proof = Json::parse(get("/collections/town/items/open?f=proof").body);
-  CHECK(proof["proven"] == false);
-  CHECK(proof["solids"][0]["proven"] == false);
-  CHECK(proof["solids"][0]["report"]["all_errors"] == Json{302});
-  CHECK(get("/collections/town/items/open?f=blob").status == 406);
-  CHECK(get("/collections/town/items/a?f=blob").status == 200);
-
-  const std::string line = kOneOpen.substr(kOneOpen.rfind('\n', kOneOpen.size() - 2) + 1);
-  CHECK(get("/collections/town/items/open?f=cityjsonseq").body.ends_with(line));
-  const auto exported = [&](const std::string& query) {
-    const server::Response response = get("/collections/town/export?f=cityjsonseq" + query);
-    std::string text = response.body;
-    while (response.rest) {
-      const auto part = response.rest([] { return false; });
-      REQUIRE(part);
-      if (part->empty()) break;
-      text += *part;
-    }
-    return text;
-  };
-  CHECK(exported("").find("\"open\"") != std::string::npos);
-  CHECK(exported("&proven=true").find("\"open\"") == std::string::npos);
-  CHECK(exported("&proven=true").find("\"a\"") != std::string::npos);
-  CHECK(get("/collections/town/export?proven=false").status == 400);
-}
-
-TEST_CASE_METHOD(Fixture, "a collection's policy counts where a write names none") {
-  REQUIRE(post("/collections/town/items", kTwo).status == 201);
-  CHECK(post("/collections/town/items", kOneOpen).status == 422);
-  const auto patch = [&](const std::string& body) {
-    return send({"PATCH", "/collections/town", {{"content-type", "application/json"}}, body});
-  };
-  for (const char* wrong : {"{}", R"({"invalid":"maybe"})", R"({"invalid":1})", R"({"srid":1})"}) {
-    CHECK(patch(wrong).status == 400);
-  }
-  const server::Response changed = patch(R"({"invalid":"keep"})");
-  REQUIRE(changed.status == 200);
-  CHECK(Json::parse(changed.body)["invalid"] == "keep");
-  CHECK(post("/collections/town/items", kOneOpen).status == 201);
-  CHECK(post("/collections/town/items?invalid=refuse", kOneOpen).status == 422);
-}
-
-TEST_CASE_METHOD(Fixture,
-                 "tolerances of a request decide what is stored, and each blob states them") {
-  // The top of the box has a corner 5 mm too high.
-  const std::string bent = samples::sequence({samples::feature(
-      "bent", samples::kBoxFacets,
-      "[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,2500],[1000,0,2500],[1000,1000,2500],"
-      "[0,1000,2505]]")});
-  CHECK(post("/collections/town/items?planarity=0.0001", bent).status == 422);
-  CHECK(post("/collections/town/items?planarity=-1", bent).status == 400);
-  REQUIRE(post("/collections/town/items?planarity=0.02&planarity-angle=45", bent).status == 201);
-  const auto blob = codec::describe(as_bytes(get("/collections/town/items/bent?f=blob").body));
-  REQUIRE(blob);
-  CHECK(blob->acceptance.tolerances.planarity_metres == 0.02);
-  CHECK(blob->acceptance.tolerances.planarity_degrees == 45);
 }
 
 TEST_CASE_METHOD(Fixture, "an id that cannot be stored is refused with its place") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/printable.h"
+#include "cli/terminal/printable.h"
 
 #include "base/json_text.h"
 

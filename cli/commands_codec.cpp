@@ -343,10 +343,36 @@ Status write_rejected(const EncodeCommand& command, const std::string& header,
     if (text.empty() && !feature.id.empty()) text = header + '\n';
     text += feature.rejected + '\n';
   }
+  if (text.empty()) {
+    return Error{ErrorCode::unsupported,
+                 "what is left out is written for city models (CityJSON, CityJSONSeq) only"};
+  }
   const Status written = write_file(command.rejected, as_bytes(text));
   if (!written) return written;
   const std::string report = pipeline::outcome_json(outcome) + '\n';
   return write_file(command.rejected + ".report.json", as_bytes(report));
+}
+
+std::string rejected_report(const EncodeCommand& command) {
+  return command.rejected + ".report.json";
+}
+
+/// Ok if the files of --rejected are wanted and replace no other file of the run. Errors:
+/// invalid_argument.
+Status check_rejected(const EncodeCommand& command) {
+  if (command.rejected.empty()) return Done{};
+  const auto wrong = [](std::string text) {
+    return Error{ErrorCode::invalid_argument, std::move(text)};
+  };
+  if (command.invalid != "skip") return wrong("needs --invalid skip");
+  if (command.rejected == "-") return wrong("needs the name of a file");
+  for (const std::string& file : {command.rejected, rejected_report(command)}) {
+    if (replaces(file, command.input)) return wrong("'" + file + "' would replace the input");
+    if (file == command.output || is_same_file(file, command.output)) {
+      return wrong("'" + file + "' is the output");
+    }
+  }
+  return Done{};
 }
 
 }  // namespace
@@ -356,6 +382,9 @@ Exit run(const EncodeCommand& command) {
   if (!contract) return fail("--contract", contract.error());
   if (replaces(command.output, command.input))
     return refuse_to_replace(command.input, command.output);
+  if (Status possible = check_rejected(command); !possible) {
+    return fail("--rejected", possible.error());
+  }
   auto input = load(command.input, *contract == formats::Contract::exact);
   if (!input) return fail(command.input, input.error());
   delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});

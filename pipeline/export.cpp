@@ -97,6 +97,9 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
     }
     after_ = std::move(batch->next);
     is_last_ = after_.empty();
+    if (is_last_ && exported_.features == 0) {
+      return Error{ErrorCode::not_found, "collection '" + collection_ + "' has no proven features"};
+    }
     if (!is_last_ || !container_) continue;
     const auto rest = (*std::exchange(container_, std::nullopt)).finish();
     if (!rest) return rest.error();

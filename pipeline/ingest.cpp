@@ -101,10 +101,16 @@ bool is_city_model(Format format) {
 
 GeometryPlace place_of(const SolidSource& source) { return {source.object_id, source.geometry}; }
 
+/// True for a part of a city object that is no geometry, such as a child that is missing.
+bool is_no_geometry(const SolidSource& source) {
+  return source.geometry_type.empty() && !source.pointer.empty();
+}
+
 /// The geometries that are not proven, and those that a defect of a group names.
 std::set<GeometryPlace> unproven_geometries(const InspectedFeature& feature) {
   std::set<GeometryPlace> places;
   for (const InspectedSolid& solid : feature.solids) {
+    if (is_no_geometry(solid.source)) continue;
     if (solid.inspection.report.verdict != Verdict::valid) places.insert(place_of(solid.source));
   }
   for (const InspectedGroup& group : feature.groups) {
@@ -140,6 +146,19 @@ Result<Feature> read_again(const std::string& text, const Document& shared, bool
   return std::move(document->features.front());
 }
 
+/// Whether the only defects are parts that cannot be read and are no geometry, such as a child that
+/// is missing: they cannot be left out.
+bool is_proven_but_for_unreadable(const InspectedFeature& feature) {
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const InspectedSolid& solid = feature.solids[i];
+    const bool is_kept = i >= feature.own && is_no_geometry(solid.source);
+    if (!is_kept && solid.inspection.report.verdict != Verdict::valid) return false;
+  }
+  return std::all_of(feature.groups.begin(), feature.groups.end(), [](const InspectedGroup& group) {
+    return group.report.verdict == Verdict::valid;
+  });
+}
+
 /// Encodes the feature without the geometries that are not proven, and notes these in the outcome.
 /// nullopt when no geometry is left, or when the rest is not valid either: then all is left out.
 Result<std::optional<EncodedFeature>> encode_rest(
@@ -162,7 +181,7 @@ Result<std::optional<EncodedFeature>> encode_rest(
   if (!rest) return std::move(rest).error();
   const InspectedFeature inspected =
       inspect(*std::move(rest), workers, options.certify, options.groups, &templates);
-  if (inspected.verdict() != Verdict::valid) {
+  if (!is_proven_but_for_unreadable(inspected)) {
     outcome.rejected = *std::move(text);
     return std::optional<EncodedFeature>();
   }
@@ -332,6 +351,11 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
       encoded.document.features.push_back(*std::move(feature.encoded));
     }
     encoded.outcome.features.push_back(std::move(feature.outcome));
+  }
+  // The kept text of another format is that of all features.
+  if (encoded.document.features.size() < encoded.outcome.features.size() &&
+      !is_city_model(shared->format)) {
+    encoded.document.framing.clear();
   }
   const bool is_refused = options.policy.value_or(Policy::refuse) == Policy::refuse;
   if (encoded.outcome.verdict != Verdict::valid && is_refused) encoded.document.features.clear();

@@ -10,30 +10,23 @@
 namespace watertight::formats {
 namespace {
 
-Error wrong_index(const std::string& object) {
-  return {ErrorCode::malformed,
-          "vertex index is out of range",
-          {},
-          "/CityObjects" + pointer_token(object)};
-}
-
 /// Numbers the vertices that are used in order of their first use.
 class UsedVertices {
  public:
   explicit UsedVertices(Json& root) : list_(find_member(root, "vertices")) {
     if (list_ != nullptr && list_->is_array()) number_of_.assign(list_->size(), kNone);
   }
-  /// Replaces an index by its new number. False when it is out of range.
-  bool renumber(Json& index) {
-    if (!index.is_number_unsigned()) return false;
+  /// Replaces an index by its new number. One that is out of range stays: the new list is not
+  /// longer.
+  void renumber(Json& index) {
+    if (!index.is_number_unsigned()) return;
     const auto vertex = index.get<std::uint64_t>();
-    if (vertex >= number_of_.size()) return false;
+    if (vertex >= number_of_.size()) return;
     if (number_of_[vertex] == kNone) {
       number_of_[vertex] = static_cast<Index>(used_.size());
       used_.push_back(vertex);
     }
     index = number_of_[vertex];
-    return true;
   }
   /// Replaces the list of vertices by the used ones.
   void finish() {
@@ -50,15 +43,12 @@ class UsedVertices {
 };
 
 /// Renumbers nested arrays of vertex indices; the reader's limit bounds the depth.
-bool renumber_all(Json& boundaries, UsedVertices& used) {
+void renumber_all(Json& boundaries, UsedVertices& used) {
   if (!boundaries.is_array()) return used.renumber(boundaries);
-  for (Json& element : boundaries) {
-    if (!renumber_all(element, used)) return false;
-  }
-  return true;
+  for (Json& element : boundaries) renumber_all(element, used);
 }
 
-Status keep_used_vertices(Json& root) {
+void keep_used_vertices(Json& root) {
   UsedVertices used(root);
   Json* objects = find_member(root, "CityObjects");
   for (auto& [id, object] : objects->get_ref<Json::object_t&>()) {
@@ -66,17 +56,16 @@ Status keep_used_vertices(Json& root) {
     if (geometries != nullptr && geometries->is_array()) {
       for (Json& geometry : *geometries) {
         Json* boundaries = find_member(geometry, "boundaries");
-        if (boundaries != nullptr && !renumber_all(*boundaries, used)) return wrong_index(id);
+        if (boundaries != nullptr) renumber_all(*boundaries, used);
       }
     }
-    const auto renumber = [&used, &owner = id](Json& vertex) -> Status {
-      return used.renumber(vertex) ? Status(Done{}) : Status(wrong_index(owner));
+    const auto renumber = [&used](Json& vertex) -> Status {
+      used.renumber(vertex);
+      return Done{};
     };
-    const Status addresses = for_each_address_vertex(object, renumber);
-    if (!addresses) return addresses;
+    static_cast<void>(for_each_address_vertex(object, renumber));
   }
   used.finish();
-  return Done{};
 }
 
 /// Leaves those geometries of an object for which `is_kept` is true. Returns how many are left.
@@ -149,9 +138,7 @@ Result<DividedText> divide_city_model(std::string_view text, const std::set<Geom
     keep_geometries(id, object, [&](const GeometryPlace& place) { return chosen.contains(place); });
   }
   keep_objects_with_geometries(other);
-  for (Json* half : {&*root, &part}) {
-    if (Status kept = keep_used_vertices(*half); !kept) return kept.error();
-  }
+  for (Json* half : {&*root, &part}) keep_used_vertices(*half);
   divided.rest = json_text(*root);
   divided.chosen = json_text(part);
   return divided;

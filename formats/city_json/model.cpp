@@ -133,6 +133,7 @@ Status index_object(const Json& object, std::uint32_t number, std::uint64_t temp
     auto status = index_geometry(geometry, id, ref, template_count, index);
     if (status) continue;
     ref.type = string_member(geometry, "type");
+    if (ref.type.empty()) ref.type = "unknown";
     note_unreadable(index, number, ref, std::move(status).error());
   }
   return Done{};

@@ -113,6 +113,17 @@ Result<Solid> source_of(Solid merged, std::string_view line, const Limits& limit
   return unmerge(merged, line, limits);
 }
 
+/// Says that defects were found which the decoded solids alone do not show, so that nobody takes
+/// the feature for proven who does not read its text.
+formats::UnreadablePart mark_of(const EncodedFeature& encoded) {
+  formats::UnreadablePart mark;
+  mark.source.object_id = encoded.id;
+  mark.error = {ErrorCode::malformed,
+                "marked as not proven when it was encoded: defects between its solids, or parts "
+                "that cannot be read; decode and validate the document to see them"};
+  return mark;
+}
+
 }  // namespace
 
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
@@ -195,6 +206,7 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
   feature.id = encoded.id;
   feature.type = encoded.type;
   feature.srid = encoded.srid;
+  if (!encoded.findings.empty()) feature.unreadable.push_back(mark_of(encoded));
   const std::size_t end = std::min(skeleton.find('\n'), skeleton.size());
   feature.skeleton = std::string(skeleton.substr(0, end));
   const ByteView layout = as_bytes(skeleton.substr(std::min(end + 1, skeleton.size())));

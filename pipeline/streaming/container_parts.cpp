@@ -11,6 +11,11 @@ namespace {
 /// solid does not say where in the text it stands.
 Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
                            const Limits& limits) {
+  if (feature.id.empty() && feature.type == "CityJSON") {
+    return Error{ErrorCode::unsupported,
+                 "the file holds a CityJSON as a whole, not its features: decode it, and use the "
+                 "CityJSON"};
+  }
   const auto line = formats::write_city_json_feature(header, feature);
   if (!line) return line.error();
   formats::ReadOptions options;
@@ -30,6 +35,7 @@ Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
                                       : SubmittedSolid{std::move(stored), std::move(found.source)};
   }
   feature.instances = std::move(read->instances);
+  feature.unreadable = std::move(read->unreadable);
   return feature;
 }
 

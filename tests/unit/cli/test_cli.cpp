@@ -260,6 +260,20 @@ TEST_CASE_METHOD(Fixture, "encode keeps what is not proven as it came, and says 
   CHECK(run("encode in.city.jsonl -o y.wt --bare").status == 2);
 }
 
+TEST_CASE_METHOD(Fixture, "the file of --rejected replaces no other file of the run") {
+  write("in.city.jsonl", kInvalid);
+  for (const std::string wrong :
+       {"-o x.wt --invalid skip --rejected in.city.jsonl", "-o x.wt --invalid skip --rejected x.wt",
+        "-o x.report.json --invalid skip --rejected x", "-o x.wt --rejected r.jsonl",
+        "-o - --invalid skip --rejected -"}) {
+    CHECK(run("encode in.city.jsonl " + wrong).status == 2);
+    CHECK(read("in.city.jsonl") == kInvalid);
+  }
+  CHECK(run("encode in.city.jsonl -o x.wt --invalid skip --rejected r.city.jsonl").status == 1);
+  CHECK(run("validate r.city.jsonl").status == 1);
+  CHECK(read("r.city.jsonl.report.json").find("\"leftOut\":[{") != std::string::npos);
+}
+
 TEST_CASE_METHOD(Fixture, "advise prints a row for each number of decimals") {
   write("in.city.jsonl", kValid);
   const Ran advice = run("advise in.city.jsonl");

@@ -6,6 +6,7 @@
 #include "pipeline/container.h"
 #include "pipeline/export.h"
 #include "pipeline/stored/unproven_solid.h"
+#include "pipeline/streaming/ingestion.h"
 #include "tests/unit/pipeline/samples.h"
 
 namespace watertight {
@@ -140,6 +141,54 @@ TEST_CASE("a collection takes the policy of the write that makes it, and later w
   // The default for a collection that nobody gave a policy is to refuse.
   silent.collection = "village";
   CHECK(pipeline::ingest(document_of(kMixed), store, nullptr, silent)->stored == 0);
+}
+
+/// A box, and a second solid with a vertex index that is out of range, in one feature.
+std::string half_readable() {
+  std::string line = samples::feature("a");
+  const std::string first = std::string("[") + std::string(samples::kBoxFacets) + "]}";
+  const std::size_t end = line.find(first) + first.size();
+  return line.insert(end, R"(,{"type":"Solid","lod":"1","boundaries":[[[[0,1,99]]]]})");
+}
+
+TEST_CASE("a feature that was marked as not proven is not proven when its file is read again") {
+  auto encoded = pipeline::encode_document(document_of(samples::sequence({half_readable()})),
+                                           nullptr, keeping());
+  REQUIRE(encoded);
+  CHECK(encoded->outcome.unproven == 0);
+  CHECK(encoded->outcome.unproven_features == 1);
+  const auto file = pipeline::write_container(encoded->document);
+  REQUIRE(file);
+  auto documents = pipeline::decode_container(*file);
+  REQUIRE(documents);
+  auto again = pipeline::encode_document(std::move(documents->front()), nullptr, keeping());
+  REQUIRE(again);
+  CHECK(again->outcome.verdict == Verdict::invalid);
+  CHECK(again->outcome.unproven_features == 1);
+
+  samples::MemoryStore store;
+  pipeline::IngestOptions refusing = keeping();
+  refusing.policy = store::Policy::refuse;
+  pipeline::Ingestion ingestion(store, nullptr, refusing,
+                                [](pipeline::FeatureOutcome&&) -> Status { return Done{}; });
+  REQUIRE(ingestion.add_container(*file));
+  REQUIRE(ingestion.finish());
+  CHECK(ingestion.is_refused());
+}
+
+TEST_CASE("skip leaves out what cannot be read, and keeps the rest of the feature") {
+  pipeline::IngestOptions options = keeping();
+  options.policy = store::Policy::skip;
+  const auto encoded = pipeline::encode_document(document_of(samples::sequence({half_readable()})),
+                                                 nullptr, options);
+  REQUIRE(encoded);
+  REQUIRE(encoded->document.features.size() == 1);
+  CHECK(encoded->document.features.front().is_proven());
+  CHECK(encoded->document.features.front().solids.size() == 1);
+  const pipeline::FeatureOutcome& outcome = encoded->outcome.features.front();
+  REQUIRE(outcome.left_out.size() == 1);
+  CHECK(outcome.left_out.front() == formats::GeometryPlace{"a", 1});
+  CHECK(outcome.rejected.find("[[[[0,1,99]]]]") != std::string::npos);
 }
 
 TEST_CASE("an export of what is proven leaves the other features out") {

@@ -8,7 +8,6 @@
 #include "pipeline/groups.h"
 #include "pipeline/instances.h"
 #include "pipeline/streaming/process.h"
-#include "validate/finding_kinds.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {
@@ -223,18 +222,15 @@ Verdict InspectedFeature::verdict() const {
 namespace {
 
 /// Adds an empty, invalid solid for each part of the feature that could not be read.
-void add_unreadable(InspectedFeature& inspected) {
+void add_unreadable(InspectedFeature& inspected, const CertifyOptions& options) {
   for (UnreadablePart& part : inspected.feature.unreadable) {
     auto nothing = Solid::make(SolidArrays{}, Lattice{}, inspected.feature.srid);
     if (!nothing) continue;  // an empty solid breaks no rule of Solid
-    Finding finding;
-    finding.code = validate::kInvalidInputFile;
-    finding.detail = part.error.message;
-    Inspection inspection;
-    inspection.report.verdict = Verdict::invalid;
-    inspection.report.findings.push_back(std::move(finding));
-    inspected.solids.push_back({part.source, std::move(inspection)});
-    inspected.feature.solids.push_back({*std::move(nothing), std::move(part.source), {}});
+    SubmittedSolid solid{*std::move(nothing), std::move(part.source), {}};
+    solid.unreadable = std::move(part.error.message);
+    inspected.solids.push_back(
+        {solid.source, certify(solid.solid, nullptr, options_for(solid, options))});
+    inspected.feature.solids.push_back(std::move(solid));
   }
   inspected.feature.unreadable.clear();
 }
@@ -259,7 +255,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
     inspected.groups = inspect_groups(group_candidates(inspected), group_options(groups, options));
   }
   for (InspectedGroup& group : inspected.groups) name_members(inspected, group);
-  add_unreadable(inspected);
+  add_unreadable(inspected, options);
   return inspected;
 }
 

@@ -314,10 +314,8 @@ Inspection examine(const Solid& solid, delaunay::EngineWorkers* workers,
   return inspection;
 }
 
-/// The result for a solid of which nothing is known, because the reader could not read it.
-Inspection unread(const CertifyOptions& options) {
-  FindingCollector findings(options.limits.findings);
-  findings.add({.code = kInvalidInputFile, .detail = options.unreadable});
+/// The result for a solid that is invalid by findings made without an examination.
+Inspection invalid_by(FindingCollector findings, const CertifyOptions& options) {
   Inspection inspection;
   Report& report = inspection.report;
   report.verdict = Verdict::invalid;
@@ -330,6 +328,13 @@ Inspection unread(const CertifyOptions& options) {
   return inspection;
 }
 
+/// The result for a solid of which nothing is known, because the reader could not read it.
+Inspection unread(const CertifyOptions& options) {
+  FindingCollector findings(options.limits.findings);
+  findings.add({.code = kInvalidInputFile, .detail = options.unreadable});
+  return invalid_by(std::move(findings), options);
+}
+
 /// The result for a solid that its placement flattens: a closed surface pressed into a plane meets
 /// itself and encloses nothing.
 Inspection flattened(const CertifyOptions& options) {
@@ -340,16 +345,7 @@ Inspection flattened(const CertifyOptions& options) {
          .detail = "the determinant of the transformation is zero: it flattens the solid"});
   }
   findings.skip({kSolidInteriorDisconnected}, "the solid is flat where it is placed");
-  Inspection inspection;
-  Report& report = inspection.report;
-  report.verdict = Verdict::invalid;
-  report.acceptance = {options.tolerances, options.proof, geometry::kRuleSet};
-  report.first_level = first_level_codes(findings.all());
-  if (options.also_tolerant) {
-    report.tolerant = TolerantVerdict{Verdict::invalid, report.first_level};
-  }
-  std::move(findings).move_to(report);
-  return inspection;
+  return invalid_by(std::move(findings), options);
 }
 
 Inspection examine_placed(const Solid& solid, delaunay::EngineWorkers* workers,

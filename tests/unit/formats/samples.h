@@ -3,8 +3,10 @@
 // Small city models for the tests of formats/.
 #pragma once
 
+#include <catch2/catch_test_macros.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.h"
 #include "formats/document.h"
@@ -20,6 +22,18 @@ inline Result<Document> read(std::string_view text, Format format, bool is_split
   formats::ReadOptions options;
   options.split_features = is_split;
   return formats::read_document(as_bytes(text), format, options);
+}
+
+/// The error of the one part of a CityJSON that cannot be read. Requires exactly one.
+inline Error part_of(std::string_view text) {
+  const auto document = read(text, Format::city_json);
+  REQUIRE(document);
+  std::vector<Error> errors;
+  for (const Feature& feature : document->features) {
+    for (const auto& part : feature.unreadable) errors.push_back(part.error);
+  }
+  REQUIRE(errors.size() == 1);
+  return errors.front();
 }
 
 /// Two top-level objects: the first has a Solid, a tetrahedron, and a MultiSurface that uses a

@@ -9,6 +9,7 @@ namespace watertight {
 namespace {
 
 using test::kTwoBuildings;
+using test::part_of;
 using test::read;
 
 Error error_of(const std::string& text, Format format = Format::city_json) {
@@ -16,18 +17,6 @@ Error error_of(const std::string& text, Format format = Format::city_json) {
   REQUIRE_FALSE(document);
   CHECK_FALSE(document.error().message.empty());
   return document.error();
-}
-
-/// The error of the one part of the document that cannot be read.
-Error part_of(const std::string& text, Format format = Format::city_json) {
-  const auto document = read(text, format);
-  REQUIRE(document);
-  std::vector<Error> errors;
-  for (const Feature& feature : document->features) {
-    for (const auto& part : feature.unreadable) errors.push_back(part.error);
-  }
-  REQUIRE(errors.size() == 1);
-  return errors.front();
 }
 
 std::string with_object(const std::string& object) {

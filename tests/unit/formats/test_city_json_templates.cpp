@@ -11,6 +11,7 @@
 namespace watertight {
 namespace {
 
+using test::part_of;
 using test::read;
 
 const std::string kTetrahedron = "[[[[0,2,1]],[[0,1,3]],[[1,2,3]],[[2,0,3]]]]";
@@ -36,18 +37,6 @@ std::string instance(const std::string& number, const std::string& boundaries = 
                      const std::string& matrix = "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]") {
   return R"({"type":"GeometryInstance","template":)" + number + R"(,"boundaries":)" + boundaries +
          R"(,"transformationMatrix":)" + matrix + "}";
-}
-
-/// The error of the one part of the document that cannot be read.
-Error part_of(const std::string& text) {
-  const auto document = read(text, Format::city_json);
-  REQUIRE(document);
-  std::vector<Error> errors;
-  for (const Feature& feature : document->features) {
-    for (const auto& part : feature.unreadable) errors.push_back(part.error);
-  }
-  REQUIRE(errors.size() == 1);
-  return errors.front();
 }
 
 /// The note about a template that cannot be read; there is a solid without facets in its place.

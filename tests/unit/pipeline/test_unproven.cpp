@@ -157,6 +157,8 @@ TEST_CASE("a feature that was marked as not proven is not proven when its file i
   REQUIRE(encoded);
   CHECK(encoded->outcome.unproven == 0);
   CHECK(encoded->outcome.unproven_features == 1);
+  const Report& unread = encoded->outcome.features.front().solids.back().report;
+  CHECK(unread.first_level == std::vector<int>{901});
   const auto file = pipeline::write_container(encoded->document);
   REQUIRE(file);
   auto documents = pipeline::decode_container(*file);

@@ -25,8 +25,9 @@ struct ValidateCommand {
   std::string explain;                       // a code to explain instead of validating, "" for none
   std::vector<std::string> interior_shells;  // files with cavities of the document's only solid
   RuleChoice rules;
-  double seconds_per_solid = 0;  // the time that engines may take; 0: by the size of the solid
-  std::string engine = "auto";   // "auto", "cgal" or "tetgen"
+  std::string surfaces = "check";  // "ignore", "check", "judge" or "as-solids"
+  double seconds_per_solid = 0;    // the time that engines may take; 0: by the size of the solid
+  std::string engine = "auto";     // "auto", "cgal" or "tetgen"
   std::optional<double> tolerant_metres;  // the snap distance of a tolerant verdict as well
   bool leaves_times_out = false;
   bool is_quiet = false;         // no line per finding
@@ -45,8 +46,9 @@ struct EncodeCommand {
   std::string invalid = "keep";
   std::string rejected;  // file for what --invalid skip leaves out, "" for none
   RuleChoice rules;
-  bool is_bare = false;   // one blob instead of a Watertight file
-  bool explains = false;  // print the bytes that the solids take in each mode
+  std::string surfaces = "ignore";  // or "as-solids"
+  bool is_bare = false;             // one blob instead of a Watertight file
+  bool explains = false;            // print the bytes that the solids take in each mode
   std::size_t jobs = 1;
 };
 Exit run(const EncodeCommand& command);
@@ -66,6 +68,7 @@ Exit run(const InfoCommand& command);
 struct ConvertCommand {
   std::string input;
   std::string output;
+  std::string surfaces = "ignore";  // or "as-solids"
 };
 Exit run(const ConvertCommand& command);
 
@@ -97,6 +100,7 @@ struct IngestCommand {
   std::string collection;
   std::string invalid;  // "" for the policy of the collection
   RuleChoice rules;
+  std::string surfaces = "ignore";  // or "as-solids"
   std::string contract = "exact";
   bool is_json = false;
   bool is_quiet = false;

@@ -62,10 +62,12 @@ void tell_rounded(const std::string& file, const pipeline::IngestOutcome& outcom
   }
 }
 
-Result<Input> load(const std::string& path, bool keep_text = false) {
+Result<Input> load(const EncodeCommand& command, bool keep_text) {
+  const std::string& path = command.input;
   formats::ReadOptions options;
   options.split_features = false;
   options.keep_text = keep_text;
+  options.surfaces = surface_rule(command.surfaces).reading;
   const auto bytes = read_file(path, options.limits);
   if (!bytes) return bytes.error();
   return load_input(path, *bytes, options);
@@ -248,6 +250,7 @@ Result<Json> info_of_container(ByteView bytes) {
   json["format"] = names_of(info->formats);
   json["features"] = info->features;
   json["solids"] = info->solids;
+  for (const auto& [type, count] : info->other_geometries) json["otherGeometries"][type] = count;
   json["unproven"] = unproven_json(*info);
   json["pages"] = info->pages;
   json["solidBytes"] = info->solid_bytes;
@@ -385,7 +388,7 @@ Exit run(const EncodeCommand& command) {
   if (Status possible = check_rejected(command); !possible) {
     return fail("--rejected", possible.error());
   }
-  auto input = load(command.input, *contract == formats::Contract::exact);
+  auto input = load(command, *contract == formats::Contract::exact);
   if (!input) return fail(command.input, input.error());
   delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
   pipeline::IngestOptions options;
@@ -393,6 +396,7 @@ Exit run(const EncodeCommand& command) {
   options.contract = *contract;
   options.policy = *pipeline::policy_named(command.invalid);
   apply(command.rules, options.certify, options.groups);
+  options.surfaces = surface_rule(command.surfaces).reading;
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
   options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
                                           : pipeline::SteinerVertices::leave_out;
@@ -457,6 +461,35 @@ void tell_notes(const std::string& file, const Document& document) {
   }
 }
 
+/// A city model with its closed surfaces as solids.
+Result<Document> with_surfaces_as_solids(const Document& city) {
+  const auto text = formats::write_document(city, Format::city_json);
+  if (!text) return text.error();
+  formats::ReadOptions options;
+  options.limits.bytes = ~0ULL;
+  options.split_features = false;
+  options.surfaces = formats::Surfaces::as_solids;
+  return formats::read_document(*text, Format::city_json, options);
+}
+
+/// Makes geometries of type Solid of the surfaces that were read as solids.
+Status make_solids(const std::string& file, Document& document) {
+  const auto turned = formats::turn_surfaces_into_solids(document);
+  if (!turned) return turned.error();
+  std::fprintf(
+      stderr, "watertight: %s: %s\n", printable(file).c_str(),
+      quantity(*turned, "closed surface is a solid", "closed surfaces are solids").c_str());
+  return Done{};
+}
+
+Exit save_converted(const ConvertCommand& command, Document document) {
+  if (command.surfaces == "as-solids") {
+    const Status made = make_solids(command.input, document);
+    if (!made) return fail(command.input, made.error());
+  }
+  return save({&document, 1}, command.input, command.output);
+}
+
 Exit run(const ConvertCommand& command) {
   if (replaces(command.output, command.input))
     return refuse_to_replace(command.input, command.output);
@@ -465,14 +498,18 @@ Exit run(const ConvertCommand& command) {
   const auto bytes = read_file(command.input, options.limits);
   if (!bytes) return fail(command.input, bytes.error());
   if (makes_city_of_gml(command, *bytes)) {
-    const auto city = formats::city_model_of_gml(*bytes, options.limits);
+    auto city = formats::city_model_of_gml(*bytes, options.limits);
     if (!city) return fail(command.input, city.error());
     tell_notes(command.input, city->model);
-    return save({&city->model, 1}, command.input, command.output);
+    if (command.surfaces == "ignore") return save_converted(command, std::move(city->model));
+    auto again = with_surfaces_as_solids(city->model);
+    if (!again) return fail(command.input, again.error());
+    return save_converted(command, *std::move(again));
   }
-  const auto input = load_input(command.input, *bytes, options);
+  options.surfaces = surface_rule(command.surfaces).reading;
+  auto input = load_input(command.input, *bytes, options);
   if (!input) return fail(command.input, input.error());
-  return save({&input->document, 1}, command.input, command.output);
+  return save_converted(command, std::move(input->document));
 }
 
 Exit run(const InfoCommand& command) {

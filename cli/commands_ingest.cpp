@@ -28,6 +28,7 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
   options.contract = contract;
   if (!command.invalid.empty()) options.policy = *pipeline::policy_named(command.invalid);
   apply(command.rules, options.certify, options.groups);
+  options.surfaces = surface_rule(command.surfaces).reading;
   return options;
 }
 
@@ -114,6 +115,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   }
   formats::ReadOptions read;
   read.keep_text = options.contract == formats::Contract::exact;
+  read.surfaces = options.surfaces;
   auto opened = open_input(name, *std::move(input), read);
   if (!opened) return std::move(opened).error();
   count = opened->reader.feature_count();

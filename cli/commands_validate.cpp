@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/findings/baseline.h"
@@ -33,6 +34,7 @@ pipeline::StreamOptions options_of(const ValidateCommand& command) {
   pipeline::StreamOptions options;
   options.threads = command.jobs;
   apply(command.rules, options.certify, options.groups);
+  options.certify.severity_of_surfaces = surface_rule(command.surfaces).severity;
   options.certify.also_tolerant = command.tolerant_metres.has_value();
   if (command.tolerant_metres) options.certify.tolerant_snap_metres = *command.tolerant_metres;
   options.certify.ladder.engine = engine_of(command.engine);
@@ -58,6 +60,7 @@ report::ReportHead head_of(const ValidateCommand& command, const pipeline::Strea
   head.overlap_metres = command.rules.overlap_metres;
   head.also_tolerant = options.certify.also_tolerant;
   head.tolerant_snap_metres = options.certify.tolerant_snap_metres;
+  if (command.surfaces != ValidateCommand().surfaces) head.surfaces = command.surfaces;
   return head;
 }
 
@@ -125,7 +128,8 @@ class Validation {
   bool open_reports();
   bool open_baseline();
   void take_feature(const std::string& file, const pipeline::InspectedFeature& feature);
-  void end_file(const std::string& file, bool has_solids);
+  void end_file(const std::string& file, bool has_solids, bool has_surfaces);
+  std::string note_without_solids(std::uint64_t surfaces) const;
   bool is_in_use(const std::string& path) const;
   void validate_file(const std::string& file);
   Result<OpenedInput> open_file(const std::string& file);
@@ -227,16 +231,24 @@ void Validation::take_feature(const std::string& file, const pipeline::Inspected
 }
 
 /// The part of a file's result that is known at its end.
-void Validation::end_file(const std::string& file, bool has_solids) {
-  summary_.add_file(has_solids);
+void Validation::end_file(const std::string& file, bool has_solids, bool has_surfaces) {
+  summary_.add_file(has_solids, has_surfaces);
   if (!has_solids && command_.requires_solids) {
-    note(file, "nothing was checked, and --require-solids asks for solids");
+    note(file, std::string(has_surfaces ? "only surfaces were" : "nothing was") +
+                   " checked, and --require-solids asks for solids");
     exit_ = worse(exit_, Exit::invalid);
   }
   if (!baseline_) return;
   const std::uint64_t omitted = baseline_->newly_omitted(file, omitted_);
   if (omitted > 0) exit_ = worse(exit_, Exit::invalid);
   summary_.add(BaselineCounts{omitted, 0, baseline_->gone(file)});
+}
+
+std::string Validation::note_without_solids(std::uint64_t surfaces) const {
+  if (command_.surfaces == "ignore") return "the document has no solids; surfaces are ignored";
+  if (surfaces == 0) return "the document has no solids and no surfaces";
+  return "the document has no solids; rings and facets of " + quantity(surfaces, "surface") +
+         " were checked";
 }
 
 /// Passes a call to all reports. Errors: the first report's error, naming its file.
@@ -285,7 +297,9 @@ Result<formats::FeatureReader> Validation::with_cavities(const std::string& file
 }
 
 Result<OpenedInput> Validation::open_file(const std::string& file) {
-  if (command_.interior_shells.empty()) return open_input(file, {});
+  formats::ReadOptions reading;
+  reading.surfaces = surface_rule(command_.surfaces).reading;
+  if (command_.interior_shells.empty()) return open_input(file, reading);
   auto reader = with_cavities(file);
   if (!reader) return std::move(reader).error();
   return OpenedInput{*std::move(reader), std::nullopt};
@@ -316,6 +330,7 @@ Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, Open
 void Validation::validate_file(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t solids_before = summary_.solids();
+  const std::uint64_t surfaces_before = summary_.surfaces().checked;
   omitted_ = 0;
   auto input = open_file(file);
   report::DocumentHead head{file, {}};
@@ -328,11 +343,12 @@ void Validation::validate_file(const std::string& file) {
     if (!outcome) status = outcome.error();
     end.notes = input->reader.document().notes;
     const bool has_solids = summary_.solids() > solids_before;
+    const std::uint64_t surfaces = summary_.surfaces().checked - surfaces_before;
     if (outcome && outcome->unreadable == 0 && !has_solids) {
-      end.notes.emplace_back("the document has no solids; surfaces are not validated");
+      end.notes.push_back(note_without_solids(surfaces));
       note(file, end.notes.back());
     }
-    if (outcome) end_file(file, has_solids);
+    if (outcome) end_file(file, has_solids, surfaces > 0);
     summary_.add_file_bytes(input->reader.bytes_read());
   } else if (status) {
     fail(file, input.error());

@@ -78,6 +78,15 @@ void add_rules(CLI::App& sub, RuleChoice& rules) {
   sub.add_flag("--strict", rules.is_strict, "only the canonical triangles of facets count");
 }
 
+/// Adds the choice between surfaces as they came and closed surfaces as solids.
+void add_surfaces(CLI::App& sub, std::string& surfaces) {
+  sub.add_option("--surfaces", surfaces,
+                 "MultiSurfaces and CompositeSurfaces: ignore, they stay as they came; as-solids, "
+                 "closed ones are solids")
+      ->check(CLI::IsMember({"ignore", "as-solids"}))
+      ->capture_default_str();
+}
+
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
@@ -91,8 +100,13 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
                   "an earlier --report: only findings that it does not have give status 1");
   sub->add_option("--explain", command.explain,
                   "print what a finding means, its cause and its remedy, for a code or a name");
-  sub->add_flag("--require-solids", command.requires_solids,
-                "status 1 for a file without solids, in which nothing is checked");
+  sub->add_flag("--require-solids", command.requires_solids, "status 1 for a file without solids");
+  sub->add_option("--surfaces", command.surfaces,
+                  "MultiSurfaces and CompositeSurfaces: ignore them; check rings and facets, "
+                  "findings are warnings; judge them, findings are errors; as-solids, closed ones "
+                  "are solids")
+      ->check(CLI::IsMember({"ignore", "check", "judge", "as-solids"}))
+      ->capture_default_str();
   sub->add_option("--interior-shell", command.interior_shells,
                   "file with a cavity of the file's one solid; can be repeated")
       ->allow_extra_args(false);
@@ -161,6 +175,7 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
                   "with --invalid skip: write what is left out to this CityJSON file, and the "
                   "findings to FILE.report.json");
   add_rules(*sub, command.rules);
+  add_surfaces(*sub, command.surfaces);
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
   add_contract(*sub, command.contract);
   sub->add_flag("--explain", command.explains,
@@ -182,6 +197,7 @@ void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("convert", "Write a document in another format, unvalidated");
   sub->add_option("IN", command.input, "document; - for standard input")->required();
   sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
+  add_surfaces(*sub, command.surfaces);
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
@@ -228,6 +244,7 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
                   "new one")
       ->check(CLI::IsMember({"refuse", "skip", "keep"}));
   add_rules(*sub, command.rules);
+  add_surfaces(*sub, command.surfaces);
   add_contract(*sub, command.contract);
   sub->add_flag("--json", command.is_json, "the table as one line of JSON");
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "pipeline/pipeline.h"
 #include "validate/certify.h"
 #include "validate/groups.h"
 
@@ -18,6 +19,12 @@ struct RuleChoice {
   std::string proof = "tetrahedralization";  // or "boundary"
   bool is_strict = false;
 };
+
+/// The rule for surfaces of a name that the command line has checked.
+inline pipeline::SurfaceRule surface_rule(const std::string& name) {
+  const auto rule = pipeline::surface_rule_named(name);
+  return rule ? *rule : pipeline::SurfaceRule{};
+}
 
 /// Sets the rules of solids and of groups of them.
 inline void apply(const RuleChoice& rules, CertifyOptions& certify,

@@ -24,6 +24,21 @@ std::string row(const std::string& name, std::uint64_t value) {
   return row(name, std::to_string(value));
 }
 
+/// The rows for files or features without solids, of which `surfaces` have surfaces.
+std::string empty_rows(std::uint64_t without_solids, std::uint64_t surfaces) {
+  std::string text;
+  const std::uint64_t unchecked = without_solids - surfaces;
+  if (unchecked > 0) text += row("  without solids: nothing was checked", unchecked);
+  if (surfaces > 0) text += row("  without solids: surfaces were checked", surfaces);
+  return text;
+}
+
+std::string code_row(std::string_view indent, int code, std::uint64_t count) {
+  std::string name(indent);
+  name.append(std::to_string(code)).append(1, ' ').append(validate::finding_name(code));
+  return row(name, count);
+}
+
 std::string decimals(double value, int digits) {
   std::array<char, 64> buffer{};
   const int length = std::snprintf(buffer.data(), buffer.size(), "%.*f", digits, value);
@@ -74,11 +89,16 @@ void Summary::add(const Summary& part) {
   for (const auto& [code, count] : part.by_code_) by_code_[code] += count;
   for (const auto& [code, count] : part.groups_by_code_) groups_by_code_[code] += count;
   for (const auto& [rung, count] : part.by_rung_) by_rung_[rung] += count;
+  surface_features_ += part.surface_features_;
+  surface_files_ += part.surface_files_;
+  surfaces_.add(part.surfaces_);
+  for (const auto& [code, count] : part.surfaces_by_code_) surfaces_by_code_[code] += count;
 }
 
-void Summary::add_file(bool has_solids) {
+void Summary::add_file(bool has_solids, bool has_surfaces) {
   ++files_;
   if (!has_solids) ++empty_files_;
+  if (!has_solids && has_surfaces) ++surface_files_;
 }
 
 void Summary::add_unreadable_file() {
@@ -93,15 +113,17 @@ void Summary::add(const BaselineCounts& counts) {
   baseline_->gone += counts.gone;
 }
 
-void Summary::add_feature(Verdict verdict, bool has_solids) {
+void Summary::add_feature(Verdict verdict, bool has_solids, bool has_surfaces) {
   ++features_;
   if (verdict == Verdict::invalid) ++invalid_features_;
   if (verdict == Verdict::undecided) ++undecided_features_;
-  if (!has_solids && verdict == Verdict::valid) ++empty_features_;
+  if (has_solids || verdict != Verdict::valid) return;
+  ++empty_features_;
+  if (has_surfaces) ++surface_features_;
 }
 
 void Summary::add(const pipeline::FeatureOutcome& feature) {
-  add_feature(feature.verdict, !feature.solids.empty());
+  add_feature(feature.verdict, !feature.solids.empty(), false);
   for (const pipeline::SolidOutcome& solid : feature.solids) {
     add(solid.report);
     if (solid.blob_bytes == 0) continue;
@@ -112,8 +134,20 @@ void Summary::add(const pipeline::FeatureOutcome& feature) {
 }
 
 void Summary::add(const pipeline::InspectedFeature& feature) {
-  add_feature(feature.verdict(), !feature.solids.empty());
-  for (const pipeline::InspectedSolid& solid : feature.solids) add(solid.inspection.report);
+  bool has_solids = false;
+  for (const pipeline::InspectedSolid& solid : feature.solids) {
+    const Report& report = solid.inspection.report;
+    if (!solid.surface) {
+      has_solids = true;
+      add(report);
+      continue;
+    }
+    std::set<int> codes;
+    for (const Finding& finding : report.findings) codes.insert(finding.code);
+    for (const int code : codes) ++surfaces_by_code_[code];
+  }
+  surfaces_.add(feature.surfaces);
+  add_feature(feature.verdict(), has_solids, feature.surfaces.checked > 0);
   add(feature.groups);
 }
 
@@ -145,7 +179,14 @@ std::string Summary::headline() const {
   const std::uint64_t checked = features_ - empty_features_;
   if (solids() == 0) {
     const bool is_read = unreadable_ + unreadable_files_ == 0;
-    text = is_read ? "Nothing was checked: there are no solids.\n" : "Nothing was checked.\n";
+    text = surfaces_.checked > 0 ? "There are no solids; rings and facets of " +
+                                       quantity(surfaces_.checked, "surface") + " were checked.\n"
+           : is_read ? "Nothing was checked: there are no solids.\n"
+                     : "Nothing was checked.\n";
+    if (invalid_features_ + undecided_features_ > 0) {
+      text += quantity(invalid_features_, "feature") + " invalid, " +
+              std::to_string(undecided_features_) + " undecided.\n";
+    }
   } else if (invalid_features_ + undecided_features_ == 0) {
     text = checked == 1 ? "The feature with solids is valid.\n"
                         : "All " + quantity(checked, "feature") + " with solids are valid.\n";
@@ -161,9 +202,10 @@ std::string Summary::headline() const {
   if (unreadable_ > 0) {
     text += quantity(unreadable_, "part") + " of the input could not be read.\n";
   }
-  if (solids() > 0 && empty_files_ > 0) {
-    text += "Nothing was checked in " + quantity(empty_files_, "file") + " of " +
-            std::to_string(files_) + (empty_files_ == 1 ? ", which has" : ", which have") +
+  const std::uint64_t unchecked = empty_files_ - surface_files_;
+  if (solids() > 0 && unchecked > 0) {
+    text += "Nothing was checked in " + quantity(unchecked, "file") + " of " +
+            std::to_string(files_) + (unchecked == 1 ? ", which has" : ", which have") +
             " no solids.\n";
   }
   if (!baseline_) return text;
@@ -172,11 +214,25 @@ std::string Summary::headline() const {
          " gone.\n";
 }
 
+std::string Summary::surface_rows() const {
+  if (surfaces_.checked == 0) return "";
+  std::string text = row("surfaces", surfaces_.checked);
+  if (surfaces_.closed_valid > 0) {
+    text += row("  closed: would be a valid solid", surfaces_.closed_valid);
+  }
+  if (surfaces_.closed > surfaces_.closed_valid) {
+    text += row("  closed, but no valid solid", surfaces_.closed - surfaces_.closed_valid);
+  }
+  text += row("  with findings", surfaces_.with_findings);
+  for (const auto& [code, count] : surfaces_by_code_) text += code_row("    ", code, count);
+  return text;
+}
+
 std::string Summary::table(double seconds) const {
   std::string text;
   if (files_ > 0) text += row("files", files_);
   if (unreadable_files_ > 0) text += row("  that could not be read", unreadable_files_);
-  if (empty_files_ > 0) text += row("  without solids: nothing was checked", empty_files_);
+  text += empty_rows(empty_files_, surface_files_);
   text += row("features", features_) + row("  invalid", invalid_features_);
   for (const auto& [code, count] : groups_by_code_) {
     text +=
@@ -184,7 +240,7 @@ std::string Summary::table(double seconds) const {
             count);
   }
   if (undecided_features_ > 0) text += row("  undecided", undecided_features_);
-  if (empty_features_ > 0) text += row("  without solids: nothing was checked", empty_features_);
+  text += empty_rows(empty_features_, surface_features_);
   if (unreadable_ > 0) text += row("  that could not be read", unreadable_);
   text += row("solids", solids()) + row("  valid", valid_);
   if (with_warnings_ > 0) text += row("    with warnings", with_warnings_);
@@ -198,6 +254,7 @@ std::string Summary::table(double seconds) const {
   }
   text += row("  undecided", undecided_);
   if (has_tolerant_) text += row("  valid when snapped (--tolerant)", valid_snapped_);
+  text += surface_rows();
   if (baseline_) {
     text += row("new findings", baseline_->fresh) + row("known findings", baseline_->known) +
             row("findings gone", baseline_->gone);

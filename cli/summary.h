@@ -37,7 +37,7 @@ class Summary {
   void add_stored(std::uint64_t features) { stored_ += features; }
   void add_unreadable() { ++unreadable_; }
   /// Counts a file, and whether a solid of it was checked.
-  void add_file(bool has_solids);
+  void add_file(bool has_solids, bool has_surfaces);
   /// Counts a file that could not be opened or read at all.
   void add_unreadable_file();
   void add(const BaselineCounts& counts);
@@ -49,12 +49,16 @@ class Summary {
   /// The figures of the table as a JSON object.
   std::string json(double seconds) const;
   bool has_findings() const {
-    return with_warnings_ > 0 || !by_code_.empty() || !groups_by_code_.empty();
+    return with_warnings_ + surfaces_.with_findings > 0 || !by_code_.empty() ||
+           !groups_by_code_.empty();
   }
+  /// The surfaces that were checked, which solids() does not count.
+  const pipeline::SurfaceCounts& surfaces() const { return surfaces_; }
   std::uint64_t solids() const { return valid_ + invalid_ + undecided_; }
 
  private:
-  void add_feature(Verdict verdict, bool has_solids);
+  void add_feature(Verdict verdict, bool has_solids, bool has_surfaces);
+  std::string surface_rows() const;
   void add(const Report& report);
   void add(const std::vector<pipeline::InspectedGroup>& groups);
 
@@ -65,9 +69,11 @@ class Summary {
   std::uint64_t features_ = 0;
   std::uint64_t invalid_features_ = 0;
   std::uint64_t undecided_features_ = 0;
-  std::uint64_t empty_features_ = 0;  // features without solids, in which nothing was checked
-  std::uint64_t files_ = 0;           // 0: files are not counted
-  std::uint64_t empty_files_ = 0;     // files without solids
+  std::uint64_t empty_features_ = 0;    // features without solids
+  std::uint64_t surface_features_ = 0;  // those of them in which surfaces were checked
+  std::uint64_t files_ = 0;             // 0: files are not counted
+  std::uint64_t empty_files_ = 0;       // files without solids
+  std::uint64_t surface_files_ = 0;     // those of them in which surfaces were checked
   std::uint64_t unreadable_files_ = 0;
   std::optional<BaselineCounts> baseline_;
   std::uint64_t unreadable_ = 0;  // features and rests of documents that could not be read
@@ -80,6 +86,8 @@ class Summary {
   std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; a solid may have several
   std::map<int, std::uint64_t> groups_by_code_;  // invalid composite solids and buildings
   std::map<delaunay::Rung, std::uint64_t> by_rung_;
+  pipeline::SurfaceCounts surfaces_;
+  std::map<int, std::uint64_t> surfaces_by_code_;  // surfaces by code of their findings
 };
 
 }  // namespace watertight::cli

@@ -56,6 +56,11 @@ struct SolidSource {
   std::uint64_t line = 0;  // the line of a GML document on which the solid starts, from 1; else 0
 };
 
+/// True for a geometry whose boundaries are facets without shells around them (MultiSurface,
+/// CompositeSurface, and the surfaces of GML), by its type. Pointers to its places have no step for
+/// the shell.
+bool is_surface(const SolidSource& source);
+
 struct SubmittedSolid {
   Solid solid;  // vertices in order of first use; equal vertices are not merged
   SolidSource source;
@@ -107,6 +112,9 @@ struct Feature {
   /// Instances of geometry templates, also of templates that are no solids; in document order.
   std::vector<TemplateInstance> instances = {};
   std::vector<UnreadablePart> unreadable = {};  // in document order
+  /// Surfaces, each with its facets in one shell and on a lattice of its own, for validation only:
+  /// the skeleton has them as they came. Empty without ReadOptions::surfaces; in document order.
+  std::vector<SubmittedSolid> surfaces = {};
 };
 
 struct Document {
@@ -120,6 +128,8 @@ struct Document {
   /// Coordinates are the templates' own, on no reference system; `source.pointer` is, for example,
   /// "/geometry-templates/templates/0/boundaries" and `source.geometry` the template's index.
   std::vector<SubmittedSolid> templates = {};
+  /// Surfaces of geometry templates, as Feature::surfaces; in the templates' own coordinates.
+  std::vector<SubmittedSolid> template_surfaces = {};
   /// Instances that belong to no feature: in GML an object without solids is not a feature.
   std::vector<TemplateInstance> instances = {};
   /// Of a document read with ReadOptions::keep_text: the bytes between the lines of a CityJSONSeq,
@@ -139,6 +149,14 @@ std::string_view to_string(Contract contract);
 /// The contract of this name. Errors: invalid_argument.
 Result<Contract> contract_named(std::string_view name);
 
+/// The surfaces of a document: MultiSurface and CompositeSurface of CityJSON, and geometries of GML
+/// that are surfaces or polygons.
+enum class Surfaces : std::uint8_t {
+  ignore,    // they stay as they came
+  read,      // Feature::surfaces has them as well
+  as_solids  // as `read`, but one that is one closed shell is a solid of its feature instead
+};
+
 struct ReadOptions {
   Limits limits;
   /// Whether a CityJSON document becomes one feature per top-level object (stores), or one feature
@@ -147,6 +165,7 @@ struct ReadOptions {
   /// Whether a document and a CityJSONFeature of a sequence can be written byte for byte as they
   /// were read. A document other than a sequence keeps its text unless `split_features` is true.
   bool keep_text = false;
+  Surfaces surfaces = Surfaces::ignore;
 };
 
 /// Reads a document. Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or

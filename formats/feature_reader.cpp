@@ -127,9 +127,10 @@ Status FeatureReader::read_header() {
                    **text);
   }
   header_ = *std::move(header);
-  auto templates = read_geometry_templates(header_, options_.limits);
+  auto templates = read_geometry_templates(header_, options_.limits, options_.surfaces);
   if (!templates) return in_line(std::move(templates).error(), **text);
   document_.templates = std::move(templates->solids);
+  document_.template_surfaces = std::move(templates->surfaces);
   for (std::string& note : templates->notes) document_.notes.push_back(std::move(note));
   document_.header = options_.keep_text ? header_line(*std::move(*text)) : header_.text;
   return Done{};

@@ -2,6 +2,7 @@
 #include "formats/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -30,6 +31,19 @@ geometry::UnusedVertices unused_vertices(const std::vector<std::array<GridNumber
 }
 
 }  // namespace
+
+bool is_surface(const SolidSource& source) {
+  constexpr std::array<std::string_view, 9> kTypes{"MultiSurface",
+                                                   "CompositeSurface",
+                                                   "Surface",
+                                                   "PolyhedralSurface",
+                                                   "Polygon",
+                                                   "Tin",
+                                                   "Shell",
+                                                   "TriangulatedSurface",
+                                                   "OrientableSurface"};
+  return std::find(kTypes.begin(), kTypes.end(), source.geometry_type) != kTypes.end();
+}
 
 std::vector<Index> number_by_first_use(SolidArrays& arrays, std::vector<Index>& number_of) {
   std::vector<Index> vertex_of;

@@ -252,6 +252,9 @@ Result<ContainerInfo> describe_container(ByteView bytes, const Limits& limits) {
     for (const ContainerFeature& feature : (*part)->features) {
       info.solids += feature.encoded.solids.size();
       list_unproven(feature.encoded, info);
+      for (const auto& [type, count] : other_geometries(feature.encoded)) {
+        info.other_geometries[type] += count;
+      }
       for (const Decoded& decoded : feature.solids) {
         for (const codec::BlobInfo::Part& bytes_of : decoded.info.parts) {
           info.parts[bytes_of.name] += bytes_of.bytes;

@@ -85,6 +85,8 @@ struct ContainerInfo {
   std::uint64_t solids = 0;
   std::uint64_t unproven_features = 0;  // the features among them that are not proven
   std::vector<UnprovenSolid> unproven;  // the solids among them that are not proven
+  /// The geometries that are no solids, by type; city models only.
+  std::map<std::string, std::uint64_t> other_geometries;
   std::uint64_t pages = 0;
   std::uint64_t solid_bytes = 0;        // the bytes of page files and blobs
   std::map<std::string, double> parts;  // the bytes by part of the stream

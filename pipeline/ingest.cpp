@@ -62,6 +62,7 @@ SolidOutcome outcome_of(InspectedSolid& inspected, const Solid& solid, const Sto
   }
   validate::ReportJsonOptions json;
   json.pointer_prefix = outcome.source.pointer;
+  json.has_shells = !formats::is_surface(outcome.source);
   json.include_times = false;
   outcome.report_json = validate::report_json(outcome.report, solid, json);
   return outcome;
@@ -133,14 +134,16 @@ std::set<GeometryPlace> unproven_geometries(const InspectedFeature& feature) {
 }
 
 /// Reads the text of a feature, or of a whole CityJSON, of the document that `shared` is a part of.
-Result<Feature> read_again(const std::string& text, const Document& shared, bool is_whole) {
+Result<Feature> read_again(const std::string& text, const Document& shared, bool is_whole,
+                           formats::Surfaces surfaces) {
   const Limits no_limits{.bytes = ~0ULL, .nesting = 256};
+  const formats::ReadOptions reading{no_limits, false, false, surfaces};
   if (!is_whole) {
     const auto header = formats::read_city_json_header(shared.header.str(), no_limits);
     if (!header) return header.error();
-    return formats::read_city_json_feature(*header, text, {no_limits, false, false});
+    return formats::read_city_json_feature(*header, text, reading);
   }
-  auto document = formats::read_city_json(text, {no_limits, false, false});
+  auto document = formats::read_city_json(text, reading);
   if (!document) return std::move(document).error();
   return std::move(document->features.front());
 }
@@ -176,7 +179,7 @@ Result<std::optional<EncodedFeature>> encode_rest(
   outcome.left_out.assign(places.begin(), places.end());
   outcome.rejected = std::move(divided->chosen);
   if (divided->geometries_left == 0) return std::optional<EncodedFeature>();
-  auto rest = read_again(divided->rest, shared, is_whole);
+  auto rest = read_again(divided->rest, shared, is_whole, options.surfaces);
   if (!rest) return std::move(rest).error();
   const InspectedFeature inspected =
       inspect(*std::move(rest), workers, options.certify, options.groups, &templates);
@@ -197,6 +200,15 @@ Result<Policy> policy_named(const std::string& name) {
   if (name == "keep") return Policy::keep;
   return Error{ErrorCode::invalid_argument,
                "the policy for invalid features is refuse, skip or keep"};
+}
+
+Result<SurfaceRule> surface_rule_named(const std::string& name) {
+  if (name == "ignore") return SurfaceRule{formats::Surfaces::ignore, Severity::warning};
+  if (name == "check") return SurfaceRule{formats::Surfaces::read, Severity::warning};
+  if (name == "judge") return SurfaceRule{formats::Surfaces::read, Severity::error};
+  if (name == "as-solids") return SurfaceRule{formats::Surfaces::as_solids, Severity::warning};
+  return Error{ErrorCode::invalid_argument,
+               "the rule for surfaces is ignore, check, judge or as-solids"};
 }
 
 std::string_view to_string(Policy policy) {
@@ -237,6 +249,38 @@ void add_unreadable(InspectedFeature& inspected, const CertifyOptions& options) 
 
 }  // namespace
 
+void add_surfaces(InspectedFeature& inspected, const CertifyOptions& options) {
+  for (SubmittedSolid& surface : inspected.feature.surfaces) {
+    auto found = validate::inspect_surface(surface.solid, options_for(surface, options));
+    const bool has_findings = !found.report.findings.empty();
+    const bool is_closed = found.facts.closure.is_closed;
+    inspected.surfaces.add(found);
+    if (!has_findings && !is_closed && found.report.verdict == Verdict::valid) continue;
+    if (surface.unreadable.empty()) {
+      found.report.notes.push_back(validate::surface_words(found.facts));
+    }
+    inspected.solids.push_back(
+        {surface.source, {std::move(found.report), {}, {}}, std::move(found.facts)});
+    inspected.feature.solids.push_back(std::move(surface));
+  }
+  inspected.feature.surfaces.clear();
+}
+
+void SurfaceCounts::add(const validate::SurfaceInspection& surface) {
+  ++checked;
+  if (!surface.report.findings.empty()) ++with_findings;
+  if (!surface.facts.closure.is_closed) return;
+  ++closed;
+  if (surface.facts.as_solid == Verdict::valid) ++closed_valid;
+}
+
+void SurfaceCounts::add(const SurfaceCounts& other) {
+  checked += other.checked;
+  with_findings += other.with_findings;
+  closed += other.closed;
+  closed_valid += other.closed_valid;
+}
+
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups,
                          TemplateInspector* templates) {
@@ -256,6 +300,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
   }
   for (InspectedGroup& group : inspected.groups) name_members(inspected, group);
   add_unreadable(inspected, options);
+  add_surfaces(inspected, options);
   return inspected;
 }
 
@@ -301,6 +346,7 @@ Result<ProcessedFeature> process(Feature feature, const Document& shared,
                                  delaunay::EngineWorkers* workers, const IngestOptions& options,
                                  TemplateInspector& templates) {
   ProcessedFeature processed;
+  feature.surfaces.clear();  // they stay in the skeleton; validate_stream() reports on them
   InspectedFeature inspected =
       inspect(std::move(feature), workers, options.certify, options.groups, &templates);
   processed.outcome.id = inspected.feature.id;

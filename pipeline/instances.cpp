@@ -236,8 +236,9 @@ std::size_t TemplateInspector::show(InstanceSolid solid, InspectedFeature& featu
 }
 
 std::optional<InspectedFeature> TemplateInspector::inspect_templates(
-    std::vector<formats::TemplateInstance> others) {
+    std::vector<formats::TemplateInstance> others, std::vector<SubmittedSolid> surfaces) {
   InspectedFeature inspected;
+  inspected.feature.surfaces = std::move(surfaces);
   inspected.feature.id = "geometry-templates";
   inspected.feature.type = "GeometryTemplates";
   inspected.feature.instances = std::move(others);
@@ -255,7 +256,7 @@ std::optional<InspectedFeature> TemplateInspector::inspect_templates(
     inspected.solids.push_back({templates_[i].source, std::move(inspection)});
     inspected.feature.solids.push_back(templates_[i]);
   }
-  if (inspected.solids.empty()) return std::nullopt;
+  if (inspected.solids.empty() && inspected.feature.surfaces.empty()) return std::nullopt;
   const std::vector<GroupCandidate> all = group_candidates(inspected);
   std::vector<GroupCandidate> candidates;
   for (const std::size_t solid : unplaced) candidates.push_back(all[solid]);
@@ -263,6 +264,7 @@ std::optional<InspectedFeature> TemplateInspector::inspect_templates(
     for (std::size_t& member : group.members) member = unplaced[member];
     inspected.groups.push_back(std::move(group));
   }
+  add_surfaces(inspected, options_);
   return inspected;
 }
 

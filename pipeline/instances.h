@@ -54,9 +54,11 @@ class TemplateInspector {
   /// template without instances is in it as it is, another one as a valid instance places it (one
   /// that is only shifted or turned, else the one with the least placement, whatever the order of
   /// features). The feature includes the invalid instances among `others`, which belong to no
-  /// feature. nullopt when no template is left.
+  /// feature. `surfaces` are those of
+  /// templates. nullopt when nothing is left.
   std::optional<InspectedFeature> inspect_templates(
-      std::vector<formats::TemplateInstance> others = {});
+      std::vector<formats::TemplateInstance> others = {},
+      std::vector<SubmittedSolid> surfaces = {});
 
  private:
   /// The change that an instance makes to size and shape of its template. nullopt when the instance

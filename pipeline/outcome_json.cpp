@@ -92,7 +92,7 @@ std::string feature_findings_json(const InspectedFeature& feature) {
   return has_findings ? json.take() : std::string();
 }
 
-std::string proof_json(const store::FeatureRecord& feature) {
+std::string proof_json(const EncodedFeature& feature) {
   JsonText json;
   json.open('{').key("id").value(feature.id).key("proven").value(feature.is_proven());
   json.key("solids").open('[');
@@ -107,6 +107,11 @@ std::string proof_json(const store::FeatureRecord& feature) {
   }
   json.close(']');
   if (!feature.findings.empty()) json.key("findings").raw(feature.findings);
+  if (const auto others = other_geometries(feature); !others.empty()) {
+    json.key("otherGeometries").open('{');
+    for (const auto& [type, count] : others) json.key(type).value(count);
+    json.close('}');
+  }
   json.close('}');
   return json.take();
 }

@@ -27,8 +27,8 @@ std::string outcome_json(const IngestOutcome& outcome);
 /// that are not valid, and the instances of geometry templates that are not. "" without any.
 std::string feature_findings_json(const InspectedFeature& feature);
 
-/// Which solids of a stored feature are proven, with measures and reports, and the defects that are
-/// of none of its solids alone.
-std::string proof_json(const store::FeatureRecord& feature);
+/// Which solids of a stored feature are proven, with measures and reports, the defects that are of
+/// none of its solids alone, and the number of its other geometries by type.
+std::string proof_json(const EncodedFeature& feature);
 
 }  // namespace watertight::pipeline

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,12 +21,25 @@
 #include "store/solid_store.h"
 #include "validate/certify.h"
 #include "validate/groups.h"
+#include "validate/surface/inspect_surface.h"
 
 namespace watertight::pipeline {
 
 struct InspectedSolid {
   SolidSource source;
   Inspection inspection;
+  /// Present for a surface, which is judged by the rules of rings and facets and is no solid.
+  std::optional<validate::SurfaceFacts> surface = {};
+};
+
+/// The number of surfaces of a feature, or of many.
+struct SurfaceCounts {
+  std::uint64_t checked = 0;
+  std::uint64_t with_findings = 0;
+  std::uint64_t closed = 0;        // in one shell or several
+  std::uint64_t closed_valid = 0;  // that would be a valid solid
+  void add(const validate::SurfaceInspection& surface);
+  void add(const SurfaceCounts& other);
 };
 
 /// Solids of a feature that are compared with each other: the members of one CompositeSolid, or the
@@ -40,14 +54,28 @@ struct InspectedGroup {
 
 struct InspectedFeature {
   /// The feature with its own solids, then those of each instance of a geometry template that is
-  /// not valid or in whose group something was found, as placed, with rounded vertices. So a
-  /// feature that is valid has no other solids than its own.
+  /// not valid or in whose group something was found, as placed, with rounded vertices; then an
+  /// empty one for each part that could not be read; then the surfaces that are closed or in which
+  /// something was found. So a feature that is valid has no other solids than its own, and
+  /// surfaces.
   Feature feature;
   std::vector<InspectedSolid> solids;  // one for each of feature.solids, in order
   std::size_t own = 0;                 // how many of them are the feature's own solids
   std::vector<InspectedGroup> groups;  // in order of their first members
+  SurfaceCounts surfaces = {};         // of all surfaces that were inspected
   Verdict verdict() const;             // the worst of solids and groups; valid without any
 };
+
+/// What becomes of surfaces in a validation.
+struct SurfaceRule {
+  formats::Surfaces reading = formats::Surfaces::read;
+  Severity severity = Severity::warning;  // CertifyOptions::severity_of_surfaces
+};
+
+/// The rule of this name: `ignore`; `check`, findings are warnings; `judge`, they are errors;
+/// `as-solids`, closed surfaces are solids, and findings in others are warnings. Errors:
+/// invalid_argument.
+Result<SurfaceRule> surface_rule_named(const std::string& name);
 
 /// The options with what the reader of a solid noted about it. Keeps references to `submitted`.
 CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions& options);
@@ -69,6 +97,10 @@ validate::GroupOptions group_options(const validate::GroupOptions& groups,
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups = {},
                          TemplateInspector* templates = nullptr);
+
+/// Inspects the surfaces of the feature, which it takes out of it. Adds those that are closed or in
+/// which something was found to the solids.
+void add_surfaces(InspectedFeature& inspected, const CertifyOptions& options);
 
 /// The outcome of one solid of a document.
 struct SolidOutcome {
@@ -120,6 +152,8 @@ struct IngestOptions : FeatureEncoding {
   /// Absent: that of the collection; refuse where there is none. A collection that the write makes
   /// gets this policy.
   std::optional<Policy> policy;
+  /// How the document was read (ReadOptions::surfaces): Policy::skip reads features again.
+  formats::Surfaces surfaces = formats::Surfaces::ignore;
   /// The name of features that have no id: "house" makes house, house-2, ...; "": they are refused.
   std::string unnamed;
   store::WriteCondition condition;  // for each feature that is stored
@@ -159,6 +193,10 @@ Result<Document> decode_feature(const EncodedFeature& feature, const Limits& lim
 /// feature.solids; the feature's blobs are not used.
 Result<Document> decode_feature(const EncodedFeature& feature, std::vector<Solid> solids,
                                 const Limits& limits = {});
+
+/// The number of geometries of the feature that are no solids, by type; they are kept as they came
+/// and no proof is about them. For city models. Cost: linear in the skeleton.
+std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feature);
 
 /// The feature as the store keeps it, with a compressed skeleton. Errors: those of pack_text().
 Result<StoredFeature> pack(EncodedFeature feature);

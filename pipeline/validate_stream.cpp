@@ -73,7 +73,8 @@ class Stream {
 
   /// Hands on the geometry templates, last because what they count as depends on their instances.
   Status add_templates(std::uint64_t number) {
-    auto inspected = templates_.inspect_templates(reader_.document().instances);
+    auto inspected = templates_.inspect_templates(reader_.document().instances,
+                                                  reader_.document().template_surfaces);
     if (!inspected) return Done{};
     return hand_on({number, *std::move(inspected), {}});
   }

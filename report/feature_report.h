@@ -29,6 +29,7 @@ struct ReportHead {
   double overlap_metres = 0;            // GroupOptions::overlap_metres
   bool also_tolerant = false;           // CertifyOptions::also_tolerant
   double tolerant_snap_metres = 0.001;  // CertifyOptions::tolerant_snap_metres
+  std::string surfaces;                 // the rule for surfaces, "" for `check`
 };
 
 /// The facts about a document that are known before its features.

@@ -12,6 +12,7 @@ struct Side {
   const SolidSource* source = nullptr;
   const Solid* submitted = nullptr;
   Place place = {};
+  bool is_surface = false;  // a surface that is no solid
 };
 
 struct LineParts {
@@ -22,8 +23,10 @@ struct LineParts {
 };
 
 std::string side_words(const Side& side) {
-  std::string words = side.source == nullptr ? "" : object_words(*side.source);
+  const std::string_view noun = side.is_surface ? "surface" : "solid";
+  std::string words = side.source == nullptr ? "" : object_words(*side.source, noun);
   const std::string place = place_words(side.place, side.submitted);
+  if (side.is_surface) words.append(", ").append(shortened(side.source->geometry_type));
   if (!words.empty() && !place.empty()) words += ", ";
   return words + place;
 }
@@ -65,7 +68,7 @@ std::string line_of(const LineParts& parts) {
 
 }  // namespace
 
-std::string object_words(const SolidSource& source) {
+std::string object_words(const SolidSource& source, std::string_view noun) {
   std::string details;
   const auto add = [&](const std::string& name, const std::string& value) {
     if (!details.empty()) details += ", ";
@@ -75,7 +78,7 @@ std::string object_words(const SolidSource& source) {
   if (source.geometry > 0) add("geometry", std::to_string(source.geometry));
   if (source.ordinal > 0 && !source.object_id.empty()) add("solid", std::to_string(source.ordinal));
   std::string words = shortened(source.object_id);
-  if (words.empty()) words.append("solid ").append(std::to_string(source.ordinal));
+  if (words.empty()) words.append(noun).append(1, ' ').append(std::to_string(source.ordinal));
   if (!details.empty()) words.append(" (").append(details).append(1, ')');
   return words;
 }
@@ -83,7 +86,8 @@ std::string object_words(const SolidSource& source) {
 std::vector<FindingLine> finding_lines(const pipeline::InspectedFeature& feature) {
   const auto side_of = [&](Index solid, const Place& place) -> Side {
     if (solid >= feature.solids.size()) return {nullptr, nullptr, place};
-    return {&feature.solids[solid].source, submitted_solid(feature, solid), place};
+    return {&feature.solids[solid].source, submitted_solid(feature, solid), place,
+            feature.solids[solid].surface.has_value()};
   };
   std::vector<FindingLine> lines;
   for (const PlacedFinding& placed : findings_of(feature)) {

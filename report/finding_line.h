@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/pipeline.h"
@@ -12,8 +13,9 @@
 namespace watertight::report {
 
 /// The object of a solid with its level of detail and, beyond the first, the number of the geometry
-/// and of the solid in it: "b (LoD 2.2, geometry 1)".
-std::string object_words(const SolidSource& source);
+/// and of the solid in it: "b (LoD 2.2, geometry 1)". Without the id of an object: "solid 0", with
+/// `noun` for "solid".
+std::string object_words(const SolidSource& source, std::string_view noun = "solid");
 
 /// A finding with its line.
 struct FindingLine {

@@ -65,6 +65,24 @@ void write_ladder(JsonText& json, const Report& report, bool has_times) {
   json.close(']');
 }
 
+void write_surface(JsonText& json, const validate::SurfaceFacts& facts) {
+  json.key("surface").open('{').key("closed").value(facts.closure.is_closed);
+  json.key("open_edges").value(std::uint64_t{facts.closure.open_edges});
+  json.key("parts").value(std::uint64_t{facts.closure.parts});
+  if (facts.as_solid) {
+    json.key("as_solid").value(validate::to_string(*facts.as_solid));
+    write_codes(json, "solid_codes", facts.solid_codes);
+  }
+  json.close('}');
+}
+
+void write_surface_counts(JsonText& json, const pipeline::SurfaceCounts& surfaces) {
+  if (surfaces.checked == 0) return;
+  json.key("surfaces").open('{').key("checked").value(surfaces.checked);
+  json.key("closed").value(surfaces.closed).key("closed_valid").value(surfaces.closed_valid);
+  json.key("with_findings").value(surfaces.with_findings).close('}');
+}
+
 void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool has_times) {
   const Report& report = solid.inspection.report;
   json.open('{').key("id").value(solid_id(solid.source));
@@ -90,6 +108,7 @@ void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool
   write_not_run(json, report.not_run);
   write_strings(json, "notes", report.notes);
   write_ladder(json, report, has_times);
+  if (solid.surface) write_surface(json, *solid.surface);
   if (report.measures) json.key("measures").raw(validate::report_measures_json(*report.measures));
   if (has_times) json.key("seconds").value(report.seconds);
   json.close('}');
@@ -145,7 +164,9 @@ std::string feature_json(const pipeline::InspectedFeature& feature, bool has_tim
     write_primitive(json, solid, has_times);
   json.close(']').key("groups").open('[');
   for (const pipeline::InspectedGroup& group : feature.groups) write_group(json, group);
-  json.close(']').close('}');
+  json.close(']');
+  write_surface_counts(json, feature.surfaces);
+  json.close('}');
   return json.take();
 }
 
@@ -209,6 +230,7 @@ class JsonReport final : public FeatureReport {
     json.key("proof").value(is_boundary ? "boundary" : "tetrahedralization");
     json.key("strict").value(head_.is_strict).key("tolerant").value(head_.also_tolerant);
     if (head_.also_tolerant) json.key("tolerant_snap_tol").value(head_.tolerant_snap_metres);
+    if (!head_.surfaces.empty()) json.key("surfaces").value(head_.surfaces);
     json.key("rule_set").value(int{head_.acceptance.rule_set}).close('}');
   }
 
@@ -227,6 +249,7 @@ class JsonReport final : public FeatureReport {
     for (const auto& [code, count] : tally_.findings()) json.key(std::to_string(code)).value(count);
     json.close('}').key("findings_omitted").value(tally_.omitted());
     write_codes(json, "first_level", tally_.first_level());
+    write_surface_counts(json, tally_.surfaces());
     write_strings(json, "notes", end.notes);
     if (!head_.time.empty()) json.key("seconds").value(end.seconds);
     json.key("validity").value(tally_.is_valid());

@@ -96,6 +96,7 @@ std::string solid_id(const SolidSource& source) {
 validate::ReportJsonOptions json_options_of(const SolidSource& source, Index solid) {
   validate::ReportJsonOptions options;
   options.pointer_prefix = source.pointer;
+  options.has_shells = !formats::is_surface(source);
   options.id_prefix = solid_id(source) + "|";
   options.solid_number = solid;
   return options;

@@ -51,9 +51,10 @@ void Tally::add(const pipeline::InspectedFeature& feature) {
   const Verdict verdict = feature.verdict();
   verdict_ = pipeline::worse(verdict_, verdict);
   count(features_, feature.feature.type, verdict);
+  surfaces_.add(feature.surfaces);
   for (const pipeline::InspectedSolid& solid : feature.solids) {
     const Report& report = solid.inspection.report;
-    count(solids_, solid.source.geometry_type, report.verdict);
+    if (!solid.surface) count(solids_, solid.source.geometry_type, report.verdict);
     omitted_ += report.findings_omitted;
     first_level_.insert(report.first_level.begin(), report.first_level.end());
     for (const Finding& finding : report.findings) add_finding(finding);

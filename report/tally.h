@@ -36,6 +36,8 @@ class Tally {
   const std::set<int>& errors() const { return errors_; }
   const std::set<int>& warnings() const { return warnings_; }
   const std::set<int>& first_level() const { return first_level_; }
+  /// The surfaces, which `solids` does not count.
+  const pipeline::SurfaceCounts& surfaces() const { return surfaces_; }
   std::uint64_t unreadable() const { return unreadable_; }
   std::uint64_t omitted() const { return omitted_; }
   /// The worst verdict of all features; at least undecided when something could not be read.
@@ -47,6 +49,7 @@ class Tally {
 
   std::map<std::string, VerdictCount> features_;  // by type of the feature
   std::map<std::string, VerdictCount> solids_;
+  pipeline::SurfaceCounts surfaces_;
   std::map<int, std::uint64_t> findings_;
   std::set<int> errors_;
   std::set<int> warnings_;

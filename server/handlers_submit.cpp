@@ -68,6 +68,15 @@ Status read_tolerance(const Target& target, std::string_view name, double limit,
   return Done{};
 }
 
+/// The rule for surfaces that are stored: as they came, or closed ones as solids.
+Result<formats::Surfaces> stored_surfaces(const Target& target) {
+  const std::string* text = target.parameter("surfaces");
+  if (text == nullptr || *text == "ignore") return formats::Surfaces::ignore;
+  if (*text == "as-solids") return formats::Surfaces::as_solids;
+  return Error{ErrorCode::invalid_argument,
+               "surfaces is ignore or as-solids where they are stored"};
+}
+
 /// Reads the rules by which solids are judged: planarity, planarity-angle, overlap, proof, strict.
 Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
   CertifyOptions& options = ingest.certify;
@@ -107,9 +116,11 @@ std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::Tex
 }
 
 /// Validates a document and answers with its report; `kind` is 0 for JSON, 1 for GeoJSON, 2 for
-/// HTML. Equal documents get equal answers, so the report has no times.
+/// HTML; `surfaces` is the rule for surfaces, "" for the default. Equal documents get equal
+/// answers, so the report has no times.
 Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
-                   const pipeline::IngestOptions& options, std::size_t kind) {
+                   const pipeline::IngestOptions& options, std::size_t kind,
+                   const std::string& surfaces) {
   constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};
   Response response{200, std::string(kTypes[kind]), {}, {}};
   report::ReportHead head;
@@ -117,6 +128,7 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
   head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
   head.overlap_metres = options.groups.overlap_metres;
   head.is_strict = options.certify.ladder.strict;
+  head.surfaces = surfaces;
   const auto report = make_report(
       kind,
       [&response](std::string_view text) -> Status {
@@ -186,7 +198,8 @@ Response answer_of(const pipeline::IngestOutcome& outcome, const std::string& co
 }
 
 /// Passes the documents of the body to the ingestion. Returns the problem with them, if any.
-std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedRequest& request) {
+std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedRequest& request,
+                                 formats::Surfaces surfaces) {
   if (is_container_body(request)) {
     const Status added =
         ingestion.add_container(as_bytes(request.request.body), request.service.options.limits);
@@ -194,7 +207,7 @@ std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedReq
   }
   const auto header = header_for(request);
   if (!header) return to_problem(header.error());
-  Submission submission = read_submission(request, AcceptedFormats::city_models, *header);
+  Submission submission = read_submission(request, AcceptedFormats::city_models, *header, surfaces);
   if (submission.problem) return submission.problem;
   const Status added = ingestion.add(*submission.reader);
   return added ? std::nullopt : std::optional(problem_of_body(added.error()));
@@ -214,6 +227,9 @@ Response post_items(const RoutedRequest& request) {
   if (Status rules = read_rules(request.target, options); !rules) {
     return to_response(to_problem(rules.error()));
   }
+  const auto surfaces = stored_surfaces(request.target);
+  if (!surfaces) return to_response(to_problem(surfaces.error()));
+  options.surfaces = *surfaces;
   auto condition = write_condition(request.request);
   if (!condition) return to_response(to_problem(condition.error()));
   options.condition = *std::move(condition);
@@ -223,7 +239,7 @@ Response post_items(const RoutedRequest& request) {
                                   keeper.add(std::move(feature));
                                   return Done{};
                                 });
-  if (const auto problem = read_into(ingestion, request)) return to_response(*problem);
+  if (const auto problem = read_into(ingestion, request, *surfaces)) return to_response(*problem);
   const auto counts = ingestion.finish();
   if (!counts) return to_response(to_problem(counts.error()));
   const auto outcome = std::move(keeper).outcome(*counts, ingestion.versions());
@@ -241,9 +257,14 @@ Response post_validate(const RoutedRequest& request) {
         406, "not-acceptable",
         "the report is available as application/json, application/geo+json and text/html");
   }
-  Submission submission = read_submission(request, AcceptedFormats::all, "");
+  const std::string* named = request.target.parameter("surfaces");
+  const auto surfaces = pipeline::surface_rule_named(named == nullptr ? "check" : *named);
+  if (!surfaces) return to_response(to_problem(surfaces.error()));
+  options.certify.severity_of_surfaces = surfaces->severity;
+  Submission submission = read_submission(request, AcceptedFormats::all, "", surfaces->reading);
   if (submission.problem) return to_response(*submission.problem);
-  return report_of(*submission.reader, request, options, *kind);
+  const bool is_default = named == nullptr || *named == "check";
+  return report_of(*submission.reader, request, options, *kind, is_default ? "" : *named);
 }
 
 }  // namespace watertight::server

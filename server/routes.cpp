@@ -105,8 +105,8 @@ const std::vector<Route>& routes() {
        "/collections/{collectionId}/items",
        Lane::computing,
        post_items,
-       {"f", "invalid", "planarity", "planarity-angle", "overlap", "exact-overlaps", "proof",
-        "strict"}},
+       {"f", "invalid", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
+        "proof", "strict"}},
       {"GET",
        "/collections/{collectionId}/items/{itemId}",
        Lane::reading,
@@ -118,7 +118,8 @@ const std::vector<Route>& routes() {
        "/validate",
        Lane::computing,
        post_validate,
-       {"f", "planarity", "planarity-angle", "overlap", "exact-overlaps", "proof", "strict"}},
+       {"f", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps", "proof",
+        "strict"}},
   };
   return table;
 }

@@ -145,9 +145,10 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
   Document document;
   document.format = Format::city_json_seq;
   document.header = header;
-  auto templates = formats::read_geometry_templates(*city_header, options.limits);
+  auto templates = formats::read_geometry_templates(*city_header, options.limits, options.surfaces);
   if (!templates) return std::move(templates).error();
   document.templates = std::move(templates->solids);
+  document.template_surfaces = std::move(templates->surfaces);
   document.features.push_back(*std::move(feature));
   return document;
 }
@@ -227,7 +228,7 @@ Problem problem_of_body(const Error& error) {
 }
 
 Submission read_submission(const RoutedRequest& request, AcceptedFormats accepted,
-                           const std::string& header) {
+                           const std::string& header, formats::Surfaces surfaces) {
   Submission submission;
   auto format = stated_format(request, accepted);
   if (!format) {
@@ -237,7 +238,9 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   const std::string& body = request.request.body;
   formats::ReadOptions options;
   options.limits = request.service.options.limits;
-  options.keep_text = true;
+  const bool is_stored = accepted == AcceptedFormats::city_models;
+  options.keep_text = is_stored || surfaces != formats::Surfaces::as_solids;
+  options.surfaces = surfaces;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
   if (*format != Format::city_json_seq) submission.problem = take_memory(request, submission);
   if (submission.problem) return submission;

@@ -31,7 +31,8 @@ struct Submission {
   std::optional<Problem> problem;
 };
 Submission read_submission(const RoutedRequest& request, AcceptedFormats accepted,
-                           const std::string& header);
+                           const std::string& header,
+                           formats::Surfaces surfaces = formats::Surfaces::ignore);
 
 /// The problem with a body that could not be read.
 Problem problem_of_body(const Error& error);

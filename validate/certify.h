@@ -45,6 +45,9 @@ struct CertifyOptions {
   bool also_tolerant = false;  // true: also fill Report::tolerant
   /// The snap distance of Report::tolerant, metres, above 0; val3dity's default.
   double tolerant_snap_metres = 0.001;
+  /// The severity of findings in surfaces (validate/surface/inspect_surface.h): warnings leave the
+  /// verdict of the feature as it is.
+  Severity severity_of_surfaces = Severity::warning;
   /// The number of threads that search for intersections within the solid; the report does not
   /// depend on this number.
   unsigned threads = 1;

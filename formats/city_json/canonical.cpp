@@ -239,7 +239,8 @@ class Canonicalizer {
 
   void arrange_geometry(Json& geometry) {
     const Json* boundaries = find_member(geometry, "boundaries");
-    const Json* single = find_member(*boundaries, "solid");
+    const Json* surface = find_member(*boundaries, "surface");
+    const Json* single = surface != nullptr ? surface : find_member(*boundaries, "solid");
     const Json* range = find_member(*boundaries, "solids");
     const bool is_range = range != nullptr && range->is_array() && range->size() == 2;
     if (single == nullptr && !is_range) return;
@@ -250,7 +251,10 @@ class Canonicalizer {
     const auto arrange_values = [&](Json* owner, bool has_rings) {
       Json* values = owner == nullptr ? nullptr : find_member(*owner, "values");
       if (values == nullptr) return;
-      if (single != nullptr) {
+      if (surface != nullptr) {  // a solid has one list more, of its shells
+        Json shells = arranged_solid(Json::array({*values}), solids_[first], has_rings);
+        *values = std::move(shells.front());
+      } else if (single != nullptr) {
         *values = arranged_solid(*values, solids_[first], has_rings);
       } else if (values->is_array() && values->size() == count) {
         for (std::size_t i = 0; i < count; ++i) {

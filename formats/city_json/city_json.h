@@ -6,6 +6,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -34,14 +35,16 @@ Result<Feature> read_city_json_feature(const CityHeader& header, std::string_vie
                                        const ReadOptions& options = {});
 struct TemplateSolids {
   std::vector<SubmittedSolid> solids;
-  std::vector<std::string> notes;  // the templates that cannot be read
+  std::vector<SubmittedSolid> surfaces;  // Document::template_surfaces
+  std::vector<std::string> notes;        // the templates that cannot be read
 };
 
 /// The solids of the header's geometry templates (Document::templates), each template on a lattice
 /// of its own; most headers have none and cost nothing. A template that cannot be read is a solid
 /// without facets (902), and a note. Errors: malformed with JSON Pointer, for the list of templates
 /// or of their vertices. Cost: linear.
-Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const Limits& limits = {});
+Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const Limits& limits = {},
+                                               Surfaces surfaces = Surfaces::ignore);
 /// The text of write_feature(), without reading the header again.
 Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature);
 
@@ -76,6 +79,15 @@ struct DividedText {
 /// as JSON values.
 Result<DividedText> divide_city_model(std::string_view text, const std::set<GeometryPlace>& chosen,
                                       const Limits& limits = {});
+
+/// The number of geometries of a skeleton that are no solids of it, by type: they are kept as they
+/// came. Empty for a text that is no skeleton of a city model. Cost: linear.
+std::map<std::string, std::uint64_t> other_geometries(std::string_view skeleton);
+
+/// Makes geometries of type Solid of the surfaces that Surfaces::as_solids has read as solids;
+/// lists of values by facet get a level for the shell. Returns how many. Errors: malformed. Cost:
+/// linear, the text of such features as JSON values.
+Result<std::uint64_t> turn_surfaces_into_solids(Document& document);
 
 /// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the
 /// finest of their decimal grids. Features of GML that keep their city model (keep_city_model())

@@ -5,7 +5,8 @@
 //
 // Skeleton of a feature: its CityJSONFeature (or the whole CityJSON) as compact JSON in which
 //   - the boundaries of a Solid are {"solid": k} and those of a MultiSolid or CompositeSolid
-//     {"solids": [k, n]}: solid k, or solids k to k + n - 1, of the feature;
+//     {"solids": [k, n]}: solid k, or solids k to k + n - 1, of the feature; those of a surface
+//     that is taken for a solid are {"surface": k};
 //   - "vertices" is {"count": N, "kind": "integers" | "decimals", "solids": [runs...],
 //     "others": [x, y, z, x, ...]}. "solids" has, for each solid, the vertices of the document that
 //     are its vertices, as runs [first, length, first, length, ...]; "others" has the coordinates
@@ -32,11 +33,14 @@ struct GeometryRef {
   std::size_t boundary = 0;    // index into CityModel::boundary_begin
   std::string type;
   std::string lod;
-  bool is_unreadable = false;  // then it has no solids, and its boundaries stay as they came
+  bool is_unreadable = false;      // then it has no solids, and its boundaries stay as they came
+  bool is_closed_surface = false;  // a surface that is taken for a solid
 
   bool is_solid() const { return type == "Solid"; }
+  bool is_surface() const { return type == "MultiSurface" || type == "CompositeSurface"; }
   bool is_of_solids() const {
-    return !is_unreadable && (is_solid() || type == "MultiSolid" || type == "CompositeSolid");
+    return !is_unreadable &&
+           (is_solid() || is_closed_surface || type == "MultiSolid" || type == "CompositeSolid");
   }
 };
 
@@ -44,6 +48,12 @@ struct GeometryRef {
 struct UnreadableRef {
   std::uint32_t object = 0;
   UnreadablePart part;
+};
+
+/// A surface that is no solid.
+struct SurfaceRef {
+  std::uint32_t object = 0;
+  SubmittedSolid surface;
 };
 
 /// A geometry of a city object that is an instance of a geometry template.
@@ -65,6 +75,7 @@ struct ModelIndex {
   std::vector<GeometryRef> geometries;  // sorted by object, then by geometry
   std::vector<InstanceRef> instances;   // sorted by object, then by geometry; also in `geometries`
   std::vector<UnreadableRef> unreadable;
+  std::vector<SurfaceRef> surfaces;  // of ReadOptions::surfaces, in document order
   std::vector<std::string> notes;
   bool are_templates = false;  // each "object" is a geometry template without id
 };
@@ -99,9 +110,15 @@ void note_dangling_references(const CityModel& model, ModelIndex& index);
 
 /// The solids of the model in document order. Solids whose objects have the same top-level object
 /// share one lattice, as do all solids of a CityJSONFeature. Geometries whose boundaries are wrong
-/// become unreadable. Errors: limit_exceeded; not_encodable.
+/// become unreadable. Surfaces go to index.surfaces, or are solids, as `surfaces` says. Errors:
+/// limit_exceeded; not_encodable.
 Result<std::vector<CitySolid>> city_solids(const CityModel& model, ModelIndex& index,
-                                           const CityHeader& header, const Limits& limits);
+                                           const CityHeader& header, const Limits& limits,
+                                           Surfaces surfaces);
+
+/// The text that stands in a skeleton for the boundaries of a geometry of solids, `count` solids
+/// from number `first` on.
+std::string solid_reference(std::string_view geometry_type, std::size_t first, std::size_t count);
 
 /// Turns the vertices into grid integers, which a transform requires; 10.0 is an integer too.
 /// Errors: malformed.

@@ -16,13 +16,14 @@ struct ReadModel {
   std::vector<TemplateInstance> instances;
 };
 
-Result<ReadModel> read_model(CityModel model, const CityHeader& header, const Limits& limits) {
+Result<ReadModel> read_model(CityModel model, const CityHeader& header,
+                             const ReadOptions& options) {
   auto index = index_city_model(model, header.template_count);
   if (!index) return std::move(index).error();
   if (header.transform) {
     if (auto status = require_integers(model.vertices); !status) return status.error();
   }
-  auto solids = city_solids(model, *index, header, limits);
+  auto solids = city_solids(model, *index, header, options.limits, options.surfaces);
   if (!solids) return std::move(solids).error();
   auto instances = city_instances(model, *index, header);
   return ReadModel{std::move(model), std::move(*index), std::move(*solids), std::move(instances)};
@@ -38,10 +39,8 @@ std::vector<std::string> solid_references(const ReadModel& read) {
     std::size_t end = begin;
     const std::size_t boundary = read.solids[begin].boundary;
     while (end < read.solids.size() && read.solids[end].boundary == boundary) ++end;
-    const bool is_single = read.solids[begin].submitted.source.geometry_type == "Solid";
-    references[boundary] = is_single ? "{\"solid\":" + std::to_string(begin) + "}"
-                                     : "{\"solids\":[" + std::to_string(begin) + ',' +
-                                           std::to_string(end - begin) + "]}";
+    references[boundary] =
+        solid_reference(read.solids[begin].submitted.source.geometry_type, begin, end - begin);
     begin = end;
   }
   return references;
@@ -91,14 +90,17 @@ void take_solids(std::vector<CitySolid>& solids, Feature& feature) {
   for (CitySolid& solid : solids) feature.solids.push_back(std::move(solid.submitted));
 }
 
-std::vector<UnreadablePart> parts_of(std::vector<UnreadableRef> refs) {
-  std::vector<UnreadablePart> parts;
-  for (UnreadableRef& ref : refs) parts.push_back(std::move(ref.part));
-  return parts;
+// Gives the one feature of a text all that its objects have beside solids.
+void take_others(ReadModel& read, Feature& feature) {
+  feature.instances = std::move(read.instances);
+  for (UnreadableRef& ref : read.index.unreadable) {
+    feature.unreadable.push_back(std::move(ref.part));
+  }
+  for (SurfaceRef& ref : read.index.surfaces) feature.surfaces.push_back(std::move(ref.surface));
 }
 
-// Gives each feature the instances and the unreadable parts of its objects. `features` are those of
-// split_city_model().
+// Gives each feature the instances, the unreadable parts and the surfaces of its objects.
+// `features` are those of split_city_model().
 void share_out(std::vector<TemplateInstance> instances, ModelIndex index,
                std::vector<Feature>& features) {
   std::vector<std::size_t> feature_of(index.ids.size(), 0);
@@ -112,6 +114,9 @@ void share_out(std::vector<TemplateInstance> instances, ModelIndex index,
   }
   for (UnreadableRef& ref : index.unreadable) {
     features[feature_of[index.root_of[ref.object]]].unreadable.push_back(std::move(ref.part));
+  }
+  for (SurfaceRef& ref : index.surfaces) {
+    features[feature_of[index.root_of[ref.object]]].surfaces.push_back(std::move(ref.surface));
   }
 }
 
@@ -174,12 +179,12 @@ void note_vertices_without_transform(const CityHeader& header, std::vector<std::
 }
 
 Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
-                                   const Limits& limits) {
+                                   const ReadOptions& options) {
   const std::string id = string_member(model.root, "id");
   if (id.empty()) {
     return Error{ErrorCode::malformed, "the CityJSONFeature has no id", {}, "/id"};
   }
-  auto read = read_model(std::move(model), header, limits);
+  auto read = read_model(std::move(model), header, options);
   if (!read) return std::move(read).error();
   const Json* object = find_member(*find_member(read->model.root, "CityObjects"), id);
   if (object == nullptr) {
@@ -192,8 +197,7 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   feature.srid = header.srid;
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
-  feature.instances = std::move(read->instances);
-  feature.unreadable = parts_of(std::move(read->index.unreadable));
+  take_others(*read, feature);
   return feature;
 }
 
@@ -230,7 +234,7 @@ Result<Feature> read_city_json_feature(const CityHeader& header, std::string_vie
   if (string_member(model->root, "type") != "CityJSONFeature") {
     return Error{ErrorCode::malformed, "the type is not \"CityJSONFeature\"", {}, "/type"};
   }
-  auto feature = read_feature_model(std::move(*model), header, options.limits);
+  auto feature = read_feature_model(std::move(*model), header, options);
   if (feature && options.keep_text) keep_text(header, line, *feature);
   return feature;
 }
@@ -247,12 +251,13 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   header->text = header_text(model->root);
   document.header = header->text;
   note_vertices_without_transform(*header, document.notes);
-  auto templates = read_geometry_templates(*header, options.limits);
+  auto templates = read_geometry_templates(*header, options.limits, options.surfaces);
   if (!templates) return std::move(templates).error();
   document.templates = std::move(templates->solids);
+  document.template_surfaces = std::move(templates->surfaces);
   for (std::string& note : templates->notes) document.notes.push_back(std::move(note));
 
-  auto read = read_model(std::move(*model), *header, options.limits);
+  auto read = read_model(std::move(*model), *header, options);
   if (!read) return std::move(read).error();
   note_dangling_references(read->model, read->index);
   for (std::string& note : read->index.notes) document.notes.push_back(std::move(note));
@@ -269,8 +274,7 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   feature.srid = header->srid;
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
-  feature.instances = std::move(read->instances);
-  feature.unreadable = parts_of(std::move(read->index.unreadable));
+  take_others(*read, feature);
   if (options.keep_text) keep_text(*header, text, feature);
   document.features.push_back(std::move(feature));
   return document;

@@ -37,6 +37,34 @@ void append_geometries(std::string& out, const Json& geometries, const BoundaryP
 
 }  // namespace
 
+std::map<std::string, std::uint64_t> other_geometries(std::string_view skeleton) {
+  std::map<std::string, std::uint64_t> counts;
+  const Limits limits{.bytes = ~0ULL, .nesting = 256};
+  const auto model = parse_city_model(skeleton, CityText::skeleton, limits);
+  const Json* objects = model ? find_member(model->root, "CityObjects") : nullptr;
+  if (objects == nullptr || !objects->is_object()) return counts;
+  for (const auto& [id, object] : objects->get_ref<const Json::object_t&>()) {
+    const Json* geometries = find_member(object, "geometry");
+    if (geometries == nullptr || !geometries->is_array()) continue;
+    for (const Json& geometry : geometries->get_ref<const Json::array_t&>()) {
+      const Json* boundaries = find_member(geometry, "boundaries");
+      if (boundaries != nullptr && boundaries->is_object()) continue;
+      const std::string type = string_member(geometry, "type");
+      ++counts[type.empty() ? "unknown" : type];
+    }
+  }
+  return counts;
+}
+
+std::string solid_reference(std::string_view geometry_type, std::size_t first, std::size_t count) {
+  const std::string number = std::to_string(first);
+  if (geometry_type == "Solid") return std::string("{\"solid\":").append(number) + '}';
+  if (geometry_type == "MultiSurface" || geometry_type == "CompositeSurface") {
+    return std::string("{\"surface\":").append(number) + '}';
+  }
+  return std::string("{\"solids\":[").append(number) + ',' + std::to_string(count) + "]}";
+}
+
 void append_vertex_runs(std::string& out, std::span<const Index> vertices) {
   out += '[';
   for (std::size_t begin = 0; begin < vertices.size();) {

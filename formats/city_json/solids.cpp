@@ -5,6 +5,7 @@
 #include "base/quantity.h"
 #include "formats/city_json/model.h"
 #include "formats/surface.h"
+#include "geometry/mesh/closure.h"
 
 namespace watertight::formats {
 namespace {
@@ -26,8 +27,17 @@ std::string pointer_to(std::span<const BoundaryToken> tokens, std::size_t positi
   return pointer;
 }
 
+// The arrays around those of a solid's shells: none, one in a geometry of several solids; a surface
+// has one less than a solid.
+constexpr int kLevelsAboveSurface = -1;
+
+int levels_above(const GeometryRef& ref) {
+  if (ref.is_surface()) return kLevelsAboveSurface;
+  return ref.is_solid() ? 0 : 1;
+}
+
 // Cuts the boundaries of one geometry into the arrays of its solids, whose rings still have the
-// vertex numbers of the document.
+// vertex numbers of the document. A surface becomes a solid of one shell.
 class SolidCutter {
  public:
   SolidCutter(std::span<const BoundaryToken> tokens, int levels_above)
@@ -51,6 +61,7 @@ class SolidCutter {
         current_.ring_vertices.push_back(token);
       }
     }
+    if (levels_above_ == kLevelsAboveSurface) solids_.push_back(std::move(current_));
     return Done{};
   }
 
@@ -105,6 +116,23 @@ std::string boundary_pointer(const ModelIndex& index, const GeometryRef& ref) {
          pointer_token(ref.geometry) + "/boundaries";
 }
 
+CutSolid cut_solid(SolidArrays arrays, const GeometryRef& ref, const ModelIndex& index,
+                   std::uint32_t ordinal, std::vector<Index>& number_of) {
+  CutSolid cut;
+  cut.vertex_of = number_by_first_use(arrays, number_of);
+  cut.arrays = std::move(arrays);
+  const bool is_one = ref.is_solid() || ref.is_surface();
+  std::string pointer = boundary_pointer(index, ref);
+  if (!is_one) pointer += pointer_token(ordinal);
+  cut.source = {index.ids[ref.object], ref.type, ref.lod,
+                ref.geometry,          ordinal,  std::move(pointer)};
+  const Index building = index.are_templates ? kNone : index.building_of[ref.object];
+  if (building != kNone) cut.source.building_id = index.ids[building];
+  cut.object = ref.object;
+  cut.boundary = ref.boundary;
+  return cut;
+}
+
 std::vector<CutSolid> cut_solids(const CityModel& model, ModelIndex& index) {
   std::vector<CutSolid> all;
   std::vector<Index> number_of(model.vertices.size(), kNone);
@@ -127,28 +155,14 @@ std::vector<CutSolid> cut_solids(const CityModel& model, ModelIndex& index) {
       }
       continue;
     }
-    SolidCutter cutter(tokens, ref.is_solid() ? 0 : 1);
+    SolidCutter cutter(tokens, levels_above(ref));
     if (auto status = cutter.cut(model.vertices.size()); !status) {
       note_unreadable(std::move(status).error());
       continue;
     }
     std::uint32_t ordinal = 0;
     for (SolidArrays& arrays : cutter.solids()) {
-      CutSolid cut;
-      cut.vertex_of = number_by_first_use(arrays, number_of);
-      cut.arrays = std::move(arrays);
-      cut.source = {index.ids[ref.object],
-                    ref.type,
-                    ref.lod,
-                    ref.geometry,
-                    ordinal,
-                    ref.is_solid() ? pointer : pointer + pointer_token(ordinal)};
-      const Index building = index.are_templates ? kNone : index.building_of[ref.object];
-      if (building != kNone) cut.source.building_id = index.ids[building];
-      cut.object = ref.object;
-      cut.boundary = ref.boundary;
-      ++ordinal;
-      all.push_back(std::move(cut));
+      all.push_back(cut_solid(std::move(arrays), ref, index, ordinal++, number_of));
     }
   }
   return all;
@@ -179,6 +193,18 @@ class FeatureLattice {
         slot_of_(model.vertices.size(), kNone),
         was_rounded_(model.vertices.size(), false) {
     for (const Index vertex : model.vertices.rounded) was_rounded_[vertex] = true;
+  }
+
+  // Puts one geometry on a lattice of its own.
+  Result<CitySolid> place_alone(CutSolid cut) {
+    std::vector<CutSolid> one;
+    one.push_back(std::move(cut));
+    auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
+    if (!nothing) return std::move(nothing).error();
+    std::vector<CitySolid> placed{CitySolid{SubmittedSolid{*std::move(nothing), {}, {}}, {}, 0, 0}};
+    const std::size_t first = 0;
+    if (auto status = place(one, {&first, 1}, placed); !status) return status.error();
+    return std::move(placed.front());
   }
 
   Status place(std::vector<CutSolid>& cut, std::span<const std::size_t> members,
@@ -251,10 +277,70 @@ class FeatureLattice {
   std::vector<bool> was_rounded_;  // whether reading rounded a document vertex
 };
 
+// Reads the surfaces of a model. One that cannot be read is a surface with the reason.
+class SurfaceReader {
+ public:
+  SurfaceReader(const CityModel& model, ModelIndex& index, const CityHeader& header,
+                const Limits& limits)
+      : model_(model),
+        index_(index),
+        lattice_(model, header, limits),
+        number_of_(model.vertices.size(), kNone) {}
+
+  /// Adds each surface to index.surfaces. With `are_solids` those that are one closed shell are
+  /// marked instead, so that cut_solids() takes them.
+  Status read(bool are_solids) {
+    for (GeometryRef& ref : index_.geometries) {
+      if (!ref.is_surface() || ref.is_unreadable) continue;
+      const auto tokens = model_.boundary(ref.boundary);
+      if (!check_range(tokens, model_.vertices.size())) continue;  // cut_solids() notes the fault
+      auto surface = read_one(ref, tokens);
+      if (!surface) {
+        if (auto status = add_unreadable(ref, surface.error()); !status) return status;
+      } else if (are_solids && geometry::closure_of(surface->submitted.solid).is_one_shell()) {
+        ref.is_closed_surface = true;
+      } else {
+        index_.surfaces.push_back({ref.object, std::move(surface->submitted)});
+      }
+    }
+    return Done{};
+  }
+
+ private:
+  Result<CitySolid> read_one(const GeometryRef& ref, std::span<const BoundaryToken> tokens) {
+    SolidCutter cutter(tokens, kLevelsAboveSurface);
+    if (auto status = cutter.cut(model_.vertices.size()); !status) return status.error();
+    return lattice_.place_alone(
+        cut_solid(std::move(cutter.solids().front()), ref, index_, 0, number_of_));
+  }
+
+  Status add_unreadable(const GeometryRef& ref, const Error& error) {
+    auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
+    if (!nothing) return std::move(nothing).error();
+    const std::string pointer = boundary_pointer(index_, ref);
+    SubmittedSolid surface{*std::move(nothing),
+                           {index_.ids[ref.object], ref.type, ref.lod, ref.geometry, 0, pointer},
+                           {}};
+    surface.unreadable = error.message;
+    index_.surfaces.push_back({ref.object, std::move(surface)});
+    return Done{};
+  }
+
+  const CityModel& model_;
+  ModelIndex& index_;
+  FeatureLattice lattice_;
+  std::vector<Index> number_of_;
+};
+
 }  // namespace
 
 Result<std::vector<CitySolid>> city_solids(const CityModel& model, ModelIndex& index,
-                                           const CityHeader& header, const Limits& limits) {
+                                           const CityHeader& header, const Limits& limits,
+                                           Surfaces surfaces) {
+  if (surfaces != Surfaces::ignore) {
+    auto status = SurfaceReader(model, index, header, limits).read(surfaces == Surfaces::as_solids);
+    if (!status) return std::move(status).error();
+  }
   std::vector<CutSolid> cut = cut_solids(model, index);
   const bool is_one_feature = string_member(model.root, "type") == "CityJSONFeature";
 

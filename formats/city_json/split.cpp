@@ -143,18 +143,16 @@ class Splitter {
       return;
     }
     const std::size_t first = feature.solids.size();
-    bool is_single = false;
+    std::string type;
     for (std::size_t i = first_solid_[boundary];
          i < solids_.size() && solids_[i].boundary == boundary; ++i) {
       CitySolid& solid = solids_[i];
       for (Index& vertex : solid.vertex_of) vertex = local_.local(vertex);
-      is_single = solid.submitted.source.geometry_type == "Solid";
+      type = solid.submitted.source.geometry_type;
       vertex_of_.push_back(std::move(solid.vertex_of));
       feature.solids.push_back(std::move(solid.submitted));
     }
-    out += is_single ? "{\"solid\":" + std::to_string(first) + "}"
-                     : "{\"solids\":[" + std::to_string(first) + ',' +
-                           std::to_string(feature.solids.size() - first) + "]}";
+    out += solid_reference(type, first, feature.solids.size() - first);
   }
 
   std::string local_vertices() {

@@ -141,7 +141,8 @@ class TemplateReader {
 
 }  // namespace
 
-Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const Limits& limits) {
+Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const Limits& limits,
+                                               Surfaces surfaces) {
   TemplateSolids found;
   if (header.template_count == 0) return found;
   Limits unlimited = limits;
@@ -153,11 +154,12 @@ Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const L
   TemplateReader reader(*section);
   auto index = reader.read();
   if (!index) return std::move(index).error();
-  auto solids = city_solids(reader.model(), *index, CityHeader{}, limits);
+  auto solids = city_solids(reader.model(), *index, CityHeader{}, limits, surfaces);
   if (!solids) return std::move(solids).error();
   found.notes = std::move(index->notes);
   found.solids.reserve(solids->size());
   for (CitySolid& solid : *solids) found.solids.push_back(std::move(solid.submitted));
+  for (SurfaceRef& ref : index->surfaces) found.surfaces.push_back(std::move(ref.surface));
   for (UnreadableRef& ref : index->unreadable) {
     auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
     if (!nothing) return std::move(nothing).error();

@@ -119,16 +119,21 @@ Status place_vertices(OpenFeature& open, const CityHeader& header) {
   return place_others(*others, kind == "integers", open.vertices);
 }
 
-// The solids to which {"solid": k} or {"solids": [k, n]} in a skeleton refers.
+// The solids to which {"solid": k}, {"solids": [k, n]} or {"surface": k} in a skeleton refers.
 struct SolidRange {
   std::size_t first = 0;
   std::size_t count = 0;
   bool is_single = false;
+  bool is_surface = false;
 };
 std::optional<SolidRange> solid_range(const Json& reference, std::size_t solid_count) {
   if (const auto first = unsigned_of(find_member(reference, "solid")); first) {
     if (*first >= solid_count) return std::nullopt;
     return SolidRange{*first, 1, true};
+  }
+  if (const auto first = unsigned_of(find_member(reference, "surface")); first) {
+    if (*first >= solid_count) return std::nullopt;
+    return SolidRange{*first, 1, true, true};
   }
   const Json* range = find_member(reference, "solids");
   if (range == nullptr || !range->is_array() || range->size() != 2) return std::nullopt;
@@ -149,7 +154,11 @@ Status check_references(const OpenFeature& open) {
     for (const Json& geometry : *geometries) {
       const Json* boundaries = find_member(geometry, "boundaries");
       if (boundaries == nullptr || !boundaries->is_object()) continue;
-      if (!solid_range(*boundaries, open.feature->solids.size())) return unfit("solid numbers");
+      const auto range = solid_range(*boundaries, open.feature->solids.size());
+      if (!range) return unfit("solid numbers");
+      if (range->is_surface && open.feature->solids[range->first].solid.shell_count() != 1) {
+        return unfit("a surface of several shells");
+      }
     }
   }
   return Done{};
@@ -186,18 +195,23 @@ void append_facet(std::string& out, const Solid& solid, Index facet,
   out += ']';
 }
 
+void append_shell(std::string& out, const Solid& solid, Index shell,
+                  const std::vector<Index>& vertex_of, std::uint64_t offset) {
+  out += '[';
+  const IndexRange facets = solid.facets_of(shell);
+  for (Index facet = facets.begin; facet < facets.end; ++facet) {
+    if (facet > facets.begin) out += ',';
+    append_facet(out, solid, facet, vertex_of, offset);
+  }
+  out += ']';
+}
+
 void append_solid(std::string& out, const Solid& solid, const std::vector<Index>& vertex_of,
                   std::uint64_t offset) {
   out += '[';
   for (Index shell = 0; shell < solid.shell_count(); ++shell) {
     if (shell > 0) out += ',';
-    out += '[';
-    const IndexRange facets = solid.facets_of(shell);
-    for (Index facet = facets.begin; facet < facets.end; ++facet) {
-      if (facet > facets.begin) out += ',';
-      append_facet(out, solid, facet, vertex_of, offset);
-    }
-    out += ']';
+    append_shell(out, solid, shell, vertex_of, offset);
   }
   out += ']';
 }
@@ -213,6 +227,10 @@ BoundaryPrinter boundary_printer(const OpenFeature& open, std::uint64_t offset) 
       return;
     }
     const auto range = solid_range(boundaries, open.feature->solids.size()).value_or(SolidRange{});
+    if (range.is_surface) {
+      const Solid& surface = open.feature->solids[range.first].solid;
+      return append_shell(out, surface, 0, open.vertex_of[range.first], offset);
+    }
     if (!range.is_single) out += '[';
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
       if (i > range.first) out += ',';

@@ -18,6 +18,7 @@
 #include "formats/surface.h"
 #include "formats/text/kept_text.h"
 #include "formats/text/numbers.h"
+#include "geometry/mesh/closure.h"
 
 namespace watertight::formats {
 namespace {
@@ -45,12 +46,24 @@ Result<geometry::Placement> read_placement(std::string_view text) {
   return placement_of_matrix(numbers, {});
 }
 
+bool is_surface(GmlKind kind) {
+  return kind == GmlKind::surfaces || kind == GmlKind::polygon || kind == GmlKind::orientable;
+}
+
+/// A geometry property that is a surface.
+struct SurfaceDraft {
+  Index node = kNone;
+  SolidSource source;
+};
+
 class GmlReader {
  public:
-  GmlReader(const GmlModel& model, std::uint64_t byte_count, const Limits& limits)
+  GmlReader(const GmlModel& model, std::uint64_t byte_count, const ReadOptions& options)
       : model_(model),
-        limits_(limits),
-        shapes_(model, byte_count, limits),
+        limits_(options.limits),
+        surfaces_(options.surfaces),
+        shapes_(model, byte_count, options.limits),
+        surface_shapes_(model, byte_count, options.limits),
         ring_uses_(model.nodes.size()) {}
 
   Result<Document> read() {
@@ -100,20 +113,24 @@ class GmlReader {
     is_template_ = first.is_template;
     system_ = kNone;
     geometries_of_.clear();
+    surface_drafts_.clear();
     for (const Index geometry : geometries) {
       auto status = add_geometry(model_.geometries[geometry]);
       if (!status) return status;
     }
-    if (drafts_.empty()) return Done{};
     Feature feature;
+    if (auto status = read_surfaces(feature); !status) return status;
+    if (drafts_.empty() && feature.surfaces.empty()) return Done{};
     if (first.object != kNone) {
       const GmlObject& top = model_.objects[model_.objects[first.object].feature];
       feature.id = top.id;
       feature.type = top.type;
     } else {
-      feature.id = drafts_.front().source.object_id;
+      feature.id = drafts_.empty() ? feature.surfaces.front().source.object_id
+                                   : drafts_.front().source.object_id;
     }
-    auto status = finish(feature);
+    if (drafts_.empty()) feature.srid = feature.surfaces.front().solid.srid();
+    auto status = drafts_.empty() ? Status(Done{}) : finish(feature);
     if (!status) return in_object(std::move(status).error(), feature.id);
     if (first.is_template) {
       for (SubmittedSolid& solid : feature.solids) {
@@ -191,6 +208,11 @@ class GmlReader {
   Status add_solids(Index root, bool is_template, SolidSource source) {
     const GmlKind kind = model_.nodes[root].kind;
     if (kind == GmlKind::solid) return add_solid(root, source);
+    if (is_surface(kind) && surfaces_ != Surfaces::ignore && !is_template) {
+      source.geometry_type = model_.name(model_.nodes[root].name);
+      surface_drafts_.push_back({root, std::move(source)});
+      return Done{};
+    }
     if (kind != GmlKind::solids && kind != GmlKind::mixed) {
       ++passed_over_;
       return Done{};
@@ -292,6 +314,78 @@ class GmlReader {
     draft.unreadable = in_object(error, draft.source.object_id).message.substr(0, kLongestReason);
     drafts_.push_back(std::move(draft));
     return Done{};
+  }
+
+  // Reads the surfaces of a feature whose solids are drafted already. Those whose polygons are all
+  // facets of the solids are left out: they have been checked there. Errors: those of add_solid().
+  Status read_surfaces(Feature& feature) {
+    std::set<Index> used;
+    for (const Draft& draft : drafts_) {
+      used.insert(draft.solid.facets.begin(), draft.solid.facets.end());
+    }
+    const auto is_used = [&](Index polygon) { return used.contains(polygon); };
+    for (SurfaceDraft& draft : surface_drafts_) {
+      GmlPositions positions;
+      auto shape = surface_shapes_.surface_alone(draft.node, positions);
+      if (!shape && shape.error().code == ErrorCode::limit_exceeded) {
+        ++surfaces_beyond_limit_;
+        continue;
+      }
+      if (shape && !shape->facets.empty() &&
+          std::all_of(shape->facets.begin(), shape->facets.end(), is_used)) {
+        continue;
+      }
+      draft.source.line = model_.nodes[draft.node].place.line;
+      auto surface = shape ? place_alone(*shape, std::move(positions), draft.source)
+                           : Result<SubmittedSolid>(shape.error());
+      if (!surface) surface = unread_surface(surface.error(), draft.source);
+      if (!surface) return std::move(surface).error();
+      const bool is_solid = surfaces_ == Surfaces::as_solids && surface->unreadable.empty() &&
+                            geometry::closure_of(surface->solid).is_one_shell();
+      if (!is_solid || !add_closed(draft)) feature.surfaces.push_back(std::move(*surface));
+    }
+    return Done{};
+  }
+
+  // Adds a surface that is one closed shell to the solids. False if it is in another system, or if
+  // xlinks repeat too much: then it stays a surface.
+  bool add_closed(SurfaceDraft& draft) {
+    const std::size_t positions = positions_.values.size();
+    const std::size_t rounded = positions_.rounded.size();
+    auto solid = surface_shapes_.surface_alone(draft.node, positions_);
+    if (!solid || !use_system(*solid)) {
+      positions_.values.resize(positions);
+      positions_.rounded.resize(rounded);
+      return false;
+    }
+    drafts_.push_back({*std::move(solid), std::move(draft.source), {}});
+    return true;
+  }
+
+  // Puts a surface on a lattice of its own.
+  Result<SubmittedSolid> place_alone(GmlSolid& shape, GmlPositions positions,
+                                     const SolidSource& source) {
+    const bool is_y_first = is_y_first_;
+    std::swap(positions, positions_);
+    if (shape.system != kNone) put_longitude_first(shape.system);
+    std::swap(positions, positions_);
+    is_y_first_ = is_y_first;
+    auto points = geometry::lattice_of_decimals(positions.values);
+    if (!points) return std::move(points).error();
+    const std::uint32_t srid = shape.system == kNone ? 0 : shapes_.srid(shape.system);
+    auto surface = solid_of_points(std::move(shape.arrays), *points, source, srid, limits_);
+    if (!surface) return std::move(surface).error();
+    surface->unclosed_rings = std::move(shape.unclosed_rings);
+    name_elements(shape, *surface);
+    return surface;
+  }
+
+  static Result<SubmittedSolid> unread_surface(const Error& error, const SolidSource& source) {
+    auto nothing = Solid::make(SolidArrays{}, Lattice{}, 0);
+    if (!nothing) return std::move(nothing).error();
+    SubmittedSolid surface{*std::move(nothing), source, {}};
+    surface.unreadable = error.message.substr(0, kLongestReason);
+    return surface;
   }
 
   // Takes the system of the first solid for the feature. Errors: unsupported for a solid in another
@@ -398,6 +492,11 @@ class GmlReader {
   }
 
   void add_notes() {
+    if (surfaces_beyond_limit_ > 0) {
+      document_.notes.push_back(quantity(surfaces_beyond_limit_, "surface is", "surfaces are") +
+                                " not checked: xlinks repeat more geometry than a document of "
+                                "this size could hold");
+    }
     for (const std::string& system : unknown_systems_) {
       document_.notes.push_back("reference system '" + system + "' has no known EPSG code");
     }
@@ -419,7 +518,11 @@ class GmlReader {
 
   const GmlModel& model_;
   const Limits& limits_;
+  const Surfaces surfaces_;
   GmlShapes shapes_;
+  GmlShapes surface_shapes_;  // surfaces leave the limits of the solids as they are
+  std::vector<SurfaceDraft> surface_drafts_;
+  std::uint64_t surfaces_beyond_limit_ = 0;
   std::map<std::string, std::uint32_t> geometries_of_;  // number of geometries, by object id
   std::map<Index, IndexRange> templates_of_;            // range of templates, by node
   std::uint32_t templates_ = 0;
@@ -440,9 +543,13 @@ class GmlReader {
 }  // namespace
 
 Result<Document> read_gml(ByteView bytes, const ReadOptions& options) {
+  if (options.surfaces == Surfaces::as_solids && options.keep_text && options.split_features) {
+    return Error{ErrorCode::unsupported,
+                 "surfaces of GML cannot be stored as solids: convert the document to CityJSON"};
+  }
   const auto model = read_gml_model(bytes, options.limits);
   if (!model) return model.error();
-  GmlReader reader(*model, bytes.size(), options.limits);
+  GmlReader reader(*model, bytes.size(), options);
   auto document = reader.read();
   if (!document || !options.keep_text || options.split_features) return document;
   const auto texts = ring_texts(*model, reader.ring_uses(), bytes);

@@ -140,8 +140,22 @@ Result<GmlSolid> GmlShapes::solid(Index node, GmlPositions& positions) {
 Status GmlShapes::shell(const GmlLink& link, GmlSolid& solid, GmlPositions& positions) {
   auto target = resolve(link);
   if (!target) return std::move(target).error();
+  return shell_of(*target, solid, positions);
+}
+
+Result<GmlSolid> GmlShapes::surface_alone(Index node, GmlPositions& positions) {
+  GmlSolid surface;
+  surface.first_position = positions.values.size();
+  surface.system = model_.nodes[node].system;
+  surface.place = model_.nodes[node].place;
+  auto status = shell_of(node, surface, positions);
+  if (!status) return std::move(status).error();
+  return surface;
+}
+
+Status GmlShapes::shell_of(Index node, GmlSolid& solid, GmlPositions& positions) {
   std::vector<Step> path;
-  auto status = follow(path, *target, solid, positions);
+  auto status = follow(path, node, solid, positions);
   for (const Step& step : path) leave(step.node);
   if (status) solid.arrays.end_shell();
   return status;

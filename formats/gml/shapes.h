@@ -57,6 +57,10 @@ class GmlShapes {
   /// Reads the shells of a Solid and appends its positions to `positions`.
   Result<GmlSolid> solid(Index node, GmlPositions& positions);
 
+  /// Reads a surface, a collection of surfaces or a polygon as one shell, and appends its positions
+  /// to `positions`.
+  Result<GmlSolid> surface_alone(Index node, GmlPositions& positions);
+
   /// Counts steps of work. Errors: limit_exceeded after more steps than a document of this size
   /// needs without references.
   Status spend(std::uint64_t steps, XmlPlace place);
@@ -83,6 +87,7 @@ class GmlShapes {
   };
 
   Status shell(const GmlLink& link, GmlSolid& solid, GmlPositions& positions);
+  Status shell_of(Index node, GmlSolid& solid, GmlPositions& positions);
   Status follow(std::vector<Step>& path, Index first, GmlSolid& solid, GmlPositions& positions);
   Status surface(std::vector<Step>& path, Index node, bool is_reversed, GmlSolid& solid,
                  GmlPositions& positions);

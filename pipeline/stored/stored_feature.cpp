@@ -52,6 +52,7 @@ StoredSolid described(const InspectedSolid& solid, const Solid& submitted) {
   if (report.measures) stored.measures = measures_json(*report.measures);
   validate::ReportJsonOptions json;
   json.pointer_prefix = solid.source.pointer;
+  json.has_shells = !formats::is_surface(solid.source);
   json.include_times = false;
   stored.report = validate::report_json(report, submitted, json);
   return stored;
@@ -229,6 +230,13 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
   document.header = encoded.header;
   document.features.push_back(std::move(feature));
   return document;
+}
+
+std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feature) {
+  std::string_view skeleton = feature.skeleton;
+  const auto lines = take_solid_lines(skeleton, feature.solids.size());
+  if (!lines || !skeleton.starts_with('{')) return {};
+  return formats::other_geometries(skeleton.substr(0, skeleton.find('\n')));
 }
 
 Result<StoredFeature> pack(EncodedFeature feature) {

@@ -84,7 +84,8 @@ class HtmlReport final : public FeatureReport {
 
 std::string HtmlReport::banner() const {
   const VerdictCount features = tally_.all_features();
-  const bool is_unchecked = tally_.all_solids().total() == 0 && tally_.findings().empty();
+  const bool is_unchecked =
+      tally_.all_solids().total() + tally_.surfaces().checked == 0 && tally_.findings().empty();
   const Verdict verdict = is_unchecked ? Verdict::undecided : tally_.verdict();
   std::string html = "<div class=\"banner ";
   html += validate::to_string(verdict);
@@ -100,6 +101,9 @@ std::string HtmlReport::banner() const {
   }
   if (features.total() == 0) {
     html += "No features were validated.";
+  } else if (features.valid == features.total() && tally_.all_solids().total() == 0) {
+    append(html, {"There are no solids; rings and facets of ",
+                  counted(tally_.surfaces().checked, "surface"), " were checked."});
   } else if (features.valid == features.total()) {
     if (features.total() == 1) return html + "The feature is valid.</span></div>";
     append(html, {"All ", counted(features.total(), "feature"), " are valid."});

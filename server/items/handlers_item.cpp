@@ -96,7 +96,11 @@ Bytes bytes_of(std::string_view text) {
 Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
   const std::string_view format = item.format.parameter;
   if (format == "blob") return blob_of(feature, item.solid);
-  if (format == "proof") return bytes_of(pipeline::proof_json(feature) + "\n");
+  if (format == "proof") {
+    const auto encoded = pipeline::unpack(std::move(feature));
+    if (!encoded) return encoded.error();
+    return bytes_of(pipeline::proof_json(*encoded) + "\n");
+  }
   if (format == "wt") {
     auto encoded = pipeline::unpack(std::move(feature));
     if (!encoded) return std::move(encoded).error();

@@ -33,18 +33,71 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 
 TEST_CASE_METHOD(Fixture, "a file without solids is status 1 where solids are required") {
   write("none.city.json", kSurface);
-  const Ran allowed = run("validate none.city.json");
+  const Ran allowed = run("validate --surfaces ignore none.city.json");
   CHECK(allowed.status == 0);
   CHECK(allowed.output.find("Nothing was checked: there are no solids.") != std::string::npos);
   CHECK(count_of(allowed.output, "without solids: nothing was checked") == 2);
-  const Ran required = run("validate --require-solids none.city.json");
+  const Ran required = run("validate --surfaces ignore --require-solids none.city.json");
   CHECK(required.status == 1);
   CHECK(required.output.find("none.city.json: nothing was checked") != std::string::npos);
   write("good.city.jsonl", samples::sequence({samples::feature("a")}));
   CHECK(run("validate --require-solids good.city.jsonl").status == 0);
-  const Ran both = run("validate --require-solids good.city.jsonl none.city.json");
+  const Ran both =
+      run("validate --surfaces ignore --require-solids good.city.jsonl none.city.json");
   CHECK(both.status == 1);
   CHECK(both.output.find("Nothing was checked in 1 file of 2, which has no solids.") !=
+        std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "the summary tells of checked surfaces in a file without solids") {
+  write("none.city.json", kSurface);
+  const Ran ran = run("validate none.city.json");
+  CHECK(ran.status == 0);
+  CHECK(ran.output.find("There are no solids; rings and facets of 1 surface were checked.") !=
+        std::string::npos);
+  CHECK(count_of(ran.output, "without solids: surfaces were checked") == 2);
+  CHECK(count_of(ran.output, "nothing was checked") == 0);
+  const Ran required = run("validate --require-solids none.city.json");
+  CHECK(required.status == 1);
+  CHECK(required.output.find("none.city.json: only surfaces were checked") != std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "--surfaces decides what a bad ring of a surface is") {
+  std::string bad = kSurface;
+  bad.replace(bad.find("[[[0,1,2]]]"), 11, "[[[0,1,1,2]]]");
+  write("bad.city.json", bad);
+  const std::string finding = " 102 CONSECUTIVE_POINTS_SAME in a (LoD 2), MultiSurface, facet 0";
+  const Ran checked = run("validate bad.city.json");
+  CHECK(checked.status == 0);
+  CHECK(checked.output.find("warning" + finding) != std::string::npos);
+  const Ran judged = run("validate --surfaces judge bad.city.json");
+  CHECK(judged.status == 1);
+  CHECK(judged.output.find("error" + finding) != std::string::npos);
+  CHECK(judged.output.find("1 feature invalid, 0 undecided.") != std::string::npos);
+  CHECK(run("validate --surfaces ignore bad.city.json").output.find("102") == std::string::npos);
+  CHECK(run("validate --surfaces solids bad.city.json").status == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "closed surfaces are offered as solids, coded and converted as solids") {
+  const std::string source =
+      test::read_text(std::string(WATERTIGHT_TEST_DATA) + "/cityjson/surfaces.city.json");
+  write("s.city.json", source);
+  const Ran checked = run("validate s.city.json");
+  CHECK(checked.status == 0);
+  CHECK(checked.output.find("closed: would be a valid solid  ") != std::string::npos);
+  CHECK(checked.output.find("solids                                                 1\n") !=
+        std::string::npos);
+  const Ran solids = run("validate --surfaces as-solids s.city.json");
+  CHECK(solids.status == 1);
+  CHECK(solids.output.find("307") != std::string::npos);
+  CHECK(run("encode --surfaces as-solids s.city.json -o s.wt").status == 1);
+  CHECK(run("decode s.wt -o back.city.json").status == 0);
+  CHECK(read("back.city.json") == source);
+  const Ran converted = run("convert --surfaces as-solids s.city.json -o c.city.json");
+  CHECK(converted.status == 0);
+  CHECK(converted.output.find("2 closed surfaces are solids") != std::string::npos);
+  const Ran again = run("validate --surfaces ignore c.city.json");
+  CHECK(again.output.find("solids                                                 3\n") !=
         std::string::npos);
 }
 

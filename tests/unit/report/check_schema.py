@@ -89,6 +89,8 @@ def main():
     # Findings between elements of the document, and in polygons with ids.
     samples += [root / "tests/data/gml" / name
                 for name in ("defects.gml", "ogc_Building_LOD3-EPSG25832.gml")]
+    # Surfaces that close, and surfaces with findings.
+    samples.append(root / "tests/data/cityjson/surfaces.city.json")
     failures = [f"{path}: no description" for path in undescribed(schema)]
     reports = reports_of(program, samples)
     if len(reports) != len(samples):

@@ -17,8 +17,10 @@ Status add_document(report::FeatureReport& report, const std::string& path) {
   const auto format = formats::detect_format(name, bytes);
   Status status = report.begin_document(
       {name, format ? std::optional<Format>(*format) : std::optional<Format>()});
+  formats::ReadOptions reading;
+  reading.surfaces = formats::Surfaces::read;
   auto document =
-      format ? formats::read_document(bytes, *format) : Result<Document>(format.error());
+      format ? formats::read_document(bytes, *format, reading) : Result<Document>(format.error());
   report::DocumentEnd end;
   if (!document) {
     if (status) status = report.add_error(document.error());

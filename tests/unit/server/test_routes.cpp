@@ -8,6 +8,7 @@
 #include "pipeline/container.h"
 #include "server/budget.h"
 #include "server/handlers.h"
+#include "tests/files.h"
 #include "tests/unit/pipeline/samples.h"
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
@@ -288,6 +289,41 @@ TEST_CASE("the server's own words about a failure are for the log alone") {
   const server::Response response = server::to_response(server::to_problem(error));
   CHECK(response.body.find("secret") == std::string::npos);
   CHECK(response.note == "no file /secret/socket");
+}
+
+TEST_CASE_METHOD(Fixture, "surfaces are checked, judged, taken for solids or ignored") {
+  const std::string city =
+      test::read_text(std::string(WATERTIGHT_TEST_DATA) + "/cityjson/surfaces.city.json");
+  const auto validate = [&](const std::string& query) {
+    const server::Response response = post("/validate" + query, city, "application/city+json");
+    REQUIRE(response.status == 200);
+    return Json::parse(response.body);
+  };
+  const Json checked = validate("");
+  CHECK(checked["verdict"] == "valid");
+  CHECK(checked["surfaces"] ==
+        Json{{"checked", 7}, {"closed", 3}, {"closed_valid", 1}, {"with_findings", 2}});
+  CHECK_FALSE(checked["parameters"].contains("surfaces"));
+  CHECK(validate("?surfaces=check") == checked);
+  const Json judged = validate("?surfaces=judge");
+  CHECK(judged["all_errors"] == Json{102, 203, 902});
+  CHECK(judged["parameters"]["surfaces"] == "judge");
+  CHECK(validate("?surfaces=as-solids")["all_errors"] == Json{307});
+  CHECK_FALSE(validate("?surfaces=ignore").contains("surfaces"));
+  CHECK(post("/validate?surfaces=solids", city, "application/city+json").status == 400);
+
+  const std::string items = "/collections/town/items";
+  CHECK(post(items + "?surfaces=judge", city, "application/city+json").status == 400);
+  CHECK(post(items + "?invalid=keep&surfaces=as-solids", city, "application/city+json").status ==
+        201);
+  const Json closed = Json::parse(get(items + "/closed?f=proof").body);
+  CHECK(closed["solids"][0]["proven"] == true);
+  CHECK_FALSE(closed.contains("otherGeometries"));
+  CHECK(Json::parse(get(items + "/turned?f=proof").body)["solids"][0]["proven"] == false);
+  const Json two = Json::parse(get(items + "/two?f=proof").body);
+  CHECK(two["otherGeometries"] == Json{{"MultiSurface", 1}});
+  const Json item = Json::parse(get(items + "/closed?f=cityjson").body);
+  CHECK(item["CityObjects"]["closed"]["geometry"][0]["type"] == "MultiSurface");
 }
 
 TEST_CASE_METHOD(Fixture, "a malformed body is answered with its place") {

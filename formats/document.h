@@ -109,6 +109,11 @@ struct Feature {
   std::vector<UnreadablePart> unreadable = {};  // in document order
 };
 
+/// The number of solids of a feature, with its parts that could not be read.
+std::uint64_t solid_count(const Feature& feature);
+/// Errors: limit_exceeded for more than Limits::solids.
+Status check_solid_count(const Feature& feature, const Limits& limits);
+
 struct Document {
   Format format = Format::city_json;
   /// The values that features share (CityJSON: version, transform, metadata, templates, ...), as

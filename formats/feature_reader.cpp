@@ -48,10 +48,12 @@ Status FeatureReader::fill() {
     searched_ -= used_;
     used_ = 0;
   }
-  if (buffer_.size() > options_.limits.bytes) {
+  const Limits& limits = options_.limits;
+  const std::uint64_t most =
+      is_sequence_ ? std::min(limits.feature_bytes, limits.bytes) : limits.bytes;
+  if (buffer_.size() > most) {
     return Error{ErrorCode::limit_exceeded,
-                 "longer than " + std::to_string(options_.limits.bytes) + " bytes without an end",
-                 bytes_read_};
+                 "longer than " + std::to_string(most) + " bytes without an end", bytes_read_};
   }
   const std::size_t size = buffer_.size();
   buffer_.resize(size + kChunk);

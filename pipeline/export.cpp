@@ -63,8 +63,7 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
   if (!header) return std::move(header).error();
   started.header_ = *std::move(header);
   // The header was checked when it was stored.
-  auto city_header =
-      formats::read_city_json_header(started.header_, Limits{.bytes = ~0ULL, .nesting = 256});
+  auto city_header = formats::read_city_json_header(started.header_, kOwnText);
   if (!city_header) return std::move(city_header).error();
   started.city_header_ = *std::move(city_header);
   return started;

@@ -14,7 +14,6 @@ namespace watertight::pipeline {
 namespace {
 
 using formats::GeometryPlace;
-using formats::UnreadablePart;
 
 constexpr std::size_t kVertexBytes = 24;  // three doubles
 constexpr std::size_t kCornerBytes = 4;   // one index
@@ -69,7 +68,7 @@ SolidOutcome outcome_of(InspectedSolid& inspected, const Solid& solid, const Sto
 
 Result<std::vector<ProcessedFeature>> process_all(std::vector<Feature> features,
                                                   std::span<const SubmittedSolid> template_solids,
-                                                  const Document& shared,
+                                                  const SharedPart& shared,
                                                   delaunay::EngineWorkers* workers,
                                                   const IngestOptions& options) {
   std::vector<std::optional<Result<ProcessedFeature>>> processed(features.size());
@@ -132,15 +131,11 @@ std::set<GeometryPlace> unproven_geometries(const InspectedFeature& feature) {
   return places;
 }
 
-/// Reads the text of a feature, or of a whole CityJSON, of the document that `shared` is a part of.
-Result<Feature> read_again(const std::string& text, const Document& shared, bool is_whole) {
-  const Limits no_limits{.bytes = ~0ULL, .nesting = 256};
-  if (!is_whole) {
-    const auto header = formats::read_city_json_header(shared.header.str(), no_limits);
-    if (!header) return header.error();
-    return formats::read_city_json_feature(*header, text, {no_limits, false, false});
-  }
-  auto document = formats::read_city_json(text, {no_limits, false, false});
+/// Reads the text of a feature under a header, or of a whole CityJSON.
+Result<Feature> read_again(const std::string& text, const formats::CityHeader& header,
+                           bool is_whole) {
+  if (!is_whole) return formats::read_city_json_feature(header, text, {kOwnText, false, false});
+  auto document = formats::read_city_json(text, {kOwnText, false, false});
   if (!document) return std::move(document).error();
   return std::move(document->features.front());
 }
@@ -161,22 +156,22 @@ bool is_proven_but_for_unreadable(const InspectedFeature& feature) {
 /// Encodes the feature without the geometries that are not proven, and notes these in the outcome.
 /// nullopt when no geometry is left, or when the rest is not valid either: then all is left out.
 Result<std::optional<EncodedFeature>> encode_rest(
-    const InspectedFeature& feature, const Document& shared, delaunay::EngineWorkers* workers,
+    const InspectedFeature& feature, const SharedPart& shared, delaunay::EngineWorkers* workers,
     const IngestOptions& options, TemplateInspector& templates, FeatureOutcome& outcome) {
-  if (!is_city_model(shared.format)) return std::optional<EncodedFeature>();
+  if (!shared.city) return std::optional<EncodedFeature>();
   const bool is_whole = feature.feature.id.empty();
   Feature own = feature.feature;  // without the solids of instances
   own.solids.erase(own.solids.begin() + static_cast<std::ptrdiff_t>(feature.own), own.solids.end());
   own.layout = {};
-  auto text = formats::write_feature(shared, own);
+  auto text = formats::write_city_json_feature(*shared.city, own);
   if (!text) return std::move(text).error();
   const std::set<GeometryPlace> places = unproven_geometries(feature);
-  auto divided = formats::divide_city_model(*text, places, Limits{.bytes = ~0ULL, .nesting = 256});
+  auto divided = formats::divide_city_model(*text, places, kOwnText);
   if (!divided) return std::move(divided).error();
   outcome.left_out.assign(places.begin(), places.end());
   outcome.rejected = std::move(divided->chosen);
   if (divided->geometries_left == 0) return std::optional<EncodedFeature>();
-  auto rest = read_again(divided->rest, shared, is_whole);
+  auto rest = read_again(divided->rest, *shared.city, is_whole);
   if (!rest) return std::move(rest).error();
   const InspectedFeature inspected =
       inspect(*std::move(rest), workers, options.certify, options.groups, &templates);
@@ -184,7 +179,7 @@ Result<std::optional<EncodedFeature>> encode_rest(
     outcome.rejected = *std::move(text);
     return std::optional<EncodedFeature>();
   }
-  auto encoded = encode_feature(inspected, shared, options);
+  auto encoded = encode_feature(inspected, shared.document, options);
   if (!encoded) return std::move(encoded).error();
   return std::optional(*std::move(encoded));
 }
@@ -218,24 +213,6 @@ Verdict InspectedFeature::verdict() const {
   for (const InspectedGroup& group : groups) verdict = worse(verdict, group.report.verdict);
   return verdict;
 }
-
-namespace {
-
-/// Adds an empty, invalid solid for each part of the feature that could not be read.
-void add_unreadable(InspectedFeature& inspected, const CertifyOptions& options) {
-  for (UnreadablePart& part : inspected.feature.unreadable) {
-    auto nothing = Solid::make(SolidArrays{}, Lattice{}, inspected.feature.srid);
-    if (!nothing) continue;  // an empty solid breaks no rule of Solid
-    SubmittedSolid solid{*std::move(nothing), std::move(part.source), {}};
-    solid.unreadable = std::move(part.error.message);
-    inspected.solids.push_back(
-        {solid.source, certify(solid.solid, nullptr, options_for(solid, options))});
-    inspected.feature.solids.push_back(std::move(solid));
-  }
-  inspected.feature.unreadable.clear();
-}
-
-}  // namespace
 
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups,
@@ -285,19 +262,25 @@ void IngestCounts::add(Verdict of_feature) {
   verdict = worse(verdict, of_feature);
 }
 
-Result<Document> shared_part(const Document& document, formats::Contract contract) {
-  Document shared;
-  shared.format = document.format;
-  shared.header = document.header;
-  if (contract == formats::Contract::exact) shared.framing = document.framing;
-  if (contract != formats::Contract::boundary || document.header.empty()) return shared;
-  auto header = formats::boundary_header(document.header);
-  if (!header) return std::move(header).error();
-  shared.header = *std::move(header);
+Result<SharedPart> shared_part(const Document& document, formats::Contract contract) {
+  SharedPart shared;
+  shared.document.format = document.format;
+  shared.document.header = document.header;
+  if (contract == formats::Contract::exact) shared.document.framing = document.framing;
+  if (contract == formats::Contract::boundary && !document.header.empty()) {
+    auto header = formats::boundary_header(document.header);
+    if (!header) return std::move(header).error();
+    shared.document.header = *std::move(header);
+  }
+  if (is_city_model(document.format)) {
+    auto header = formats::read_city_json_header(shared.document.header.str(), kOwnText);
+    if (!header) return std::move(header).error();
+    shared.city = *std::move(header);
+  }
   return shared;
 }
 
-Result<ProcessedFeature> process(Feature feature, const Document& shared,
+Result<ProcessedFeature> process(Feature feature, const SharedPart& shared,
                                  delaunay::EngineWorkers* workers, const IngestOptions& options,
                                  TemplateInspector& templates) {
   ProcessedFeature processed;
@@ -307,7 +290,7 @@ Result<ProcessedFeature> process(Feature feature, const Document& shared,
   processed.outcome.verdict = inspected.verdict();
   const bool is_valid = processed.outcome.verdict == Verdict::valid;
   if (is_valid || options.policy == Policy::keep) {
-    auto encoded = encode_feature(inspected, shared, options);
+    auto encoded = encode_feature(inspected, shared.document, options);
     if (!encoded) return std::move(encoded).error();
     processed.encoded = *std::move(encoded);
   }
@@ -336,9 +319,9 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
       process_all(std::move(document.features), document.templates, *shared, workers, options);
   if (!processed) return std::move(processed).error();
   EncodeOutcome encoded;
-  encoded.document.format = std::string(formats::to_string(shared->format));
-  encoded.document.header = std::move(shared->header);
-  encoded.document.framing = std::move(shared->framing);
+  encoded.document.format = std::string(formats::to_string(shared->document.format));
+  encoded.document.header = std::move(shared->document.header);
+  encoded.document.framing = std::move(shared->document.framing);
   for (ProcessedFeature& feature : *processed) {
     encoded.outcome.add(feature.outcome.verdict);
     if (feature.encoded) {
@@ -350,7 +333,7 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
   }
   // The kept text of another format is that of all features.
   if (encoded.document.features.size() < encoded.outcome.features.size() &&
-      !is_city_model(shared->format)) {
+      !is_city_model(shared->document.format)) {
     encoded.document.framing.clear();
   }
   const bool is_refused = options.policy.value_or(Policy::refuse) == Policy::refuse;

@@ -117,9 +117,15 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
   head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
   head.overlap_metres = options.groups.overlap_metres;
   head.is_strict = options.certify.ladder.strict;
+  const std::size_t longest = request.service.options.longest_report;
   const auto report = make_report(
       kind,
-      [&response](std::string_view text) -> Status {
+      [&response, longest](std::string_view text) -> Status {
+        if (response.body.size() + text.size() > longest) {
+          return Error{ErrorCode::limit_exceeded,
+                       "the report is longer than " + std::to_string(longest) +
+                           " bytes; validate the document in parts, or with the command line"};
+        }
         response.body += text;
         return Done{};
       },
@@ -172,6 +178,8 @@ Result<std::string> header_for(const RoutedRequest& request) {
 
 /// The most features of which the answer has the outcomes, valid or not.
 constexpr std::size_t kMostOutcomes = 1000;
+/// The most bytes of their reports; a feature with longer ones is in the answer if it is the only.
+constexpr std::uint64_t kMostOutcomeBytes = 64ULL << 20U;
 
 Response answer_of(const pipeline::IngestOutcome& outcome, const std::string& collection) {
   // With invalid=skip some features may be stored; the report says which.
@@ -188,6 +196,8 @@ Response answer_of(const pipeline::IngestOutcome& outcome, const std::string& co
 /// Passes the documents of the body to the ingestion. Returns the problem with them, if any.
 std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedRequest& request) {
   if (is_container_body(request)) {
+    const Submission memory = container_submission(request);
+    if (memory.problem) return memory.problem;
     const Status added =
         ingestion.add_container(as_bytes(request.request.body), request.service.options.limits);
     return added ? std::nullopt : std::optional(problem_of_body(added.error()));
@@ -217,7 +227,7 @@ Response post_items(const RoutedRequest& request) {
   auto condition = write_condition(request.request);
   if (!condition) return to_response(to_problem(condition.error()));
   options.condition = *std::move(condition);
-  pipeline::OutcomeKeeper keeper(kMostOutcomes);
+  pipeline::OutcomeKeeper keeper(kMostOutcomes, kMostOutcomeBytes);
   pipeline::Ingestion ingestion(*request.service.store, request.service.workers, options,
                                 [&](pipeline::FeatureOutcome&& feature) -> Status {
                                   keeper.add(std::move(feature));

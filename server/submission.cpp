@@ -127,6 +127,16 @@ bool is_sequence(std::string_view body) {
          Json::accept(line);
 }
 
+std::uint64_t longest_line(std::string_view text) {
+  std::size_t longest = 0;
+  while (!text.empty()) {
+    const std::size_t line = first_line(text).size();
+    longest = std::max(longest, line);
+    text.remove_prefix(std::min(text.size(), line + 1));
+  }
+  return longest;
+}
+
 Result<Document> read_bare_feature(std::string body, const std::string& header,
                                    const formats::ReadOptions& options) {
   if (header.empty()) {
@@ -167,11 +177,13 @@ formats::ByteSource source_of(std::string_view text) {
 /// cities take 8 to 10.
 constexpr std::uint64_t kMemoryOfText = 40;
 
-/// Takes the memory for a body that is read whole. Returns the problem if there is not so much.
-std::optional<Problem> take_memory(const RoutedRequest& request, Submission& submission) {
+/// Takes the memory for so many bytes of text that are values at one time. Returns the problem if
+/// there is not so much.
+std::optional<Problem> take_memory(const RoutedRequest& request, std::uint64_t text_bytes,
+                                   Submission& submission) {
   Budget* budget = request.service.document_memory;
   if (budget == nullptr) return std::nullopt;
-  const std::uint64_t bytes = request.request.body.size() * kMemoryOfText;
+  const std::uint64_t bytes = text_bytes * kMemoryOfText;
   const char* advice = "; a CityJSONSeq is read line by line and takes little";
   if (bytes > budget->total()) {
     const std::string most = std::to_string(budget->total() / kMemoryOfText);
@@ -219,6 +231,15 @@ bool is_container_body(const RoutedRequest& request) {
   return pipeline::is_container(as_bytes(request.request.body));
 }
 
+Submission container_submission(const RoutedRequest& request) {
+  const Limits& limits = request.service.options.limits;
+  Submission submission;
+  submission.problem = take_memory(
+      request, std::min(limits.expanded_from(request.request.body.size()), limits.feature_bytes),
+      submission);
+  return submission;
+}
+
 Problem problem_of_body(const Error& error) {
   Problem problem = to_problem(error);
   // An accepted format whose content the reader does not support is the body's fault.
@@ -239,7 +260,9 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   options.limits = request.service.options.limits;
   options.keep_text = true;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
-  if (*format != Format::city_json_seq) submission.problem = take_memory(request, submission);
+  const bool is_sequence_body = *format == Format::city_json_seq;
+  submission.problem =
+      take_memory(request, is_sequence_body ? longest_line(body) : body.size(), submission);
   if (submission.problem) return submission;
   auto reader = open_body(request, *format, header, options);
   if (reader) {

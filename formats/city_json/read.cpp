@@ -231,6 +231,11 @@ Result<Feature> read_city_json_feature(const CityHeader& header, std::string_vie
     return Error{ErrorCode::malformed, "the type is not \"CityJSONFeature\"", {}, "/type"};
   }
   auto feature = read_feature_model(std::move(*model), header, options.limits);
+  if (feature) {
+    if (Status status = check_solid_count(*feature, options.limits); !status) {
+      return std::move(status).error();
+    }
+  }
   if (feature && options.keep_text) keep_text(header, line, *feature);
   return feature;
 }

@@ -156,7 +156,7 @@ Status check_references(const OpenFeature& open) {
 }
 
 Result<OpenFeature> open_feature(const CityHeader& header, const Feature& feature) {
-  const Limits limits{.bytes = ~0ULL, .nesting = 256};
+  const Limits& limits = kOwnText;
   auto model = parse_city_model(feature.skeleton, CityText::skeleton, limits);
   if (!model) return std::move(model).error();
   OpenFeature open{std::move(*model), &feature, {}, {}};
@@ -250,7 +250,7 @@ std::string print_whole(const OpenFeature& open) {
 }
 
 Result<CityHeader> header_of(const Document& document, Json& root) {
-  auto parsed = parse_json(document.header, Limits{.bytes = ~0ULL, .nesting = 256});
+  auto parsed = parse_json(document.header, kOwnText);
   if (!parsed) return std::move(parsed).error();
   auto header = city_header(*parsed);
   root = std::move(*parsed);
@@ -387,7 +387,7 @@ Result<std::string> write_city_json_seq(const Document& document) {
   if (is_whole(document)) {
     auto whole = write_city_json(document);
     if (!whole) return whole;
-    auto split = read_city_json(*whole, ReadOptions{.limits = {.bytes = ~0ULL, .nesting = 256}});
+    auto split = read_city_json(*whole, ReadOptions{.limits = kOwnText});
     if (!split) return std::move(split).error();
     return write_city_json_seq(*split);
   }

@@ -149,12 +149,17 @@ Result<IngestCounts> Ingestion::finish() {
 void OutcomeKeeper::add(FeatureOutcome&& outcome) {
   const bool is_valid = outcome.verdict == Verdict::valid;
   const std::uint64_t rank = outcome.is_stored ? stored_++ : stored_;
-  if (has_all_ && kept_.size() == most_) {
+  std::uint64_t bytes = 0;
+  for (const SolidOutcome& solid : outcome.solids) bytes += solid.report_json.size();
+  if (has_all_ && is_full_with(bytes)) {
     has_all_ = false;
     std::erase_if(kept_, [](const Kept& kept) { return kept.outcome.verdict == Verdict::valid; });
+    bytes_ = 0;
+    for (const Kept& kept : kept_) bytes_ += kept.bytes;
   }
-  if ((is_valid && !has_all_) || kept_.size() == most_) return;
-  kept_.push_back({std::move(outcome), rank});
+  if ((is_valid && !has_all_) || is_full_with(bytes)) return;
+  bytes_ += bytes;
+  kept_.push_back({std::move(outcome), bytes, rank});
 }
 
 IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
@@ -170,7 +175,8 @@ IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
 
 Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options) {
-  OutcomeKeeper keeper(std::numeric_limits<std::size_t>::max());
+  OutcomeKeeper keeper(std::numeric_limits<std::size_t>::max(),
+                       std::numeric_limits<std::uint64_t>::max());
   Ingestion ingestion(store, workers, options, [&](FeatureOutcome&& outcome) -> Status {
     keeper.add(std::move(outcome));
     return Done{};

@@ -74,11 +74,12 @@ class Ingestion {
   std::vector<std::uint64_t> versions_;
 };
 
-/// Keeps the outcomes of features for an answer: all while they are few, else the first of those
-/// that are not valid.
+/// Keeps the outcomes of features for an answer: all while they are few and their reports short,
+/// else the first of those that are not valid. One is kept, however long its reports are.
 class OutcomeKeeper {
  public:
-  explicit OutcomeKeeper(std::size_t most) : most_(most) {}
+  OutcomeKeeper(std::size_t most, std::uint64_t most_bytes)
+      : most_(most), most_bytes_(most_bytes) {}
   void add(FeatureOutcome&& outcome);
   /// The outcomes with what finish() of the ingestion has made of them.
   IngestOutcome outcome(const IngestCounts& counts, const std::vector<std::uint64_t>& versions) &&;
@@ -86,9 +87,16 @@ class OutcomeKeeper {
  private:
   struct Kept {
     FeatureOutcome outcome;
-    std::uint64_t rank = 0;  // the number of features to be stored before it
+    std::uint64_t bytes = 0;  // of its reports
+    std::uint64_t rank = 0;   // the number of features to be stored before it
   };
+  bool is_full_with(std::uint64_t bytes) const {
+    return kept_.size() == most_ || (!kept_.empty() && bytes_ + bytes > most_bytes_);
+  }
+
   std::size_t most_;
+  std::uint64_t most_bytes_;
+  std::uint64_t bytes_ = 0;  // of the reports that are kept
   bool has_all_ = true;
   std::uint64_t stored_ = 0;
   std::vector<Kept> kept_;

@@ -75,7 +75,7 @@ pipeline::IngestOptions into(const std::string& collection) {
 Result<pipeline::IngestOutcome> ingest_text(const std::string& text, SolidStore& store,
                                             const pipeline::IngestOptions& options,
                                             std::size_t most_outcomes = 1000) {
-  pipeline::OutcomeKeeper keeper(most_outcomes);
+  pipeline::OutcomeKeeper keeper(most_outcomes, 1'000'000);
   pipeline::Ingestion ingestion(store, nullptr, options,
                                 [&](pipeline::FeatureOutcome&& outcome) -> Status {
                                   keeper.add(std::move(outcome));

@@ -89,7 +89,8 @@ typedef struct wt_job {
 void wt_bridge_validate(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers EWKB with whether the solid is valid. */
 void wt_bridge_is_valid(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** Answers EWKB with a blob, which states the rules. An invalid solid fails with 22023; its findings are the detail. */
+/** Answers EWKB with a blob, which states the rules. An invalid solid fails with 22023; its
+ * findings are the detail. */
 void wt_bridge_encode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with EWKB. */
 void wt_bridge_decode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;

@@ -29,7 +29,8 @@ struct Reply {
   Bytes bytes() const { return Bytes(value.bytes, value.bytes + value.size); }
 };
 
-Reply call(Function function, ByteView bytes, wt_poll poll = nullptr, const wt_rule_choice* rules = nullptr) {
+Reply call(Function function, ByteView bytes, wt_poll poll = nullptr,
+           const wt_rule_choice* rules = nullptr) {
   Reply reply;
   const wt_job job{bytes.data(), bytes.size(), nullptr, poll, 0, 0, rules};
   function(&job, &reply.value);

@@ -117,18 +117,6 @@ Result<std::vector<Document>> load_encoded(const std::string& path) {
   return documents;
 }
 
-/// The file for document `number`: "town.city.jsonl", "town-2.city.jsonl", ...
-std::string numbered(const std::string& output, std::size_t number) {
-  if (number == 0) return output;
-  const std::size_t name = output.rfind('/') + 1;  // 0 without a folder
-  std::size_t ending = output.find('.', name + 1);
-  if (ending == std::string::npos) ending = std::min(output.find('.', name), output.size());
-  std::string result = output.substr(0, ending);
-  result += '-';
-  result += std::to_string(number + 1);
-  return result + output.substr(ending);
-}
-
 /// Writes each document to a file of its own; writes none if one cannot be converted or written (if
 /// a rename fails in the end, the files before it stay). The documents were read from `input`,
 /// which the message about a failed conversion names.
@@ -137,7 +125,7 @@ Exit save(std::span<const Document> documents, const std::string& input,
   std::vector<std::string> names;
   std::vector<FileWriter> files;
   for (const Document& document : documents) {
-    const std::string& name = names.emplace_back(numbered(output, names.size()));
+    const std::string& name = names.emplace_back(numbered_name(output, names.size()));
     if (replaces(name, input)) return refuse_to_replace(input, name);
     const auto format = name == "-" ? Result<Format>(document.format) : format_of_name(name);
     if (!format) return fail_to_write(name, format.error());

@@ -109,7 +109,8 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
     const auto bytes = read_all(input->source, {});
     if (!bytes) return bytes.error();
     run.summary.add_file_bytes(bytes->size());
-    if (Status added = ingestion.add_container(*bytes); !added) return std::move(added).error();
+    const Status added = ingestion.add_container(*bytes, {}, pipeline::WholeModels::split);
+    if (!added) return added.error();
     return ingestion.finish();
   }
   formats::ReadOptions read;

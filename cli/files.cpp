@@ -236,6 +236,12 @@ Result<FileWriter> FileWriter::open(const std::string& target) {
   return FileWriter(std::make_unique<State>(path, std::move(temporary), is_direct, descriptor));
 }
 
+FileWriter FileWriter::to(int descriptor) {
+  return FileWriter(std::make_unique<State>("", "", true, descriptor));
+}
+
+int FileWriter::descriptor() const { return state_->file.number(); }
+
 Status FileWriter::write(std::string_view text) {
   state_->buffer += text;
   if (state_->buffer.size() < kChunk) return Done{};
@@ -264,6 +270,17 @@ Status write_file(const std::string& path, ByteView bytes) {
   if (!writer) return std::move(writer).error();
   Status status = writer->write(as_text(bytes));
   return status ? writer->commit() : status;
+}
+
+std::string numbered_name(const std::string& output, std::size_t number) {
+  if (number == 0) return output;
+  const std::size_t name = output.rfind('/') + 1;  // 0 without a folder
+  std::size_t ending = output.find('.', name + 1);
+  if (ending == std::string::npos) ending = std::min(output.find('.', name), output.size());
+  std::string result = output.substr(0, ending);
+  result += '-';
+  result += std::to_string(number + 1);
+  return result + output.substr(ending);
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

@@ -61,6 +61,8 @@ class FileWriter {
  public:
   /// Starts to write a file. Errors: unavailable with the reason.
   static Result<FileWriter> open(const std::string& target);
+  /// Writes to an open file, which it closes. Another process gives the file its name.
+  static FileWriter to(int descriptor);
   FileWriter(FileWriter&&) noexcept;
   FileWriter& operator=(FileWriter&&) = delete;
   ~FileWriter();  // without commit(), the old file stays
@@ -69,12 +71,17 @@ class FileWriter {
   /// Puts the new file in the place of the old one. Errors: unavailable; then the old file is still
   /// there.
   Status commit();
+  /// The file, for another process that writes it.
+  int descriptor() const;
 
  private:
   struct State;
   explicit FileWriter(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+/// The name of file `number` of an output: "town.city.jsonl", "town-2.city.jsonl", ...
+std::string numbered_name(const std::string& output, std::size_t number);
 
 /// Whether writing one file would destroy the other. Devices and pipes can be written many times.
 bool is_same_file(const std::string& a, const std::string& b);

@@ -241,8 +241,10 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
 void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("export", "Write a collection of a store to a file");
   sub->add_option("COLLECTION", command.collection, "collection")->required();
-  sub->add_option("-o,--output", command.output,
-                  "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl)")
+  sub->add_option(
+         "-o,--output", command.output,
+         "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl; OUT-2, ... if "
+         "the documents have headers that cannot be merged)")
       ->required();
   sub->add_flag("--proven", command.is_proven_only,
                 "only features whose solids are all proven to be valid");

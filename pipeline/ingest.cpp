@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <tuple>
 
 #include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
@@ -186,6 +189,29 @@ Result<std::optional<EncodedFeature>> encode_rest(
 
 }  // namespace
 
+namespace {
+
+/// Notes the bytes of the blobs of `rest`, whose geometries have new numbers since some were left
+/// out, for the first `own` solids of the outcome.
+void add_blob_bytes(const EncodedFeature& rest, std::size_t own, FeatureOutcome& outcome) {
+  std::map<std::tuple<std::string_view, std::uint32_t, std::uint32_t>, std::size_t> bytes;
+  for (const StoredSolid& solid : rest.solids) {
+    bytes[{solid.object_id, solid.geometry, solid.ordinal}] = solid.blob.size();
+  }
+  const std::set<GeometryPlace> left_out(outcome.left_out.begin(), outcome.left_out.end());
+  for (std::size_t i = 0; i < own; ++i) {
+    SolidOutcome& solid = outcome.solids[i];
+    const auto place = left_out.lower_bound(place_of(solid.source));
+    if (place != left_out.end() && *place == place_of(solid.source)) continue;
+    const auto before = std::distance(left_out.lower_bound({solid.source.object_id, 0}), place);
+    const auto number = solid.source.geometry - static_cast<std::uint32_t>(before);
+    const auto found = bytes.find({solid.source.object_id, number, solid.source.ordinal});
+    if (found != bytes.end()) solid.blob_bytes = found->second;
+  }
+}
+
+}  // namespace
+
 Result<Policy> policy_named(const std::string& name) {
   if (name == "refuse") return Policy::refuse;
   if (name == "skip") return Policy::skip;
@@ -306,7 +332,10 @@ Result<ProcessedFeature> process(Feature feature, const SharedPart& shared,
         processed.encoded && i < inspected.own ? &processed.encoded->solids[i] : nullptr));
   }
   processed.outcome.groups = std::move(inspected.groups);
-  if (rest) processed.encoded = std::move(rest);
+  if (rest) {
+    add_blob_bytes(*rest, inspected.own, processed.outcome);
+    processed.encoded = std::move(rest);
+  }
   processed.outcome.is_stored = processed.encoded.has_value();
   return processed;
 }

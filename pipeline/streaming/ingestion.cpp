@@ -7,7 +7,6 @@
 
 #include "formats/city_json/city_json.h"
 #include "pipeline/instances.h"
-#include "pipeline/streaming/container_parts.h"
 #include "pipeline/streaming/feature_stream.h"
 #include "pipeline/streaming/process.h"
 
@@ -72,8 +71,8 @@ Status Ingestion::add(formats::FeatureReader& reader) {
   return Done{};
 }
 
-Status Ingestion::add_container(ByteView bytes, const Limits& limits) {
-  auto parts = ContainerParts::open(bytes, limits);
+Status Ingestion::add_container(ByteView bytes, const Limits& limits, WholeModels models) {
+  auto parts = ContainerParts::open(bytes, limits, models);
   if (!parts) return std::move(parts).error();
   for (;;) {
     auto documents = parts->next();

@@ -13,6 +13,7 @@
 
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/streaming/container_parts.h"
 #include "pipeline/streaming/feature_spool.h"
 
 namespace watertight::pipeline {
@@ -38,8 +39,10 @@ class Ingestion {
   /// (another CRS than the collection's); cancelled; those of the sink; unavailable (the spool).
   Status add(formats::FeatureReader& reader);
   /// The same for all documents of a Watertight file. City models are checked as their texts would
-  /// be. Memory: one part of the file. Errors: those of add() and of ContainerParts.
-  Status add_container(ByteView bytes, const Limits& limits = {});
+  /// be. Memory: one part of the file, or a CityJSON that the file holds as a whole. Errors: those
+  /// of add() and of ContainerParts.
+  Status add_container(ByteView bytes, const Limits& limits = {},
+                       WholeModels models = WholeModels::refuse);
 
   /// Stores the features in one transaction. Nothing is stored after an error. Errors: cancelled;
   /// those of SolidStore::put().

@@ -408,7 +408,7 @@ TEST_CASE("an export as a sequence has the header and each feature's line") {
   auto begun = pipeline::CollectionExport::start(store, "town", pipeline::ExportFormat::sequence);
   REQUIRE(begun);
   std::string other = samples::sequence({samples::feature("zz")});
-  other.replace(other.find("100.0"), 5, "900.0");
+  other.replace(other.find("100.0"), 5, "0.12345678901");
   put(store, other);
   const auto mixed = export_all(store, pipeline::ExportFormat::sequence);
   REQUIRE_FALSE(mixed);

@@ -27,7 +27,6 @@ Result<Document> city_model_of(StoredFeature feature) {
   return formats::as_city_model(*document);
 }
 
-
 /// Adds the headers that the features without header get, each once.
 Status add_made_headers(SolidStore& store, const std::string& collection,
                         std::vector<std::string>& headers, const CancelPoll& is_cancelled) {

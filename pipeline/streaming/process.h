@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
 #include "pipeline/pipeline.h"
 
@@ -24,6 +25,6 @@ Result<Document> shared_part(const Document& document, formats::Contract contrac
 /// Errors: those of encode_feature().
 Result<ProcessedFeature> process(Feature feature, const Document& shared,
                                  delaunay::EngineWorkers* workers, const IngestOptions& options,
-                                 TemplateInspector& templates);
+                                 TemplateInspector& templates, CellInspector& cells);
 
 }  // namespace watertight::pipeline

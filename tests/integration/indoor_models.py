@@ -6,9 +6,10 @@
 
 Requires that the samples of 701 to 704 in SOURCE/tests/golden/findings have exactly their code in
 every report, that two rooms with a door are valid, that encode keeps, skips and refuses cells with
-findings, that decode gives the very bytes back, and that a model of 2,000 cells takes seconds. With
---labelled, the files FOLDER/igml_CODE*.gml must have the codes of the list FOLDER/../../../expected.csv;
-prints a table of them. Exit code 1 after the first violation.
+findings, that decode gives the very bytes back, that a store keeps marks, that the service finds the
+same, and that a model of 2,000 cells takes seconds. With --labelled, the files FOLDER/igml_*.gml must
+have the codes of the list FOLDER/../../../expected.csv; prints a table of them. Exit code 1 after the
+first violation.
 """
 import argparse
 import csv
@@ -94,6 +95,36 @@ def check_files(program, source, folder):
     require(done.returncode == 1 and not refused.exists(), done.stderr)
 
 
+def check_store(program, source):
+    """Cells with findings in a store: refused, left out, or kept and marked; POST /validate finds the same."""
+    sys.path.append(str(source / "tests" / "siege"))
+    from service import Service, temporary_folder
+    text = (source / "tests" / "golden" / "findings" / "701.gml").read_text()
+    with temporary_folder("indoor") as folder:
+        service = Service(program, folder)
+        sample = folder / "overlap.gml"
+        sample.write_text(text)
+        sample.chmod(0o644)
+        for policy, status in (("refuse", 1), ("skip", 1), ("keep", 1)):
+            command = [*service.prefix, service.program, "ingest", "--data-dir", folder / "data", "--collection", policy,
+                       "--invalid", policy, sample]
+            done = subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=folder)
+            require(done.returncode == status, policy, done.returncode, done.stdout, done.stderr)
+        with service:
+            answer, body = service.request("POST", "/validate", text.encode(), 60, {"Content-Type": "application/gml+xml"})
+            require(answer == 200 and codes_of(json.loads(body)) == [701], answer, body[:300])
+            for policy, features in (("refuse", 0), ("skip", 0), ("keep", 2)):
+                answer, body = service.request("GET", f"/collections/{policy}")
+                found = json.loads(body) if answer == 200 else {"features": 0, "solids": 0, "unproven": {"features": 0, "solids": 0}}
+                require(found["features"] == found["solids"] == features, policy, found)
+                require(found["unproven"] == {"features": features, "solids": 0}, policy, found)
+            answer, body = service.request("GET", "/collections/keep/items/kitchen?f=proof")
+            proof = json.loads(body)
+            require(answer == 200 and not proof["proven"] and proof["solids"][0]["proven"], answer, body)
+            group = proof["findings"][0]
+            require(group["kind"] == "indoor_cells" and group["findings"][0]["code"] == 701, body)
+
+
 def large_model(side, storeys):
     """Boxes of 4 m x 3 m x 3 m without walls, a door through each wall between two of them."""
     facets = ["0462", "1375", "0154", "2673", "0231", "4576"]
@@ -170,6 +201,7 @@ def main():
         check_overlap_option(arguments.program, arguments.source, folder)
         check_files(arguments.program, arguments.source, folder)
         check_large(arguments.program, folder)
+        check_store(arguments.program, arguments.source)
         if arguments.labelled:
             check_labelled(arguments.program, arguments.labelled, folder)
     print("indoor models: all as expected")

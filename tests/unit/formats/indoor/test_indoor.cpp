@@ -36,7 +36,7 @@ TEST_CASE("IndoorGML: cells, states and transitions, with lines and targets") {
     CHECK(graph.cells[0].duals[0].target == 0);
     CHECK(graph.cells[1].duals.empty());
     REQUIRE(graph.states.size() == 2);
-    CHECK(graph.states[1].line == 5);  // the position of the first state has a line feed
+    CHECK(graph.states[1].line == 6);  // the position of the first state has a line feed
     CHECK(graph.states[1].duals.at(0).target == 1);
     CHECK(graph.states[0].transitions.at(0).target == 0);
     REQUIRE(graph.states[0].position);

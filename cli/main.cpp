@@ -69,8 +69,10 @@ void add_rules(CLI::App& sub, RuleChoice& rules) {
   sub.add_option("--proof", rules.proof, "proof of validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
       ->capture_default_str();
-  sub.add_option("--overlap", rules.overlap_metres,
-                 "depth to which building parts and composite members may overlap, metres")
+  sub.add_option(
+         "--overlap", rules.overlap_metres,
+         "depth to which building parts, composite members and indoor cells may overlap, and gap "
+         "between neighbouring cells, metres")
       ->check(in_range(0, 1000, "from 0 to 1000"))
       ->capture_default_str();
   sub.add_flag("--exact-overlaps", rules.are_steps_errors,

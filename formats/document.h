@@ -13,6 +13,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "base/shared_text.h"
+#include "geometry/cell_graph.h"
 #include "geometry/placement.h"
 #include "geometry/solid.h"
 
@@ -107,6 +108,7 @@ struct Feature {
   /// Instances of geometry templates, also of templates that are no solids; in document order.
   std::vector<TemplateInstance> instances = {};
   std::vector<UnreadablePart> unreadable = {};  // in document order
+  Index cell = kNone;  // the index in Document::graph.cells of the cell that the feature is
 };
 
 /// The number of solids of a feature, with its parts that could not be read.
@@ -131,6 +133,8 @@ struct Document {
   /// empty for line feeds; in formats other than those of CityJSON the bytes of the document, with
   /// references to the solids of all features (formats/text/kept_text.h). Opaque.
   Bytes framing = {};
+  /// The graph of an indoor model (IndoorGML), for validation only; empty in other documents.
+  geometry::CellGraph graph = {};
 };
 
 /// The contract levels: how much of a document comes back.

@@ -9,6 +9,7 @@
 #include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
 #include "pipeline/groups.h"
+#include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
 #include "pipeline/streaming/process.h"
 #include "validate/report_json.h"
@@ -46,7 +47,7 @@ void name_members(const InspectedFeature& inspected, InspectedGroup& group) {
     return validate::element_at(place, member.solid, elements_of(member));
   };
   for (Finding& finding : group.report.findings) {
-    finding.source = element(finding.place);
+    if (finding.source.line == 0) finding.source = element(finding.place);
     if (finding.other) finding.other_source = element(*finding.other);
   }
 }
@@ -69,20 +70,21 @@ SolidOutcome outcome_of(InspectedSolid& inspected, const Solid& solid, const Sto
   return outcome;
 }
 
-Result<std::vector<ProcessedFeature>> process_all(std::vector<Feature> features,
-                                                  std::span<const SubmittedSolid> template_solids,
-                                                  const SharedPart& shared,
+Result<std::vector<ProcessedFeature>> process_all(Document& document, const SharedPart& shared,
                                                   delaunay::EngineWorkers* workers,
                                                   const IngestOptions& options) {
+  std::vector<Feature>& features = document.features;
   std::vector<std::optional<Result<ProcessedFeature>>> processed(features.size());
-  TemplateInspector templates(template_solids, workers, options.certify,
+  TemplateInspector templates(document.templates, workers, options.certify,
                               group_options(options.groups, options.certify));
+  CellInspector cells(document, workers, options.certify, options.groups, options.threads,
+                      options.is_cancelled);
   std::size_t done = 0;
   std::mutex mutex;
   geometry::for_each_piece(
       features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
         if (is_cancelled(options)) return;
-        processed[i] = process(std::move(features[i]), shared, workers, options, templates);
+        processed[i] = process(std::move(features[i]), shared, workers, options, templates, cells);
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(done, features.size());
@@ -240,14 +242,33 @@ Verdict InspectedFeature::verdict() const {
   return verdict;
 }
 
+namespace {
+
+/// Adds the comparison of a cell with others, after the groups that begin with its first solid.
+void add_cell(validate::GroupReport report, InspectedFeature& inspected) {
+  InspectedGroup group{validate::GroupKind::indoor_cells, inspected.feature.id, {}, {}, {}};
+  for (std::size_t i = 0; i < inspected.own; ++i) group.members.push_back(i);
+  group.report = std::move(report);
+  const auto place =
+      std::find_if(inspected.groups.begin(), inspected.groups.end(),
+                   [](const InspectedGroup& other) { return other.members.front() > 0; });
+  inspected.groups.insert(place, std::move(group));
+}
+
+}  // namespace
+
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups,
-                         TemplateInspector* templates) {
+                         TemplateInspector* templates, CellInspector* cells) {
   InspectedFeature inspected;
   inspected.solids.reserve(feature.solids.size());
-  for (const SubmittedSolid& submitted : feature.solids) {
+  InspectedCell cell = cells != nullptr ? cells->take(feature) : InspectedCell{};
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const SubmittedSolid& submitted = feature.solids[i];
     inspected.solids.push_back(
-        {submitted.source, certify(submitted.solid, workers, options_for(submitted, options))});
+        {submitted.source,
+         cell.is_ready ? std::move(cell.inspections[i])
+                       : certify(submitted.solid, workers, options_for(submitted, options))});
   }
   inspected.feature = std::move(feature);
   inspected.own = inspected.solids.size();
@@ -257,6 +278,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
   } else {
     inspected.groups = inspect_groups(group_candidates(inspected), group_options(groups, options));
   }
+  if (cell.is_ready) add_cell(std::move(cell.report), inspected);
   for (InspectedGroup& group : inspected.groups) name_members(inspected, group);
   add_unreadable(inspected, options);
   return inspected;
@@ -308,10 +330,10 @@ Result<SharedPart> shared_part(const Document& document, formats::Contract contr
 
 Result<ProcessedFeature> process(Feature feature, const SharedPart& shared,
                                  delaunay::EngineWorkers* workers, const IngestOptions& options,
-                                 TemplateInspector& templates) {
+                                 TemplateInspector& templates, CellInspector& cells) {
   ProcessedFeature processed;
   InspectedFeature inspected =
-      inspect(std::move(feature), workers, options.certify, options.groups, &templates);
+      inspect(std::move(feature), workers, options.certify, options.groups, &templates, &cells);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   const bool is_valid = processed.outcome.verdict == Verdict::valid;
@@ -344,8 +366,7 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
                                       const IngestOptions& options) {
   auto shared = shared_part(document, options.contract);
   if (!shared) return std::move(shared).error();
-  auto processed =
-      process_all(std::move(document.features), document.templates, *shared, workers, options);
+  auto processed = process_all(document, *shared, workers, options);
   if (!processed) return std::move(processed).error();
   EncodeOutcome encoded;
   encoded.document.format = std::string(formats::to_string(shared->document.format));

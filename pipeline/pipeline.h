@@ -29,10 +29,11 @@ struct InspectedSolid {
 };
 
 /// Solids of a feature that are compared with each other: the members of one CompositeSolid, or the
-/// solids of one building and its parts in one level of detail.
+/// solids of one building and its parts in one level of detail. For a feature that is a cell of an
+/// indoor model: its solids, which are compared with those of other features.
 struct InspectedGroup {
   validate::GroupKind kind = validate::GroupKind::composite_solid;
-  std::string object_id;             // the composite's object, or the building
+  std::string object_id;             // the composite's object, the building, or the cell
   std::string lod;                   // as written, "" when absent
   std::vector<std::size_t> members;  // indices into the feature's solids, ascending
   validate::GroupReport report;      // Place::solid is an index into `members`
@@ -56,6 +57,7 @@ CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions
 Verdict worse(Verdict a, Verdict b);
 
 class TemplateInspector;
+class CellInspector;
 
 /// The options for groups, with the limit of findings of `options`, and with its poll if they have
 /// none.
@@ -63,12 +65,14 @@ validate::GroupOptions group_options(const validate::GroupOptions& groups,
                                      const CertifyOptions& options);
 
 /// Validates every solid of a feature, its instances of the geometry templates that `templates`
-/// knows (null: of none), and the groups of both. Guarantees one InspectedSolid per solid. A solid
-/// with vertices that the reader rounded, or rings that the source left open, gets the findings for
-/// them. The limit of findings and the cancellation of solids hold for groups too.
+/// knows (null: of none), and the groups of both. The results of a feature that is a cell are taken
+/// from `cells` if not null; without, the cell is not compared with others. Guarantees one
+/// InspectedSolid per solid. A solid with vertices that the reader rounded, or rings that the
+/// source left open, gets the findings for them. The limit of findings and the cancellation of
+/// solids hold for groups too.
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups = {},
-                         TemplateInspector* templates = nullptr);
+                         TemplateInspector* templates = nullptr, CellInspector* cells = nullptr);
 
 /// The outcome of one solid of a document.
 struct SolidOutcome {

@@ -49,11 +49,13 @@ Status Ingestion::add(formats::FeatureReader& reader) {
   if (!shared) return std::move(shared).error();
   TemplateInspector templates(reader.document().templates, workers_, options_.certify,
                               group_options(options_.groups, options_.certify));
+  CellInspector cells(reader.document(), workers_, options_.certify, options_.groups,
+                      options_.threads, options_.is_cancelled);
   const FeatureWork work = [&](std::uint64_t, const formats::FeaturePlace& place,
                                Result<Feature> feature) -> Delivery {
     if (!feature) return [error = std::move(feature).error()]() -> Status { return error; };
     const std::uint32_t srid = feature->srid;
-    auto processed = process(*std::move(feature), *shared, workers_, options_, templates);
+    auto processed = process(*std::move(feature), *shared, workers_, options_, templates, cells);
     if (!processed) return [error = std::move(processed).error()]() -> Status { return error; };
     const auto taken =
         std::make_shared<Processed>(Processed{std::move(processed->outcome), place, srid, {}});

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
 #include "pipeline/pipeline.h"
 
@@ -29,6 +30,6 @@ Result<SharedPart> shared_part(const Document& document, formats::Contract contr
 /// Errors: those of encode_feature().
 Result<ProcessedFeature> process(Feature feature, const SharedPart& shared,
                                  delaunay::EngineWorkers* workers, const IngestOptions& options,
-                                 TemplateInspector& templates);
+                                 TemplateInspector& templates, CellInspector& cells);
 
 }  // namespace watertight::pipeline

@@ -5,19 +5,18 @@
 // document use formats/document.h.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "base/byte_source.h"
 #include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "formats/text/text_layout.h"
 
 namespace watertight::formats {
 
-/// Fills the span from the input and returns the number of bytes; 0 at the end of the input.
-using ByteSource = std::function<Result<std::size_t>(std::span<std::uint8_t>)>;
+using watertight::ByteSource;
 
 /// The place of a feature in the input.
 struct FeaturePlace {

@@ -207,8 +207,7 @@ std::uint64_t ExpansionLimit::most(std::uint64_t packed_bytes) const {
 
 ByteSource expanded(ByteSource packed, Compression compression, const ExpansionLimit& limit,
                     int window) {
-  const auto expansion =
-      std::make_shared<Expansion>(std::move(packed), compression, limit, window);
+  const auto expansion = std::make_shared<Expansion>(std::move(packed), compression, limit, window);
   return [expansion](std::span<std::uint8_t> bytes) { return expansion->read(bytes); };
 }
 

@@ -25,14 +25,14 @@ Compression compression_of(ByteView first);
 
 /// The most that something may expand to: the larger one of both.
 struct ExpansionLimit {
-  std::uint64_t bytes = 1ULL << 30;  // in any case
-  std::uint64_t ratio = 100;         // for each compressed byte; 0: `bytes` alone counts
+  std::uint64_t bytes = 256ULL << 20;  // in any case
+  std::uint64_t ratio = 100;           // for each compressed byte; 0: `bytes` alone counts
 
   std::uint64_t most(std::uint64_t packed_bytes) const;
 };
 
-/// The largest window of Zstandard that is read. The first is what `zstd` reads by default; RFC 9659
-/// gives the second for HTTP.
+/// The largest window of Zstandard that is read. The first is what `zstd` reads by default; RFC
+/// 9659 gives the second for HTTP.
 inline constexpr int kWindowOfFiles = 27;  // 128 MiB, as an exponent of two
 inline constexpr int kWindowOfHttp = 23;   // 8 MiB
 

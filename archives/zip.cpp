@@ -17,8 +17,16 @@ constexpr uLong kEncrypted = 1;              // of the general purpose flags
 constexpr uLong kStored = 0;
 constexpr uLong kDeflated = 8;
 
-Error broken(std::string reason) {
-  return {ErrorCode::malformed, "zip: " + std::move(reason)};
+Error broken(std::string reason) { return {ErrorCode::malformed, "zip: " + std::move(reason)}; }
+
+Error no_members() { return broken("the archive has no members"); }
+
+/// Whether an archive is an end without members before it, which minizip does not read.
+bool is_empty(const RandomBytes& bytes) {
+  constexpr std::uint64_t kEnd = 22;  // without a comment
+  Bytes first(4);
+  const auto count = bytes.read(0, first);
+  return bytes.size == kEnd && count && *count == first.size() && as_text(first) == "PK\x05\x06";
 }
 
 /// A position in the bytes of an archive, as minizip wants a file to be.
@@ -110,8 +118,9 @@ Result<ZipMember> current_member(const Archive& archive, std::vector<char>& name
       unzGetFilePos64(archive.file(), &place) != UNZ_OK) {
     return archive.error("the list of members is broken");
   }
-  ZipMember member{std::string(name.data(), std::min<std::size_t>(info.size_filename, kLongestName)),
-                   info.uncompressed_size, place.pos_in_zip_directory, place.num_of_file};
+  ZipMember member{
+      std::string(name.data(), std::min<std::size_t>(info.size_filename, kLongestName)),
+      info.uncompressed_size, place.pos_in_zip_directory, place.num_of_file};
   return member;
 }
 
@@ -175,12 +184,13 @@ Status ExpansionCount::add(std::uint64_t bytes) {
 Result<std::vector<ZipMember>> zip_members(const RandomBytes& bytes) {
   const Archive archive(bytes);
   if (archive.file() == nullptr) {
+    if (is_empty(bytes)) return no_members();
     return archive.error("there is no list of members at the end; is the archive cut off?");
   }
   unz_global_info64 info{};
   unzGetGlobalInfo64(archive.file(), &info);
   std::vector<ZipMember> members;
-  if (info.number_entry == 0) return broken("the archive has no members");
+  if (info.number_entry == 0) return no_members();
   std::vector<char> name(kLongestName + 1);
   std::set<std::string> names;
   int status = unzGoToFirstFile(archive.file());
@@ -216,16 +226,14 @@ Result<ByteSource> open_member(RandomBytes bytes, const ZipMember& member,
     return Error{ErrorCode::unsupported, "zip: the member is encrypted"};
   }
   if (info.compression_method != kStored && info.compression_method != kDeflated) {
-    return Error{ErrorCode::unsupported,
-                 "zip: the member has compression method " +
-                     std::to_string(info.compression_method) +
-                     "; only stored and deflated members are read"};
+    return Error{ErrorCode::unsupported, "zip: the member has compression method " +
+                                             std::to_string(info.compression_method) +
+                                             "; only stored and deflated members are read"};
   }
   if (unzOpenCurrentFile(archive->file()) != UNZ_OK) {
     return archive->error("the head of the member does not fit the list of members");
   }
-  const auto reader =
-      std::make_shared<MemberReader>(std::move(archive), member, std::move(count));
+  const auto reader = std::make_shared<MemberReader>(std::move(archive), member, std::move(count));
   return ByteSource([reader](std::span<std::uint8_t> out) { return reader->read(out); });
 }
 

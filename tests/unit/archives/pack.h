@@ -55,8 +55,8 @@ struct ZipMaker {
     std::string text;
     bool is_stored = false;
     std::uint16_t flags = 0;
-    int method = -1;            // another one than that of the data
-    std::int64_t size = -1;     // another one than that of the text
+    int method = -1;             // another one than that of the data
+    std::int64_t size = -1;      // another one than that of the text
     std::int64_t checksum = -1;  // another one than that of the text
   };
   std::vector<Member> members;

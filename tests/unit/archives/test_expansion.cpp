@@ -66,7 +66,8 @@ TEST_CASE("compressed bytes are expanded however they arrive") {
   for (const auto& [compression, pack] : kBoth) {
     for (const std::size_t step : {std::size_t{1}, std::size_t{7}, std::size_t{1} << 20U}) {
       for (const std::size_t room : {std::size_t{1}, std::size_t{100}, std::size_t{1} << 20U}) {
-        const auto back = all_of(archives::expanded(in_pieces(pack(text), step), compression), room);
+        const auto back =
+            all_of(archives::expanded(in_pieces(pack(text), step), compression), room);
         REQUIRE(back);
         CHECK(*back == text);
       }
@@ -160,8 +161,8 @@ TEST_CASE("a window that is too large is a limit, not broken data") {
   }
   const std::string packed = test::zstd(text, 25);
   CHECK(expand(packed, Compression::zstd));
-  const auto back = all_of(archives::expanded(in_pieces(packed, 4096), Compression::zstd, {},
-                                              archives::kWindowOfHttp));
+  const auto back = all_of(
+      archives::expanded(in_pieces(packed, 4096), Compression::zstd, {}, archives::kWindowOfHttp));
   REQUIRE_FALSE(back);
   CHECK(back.error().code == ErrorCode::limit_exceeded);
 }

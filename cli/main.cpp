@@ -83,7 +83,9 @@ void add_rules(CLI::App& sub, RuleChoice& rules) {
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
-  sub->add_option("FILE", command.files, "documents; - for standard input");
+  sub->add_option("FILE", command.files,
+                  "documents, also in folders, zip archives and compressed files; - for standard "
+                  "input");
   sub->add_option("--report", command.report, "write the reports as JSON, a line per document");
   sub->add_option("--geojson", command.geojson, "write the findings as a GeoJSON layer");
   sub->add_option("--html", command.html, "write the report as a page with pictures");
@@ -144,8 +146,12 @@ void add_contract(CLI::App& sub, std::string& contract) {
 
 void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("encode", "Validate and compress a document");
-  sub->add_option("IN", command.input, "document; - for standard input")->required();
-  sub->add_option("-o,--output", command.output, "Watertight file; - for standard output")
+  sub->add_option("IN", command.files,
+                  "documents, also in folders, zip archives and compressed files; - for standard "
+                  "input")
+      ->required();
+  sub->add_option("-o,--output", command.output,
+                  "Watertight file; - for standard output; a folder for several documents")
       ->required();
   auto* mode =
       sub->add_option("--mode", command.mode, "how solids are coded")
@@ -218,7 +224,9 @@ std::string is_collection_id(const std::string& id) {
 
 void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("ingest", "Validate documents and store them");
-  sub->add_option("FILE", command.files, "documents; each is stored whole or not at all")
+  sub->add_option("FILE", command.files,
+                  "documents, also in folders, zip archives and compressed files; each is stored "
+                  "whole or not at all")
       ->required();
   sub->add_option("--collection", command.collection, "collection, made when missing")
       ->required()

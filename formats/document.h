@@ -44,6 +44,9 @@ Result<Format> format_named(std::string_view name);
 /// unsupported.
 Result<Format> detect_format(std::string_view file_name, ByteView bytes);
 
+/// Whether detect_format() knows the ending of a file name.
+bool has_known_ending(std::string_view file_name);
+
 /// Where a solid stands in its document.
 struct SolidSource {
   std::string object_id;      // CityObject id; OBJ object name; "" elsewhere

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "pipeline/outcome_json.h"
+#include "pipeline/stored/collection_header.h"
 #include "pipeline/streaming/ingestion.h"
 #include "pipeline/validate_stream.h"
 #include "report/feature_report.h"
@@ -151,29 +152,8 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
 /// The header of the collection if the body is a bare feature, which needs one; else "". Errors:
 /// conflict when its features have several headers, as the feature would be read wrongly.
 Result<std::string> header_for(const RoutedRequest& request) {
-  // So many that there is another header among them if there is one: each format may come once.
-  constexpr std::uint64_t kFormats = 16;
   if (!is_bare_feature(request)) return std::string();
-  const std::string& id = request.target.segments[1];
-  const auto documents = request.service.store->documents(id, kFormats);
-  if (!documents) return documents.error();
-  std::string header;
-  for (const store::StoredHeader& document : *documents) {
-    if (document.header.empty() || document.header == header) continue;
-    if (header.empty()) {
-      header = document.header;
-      continue;
-    }
-    return Error{ErrorCode::conflict,
-                 "collection '" + id +
-                     "' has features under several headers, so the transform of a CityJSONFeature "
-                     "alone is not known: send a CityJSONSeq whose first line is the header"};
-  }
-  if (!header.empty()) return header;
-  const auto collection = request.service.store->collection(id);
-  if (collection) return collection->header;
-  if (collection.error().code == ErrorCode::not_found) return std::string();
-  return collection.error();
+  return pipeline::collection_header(*request.service.store, request.target.segments[1]);
 }
 
 /// The most features of which the answer has the outcomes, valid or not.

@@ -145,21 +145,7 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
                  "collection with one: "
                  "send a CityJSONSeq whose first line is the CityJSON header"};
   }
-  auto city_header = formats::read_city_json_header(header);
-  if (!city_header) return std::move(city_header).error();
-  // Line ends outside strings are white space, and JSON allows none inside strings.
-  std::replace(body.begin(), body.end(), '\n', ' ');
-  std::replace(body.begin(), body.end(), '\r', ' ');
-  auto feature = formats::read_city_json_feature(*city_header, body, options);
-  if (!feature) return std::move(feature).error();
-  Document document;
-  document.format = Format::city_json_seq;
-  document.header = header;
-  auto templates = formats::read_geometry_templates(*city_header, options.limits);
-  if (!templates) return std::move(templates).error();
-  document.templates = std::move(templates->solids);
-  document.features.push_back(*std::move(feature));
-  return document;
+  return formats::read_lone_feature(std::move(body), header, options);
 }
 
 /// A source of the bytes of a text, which must outlive it.
@@ -198,15 +184,15 @@ std::optional<Problem> take_memory(const RoutedRequest& request, std::uint64_t t
 }
 
 Result<formats::FeatureReader> open_body(const RoutedRequest& request, Format format,
-                                         const std::string& header,
+                                         const std::string& header, bool is_stored,
                                          const formats::ReadOptions& options) {
   const std::string& body = request.request.body;
   if (format == Format::city_json_seq) {
     return formats::FeatureReader::open(source_of(body), ".jsonl", options);
   }
-  auto document = format == Format::city_json && is_bare_feature(request)
-                      ? read_bare_feature(body, header, options)
-                      : formats::read_document(as_bytes(body), format, options);
+  const bool needs_header = is_stored && is_bare_feature(request);
+  auto document = needs_header ? read_bare_feature(body, header, options)
+                               : formats::read_document(as_bytes(body), format, options);
   if (!document) return std::move(document).error();
   return formats::FeatureReader::of(*std::move(document));
 }
@@ -221,7 +207,9 @@ std::string top_level_type(std::string_view json) {
 
 bool is_bare_feature(const RoutedRequest& request) {
   const auto format = stated_format(request, AcceptedFormats::city_models);
-  return format == Format::city_json && top_level_type(request.request.body) == "CityJSONFeature";
+  const std::string& body = request.request.body;
+  if (format == Format::city_json_seq) return formats::is_lone_feature(body);
+  return format == Format::city_json && top_level_type(body) == "CityJSONFeature";
 }
 
 bool is_container_body(const RoutedRequest& request) {
@@ -260,11 +248,15 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   options.limits = request.service.options.limits;
   options.keep_text = true;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
+  if (*format == Format::city_json_seq && formats::is_lone_feature(body)) {
+    format = Format::city_json;
+  }
   const bool is_sequence_body = *format == Format::city_json_seq;
   submission.problem =
       take_memory(request, is_sequence_body ? longest_line(body) : body.size(), submission);
   if (submission.problem) return submission;
-  auto reader = open_body(request, *format, header, options);
+  const bool is_stored = accepted == AcceptedFormats::city_models;
+  auto reader = open_body(request, *format, header, is_stored, options);
   if (reader) {
     submission.reader = *std::move(reader);
   } else {

@@ -24,7 +24,7 @@ enum class AcceptedFormats : std::uint8_t { city_models, all };
 /// follows from f=, else from Content-Type. A CityJSONSeq is read while it is used, so the request
 /// must outlive the reader; other documents are read whole. Both hold a share of the memory for
 /// documents until they are stored. `header` is the document header that a bare CityJSONFeature
-/// needs (that of the collection), "" when there is none.
+/// needs to be stored (that of the collection), "" when there is none.
 struct Submission {
   std::unique_ptr<BudgetShare> memory;
   std::optional<formats::FeatureReader> reader;

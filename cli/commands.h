@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/files.h"
 #include "cli/rules.h"
 #include "cli/summary.h"
 
@@ -38,8 +39,9 @@ struct ValidateCommand {
 Exit run(const ValidateCommand& command);
 
 struct EncodeCommand {
-  std::string input;
-  std::string output;
+  std::vector<std::string> files;
+  std::string input;   // the name of the document in work
+  std::string output;  // a folder for several documents
   std::string mode = "auto";
   bool keeps_steiner = false;
   std::string contract = "exact";
@@ -51,7 +53,12 @@ struct EncodeCommand {
   bool explains = false;            // print the bytes that the solids take in each mode
   std::size_t jobs = 1;
 };
+/// Encodes all documents; several go to a folder, each to a file of its own.
 Exit run(const EncodeCommand& command);
+/// Encodes one document, `source`, which messages call `command.input`, to `command.output`.
+/// `position`: which document of how many, for the progress bar.
+Exit encode_input(const EncodeCommand& command, const InputFile& source,
+                  const std::string& position);
 
 struct DecodeCommand {
   std::string input;

@@ -8,6 +8,7 @@
 #include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "pipeline/advise.h"
 #include "validate/finding_kinds.h"
@@ -56,7 +57,8 @@ void print(const pipeline::Advice& advice) {
 }  // namespace
 
 Exit run(const AdviseCommand& command) {
-  auto opened = open_input(command.input, {});
+  const auto input = single_input(command.input);
+  auto opened = input ? open_input(*input, {}) : Result<OpenedInput>(input.error());
   if (!opened) {
     complain(command.input, opened.error());
     return Exit::error;

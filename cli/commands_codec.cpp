@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
+#include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
 #include "codec/explain.h"
@@ -62,15 +63,21 @@ void tell_rounded(const std::string& file, const pipeline::IngestOutcome& outcom
   }
 }
 
-Result<Input> load(const EncodeCommand& command, bool keep_text) {
-  const std::string& path = command.input;
+/// Reads the one document that an argument stands for.
+Result<WholeInput> read_argument(const std::string& argument) {
+  const auto input = single_input(argument);
+  if (!input) return input.error();
+  return read_whole(*input, {});
+}
+
+Result<Input> load(const InputFile& file, bool keep_text, formats::Surfaces surfaces) {
   formats::ReadOptions options;
   options.split_features = false;
   options.keep_text = keep_text;
-  options.surfaces = surface_rule(command.surfaces).reading;
-  const auto bytes = read_file(path, options.limits);
-  if (!bytes) return bytes.error();
-  return load_input(path, *bytes, options);
+  options.surfaces = surfaces;
+  const auto whole = read_whole(file, options.limits);
+  if (!whole) return whole.error();
+  return load_input(whole->name, whole->bytes, options);
 }
 
 Mode mode_named(const std::string& name) {
@@ -106,10 +113,11 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::EncodedDocument
 
 /// The documents of a Watertight file, or the one document of a blob.
 Result<std::vector<Document>> load_encoded(const std::string& path) {
-  const auto bytes = read_file(path, {});
-  if (!bytes) return bytes.error();
-  if (kind_of_input(*bytes) == InputKind::container) return pipeline::decode_container(*bytes);
-  auto input = load_input(path, *bytes, {});
+  const auto whole = read_argument(path);
+  if (!whole) return whole.error();
+  const Bytes& bytes = whole->bytes;
+  if (kind_of_input(bytes) == InputKind::container) return pipeline::decode_container(bytes);
+  auto input = load_input(whole->name, bytes, {});
   if (!input) return std::move(input).error();
   if (input->kind == InputKind::document) {
     return Error{ErrorCode::malformed, "neither a Watertight file nor a blob"};
@@ -117,18 +125,6 @@ Result<std::vector<Document>> load_encoded(const std::string& path) {
   std::vector<Document> documents;
   documents.push_back(std::move(input->document));
   return documents;
-}
-
-/// The file for document `number`: "town.city.jsonl", "town-2.city.jsonl", ...
-std::string numbered(const std::string& output, std::size_t number) {
-  if (number == 0) return output;
-  const std::size_t name = output.rfind('/') + 1;  // 0 without a folder
-  std::size_t ending = output.find('.', name + 1);
-  if (ending == std::string::npos) ending = std::min(output.find('.', name), output.size());
-  std::string result = output.substr(0, ending);
-  result += '-';
-  result += std::to_string(number + 1);
-  return result + output.substr(ending);
 }
 
 /// Writes each document to a file of its own; writes none if one cannot be converted or written (if
@@ -139,7 +135,7 @@ Exit save(std::span<const Document> documents, const std::string& input,
   std::vector<std::string> names;
   std::vector<FileWriter> files;
   for (const Document& document : documents) {
-    const std::string& name = names.emplace_back(numbered(output, names.size()));
+    const std::string& name = names.emplace_back(numbered_name(output, names.size()));
     if (replaces(name, input)) return refuse_to_replace(input, name);
     const auto format = name == "-" ? Result<Format>(document.format) : format_of_name(name);
     if (!format) return fail_to_write(name, format.error());
@@ -362,7 +358,7 @@ std::string rejected_report(const EncodeCommand& command) {
 
 /// Ok if the files of --rejected are wanted and replace no other file of the run. Errors:
 /// invalid_argument.
-Status check_rejected(const EncodeCommand& command) {
+Status check_rejected(const EncodeCommand& command, const std::string& input) {
   if (command.rejected.empty()) return Done{};
   const auto wrong = [](std::string text) {
     return Error{ErrorCode::invalid_argument, std::move(text)};
@@ -370,7 +366,7 @@ Status check_rejected(const EncodeCommand& command) {
   if (command.invalid != "skip") return wrong("needs --invalid skip");
   if (command.rejected == "-") return wrong("needs the name of a file");
   for (const std::string& file : {command.rejected, rejected_report(command)}) {
-    if (replaces(file, command.input)) return wrong("'" + file + "' would replace the input");
+    if (replaces(file, input)) return wrong("'" + file + "' would replace the input");
     if (file == command.output || is_same_file(file, command.output)) {
       return wrong("'" + file + "' is the output");
     }
@@ -380,15 +376,16 @@ Status check_rejected(const EncodeCommand& command) {
 
 }  // namespace
 
-Exit run(const EncodeCommand& command) {
+Exit encode_input(const EncodeCommand& command, const InputFile& source,
+                  const std::string& position) {
   const auto contract = formats::contract_named(command.contract);
   if (!contract) return fail("--contract", contract.error());
-  if (replaces(command.output, command.input))
-    return refuse_to_replace(command.input, command.output);
-  if (Status possible = check_rejected(command); !possible) {
+  if (replaces(command.output, source.file)) return refuse_to_replace(source.file, command.output);
+  if (Status possible = check_rejected(command, source.file); !possible) {
     return fail("--rejected", possible.error());
   }
-  auto input = load(command, *contract == formats::Contract::exact);
+  auto input =
+      load(source, *contract == formats::Contract::exact, surface_rule(command.surfaces).reading);
   if (!input) return fail(command.input, input.error());
   delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
   pipeline::IngestOptions options;
@@ -401,7 +398,7 @@ Exit run(const EncodeCommand& command) {
   options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
                                           : pipeline::SteinerVertices::leave_out;
   auto encoded = [&] {
-    ProgressBar bar(command.input);
+    ProgressBar bar(command.input, position);
     options.progress = [&bar](std::size_t done, std::size_t total) {
       bar.show(done, static_cast<double>(done) / static_cast<double>(total));
     };
@@ -447,9 +444,9 @@ Exit run(const DecodeCommand& command) {
 }
 
 /// Whether a GML document is to become a city model, which keeps more of it than its solids.
-bool makes_city_of_gml(const ConvertCommand& command, ByteView bytes) {
-  if (command.output == "-" || kind_of_input(bytes) != InputKind::document) return false;
-  const auto from = formats::detect_format(command.input, bytes);
+bool makes_city_of_gml(const ConvertCommand& command, const WholeInput& input) {
+  if (command.output == "-" || kind_of_input(input.bytes) != InputKind::document) return false;
+  const auto from = formats::detect_format(input.name, input.bytes);
   const auto to = format_of_name(command.output);
   return from && *from == Format::gml && to &&
          (*to == Format::city_json || *to == Format::city_json_seq);
@@ -495,10 +492,10 @@ Exit run(const ConvertCommand& command) {
     return refuse_to_replace(command.input, command.output);
   formats::ReadOptions options;
   options.split_features = false;
-  const auto bytes = read_file(command.input, options.limits);
-  if (!bytes) return fail(command.input, bytes.error());
-  if (makes_city_of_gml(command, *bytes)) {
-    auto city = formats::city_model_of_gml(*bytes, options.limits);
+  const auto whole = read_argument(command.input);
+  if (!whole) return fail(command.input, whole.error());
+  if (makes_city_of_gml(command, *whole)) {
+    auto city = formats::city_model_of_gml(whole->bytes, options.limits);
     if (!city) return fail(command.input, city.error());
     tell_notes(command.input, city->model);
     if (command.surfaces == "ignore") return save_converted(command, std::move(city->model));
@@ -507,15 +504,15 @@ Exit run(const ConvertCommand& command) {
     return save_converted(command, *std::move(again));
   }
   options.surfaces = surface_rule(command.surfaces).reading;
-  auto input = load_input(command.input, *bytes, options);
+  auto input = load_input(whole->name, whole->bytes, options);
   if (!input) return fail(command.input, input.error());
   return save_converted(command, std::move(input->document));
 }
 
 Exit run(const InfoCommand& command) {
-  const auto bytes = read_file(command.input, {});
-  if (!bytes) return fail(command.input, bytes.error());
-  auto json = info_of(*bytes);
+  const auto whole = read_argument(command.input);
+  if (!whole) return fail(command.input, whole.error());
+  auto json = info_of(whole->bytes);
   if (!json) return fail(command.input, json.error());
   if (command.is_json) {
     std::printf("%s\n", json->dump().c_str());

@@ -14,8 +14,10 @@
 #include "cli/files.h"
 #include "cli/inputs.h"
 #include "cli/opened_store.h"
+#include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
+#include "pipeline/stored/collection_header.h"
 #include "pipeline/streaming/ingestion.h"
 
 namespace watertight::cli {
@@ -36,7 +38,9 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
 class IngestRun {
  public:
   IngestRun(const IngestCommand& command, formats::Contract contract)
-      : command_(command), options_(ingest_options(command, contract)) {}
+      : command_(command),
+        inputs_(list_inputs(command.files)),
+        options_(ingest_options(command, contract)) {}
 
   Exit run();
 
@@ -54,9 +58,10 @@ class IngestRun {
   Result<pipeline::IngestCounts> ingest(std::size_t number, SolidStore& store, FileRun& run);
   Status take(std::size_t number, pipeline::FeatureOutcome&& outcome, FileRun& run);
   void tell_replaced(std::size_t number, const FileRun& run);
-  bool has_several_files() const { return command_.files.size() > 1; }
+  bool has_several_files() const { return inputs_.size() > 1; }
 
   const IngestCommand& command_;
+  const std::vector<InputFile> inputs_;
   const pipeline::IngestOptions options_;
   std::optional<delaunay::EngineWorkers> workers_;
   EarlyFiles early_;
@@ -77,9 +82,9 @@ Status IngestRun::take(std::size_t number, pipeline::FeatureOutcome&& outcome, F
   if (!outcome.has_own_id && other != files_.end()) {
     return Error{ErrorCode::conflict, "its features have no ids and would be called '" +
                                           outcome.id + "', as one of '" +
-                                          command_.files[other->second] + "' is"};
+                                          inputs_[other->second].name + "' is"};
   }
-  if (!command_.is_quiet && !command_.is_json) print_findings(command_.files[number], outcome);
+  if (!command_.is_quiet && !command_.is_json) print_findings(inputs_[number].name, outcome);
   run.summary.add(outcome);
   if (has_several_files() && outcome.is_stored) {
     run.valid.push_back(std::move(outcome.id));
@@ -89,16 +94,16 @@ Status IngestRun::take(std::size_t number, pipeline::FeatureOutcome&& outcome, F
 
 Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore& store,
                                                  FileRun& run) {
-  const std::string& name = command_.files[number];
+  const std::string& name = inputs_[number].name;
   auto file = early_.take(number);
   if (!file) return std::move(file).error();
-  auto input = find_input(*std::move(file));
+  auto input = find_input(*std::move(file), name);
   if (!input) return std::move(input).error();
-  ProgressBar bar(name);
+  ProgressBar bar(name, position_among(number + 1, inputs_.size()));
   std::optional<std::uint64_t> whole = input->bytes;
   std::optional<std::size_t> count;
   pipeline::IngestOptions options = options_;
-  options.unnamed = std::filesystem::path(name).stem().string();
+  options.unnamed = std::filesystem::path(input->name.empty() ? name : input->name).stem().string();
   pipeline::Ingestion ingestion(
       store, &*workers_, options,
       [&](pipeline::FeatureOutcome&& outcome) { return take(number, std::move(outcome), run); },
@@ -110,13 +115,15 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
     const auto bytes = read_all(input->source, {});
     if (!bytes) return bytes.error();
     run.summary.add_file_bytes(bytes->size());
-    if (Status added = ingestion.add_container(*bytes); !added) return std::move(added).error();
+    const Status added = ingestion.add_container(*bytes, {}, pipeline::WholeModels::split);
+    if (!added) return added.error();
     return ingestion.finish();
   }
   formats::ReadOptions read;
   read.keep_text = options.contract == formats::Contract::exact;
   read.surfaces = options.surfaces;
-  auto opened = open_input(name, *std::move(input), read);
+  const auto header = [&] { return pipeline::collection_header(store, command_.collection); };
+  auto opened = open_input(*std::move(input), read, header);
   if (!opened) return std::move(opened).error();
   count = opened->reader.feature_count();
   if (!command_.is_quiet && !command_.is_json) tell_losses(name, opened->reader.document());
@@ -128,12 +135,12 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
 /// Remembers which features this file stored, and prints which features of earlier files of the run
 /// they replaced.
 void IngestRun::tell_replaced(std::size_t number, const FileRun& run) {
-  const std::string& file = command_.files[number];
+  const std::string& file = inputs_[number].name;
   for (const std::string& id : run.valid) {
     const auto [known, is_new] = files_.try_emplace(id, number);
     if (is_new) continue;
     const std::string text =
-        "feature '" + id + "' replaces the one from '" + command_.files[known->second] + "'";
+        "feature '" + id + "' replaces the one from '" + inputs_[known->second].name + "'";
     std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(text).c_str());
     known->second = number;
   }
@@ -155,7 +162,7 @@ Exit IngestRun::run() {
   const auto start = std::chrono::steady_clock::now();
   // As root, opening a private cluster gives up the right to open other users' files.
   const bool gives_up_rights = ::geteuid() == 0 && command_.store.database_url.empty();
-  early_ = EarlyFiles(command_.files, gives_up_rights);
+  early_ = EarlyFiles(inputs_, gives_up_rights);
   const auto opened = open_store(command_.store);
   if (!opened) {
     complain("store", opened.error());
@@ -163,8 +170,8 @@ Exit IngestRun::run() {
   }
   workers_.emplace(delaunay::EngineWorkers::Options{{}, {}, command_.jobs});
   Exit exit = Exit::valid;
-  for (std::size_t i = 0; i < command_.files.size(); ++i) {
-    const std::string& file = command_.files[i];
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const std::string& file = inputs_[i].name;
     FileRun run;
     const auto counts = ingest(i, *opened->store, run);
     if (!counts) {

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The commands serve and export.
+#include <unistd.h>
+
 #include <charconv>
 #include <cstdio>
+#include <memory>
+#include <optional>
+#include <vector>
 
 #include "base/quantity.h"
 #include "cli/commands.h"
-#include "cli/files.h"
 #include "cli/inputs.h"
 #include "cli/opened_store.h"
+#include "cli/output_files.h"
+#include "cli/terminal/printable.h"
 #include "pipeline/export.h"
 #include "server/serve.h"
 
@@ -80,44 +86,127 @@ Exit run(const ServeCommand& command) {
   return served ? Exit::valid : fail("serve", served.error());
 }
 
-Exit run(const ExportCommand& command) {
-  const auto fail = [](const std::string& what, const Error& error) {
-    complain(what, error);
-    return Exit::error;
-  };
-  const bool is_container = command.output == "-" || command.output.ends_with(".wt");
-  if (!is_container) {
-    const auto format = format_of_name(command.output);
-    if (!format || *format != Format::city_json_seq) {
-      return fail(command.output,
+namespace {
+
+/// A run of `watertight export`: one file, or one for each sequence that the collection needs.
+class ExportRun {
+ public:
+  explicit ExportRun(const ExportCommand& command)
+      : command_(command),
+        scope_(command.is_proven_only ? pipeline::ExportScope::proven
+                                      : pipeline::ExportScope::all) {}
+
+  Exit run() {
+    const bool is_container = command_.output == "-" || command_.output.ends_with(".wt");
+    if (!is_container && !is_sequence(command_.output)) {
+      return fail(command_.output,
                   {ErrorCode::unsupported,
                    "export writes Watertight files (.wt) and CityJSONSeq (.jsonl)"});
     }
+    // As root, opening a private cluster gives up the right to write where root can.
+    const bool gives_up_rights = ::geteuid() == 0 && command_.store.database_url.empty();
+    auto files = OutputFiles::open(command_.output, gives_up_rights);
+    if (!files) return fail(name_of(command_.output), files.error());
+    files_.emplace(*std::move(files));
+    const auto opened = open_store(command_.store);
+    if (!opened) return fail("store", opened.error());
+    const Exit exit =
+        is_container ? write_container(*opened->store) : write_sequences(*opened->store);
+    if (exit != Exit::valid) return exit;
+    if (const Status status = files_->commit(); !status) return fail("export", status.error());
+    for (const std::string& sentence : sentences_) {
+      std::fprintf(stderr, "watertight: %s\n", printable(sentence).c_str());
+    }
+    return Exit::valid;
   }
-  const auto opened = open_store(command.store);
-  if (!opened) return fail("store", opened.error());
-  auto exporting = pipeline::CollectionExport::start(
-      *opened->store, command.collection,
-      is_container ? pipeline::ExportFormat::container : pipeline::ExportFormat::sequence, {},
-      pipeline::SolidLayout::pages,
-      command.is_proven_only ? pipeline::ExportScope::proven : pipeline::ExportScope::all);
-  if (!exporting) return fail(command.collection, exporting.error());
-  const std::string output = command.output == "-" ? "standard output" : command.output;
-  auto writer = FileWriter::open(command.output);
-  if (!writer) return fail(output, writer.error());
-  for (;;) {
-    const auto bytes = exporting->next();
-    if (!bytes) return fail(command.collection, bytes.error());
-    if (bytes->empty()) break;
-    const Status written = writer->write(as_text(*bytes));
-    if (!written) return fail(output, written.error());
+
+ private:
+  static bool is_sequence(const std::string& name) {
+    const auto format = format_of_name(name);
+    return format && *format == Format::city_json_seq;
   }
-  const Status status = writer->commit();
-  if (!status) return fail(output, status.error());
-  std::fprintf(stderr, "watertight: %s with %s written\n",
-               quantity(exporting->exported().features, "feature").c_str(),
-               quantity(exporting->exported().solids, "solid").c_str());
-  return Exit::valid;
-}
+  static std::string name_of(const std::string& output) {
+    return output == "-" ? "standard output" : output;
+  }
+  static Exit fail(const std::string& what, const Error& error) {
+    complain(what, error);
+    return Exit::error;
+  }
+
+  Exit write_container(SolidStore& store) {
+    auto exporting = pipeline::CollectionExport::start(store, command_.collection,
+                                                       pipeline::ExportFormat::container, {},
+                                                       pipeline::SolidLayout::pages, scope_);
+    if (!exporting) return fail(command_.collection, exporting.error());
+    const Exit exit = write(*exporting, 0);
+    if (exit == Exit::valid) sentences_.push_back(counts_of(*exporting) + " written");
+    return exit;
+  }
+
+  Exit write_sequences(SolidStore& store) {
+    auto made = pipeline::SequencePlan::make(store, command_.collection);
+    if (!made) return fail(command_.collection, made.error());
+    const auto plan = std::make_shared<const pipeline::SequencePlan>(*std::move(made));
+    for (std::size_t i = 0; i < plan->sequences().size(); ++i) {
+      const Status added = i == 0 ? Status(Done{}) : files_->add();
+      if (!added) return fail(files_->name(i), added.error());
+      auto exporting =
+          pipeline::CollectionExport::start_sequence(store, command_.collection, plan, i, scope_);
+      if (!exporting) return fail(command_.collection, exporting.error());
+      const Exit exit = write(*exporting, i);
+      if (exit != Exit::valid) return exit;
+      describe(*plan, i, *exporting);
+    }
+    return Exit::valid;
+  }
+
+  Exit write(pipeline::CollectionExport& exporting, std::size_t file) {
+    for (;;) {
+      const auto bytes = exporting.next();
+      if (!bytes) return fail(command_.collection, bytes.error());
+      if (bytes->empty()) return Exit::valid;
+      const Status written = files_->write(file, as_text(*bytes));
+      if (!written) return fail(files_->name(file), written.error());
+    }
+  }
+
+  static std::string counts_of(const pipeline::CollectionExport& exporting) {
+    return quantity(exporting.exported().features, "feature") + " with " +
+           quantity(exporting.exported().solids, "solid");
+  }
+
+  /// Notes the facts about a sequence for the end of the run.
+  void describe(const pipeline::SequencePlan& plan, std::size_t number,
+                const pipeline::CollectionExport& exporting) {
+    const pipeline::PlannedSequence& sequence = plan.sequences()[number];
+    std::string text;
+    if (plan.sequences().size() > 1) text = files_->name(number) + ": ";
+    text += counts_of(exporting) + " written";
+    if (sequence.headers > 1) {
+      text += ", under one header for " + std::to_string(sequence.headers);
+    }
+    if (!sequence.reason.empty()) text += "; a file of its own: " + sequence.reason;
+    sentences_.push_back(std::move(text));
+    if (!sequence.losses.empty()) {
+      std::string lost = files_->name(number) + ": left out, because the headers differ in it:";
+      for (const std::string& path : sequence.losses) lost.append(1, ' ').append(path);
+      sentences_.push_back(std::move(lost));
+    }
+    if (const std::uint64_t generic = exporting.exported().generic; generic > 0) {
+      sentences_.push_back(files_->name(number) + ": " + quantity(generic, "feature") +
+                           " came without a city model and have only their solids, as "
+                           "GenericCityObject");
+    }
+  }
+
+  const ExportCommand& command_;
+  const pipeline::ExportScope scope_;
+  std::optional<OutputFiles> files_;
+  std::vector<std::string> sentences_;
+};
+
+}  // namespace
+
+Exit run(const ExportCommand& command) { return ExportRun(command).run(); }
 
 }  // namespace watertight::cli

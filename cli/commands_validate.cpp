@@ -13,6 +13,7 @@
 #include "cli/findings/explain.h"
 #include "cli/findings/finding_list.h"
 #include "cli/inputs.h"
+#include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
 #include "formats/mesh/interior_shells.h"
@@ -104,6 +105,7 @@ class Validation {
  public:
   explicit Validation(const ValidateCommand& command)
       : command_(command),
+        inputs_(list_inputs(command.files)),
         options_(options_of(command)),
         workers_(delaunay::EngineWorkers::Options{{}, {}, command.jobs}),
         is_output_taken_(has_output("-")),
@@ -131,9 +133,9 @@ class Validation {
   void end_file(const std::string& file, bool has_solids, bool has_surfaces);
   std::string note_without_solids(std::uint64_t surfaces) const;
   bool is_in_use(const std::string& path) const;
-  void validate_file(const std::string& file);
-  Result<OpenedInput> open_file(const std::string& file);
-  Result<formats::FeatureReader> with_cavities(const std::string& file);
+  void validate_file(const InputFile& source);
+  Result<OpenedInput> open_source(const InputFile& source);
+  Result<formats::FeatureReader> with_cavities(const InputFile& source);
   Result<pipeline::StreamOutcome> stream(const std::string& file, OpenedInput& input);
   template <class Call>
   Status tell_reports(const Call& call);
@@ -143,6 +145,7 @@ class Validation {
   }
 
   const ValidateCommand& command_;
+  const std::vector<InputFile> inputs_;
   pipeline::StreamOptions options_;
   delaunay::EngineWorkers workers_;
   bool is_output_taken_ = false;  // a report goes to the standard output
@@ -164,7 +167,8 @@ bool Validation::is_in_use(const std::string& path) const {
   if (path == "-") return false;
   const auto& cavities = command_.interior_shells;
   if (!command_.baseline.empty() && is_it(command_.baseline)) return true;
-  return std::any_of(command_.files.begin(), command_.files.end(), is_it) ||
+  const auto is_input = [&](const InputFile& input) { return is_it(input.file); };
+  return std::any_of(inputs_.begin(), inputs_.end(), is_input) ||
          std::any_of(cavities.begin(), cavities.end(), is_it);
 }
 
@@ -264,10 +268,10 @@ Status Validation::tell_reports(const Call& call) {
   return Done{};
 }
 
-Result<formats::FeatureReader> Validation::with_cavities(const std::string& file) {
-  const auto one_solid = [&](const std::string& path) -> Result<Document> {
-    auto bytes = read_file(path, options_.certify.limits);
-    auto input = bytes ? load_input(path, *bytes, {}) : Result<Input>(bytes.error());
+Result<formats::FeatureReader> Validation::with_cavities(const InputFile& source) {
+  const auto one_solid = [&](const InputFile& from) -> Result<Document> {
+    const auto whole = read_whole(from, options_.certify.limits);
+    auto input = whole ? load_input(whole->name, whole->bytes, {}) : Result<Input>(whole.error());
     if (!input) return std::move(input).error();
     std::vector<Feature>& features = input->document.features;
     if (features.size() == 1 && features[0].solids.size() == 1) {
@@ -277,11 +281,12 @@ Result<formats::FeatureReader> Validation::with_cavities(const std::string& file
     }
     return Error{ErrorCode::invalid_argument, "--interior-shell needs files with one solid each"};
   };
-  auto document = one_solid(file);
+  auto document = one_solid(source);
   if (!document) return std::move(document).error();
   std::vector<SubmittedSolid> cavities;
   for (const std::string& path : command_.interior_shells) {
-    auto cavity = one_solid(path);
+    const auto input = single_input(path);
+    auto cavity = input ? one_solid(*input) : Result<Document>(input.error());
     if (!cavity) {
       Error error = std::move(cavity).error();
       error.message.insert(0, "--interior-shell " + path + ": ");
@@ -296,20 +301,17 @@ Result<formats::FeatureReader> Validation::with_cavities(const std::string& file
   return formats::FeatureReader::of(*std::move(document));
 }
 
-Result<OpenedInput> Validation::open_file(const std::string& file) {
+Result<OpenedInput> Validation::open_source(const InputFile& source) {
   formats::ReadOptions reading;
   reading.surfaces = surface_rule(command_.surfaces).reading;
-  if (command_.interior_shells.empty()) return open_input(file, reading);
-  auto reader = with_cavities(file);
+  if (command_.interior_shells.empty()) return open_input(source, reading);
+  auto reader = with_cavities(source);
   if (!reader) return std::move(reader).error();
   return OpenedInput{*std::move(reader), std::nullopt};
 }
 
 Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, OpenedInput& input) {
-  const std::size_t files = command_.files.size();
-  ProgressBar bar(
-      file,
-      files < 2 ? "" : "file " + std::to_string(file_number_) + " of " + std::to_string(files));
+  ProgressBar bar(file, position_among(file_number_, inputs_.size()));
   const auto count = input.reader.feature_count();
   options_.progress = [&](std::uint64_t features, std::uint64_t bytes) {
     bar.show(features, share_done(features, count, bytes, input.bytes));
@@ -327,12 +329,13 @@ Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, Open
       });
 }
 
-void Validation::validate_file(const std::string& file) {
+void Validation::validate_file(const InputFile& source) {
+  const std::string& file = source.name;
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t solids_before = summary_.solids();
   const std::uint64_t surfaces_before = summary_.surfaces().checked;
   omitted_ = 0;
-  auto input = open_file(file);
+  auto input = open_source(source);
   report::DocumentHead head{file, {}};
   if (input) head.format = input->reader.document().format;
   Status status =
@@ -369,9 +372,9 @@ void Validation::validate_file(const std::string& file) {
 Exit Validation::run() {
   const auto start = std::chrono::steady_clock::now();
   if (!open_baseline() || !open_reports()) return exit_;
-  for (const std::string& file : command_.files) {
+  for (const InputFile& input : inputs_) {
     ++file_number_;
-    validate_file(file);
+    validate_file(input);
   }
   for (OpenReport& open : reports_) {
     Status status = open.report->finish();

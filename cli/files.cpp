@@ -143,20 +143,36 @@ Result<OpenedFile> open_file(const std::string& path) {
   return opened;
 }
 
-EarlyFiles::EarlyFiles(std::span<const std::string> paths, bool opens_early)
-    : paths_(paths), opens_early_(opens_early) {
+Result<archives::RandomBytes> open_random(const std::string& path) {
+  auto file = std::make_shared<Descriptor>(open_to_read(path));
+  struct stat status {};
+  if (file->number() < 0 || ::fstat(file->number(), &status) != 0) return file_error(errno);
+  const auto read = [file](std::uint64_t offset,
+                           std::span<std::uint8_t> bytes) -> Result<std::size_t> {
+    for (;;) {
+      const ssize_t count =
+          ::pread(file->number(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (count >= 0) return static_cast<std::size_t>(count);
+      if (errno != EINTR) return file_error(errno);
+    }
+  };
+  return archives::RandomBytes{static_cast<std::uint64_t>(status.st_size), read};
+}
+
+EarlyFiles::EarlyFiles(std::span<const InputFile> inputs, bool opens_early)
+    : inputs_(inputs), opens_early_(opens_early) {
   if (!opens_early) return;
   constexpr rlim_t kOthers = 256;  // descriptors of the store and the workers
   rlimit most{};
   if (::getrlimit(RLIMIT_NOFILE, &most) != 0) return;
-  if (most.rlim_cur < paths.size() + kOthers) {
-    most.rlim_cur = std::min<rlim_t>(most.rlim_max, paths.size() + kOthers);
+  if (most.rlim_cur < inputs.size() + kOthers) {
+    most.rlim_cur = std::min<rlim_t>(most.rlim_max, inputs.size() + kOthers);
     ::setrlimit(RLIMIT_NOFILE, &most);
     ::getrlimit(RLIMIT_NOFILE, &most);
   }
   const rlim_t room = most.rlim_cur > kOthers ? most.rlim_cur - kOthers : 0;
-  for (const std::string& path : paths) {
-    if (early_.size() < room) early_.push_back(open_file(path));
+  for (const InputFile& input : inputs) {
+    if (early_.size() < room) early_.push_back(input.open());
   }
 }
 
@@ -164,7 +180,7 @@ Result<OpenedFile> EarlyFiles::take(std::size_t number) {
   if (number < early_.size()) {
     return std::exchange(early_[number], Error{ErrorCode::unavailable, "used already"});
   }
-  auto file = open_file(paths_[number]);
+  auto file = inputs_[number].open();
   if (file || !opens_early_) return file;
   Error error = std::move(file).error();
   error.message += "; it was opened without root's rights, as only " +
@@ -173,7 +189,7 @@ Result<OpenedFile> EarlyFiles::take(std::size_t number) {
   return error;
 }
 
-Result<Bytes> read_all(const formats::ByteSource& source, const Limits& limits) {
+Result<Bytes> read_all(const ByteSource& source, const Limits& limits) {
   Bytes bytes;
   for (;;) {
     if (bytes.size() > limits.bytes) {
@@ -236,6 +252,12 @@ Result<FileWriter> FileWriter::open(const std::string& target) {
   return FileWriter(std::make_unique<State>(path, std::move(temporary), is_direct, descriptor));
 }
 
+FileWriter FileWriter::to(int descriptor) {
+  return FileWriter(std::make_unique<State>("", "", true, descriptor));
+}
+
+int FileWriter::descriptor() const { return state_->file.number(); }
+
 Status FileWriter::write(std::string_view text) {
   state_->buffer += text;
   if (state_->buffer.size() < kChunk) return Done{};
@@ -264,6 +286,17 @@ Status write_file(const std::string& path, ByteView bytes) {
   if (!writer) return std::move(writer).error();
   Status status = writer->write(as_text(bytes));
   return status ? writer->commit() : status;
+}
+
+std::string numbered_name(const std::string& output, std::size_t number) {
+  if (number == 0) return output;
+  const std::size_t name = output.rfind('/') + 1;  // 0 without a folder
+  std::size_t ending = output.find('.', name + 1);
+  if (ending == std::string::npos) ending = std::min(output.find('.', name), output.size());
+  std::string result = output.substr(0, ending);
+  result += '-';
+  result += std::to_string(number + 1);
+  return result + output.substr(ending);
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

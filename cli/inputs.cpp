@@ -2,9 +2,11 @@
 #include "cli/inputs.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "base/ascii.h"
+#include "cli/sources/input_list.h"
+#include "cli/sources/zip_file.h"
 #include "codec/page_file.h"
 #include "pipeline/container.h"
 
@@ -25,11 +27,11 @@ Result<Input> input_of_container(ByteView bytes, const Limits& limits) {
   return Input{InputKind::container, std::move(documents->front())};
 }
 
-Result<Input> input_of_blob(const std::string& path, ByteView bytes, const Limits& limits) {
+Result<Input> input_of_blob(const std::string& name, ByteView bytes, const Limits& limits) {
   auto decoded = decode(bytes, limits);
   if (!decoded) return std::move(decoded).error();
   Feature feature;
-  feature.id = path;
+  feature.id = name.empty() ? "-" : name;
   feature.srid = decoded->info.srid;
   feature.solids.push_back(SubmittedSolid{std::move(decoded->solid), {}, {}});
   Input input{InputKind::blob, {}};
@@ -40,7 +42,7 @@ Result<Input> input_of_blob(const std::string& path, ByteView bytes, const Limit
 }
 
 /// A source of the bytes of `first`, then of those of `rest`.
-formats::ByteSource source_of(Bytes first, formats::ByteSource rest) {
+ByteSource source_of(Bytes first, ByteSource rest) {
   return [first = std::move(first), rest = std::move(rest),
           given = std::size_t{0}](std::span<std::uint8_t> bytes) mutable -> Result<std::size_t> {
     if (given == first.size()) return rest(bytes);
@@ -52,7 +54,7 @@ formats::ByteSource source_of(Bytes first, formats::ByteSource rest) {
 }
 
 /// The first bytes of a source: kFirstBytes, or fewer where the source ends.
-Result<Bytes> first_bytes(const formats::ByteSource& source) {
+Result<Bytes> first_bytes(const ByteSource& source) {
   Bytes first(kFirstBytes);
   std::size_t count = 0;
   while (count < first.size()) {
@@ -63,6 +65,11 @@ Result<Bytes> first_bytes(const formats::ByteSource& source) {
   }
   first.resize(count);
   return first;
+}
+
+Error nested_error() {
+  return {ErrorCode::unsupported,
+          "an archive in an archive, or something compressed twice, is not read"};
 }
 
 }  // namespace
@@ -82,7 +89,7 @@ Error page_file_error() {
           "this is a page file; the commands read Watertight files and blobs"};
 }
 
-Result<Input> load_input(const std::string& path, ByteView bytes,
+Result<Input> load_input(const std::string& name, ByteView bytes,
                          const formats::ReadOptions& options) {
   switch (kind_of_input(bytes)) {
     case InputKind::container:
@@ -90,45 +97,78 @@ Result<Input> load_input(const std::string& path, ByteView bytes,
     case InputKind::page_file:
       return page_file_error();
     case InputKind::blob:
-      return input_of_blob(path, bytes, options.limits);
+      return input_of_blob(name, bytes, options.limits);
     case InputKind::document:
       break;
   }
-  const auto format = formats::detect_format(path == "-" ? "" : path, bytes);
+  const auto format = formats::detect_format(name, bytes);
   if (!format) return format.error();
   auto document = formats::read_document(bytes, *format, options);
   if (!document) return std::move(document).error();
   return Input{InputKind::document, *std::move(document)};
 }
 
-Result<FoundInput> find_input(OpenedFile file) {
+Result<FoundInput> find_input(OpenedFile file, const std::string& name) {
   auto first = first_bytes(file.source);
   if (!first) return std::move(first).error();
-  const InputKind kind = kind_of_input(*first);
-  return FoundInput{kind, source_of(*std::move(first), std::move(file.source)), file.bytes};
+  const archives::Compression compression = archives::compression_of(*first);
+  ByteSource source = source_of(*first, std::move(file.source));
+  const bool is_packed = compression != archives::Compression::none;
+  if (is_packed && file.is_member) return nested_error();
+  if (compression == archives::Compression::zip) {
+    auto member = only_member(source);
+    if (!member) return std::move(member).error();
+    auto opened = member->open();
+    if (!opened) return std::move(opened).error();
+    return find_input(*std::move(opened), member->name);
+  }
+  FoundInput found{kind_of_input(*first), std::move(source), file.bytes, name == "-" ? "" : name};
+  if (!is_packed) return found;
+  found.name = name_without_compression(found.name);
+  if (lower_case(found.name).ends_with(".tar")) {
+    return Error{ErrorCode::unsupported, "tar archives are not read; zip archives are"};
+  }
+  found.source = archives::expanded(std::move(found.source), compression);
+  found.bytes.reset();
+  first = first_bytes(found.source);
+  if (!first) return std::move(first).error();
+  if (archives::compression_of(*first) != archives::Compression::none) return nested_error();
+  found.kind = kind_of_input(*first);
+  found.source = source_of(*std::move(first), std::move(found.source));
+  return found;
 }
 
-Result<OpenedInput> open_input(const std::string& path, FoundInput input,
-                               const formats::ReadOptions& options) {
+Result<OpenedInput> open_input(FoundInput input, const formats::ReadOptions& options,
+                               const formats::FeatureReader::HeaderFinder& lone_header) {
   if (input.kind == InputKind::document) {
     auto reader =
-        formats::FeatureReader::open(std::move(input.source), path == "-" ? "" : path, options);
+        formats::FeatureReader::open(std::move(input.source), input.name, options, lone_header);
     if (!reader) return std::move(reader).error();
     return OpenedInput{*std::move(reader), input.bytes};
   }
   const auto bytes = read_all(input.source, options.limits);
   if (!bytes) return bytes.error();
-  auto loaded = load_input(path, *bytes, options);
+  auto loaded = load_input(input.name, *bytes, options);
   if (!loaded) return std::move(loaded).error();
   return OpenedInput{formats::FeatureReader::of(std::move(loaded->document)), input.bytes};
 }
 
-Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptions& options) {
-  auto file = open_file(path);
+Result<OpenedInput> open_input(const InputFile& input, const formats::ReadOptions& options) {
+  auto file = input.open();
   if (!file) return std::move(file).error();
-  auto input = find_input(*std::move(file));
-  if (!input) return std::move(input).error();
-  return open_input(path, *std::move(input), options);
+  auto found = find_input(*std::move(file), input.name);
+  if (!found) return std::move(found).error();
+  return open_input(*std::move(found), options);
+}
+
+Result<WholeInput> read_whole(const InputFile& input, const Limits& limits) {
+  auto file = input.open();
+  if (!file) return std::move(file).error();
+  auto found = find_input(*std::move(file), input.name);
+  if (!found) return std::move(found).error();
+  auto bytes = read_all(found->source, limits);
+  if (!bytes) return std::move(bytes).error();
+  return WholeInput{std::move(found->name), *std::move(bytes)};
 }
 
 Result<Format> format_of_name(const std::string& path) {

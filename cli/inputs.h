@@ -29,8 +29,9 @@ struct Input {
   Document document;
 };
 
-/// Reads an input. Errors: those of the readers; unsupported for page files.
-Result<Input> load_input(const std::string& path, ByteView bytes,
+/// Reads a document; its name decides on the format. Errors: those of the readers; unsupported for
+/// page files.
+Result<Input> load_input(const std::string& name, ByteView bytes,
                          const formats::ReadOptions& options);
 
 /// The error for a page file.
@@ -42,20 +43,31 @@ struct OpenedInput {
   std::optional<std::uint64_t> bytes;  // the size of the file, if it has one
 };
 
-/// A file of which only the kind is known.
+/// A file of which only the kind is known. A compressed one is expanded while it is read.
 struct FoundInput {
   InputKind kind = InputKind::document;
-  formats::ByteSource source;          // all bytes of the file
-  std::optional<std::uint64_t> bytes;  // the size of the file, if it has one
+  ByteSource source;                   // all bytes, expanded
+  std::optional<std::uint64_t> bytes;  // their number, if it is known
+  std::string name;  // decides on the format: without the ending of a compression; "" for "-"
 };
 
-/// Finds the kind of an opened file. Errors: those of its source.
-Result<FoundInput> find_input(OpenedFile file);
+/// Finds the kind of an opened input. Errors: those of its source; unsupported for an archive in an
+/// archive, a tar archive, and a zip of several documents that is no file.
+Result<FoundInput> find_input(OpenedFile file, const std::string& name);
 
-/// Opens an input. Errors: unavailable with the reason; those of the readers.
-Result<OpenedInput> open_input(const std::string& path, const formats::ReadOptions& options);
-Result<OpenedInput> open_input(const std::string& path, FoundInput input,
-                               const formats::ReadOptions& options);
+/// Opens an input. Errors: unavailable with the reason; those of find_input() and of the readers.
+Result<OpenedInput> open_input(const InputFile& input, const formats::ReadOptions& options);
+/// `lone_header` is for a CityJSONFeature alone, as in FeatureReader::open().
+Result<OpenedInput> open_input(FoundInput input, const formats::ReadOptions& options,
+                               const formats::FeatureReader::HeaderFinder& lone_header = {});
+
+/// An input with all its bytes.
+struct WholeInput {
+  std::string name;  // as FoundInput::name
+  Bytes bytes;       // expanded
+};
+/// Reads an input whole. Errors: those of find_input(); limit_exceeded.
+Result<WholeInput> read_whole(const InputFile& input, const Limits& limits);
 
 /// The format that an output file's name asks for. Errors: unsupported naming the known endings.
 Result<Format> format_of_name(const std::string& path);

@@ -69,8 +69,10 @@ void add_rules(CLI::App& sub, RuleChoice& rules) {
   sub.add_option("--proof", rules.proof, "proof of validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
       ->capture_default_str();
-  sub.add_option("--overlap", rules.overlap_metres,
-                 "depth to which building parts and composite members may overlap, metres")
+  sub.add_option(
+         "--overlap", rules.overlap_metres,
+         "depth to which building parts, composite members and indoor cells may overlap, and gap "
+         "between neighbouring cells, metres")
       ->check(in_range(0, 1000, "from 0 to 1000"))
       ->capture_default_str();
   sub.add_flag("--exact-overlaps", rules.are_steps_errors,
@@ -90,7 +92,9 @@ void add_surfaces(CLI::App& sub, std::string& surfaces) {
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
-  sub->add_option("FILE", command.files, "documents; - for standard input");
+  sub->add_option("FILE", command.files,
+                  "documents, also in folders, zip archives and compressed files; - for standard "
+                  "input");
   sub->add_option("--report", command.report, "write the reports as JSON, a line per document");
   sub->add_option("--geojson", command.geojson, "write the findings as a GeoJSON layer");
   sub->add_option("--html", command.html, "write the report as a page with pictures");
@@ -156,8 +160,12 @@ void add_contract(CLI::App& sub, std::string& contract) {
 
 void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("encode", "Validate and compress a document");
-  sub->add_option("IN", command.input, "document; - for standard input")->required();
-  sub->add_option("-o,--output", command.output, "Watertight file; - for standard output")
+  sub->add_option("IN", command.files,
+                  "documents, also in folders, zip archives and compressed files; - for standard "
+                  "input")
+      ->required();
+  sub->add_option("-o,--output", command.output,
+                  "Watertight file; - for standard output; a folder for several documents")
       ->required();
   auto* mode =
       sub->add_option("--mode", command.mode, "how solids are coded")
@@ -232,7 +240,9 @@ std::string is_collection_id(const std::string& id) {
 
 void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("ingest", "Validate documents and store them");
-  sub->add_option("FILE", command.files, "documents; each is stored whole or not at all")
+  sub->add_option("FILE", command.files,
+                  "documents, also in folders, zip archives and compressed files; each is stored "
+                  "whole or not at all")
       ->required();
   sub->add_option("--collection", command.collection, "collection, made when missing")
       ->required()
@@ -258,8 +268,10 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
 void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("export", "Write a collection of a store to a file");
   sub->add_option("COLLECTION", command.collection, "collection")->required();
-  sub->add_option("-o,--output", command.output,
-                  "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl)")
+  sub->add_option(
+         "-o,--output", command.output,
+         "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl; OUT-2, ... if "
+         "the documents have headers that cannot be merged)")
       ->required();
   sub->add_flag("--proven", command.is_proven_only,
                 "only features whose solids are all proven to be valid");

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "base/ascii.h"
+#include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "formats/mesh/mesh_text.h"
 
@@ -139,10 +141,31 @@ Result<Format> format_of_text(std::string_view text) {
 
 }  // namespace
 
+bool is_lone_feature(std::string_view text) {
+  const std::size_t start = text.find_first_not_of(" \t\r\n\x1E\xEF\xBB\xBF");
+  if (start == std::string_view::npos || text[start] != '{') return false;
+  text.remove_prefix(start);
+  if (json_type(text) != "CityJSONFeature") return false;
+  const std::size_t line_end = std::min(text.find('\n'), text.size());
+  const std::size_t last = text.find_last_not_of(" \t\r", line_end > 0 ? line_end - 1 : 0);
+  const bool is_line_whole = last != std::string_view::npos && text[last] == '}';
+  return !is_line_whole ||
+         text.find_first_not_of(" \t\r\n\x1E", line_end) == std::string_view::npos;
+}
+
+bool has_known_ending(std::string_view file_name) {
+  const std::string name = lower_case(file_name);
+  const auto is_its = [&](const Ending& ending) { return name.ends_with(ending.text); };
+  return std::any_of(kEndings.begin(), kEndings.end(), is_its) || name.ends_with(".json") ||
+         name.ends_with(".geojson") || name.ends_with(".jsonfg");
+}
+
 Result<Format> detect_format(std::string_view file_name, ByteView bytes) {
   const std::string name = lower_case(file_name);
   for (const Ending& ending : kEndings) {
-    if (name.ends_with(ending.text)) return ending.format;
+    if (!name.ends_with(ending.text)) continue;
+    const bool is_sequence = ending.format == Format::city_json_seq;
+    return is_sequence && is_lone_feature(as_text(bytes)) ? Format::city_json : ending.format;
   }
   if (name.ends_with(".geojson") || name.ends_with(".jsonfg")) return Format::json_fg;
   if (name.ends_with(".json")) return json_format(as_text(bytes));

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/quantity.h"
 #include "formats/city_json/city_json.h"
 #include "formats/ewkb.h"
 #include "formats/gml/city/city.h"
@@ -31,6 +32,18 @@ Status all_readable(std::span<const Feature> features) {
     }
   }
   return Done{};
+}
+
+// Errors: limit_exceeded for more solids than a text of this length, or one feature, may have.
+Status check_solid_counts(const Document& document, std::uint64_t bytes, const Limits& limits) {
+  std::uint64_t count = 0;
+  for (const Feature& feature : document.features) {
+    if (Status status = check_solid_count(feature, limits); !status) return status;
+    count += solid_count(feature);
+  }
+  if (count <= limits.solids_of(bytes)) return Done{};
+  return Error{ErrorCode::limit_exceeded, "more than " + std::to_string(limits.solids_of(bytes)) +
+                                              " solids in " + quantity(bytes, "byte")};
 }
 
 // Writes the solids of all features, one after the other.
@@ -209,6 +222,18 @@ bool has_byte_order_mark(ByteView bytes, Format format) {
 
 }  // namespace
 
+std::uint64_t solid_count(const Feature& feature) {
+  return feature.solids.size() + feature.unreadable.size();
+}
+
+Status check_solid_count(const Feature& feature, const Limits& limits) {
+  const std::uint64_t count = solid_count(feature);
+  if (count <= limits.solids) return Done{};
+  return Error{ErrorCode::limit_exceeded, quantity(count, "solid") + " in the feature '" +
+                                              feature.id + "'; the limit is " +
+                                              std::to_string(limits.solids)};
+}
+
 Result<Document> read_document(ByteView bytes, Format format, const ReadOptions& options) {
   if (bytes.size() > options.limits.bytes) {
     return Error{ErrorCode::limit_exceeded, std::to_string(bytes.size()) + " bytes; the limit is " +
@@ -221,6 +246,9 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
     if (has_mark && error.byte_offset) *error.byte_offset += kByteOrderMark.size();
     return error;
   }
+  if (Status status = check_solid_counts(*document, bytes.size(), options.limits); !status) {
+    return std::move(status).error();
+  }
   if (has_mark) document->notes.emplace_back("byte order mark skipped");
   const bool keeps_text = options.keep_text && !options.split_features;
   if (keeps_text && !is_city(format) && format != Format::gml) keep_bytes(bytes, *document);
@@ -229,7 +257,7 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
 
 Result<std::string> write_feature(const Document& document, const Feature& feature) {
   if (is_city(document.format)) {
-    auto header = read_city_json_header(document.header, Limits{.bytes = ~0ULL, .nesting = 256});
+    auto header = read_city_json_header(document.header, kOwnText);
     if (!header) return std::move(header).error();
     return write_city_json_feature(*header, feature);
   }

@@ -13,6 +13,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "base/shared_text.h"
+#include "geometry/cell_graph.h"
 #include "geometry/placement.h"
 #include "geometry/solid.h"
 
@@ -42,6 +43,9 @@ Result<Format> format_named(std::string_view name);
 /// "x.ewkb", "x.gml", "x.xml", "x.stl", "x.ply", "x.poly"), else by the first bytes. Errors:
 /// unsupported.
 Result<Format> detect_format(std::string_view file_name, ByteView bytes);
+
+/// Whether detect_format() knows the ending of a file name.
+bool has_known_ending(std::string_view file_name);
 
 /// Where a solid stands in its document.
 struct SolidSource {
@@ -115,7 +119,13 @@ struct Feature {
   /// Surfaces, each with its facets in one shell and on a lattice of its own, for validation only:
   /// the skeleton has them as they came. Empty without ReadOptions::surfaces; in document order.
   std::vector<SubmittedSolid> surfaces = {};
+  Index cell = kNone;  // the index in Document::graph.cells of the cell that the feature is
 };
+
+/// The number of solids of a feature, with its parts that could not be read.
+std::uint64_t solid_count(const Feature& feature);
+/// Errors: limit_exceeded for more than Limits::solids.
+Status check_solid_count(const Feature& feature, const Limits& limits);
 
 struct Document {
   Format format = Format::city_json;
@@ -136,6 +146,8 @@ struct Document {
   /// empty for line feeds; in formats other than those of CityJSON the bytes of the document, with
   /// references to the solids of all features (formats/text/kept_text.h). Opaque.
   Bytes framing = {};
+  /// The graph of an indoor model (IndoorGML), for validation only; empty in other documents.
+  geometry::CellGraph graph = {};
 };
 
 /// The contract levels: how much of a document comes back.

@@ -19,6 +19,15 @@ std::size_t text_start(std::string_view line) {
   return std::min(line.find_first_not_of("\x1E \t\r"), line.size());
 }
 
+/// Whether the first line that is not blank can be a complete JSON text, as far as it is there.
+bool has_whole_line(std::string_view text) {
+  const std::size_t start = text.find_first_not_of("\x1E \t\r\n\xEF\xBB\xBF");
+  if (start == std::string_view::npos || text[start] != '{') return true;
+  const std::size_t end = text.find('\n', start);
+  if (end == std::string_view::npos) return true;
+  return text[text.find_last_not_of(" \t\r", end - 1)] == '}';
+}
+
 Error in_line(Error error, const FeatureText& text) {
   const bool is_cut_off = error.byte_offset && *error.byte_offset + 1 >= text.line.size();
   error.message = "line " + std::to_string(text.place.line) + ": " + error.message;
@@ -48,10 +57,12 @@ Status FeatureReader::fill() {
     searched_ -= used_;
     used_ = 0;
   }
-  if (buffer_.size() > options_.limits.bytes) {
+  const Limits& limits = options_.limits;
+  const std::uint64_t most =
+      is_sequence_ ? std::min(limits.feature_bytes, limits.bytes) : limits.bytes;
+  if (buffer_.size() > most) {
     return Error{ErrorCode::limit_exceeded,
-                 "longer than " + std::to_string(options_.limits.bytes) + " bytes without an end",
-                 bytes_read_};
+                 "longer than " + std::to_string(most) + " bytes without an end", bytes_read_};
   }
   const std::size_t size = buffer_.size();
   buffer_.resize(size + kChunk);
@@ -74,7 +85,8 @@ Status FeatureReader::fill_to_line_end() {
 }
 
 Result<FeatureReader> FeatureReader::open(ByteSource source, std::string_view file_name,
-                                          const ReadOptions& options) {
+                                          const ReadOptions& options,
+                                          const HeaderFinder& lone_header) {
   FeatureReader reader;
   reader.source_ = std::move(source);
   reader.options_ = options;
@@ -83,9 +95,15 @@ Result<FeatureReader> FeatureReader::open(ByteSource source, std::string_view fi
     status = reader.fill();
   }
   if (!status) return std::move(status).error();
-  const auto format = detect_format(file_name, as_bytes(reader.buffer_));
+  auto format = detect_format(file_name, as_bytes(reader.buffer_));
+  if (format && *format == Format::city_json_seq && !has_whole_line(reader.buffer_)) {
+    // No sequence, but it can be a CityJSONFeature alone whose type comes late.
+    status = reader.fill_all();
+    if (!status) return std::move(status).error();
+    format = detect_format(file_name, as_bytes(reader.buffer_));
+  }
   reader.is_sequence_ = format && *format == Format::city_json_seq;
-  status = reader.is_sequence_ ? reader.read_header() : reader.read_whole(file_name);
+  status = reader.is_sequence_ ? reader.read_header() : reader.read_whole(file_name, lone_header);
   if (!status) return std::move(status).error();
   return reader;
 }
@@ -97,13 +115,25 @@ FeatureReader FeatureReader::of(Document document) {
   return reader;
 }
 
-Status FeatureReader::read_whole(std::string_view file_name) {
+Status FeatureReader::fill_all() {
   while (!is_at_end_) {
     if (Status status = fill(); !status) return status;
   }
+  return Done{};
+}
+
+Status FeatureReader::read_whole(std::string_view file_name, const HeaderFinder& lone_header) {
+  if (Status status = fill_all(); !status) return status;
   const auto format = detect_format(file_name, as_bytes(buffer_));
   if (!format) return format.error();
-  auto document = read_document(as_bytes(buffer_), *format, options_);
+  std::string header;
+  if (lone_header && *format == Format::city_json && is_lone_feature(buffer_)) {
+    auto found = lone_header();
+    if (!found) return std::move(found).error();
+    header = *std::move(found);
+  }
+  auto document = header.empty() ? read_document(as_bytes(buffer_), *format, options_)
+                                 : read_lone_feature(std::move(buffer_), header, options_);
   if (!document) return std::move(document).error();
   document_ = *std::move(document);
   buffer_ = {};

@@ -10,14 +10,14 @@
 #include <span>
 #include <string>
 
+#include "base/byte_source.h"
 #include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "formats/text/text_layout.h"
 
 namespace watertight::formats {
 
-/// Fills the span from the input and returns the number of bytes; 0 at the end of the input.
-using ByteSource = std::function<Result<std::size_t>(std::span<std::uint8_t>)>;
+using watertight::ByteSource;
 
 /// The place of a feature in the input.
 struct FeaturePlace {
@@ -39,11 +39,16 @@ struct FeatureText {
 
 class FeatureReader {
  public:
+  /// Finds the header under which a CityJSONFeature alone is read; "" for none. Errors: any.
+  using HeaderFinder = std::function<Result<std::string>()>;
+
   /// Opens a reader and looks at the start of the input. `file_name` helps to detect the format, as
-  /// in detect_format(). Errors: those of detect_format(), of the source, and of the header of a
-  /// sequence; for other formats those of read_document().
+  /// in detect_format(). `lone_header` is called for a CityJSONFeature alone; without a header it
+  /// is read as read_city_json() does. Errors: those of detect_format(), of the source, and of the
+  /// header of a sequence; for other formats those of read_document().
   static Result<FeatureReader> open(ByteSource source, std::string_view file_name,
-                                    const ReadOptions& options = {});
+                                    const ReadOptions& options = {},
+                                    const HeaderFinder& lone_header = {});
   /// A reader of a document that is in memory already.
   static FeatureReader of(Document document);
 
@@ -72,7 +77,8 @@ class FeatureReader {
   FeatureReader() = default;
   Status fill();
   Status fill_to_line_end();
-  Status read_whole(std::string_view file_name);
+  Status fill_all();
+  Status read_whole(std::string_view file_name, const HeaderFinder& lone_header);
   Status read_header();
   Result<std::optional<FeatureText>> next_line();
   std::string header_line(FeatureText text);

@@ -89,9 +89,20 @@ bool read_texts(ByteView bytes, std::uint64_t documents, std::uint64_t& items_le
   return reader.remaining() == 0;
 }
 
+/// Takes the vertices of a solid from those that may still come. Errors: limit_exceeded.
+Status take_vertices(const Decoded& decoded, std::uint64_t& vertices_left) {
+  const std::uint64_t count = decoded.solid.vertex_count();
+  if (count > vertices_left) {
+    return Error{ErrorCode::limit_exceeded,
+                 "the solids have more vertices than a Watertight file of this length may claim"};
+  }
+  vertices_left -= count;
+  return Done{};
+}
+
 /// The solids of a page file in order.
 Result<std::vector<Decoded>> decode_pages(ByteView file, const Limits& limits,
-                                          std::uint64_t& pages) {
+                                          std::uint64_t& vertices_left, std::uint64_t& pages) {
   const auto reader = codec::PageFileReader::open(file, limits);
   if (!reader) return reader.error();
   pages = reader->page_count();
@@ -99,7 +110,12 @@ Result<std::vector<Decoded>> decode_pages(ByteView file, const Limits& limits,
   for (std::size_t i = 0; i < reader->page_count(); ++i) {
     auto page = reader->page(i);
     if (!page) return std::move(page).error();
-    for (auto& solid : *page) found[solid.number] = std::move(solid.decoded);
+    for (auto& solid : *page) {
+      if (Status taken = take_vertices(solid.decoded, vertices_left); !taken) {
+        return std::move(taken).error();
+      }
+      found[solid.number] = std::move(solid.decoded);
+    }
   }
   std::vector<Decoded> solids;
   for (std::optional<Decoded>& solid : found) solids.push_back(*std::move(solid));
@@ -168,13 +184,19 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
     return malformed("malformed texts of a Watertight file");
   }
   ContainerPart& part = texts.part;
+  for (const ContainerFeature& feature : part.features) {
+    if (feature.encoded.skeleton.size() <= limits_.feature_bytes) continue;
+    return Error{ErrorCode::limit_exceeded, "the text of the feature '" + feature.encoded.id +
+                                                "' is longer than " +
+                                                std::to_string(limits_.feature_bytes) + " bytes"};
+  }
   documents_ += part.new_documents.size();
   const std::size_t before = parts_.remaining();
   const ByteView page_file = read_bytes(parts_);
   if (parts_.failed()) return malformed("truncated pages");
   std::vector<Decoded> paged;
   if (!page_file.empty()) {
-    auto decoded = decode_pages(page_file, limits_, part.pages);
+    auto decoded = decode_pages(page_file, limits_, vertices_left_, part.pages);
     if (!decoded) return std::move(decoded).error();
     paged = *std::move(decoded);
   }
@@ -193,6 +215,9 @@ Result<std::optional<ContainerPart>> ContainerReader::next() {
       if (size > parts_.remaining()) return malformed("truncated blob");
       auto decoded = decode(parts_.take(static_cast<std::size_t>(size)), limits_);
       if (!decoded) return std::move(decoded).error();
+      if (Status taken = take_vertices(*decoded, vertices_left_); !taken) {
+        return std::move(taken).error();
+      }
       feature.solids.push_back(*std::move(decoded));
     }
   }

@@ -63,15 +63,17 @@ class ContainerReader {
       : parts_(parts),
         version_(version),
         limits_(limits),
-        texts_left_(limits.bytes),
+        texts_left_(limits.expanded_from(parts.size())),
+        vertices_left_(limits.claimed_by(parts.size())),
         items_left_(kFreeItems + kItemsPerByte * parts.size()) {}
   Error malformed(std::string message) const;
 
   ByteReader parts_;
   std::uint8_t version_;
   Limits limits_;
-  std::uint64_t texts_left_;  // bytes of all texts that may still come
-  std::uint64_t items_left_;  // documents, features and solids that may still come
+  std::uint64_t texts_left_;     // bytes of all texts that may still come
+  std::uint64_t vertices_left_;  // vertices of all solids that may still come
+  std::uint64_t items_left_;     // documents, features and solids that may still come
   std::uint64_t documents_ = 0;
 };
 

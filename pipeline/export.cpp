@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "base/quantity.h"
+
 namespace watertight::pipeline {
 namespace {
 
@@ -13,35 +15,6 @@ constexpr std::size_t kWorthSending = 64U << 10U;
 Error about(const std::string& id, Error error) {
   error.message.insert(0, "feature '" + id + "': ");
   return error;
-}
-
-bool is_city_model(const std::string& format) {
-  return format == formats::to_string(Format::city_json) ||
-         format == formats::to_string(Format::city_json_seq);
-}
-
-constexpr const char* kOtherDocument =
-    "of another document than those before, which a sequence cannot hold; a Watertight file (.wt) "
-    "can";
-
-/// The header of a sequence of all features. Errors: those of CollectionExport::start().
-Result<std::string> sequence_header(SolidStore& store, const std::string& collection) {
-  const auto documents = store.documents(collection, 2);
-  if (!documents) return documents.error();
-  const std::string name = "collection '" + collection + "' ";
-  if (documents->empty()) return Error{ErrorCode::not_found, name + "has no features"};
-  for (const store::StoredHeader& document : *documents) {
-    if (is_city_model(document.format)) continue;
-    return Error{ErrorCode::unsupported,
-                 name + "has features of format " + document.format + ", not of a city model"};
-  }
-  if (documents->front().header != documents->back().header) {
-    return Error{ErrorCode::unsupported,
-                 name +
-                     "has features with different headers, which a sequence cannot hold; a "
-                     "Watertight file (.wt) can"};
-  }
-  return documents->front().header;
 }
 
 void append(Bytes& bytes, ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
@@ -59,14 +32,32 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
     started.container_.emplace(pages, layout, scope == ExportScope::all ? kContainerVersion : 1);
     return started;
   }
-  auto header = sequence_header(store, collection);
-  if (!header) return std::move(header).error();
-  started.header_ = *std::move(header);
-  // The header was checked when it was stored.
-  auto city_header =
-      formats::read_city_json_header(started.header_, Limits{.bytes = ~0ULL, .nesting = 256});
-  if (!city_header) return std::move(city_header).error();
-  started.city_header_ = *std::move(city_header);
+  auto plan = SequencePlan::make(store, collection);
+  if (!plan) return std::move(plan).error();
+  const std::span<const PlannedSequence> sequences = plan->sequences();
+  if (sequences.size() > 1) {
+    return Error{ErrorCode::unsupported,
+                 "collection '" + collection + "' needs " + std::to_string(sequences.size()) +
+                     " sequences, as its documents have different headers (" + sequences[1].reason +
+                     "); a Watertight file (.wt) holds all"};
+  }
+  return start_sequence(store, collection, std::make_shared<SequencePlan>(*std::move(plan)), 0,
+                        scope);
+}
+
+Result<CollectionExport> CollectionExport::start_sequence(SolidStore& store,
+                                                          const std::string& collection,
+                                                          std::shared_ptr<const SequencePlan> plan,
+                                                          std::size_t sequence, ExportScope scope) {
+  if (sequence >= plan->sequences().size()) {
+    return Error{ErrorCode::invalid_argument, "collection '" + collection + "' has " +
+                                                  quantity(plan->sequences().size(), "sequence")};
+  }
+  if (const auto found = store.collection(collection); !found) return found.error();
+  CollectionExport started(store, collection);
+  started.scope_ = scope;
+  started.plan_ = std::move(plan);
+  started.sequence_ = sequence;
   return started;
 }
 
@@ -84,20 +75,19 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
       return Error{ErrorCode::unavailable,
                    "another collection has the id '" + collection_ + "' by now"};
     }
-    if (is_first_ && !container_) append(bytes, as_bytes(header_ + '\n'));
+    if (is_first_ && plan_) append(bytes, as_bytes(plan_->sequences()[sequence_].header + '\n'));
     is_first_ = false;
     for (StoredFeature& feature : batch->features) {
       if (is_cancelled && is_cancelled()) {
         return Error{ErrorCode::cancelled, "the export was not finished"};
       }
       if (scope_ == ExportScope::proven && !feature.is_proven()) continue;
-      ++exported_.features;
-      exported_.solids += feature.solids.size();
       if (Status status = add(std::move(feature), bytes); !status) return status.error();
     }
     after_ = std::move(batch->next);
     is_last_ = after_.empty();
-    if (is_last_ && exported_.features == 0) {
+    const bool is_part = plan_ && plan_->sequences().size() > 1;
+    if (is_last_ && exported_.features == 0 && !is_part) {
       return Error{ErrorCode::not_found, "collection '" + collection_ + "' has no proven features"};
     }
     if (!is_last_ || !container_) continue;
@@ -109,8 +99,10 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
 }
 
 Status CollectionExport::add(StoredFeature feature, Bytes& bytes) {
-  if (!container_) return add_line(std::move(feature), bytes);
+  if (plan_) return add_line(std::move(feature), bytes);
   const std::string id = feature.id;
+  ++exported_.features;
+  exported_.solids += feature.solids.size();
   auto encoded = unpack(std::move(feature));
   if (!encoded) return about(id, encoded.error());
   if (Status status = container_->add(*std::move(encoded)); !status) return status;
@@ -119,16 +111,15 @@ Status CollectionExport::add(StoredFeature feature, Bytes& bytes) {
 }
 
 Status CollectionExport::add_line(StoredFeature feature, Bytes& bytes) {
-  const std::string id = feature.id;
-  // Only features that were stored after start() can have another format or header.
-  if (!is_city_model(feature.format) || feature.header != header_) {
-    return about(id, {ErrorCode::unsupported, kOtherDocument});
-  }
-  const auto document = from_stored(std::move(feature));
-  if (!document) return about(id, document.error());
-  auto line = formats::write_city_json_feature(*city_header_, document->features.front());
-  if (!line) return about(id, line.error());
-  append(bytes, as_bytes(*line + '\n'));
+  if (plan_->is_elsewhere(feature, sequence_)) return Done{};
+  const std::uint64_t solids = feature.solids.size();
+  const auto line = plan_->line(std::move(feature));
+  if (!line) return line.error();
+  if (line->sequence != sequence_) return Done{};
+  ++exported_.features;
+  exported_.solids += solids;
+  exported_.generic += line->is_generic ? 1 : 0;
+  append(bytes, as_bytes(line->text + '\n'));
   return Done{};
 }
 

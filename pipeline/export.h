@@ -7,21 +7,21 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "base/cancel.h"
 #include "codec/blob.h"
-#include "formats/city_json/city_json.h"
-#include "formats/document.h"
 #include "pipeline/container.h"
+#include "pipeline/sequences/sequence_plan.h"
 #include "store/solid_store.h"
 
 namespace watertight::pipeline {
 
 enum class ExportFormat : std::uint8_t {
   container,  // a Watertight file: any number of documents, solids in pages or blobs
-  sequence    // a CityJSONSeq; for city models that came with one header
+  sequence    // a CityJSONSeq; for features that can share one header
 };
 
 /// The features of an export: all, or those that are proven (FeatureRecord::is_proven()).
@@ -30,18 +30,24 @@ enum class ExportScope : std::uint8_t { all, proven };
 struct Exported {
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
+  std::uint64_t generic = 0;  // features of a sequence that came without a city model
 };
 
 /// An export that is under way. The store must outlive it. Not thread-safe.
 class CollectionExport {
  public:
-  /// Starts an export. Errors: those of the store; not_found (no collection, no features);
-  /// unsupported when the features cannot be in one sequence (not of city models, or with several
-  /// headers, under which coordinates and references differ).
+  /// Starts an export. Errors: those of the store; not_found (no collection, no features); those of
+  /// SequencePlan::make(); unsupported when the features need several sequences.
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
                                         ExportFormat format, const EncodeOptions& pages = {},
                                         SolidLayout layout = SolidLayout::pages,
                                         ExportScope scope = ExportScope::all);
+  /// Starts the export of one sequence of a plan, by its number. Errors: those of the store;
+  /// invalid_argument when the plan has no such sequence.
+  static Result<CollectionExport> start_sequence(SolidStore& store, const std::string& collection,
+                                                 std::shared_ptr<const SequencePlan> plan,
+                                                 std::size_t sequence,
+                                                 ExportScope scope = ExportScope::all);
 
   /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file; the first
   /// call returns after one feature. Empty after the last ones. Errors: those of the store;
@@ -63,11 +69,11 @@ class CollectionExport {
   SolidStore* store_;
   std::string collection_;
   ExportScope scope_ = ExportScope::all;
-  std::optional<ContainerWriter> container_;        // none for a sequence
-  std::string header_;                              // the header of a sequence
-  std::optional<formats::CityHeader> city_header_;  // the same header, parsed
-  std::string after_;                               // where the next batch starts
-  std::string key_;                                 // FeatureBatch::key of the first batch
+  std::optional<ContainerWriter> container_;  // none for a sequence
+  std::shared_ptr<const SequencePlan> plan_;  // of a sequence
+  std::size_t sequence_ = 0;                  // its number in the plan
+  std::string after_;                         // where the next batch starts
+  std::string key_;                           // FeatureBatch::key of the first batch
   bool is_first_ = true;
   bool is_last_ = false;
   Exported exported_;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <tuple>
 
 #include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
 #include "pipeline/groups.h"
+#include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
 #include "pipeline/streaming/process.h"
 #include "validate/report_json.h"
@@ -14,7 +18,6 @@ namespace watertight::pipeline {
 namespace {
 
 using formats::GeometryPlace;
-using formats::UnreadablePart;
 
 constexpr std::size_t kVertexBytes = 24;  // three doubles
 constexpr std::size_t kCornerBytes = 4;   // one index
@@ -44,7 +47,7 @@ void name_members(const InspectedFeature& inspected, InspectedGroup& group) {
     return validate::element_at(place, member.solid, elements_of(member));
   };
   for (Finding& finding : group.report.findings) {
-    finding.source = element(finding.place);
+    if (finding.source.line == 0) finding.source = element(finding.place);
     if (finding.other) finding.other_source = element(*finding.other);
   }
 }
@@ -68,20 +71,21 @@ SolidOutcome outcome_of(InspectedSolid& inspected, const Solid& solid, const Sto
   return outcome;
 }
 
-Result<std::vector<ProcessedFeature>> process_all(std::vector<Feature> features,
-                                                  std::span<const SubmittedSolid> template_solids,
-                                                  const Document& shared,
+Result<std::vector<ProcessedFeature>> process_all(Document& document, const SharedPart& shared,
                                                   delaunay::EngineWorkers* workers,
                                                   const IngestOptions& options) {
+  std::vector<Feature>& features = document.features;
   std::vector<std::optional<Result<ProcessedFeature>>> processed(features.size());
-  TemplateInspector templates(template_solids, workers, options.certify,
+  TemplateInspector templates(document.templates, workers, options.certify,
                               group_options(options.groups, options.certify));
+  CellInspector cells(document, workers, options.certify, options.groups, options.threads,
+                      options.is_cancelled);
   std::size_t done = 0;
   std::mutex mutex;
   geometry::for_each_piece(
       features.size(), static_cast<unsigned>(options.threads), [&](std::size_t i, bool) {
         if (is_cancelled(options)) return;
-        processed[i] = process(std::move(features[i]), shared, workers, options, templates);
+        processed[i] = process(std::move(features[i]), shared, workers, options, templates, cells);
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(done, features.size());
@@ -133,16 +137,11 @@ std::set<GeometryPlace> unproven_geometries(const InspectedFeature& feature) {
   return places;
 }
 
-/// Reads the text of a feature, or of a whole CityJSON, of the document that `shared` is a part of.
-Result<Feature> read_again(const std::string& text, const Document& shared, bool is_whole,
-                           formats::Surfaces surfaces) {
-  const Limits no_limits{.bytes = ~0ULL, .nesting = 256};
-  const formats::ReadOptions reading{no_limits, false, false, surfaces};
-  if (!is_whole) {
-    const auto header = formats::read_city_json_header(shared.header.str(), no_limits);
-    if (!header) return header.error();
-    return formats::read_city_json_feature(*header, text, reading);
-  }
+/// Reads the text of a feature under a header, or of a whole CityJSON.
+Result<Feature> read_again(const std::string& text, const formats::CityHeader& header,
+                           bool is_whole, formats::Surfaces surfaces) {
+  const formats::ReadOptions reading{kOwnText, false, false, surfaces};
+  if (!is_whole) return formats::read_city_json_feature(header, text, reading);
   auto document = formats::read_city_json(text, reading);
   if (!document) return std::move(document).error();
   return std::move(document->features.front());
@@ -164,22 +163,22 @@ bool is_proven_but_for_unreadable(const InspectedFeature& feature) {
 /// Encodes the feature without the geometries that are not proven, and notes these in the outcome.
 /// nullopt when no geometry is left, or when the rest is not valid either: then all is left out.
 Result<std::optional<EncodedFeature>> encode_rest(
-    const InspectedFeature& feature, const Document& shared, delaunay::EngineWorkers* workers,
+    const InspectedFeature& feature, const SharedPart& shared, delaunay::EngineWorkers* workers,
     const IngestOptions& options, TemplateInspector& templates, FeatureOutcome& outcome) {
-  if (!is_city_model(shared.format)) return std::optional<EncodedFeature>();
+  if (!shared.city) return std::optional<EncodedFeature>();
   const bool is_whole = feature.feature.id.empty();
   Feature own = feature.feature;  // without the solids of instances
   own.solids.erase(own.solids.begin() + static_cast<std::ptrdiff_t>(feature.own), own.solids.end());
   own.layout = {};
-  auto text = formats::write_feature(shared, own);
+  auto text = formats::write_city_json_feature(*shared.city, own);
   if (!text) return std::move(text).error();
   const std::set<GeometryPlace> places = unproven_geometries(feature);
-  auto divided = formats::divide_city_model(*text, places, Limits{.bytes = ~0ULL, .nesting = 256});
+  auto divided = formats::divide_city_model(*text, places, kOwnText);
   if (!divided) return std::move(divided).error();
   outcome.left_out.assign(places.begin(), places.end());
   outcome.rejected = std::move(divided->chosen);
   if (divided->geometries_left == 0) return std::optional<EncodedFeature>();
-  auto rest = read_again(divided->rest, shared, is_whole, options.surfaces);
+  auto rest = read_again(divided->rest, *shared.city, is_whole, options.surfaces);
   if (!rest) return std::move(rest).error();
   const InspectedFeature inspected =
       inspect(*std::move(rest), workers, options.certify, options.groups, &templates);
@@ -187,9 +186,32 @@ Result<std::optional<EncodedFeature>> encode_rest(
     outcome.rejected = *std::move(text);
     return std::optional<EncodedFeature>();
   }
-  auto encoded = encode_feature(inspected, shared, options);
+  auto encoded = encode_feature(inspected, shared.document, options);
   if (!encoded) return std::move(encoded).error();
   return std::optional(*std::move(encoded));
+}
+
+}  // namespace
+
+namespace {
+
+/// Notes the bytes of the blobs of `rest`, whose geometries have new numbers since some were left
+/// out, for the first `own` solids of the outcome.
+void add_blob_bytes(const EncodedFeature& rest, std::size_t own, FeatureOutcome& outcome) {
+  std::map<std::tuple<std::string_view, std::uint32_t, std::uint32_t>, std::size_t> bytes;
+  for (const StoredSolid& solid : rest.solids) {
+    bytes[{solid.object_id, solid.geometry, solid.ordinal}] = solid.blob.size();
+  }
+  const std::set<GeometryPlace> left_out(outcome.left_out.begin(), outcome.left_out.end());
+  for (std::size_t i = 0; i < own; ++i) {
+    SolidOutcome& solid = outcome.solids[i];
+    const auto place = left_out.lower_bound(place_of(solid.source));
+    if (place != left_out.end() && *place == place_of(solid.source)) continue;
+    const auto before = std::distance(left_out.lower_bound({solid.source.object_id, 0}), place);
+    const auto number = solid.source.geometry - static_cast<std::uint32_t>(before);
+    const auto found = bytes.find({solid.source.object_id, number, solid.source.ordinal});
+    if (found != bytes.end()) solid.blob_bytes = found->second;
+  }
 }
 
 }  // namespace
@@ -233,18 +255,15 @@ Verdict InspectedFeature::verdict() const {
 
 namespace {
 
-/// Adds an empty, invalid solid for each part of the feature that could not be read.
-void add_unreadable(InspectedFeature& inspected, const CertifyOptions& options) {
-  for (UnreadablePart& part : inspected.feature.unreadable) {
-    auto nothing = Solid::make(SolidArrays{}, Lattice{}, inspected.feature.srid);
-    if (!nothing) continue;  // an empty solid breaks no rule of Solid
-    SubmittedSolid solid{*std::move(nothing), std::move(part.source), {}};
-    solid.unreadable = std::move(part.error.message);
-    inspected.solids.push_back(
-        {solid.source, certify(solid.solid, nullptr, options_for(solid, options))});
-    inspected.feature.solids.push_back(std::move(solid));
-  }
-  inspected.feature.unreadable.clear();
+/// Adds the comparison of a cell with others, after the groups that begin with its first solid.
+void add_cell(validate::GroupReport report, InspectedFeature& inspected) {
+  InspectedGroup group{validate::GroupKind::indoor_cells, inspected.feature.id, {}, {}, {}};
+  for (std::size_t i = 0; i < inspected.own; ++i) group.members.push_back(i);
+  group.report = std::move(report);
+  const auto place =
+      std::find_if(inspected.groups.begin(), inspected.groups.end(),
+                   [](const InspectedGroup& other) { return other.members.front() > 0; });
+  inspected.groups.insert(place, std::move(group));
 }
 
 }  // namespace
@@ -283,12 +302,16 @@ void SurfaceCounts::add(const SurfaceCounts& other) {
 
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups,
-                         TemplateInspector* templates) {
+                         TemplateInspector* templates, CellInspector* cells) {
   InspectedFeature inspected;
   inspected.solids.reserve(feature.solids.size());
-  for (const SubmittedSolid& submitted : feature.solids) {
+  InspectedCell cell = cells != nullptr ? cells->take(feature) : InspectedCell{};
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const SubmittedSolid& submitted = feature.solids[i];
     inspected.solids.push_back(
-        {submitted.source, certify(submitted.solid, workers, options_for(submitted, options))});
+        {submitted.source,
+         cell.is_ready ? std::move(cell.inspections[i])
+                       : certify(submitted.solid, workers, options_for(submitted, options))});
   }
   inspected.feature = std::move(feature);
   inspected.own = inspected.solids.size();
@@ -298,6 +321,7 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
   } else {
     inspected.groups = inspect_groups(group_candidates(inspected), group_options(groups, options));
   }
+  if (cell.is_ready) add_cell(std::move(cell.report), inspected);
   for (InspectedGroup& group : inspected.groups) name_members(inspected, group);
   add_unreadable(inspected, options);
   add_surfaces(inspected, options);
@@ -330,30 +354,36 @@ void IngestCounts::add(Verdict of_feature) {
   verdict = worse(verdict, of_feature);
 }
 
-Result<Document> shared_part(const Document& document, formats::Contract contract) {
-  Document shared;
-  shared.format = document.format;
-  shared.header = document.header;
-  if (contract == formats::Contract::exact) shared.framing = document.framing;
-  if (contract != formats::Contract::boundary || document.header.empty()) return shared;
-  auto header = formats::boundary_header(document.header);
-  if (!header) return std::move(header).error();
-  shared.header = *std::move(header);
+Result<SharedPart> shared_part(const Document& document, formats::Contract contract) {
+  SharedPart shared;
+  shared.document.format = document.format;
+  shared.document.header = document.header;
+  if (contract == formats::Contract::exact) shared.document.framing = document.framing;
+  if (contract == formats::Contract::boundary && !document.header.empty()) {
+    auto header = formats::boundary_header(document.header);
+    if (!header) return std::move(header).error();
+    shared.document.header = *std::move(header);
+  }
+  if (is_city_model(document.format)) {
+    auto header = formats::read_city_json_header(shared.document.header.str(), kOwnText);
+    if (!header) return std::move(header).error();
+    shared.city = *std::move(header);
+  }
   return shared;
 }
 
-Result<ProcessedFeature> process(Feature feature, const Document& shared,
+Result<ProcessedFeature> process(Feature feature, const SharedPart& shared,
                                  delaunay::EngineWorkers* workers, const IngestOptions& options,
-                                 TemplateInspector& templates) {
+                                 TemplateInspector& templates, CellInspector& cells) {
   ProcessedFeature processed;
   feature.surfaces.clear();  // they stay in the skeleton; validate_stream() reports on them
   InspectedFeature inspected =
-      inspect(std::move(feature), workers, options.certify, options.groups, &templates);
+      inspect(std::move(feature), workers, options.certify, options.groups, &templates, &cells);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   const bool is_valid = processed.outcome.verdict == Verdict::valid;
   if (is_valid || options.policy == Policy::keep) {
-    auto encoded = encode_feature(inspected, shared, options);
+    auto encoded = encode_feature(inspected, shared.document, options);
     if (!encoded) return std::move(encoded).error();
     processed.encoded = *std::move(encoded);
   }
@@ -369,7 +399,10 @@ Result<ProcessedFeature> process(Feature feature, const Document& shared,
         processed.encoded && i < inspected.own ? &processed.encoded->solids[i] : nullptr));
   }
   processed.outcome.groups = std::move(inspected.groups);
-  if (rest) processed.encoded = std::move(rest);
+  if (rest) {
+    add_blob_bytes(*rest, inspected.own, processed.outcome);
+    processed.encoded = std::move(rest);
+  }
   processed.outcome.is_stored = processed.encoded.has_value();
   return processed;
 }
@@ -378,13 +411,12 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
                                       const IngestOptions& options) {
   auto shared = shared_part(document, options.contract);
   if (!shared) return std::move(shared).error();
-  auto processed =
-      process_all(std::move(document.features), document.templates, *shared, workers, options);
+  auto processed = process_all(document, *shared, workers, options);
   if (!processed) return std::move(processed).error();
   EncodeOutcome encoded;
-  encoded.document.format = std::string(formats::to_string(shared->format));
-  encoded.document.header = std::move(shared->header);
-  encoded.document.framing = std::move(shared->framing);
+  encoded.document.format = std::string(formats::to_string(shared->document.format));
+  encoded.document.header = std::move(shared->document.header);
+  encoded.document.framing = std::move(shared->document.framing);
   for (ProcessedFeature& feature : *processed) {
     encoded.outcome.add(feature.outcome.verdict);
     if (feature.encoded) {
@@ -396,7 +428,7 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
   }
   // The kept text of another format is that of all features.
   if (encoded.document.features.size() < encoded.outcome.features.size() &&
-      !is_city_model(shared->format)) {
+      !is_city_model(shared->document.format)) {
     encoded.document.framing.clear();
   }
   const bool is_refused = options.policy.value_or(Policy::refuse) == Policy::refuse;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "base/assert.h"
+#include "base/quantity.h"
 #include "geometry/crs/crs.h"
 #include "pipeline/groups.h"
 
@@ -77,9 +78,25 @@ TemplateInspector::TemplateInspector(std::span<const SubmittedSolid> templates,
       group_options_(groups),
       uses_(templates.size()) {}
 
+std::string TemplateInspector::refusal_of(
+    std::span<const formats::TemplateInstance> instances) const {
+  std::uint64_t count = 0;
+  for (const formats::TemplateInstance& instance : instances) {
+    const auto [begin, end] = std::equal_range(templates_.begin(), templates_.end(),
+                                               instance.template_number, ByTemplate{});
+    count += static_cast<std::uint64_t>(end - begin);
+  }
+  const std::uint64_t most = options_.limits.placed_solids_of(instances.size());
+  if (count <= most) return {};
+  return quantity(instances.size(), "instance") + " of geometry templates place " +
+         quantity(count, "solid") + " in one feature; the limit is " + std::to_string(most);
+}
+
 InspectedInstances TemplateInspector::inspect(
     std::span<const formats::TemplateInstance> instances) {
   InspectedInstances inspected;
+  inspected.refusal = refusal_of(instances);
+  if (!inspected.refusal.empty()) return inspected;
   for (const formats::TemplateInstance& instance : instances) {
     const auto [begin, end] = std::equal_range(templates_.begin(), templates_.end(),
                                                instance.template_number, ByTemplate{});
@@ -256,7 +273,9 @@ std::optional<InspectedFeature> TemplateInspector::inspect_templates(
     inspected.solids.push_back({templates_[i].source, std::move(inspection)});
     inspected.feature.solids.push_back(templates_[i]);
   }
-  if (inspected.solids.empty() && inspected.feature.surfaces.empty()) return std::nullopt;
+  if (solid_count(inspected.feature) == 0 && inspected.feature.surfaces.empty()) {
+    return std::nullopt;
+  }
   const std::vector<GroupCandidate> all = group_candidates(inspected);
   std::vector<GroupCandidate> candidates;
   for (const std::size_t solid : unplaced) candidates.push_back(all[solid]);
@@ -264,12 +283,30 @@ std::optional<InspectedFeature> TemplateInspector::inspect_templates(
     for (std::size_t& member : group.members) member = unplaced[member];
     inspected.groups.push_back(std::move(group));
   }
+  add_unreadable(inspected, options_);
   add_surfaces(inspected, options_);
   return inspected;
 }
 
+void add_unreadable(InspectedFeature& inspected, const CertifyOptions& options) {
+  for (formats::UnreadablePart& part : inspected.feature.unreadable) {
+    auto nothing = Solid::make(SolidArrays{}, Lattice{}, inspected.feature.srid);
+    if (!nothing) continue;  // an empty solid breaks no rule of Solid
+    SubmittedSolid solid{*std::move(nothing), std::move(part.source), {}};
+    solid.unreadable = std::move(part.error.message);
+    inspected.solids.push_back(
+        {solid.source, certify(solid.solid, nullptr, options_for(solid, options))});
+    inspected.feature.solids.push_back(std::move(solid));
+  }
+  inspected.feature.unreadable.clear();
+}
+
 void add_groups(InspectedInstances instances, const TemplateInspector& templates,
                 const validate::GroupOptions& options, InspectedFeature& feature) {
+  if (!instances.refusal.empty()) {
+    feature.feature.unreadable.push_back(
+        {{}, Error{ErrorCode::limit_exceeded, std::move(instances.refusal)}});
+  }
   std::vector<GroupCandidate> candidates = group_candidates(feature);
   const std::size_t own = candidates.size();
   for (const InstanceSolid& solid : instances.solids) {

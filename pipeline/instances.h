@@ -33,6 +33,7 @@ struct InstanceSolid {
 struct InspectedInstances {
   std::vector<InstanceSolid> solids;
   std::vector<InspectedGroup> groups;
+  std::string refusal;  // why the instances were not validated, "" if they were
 };
 
 /// Validates instances of the templates of one document, to which it keeps references. Thread-safe.
@@ -42,9 +43,9 @@ class TemplateInspector {
                     const CertifyOptions& options, const validate::GroupOptions& groups);
 
   /// Validates instances of the templates, and compares the members of composite solids with each
-  /// other. Instances that change one template in the same way share the work. The result refers to
-  /// `instances` and to this object. Cost: the exact tests for each different matrix, a proof for
-  /// each template.
+  /// other. Instances that change one template in the same way share the work. More solids than
+  /// Limits::placed_solids_of() are refused. The result refers to `instances` and to this object.
+  /// Cost: the exact tests for each different matrix, a proof for each template.
   InspectedInstances inspect(std::span<const formats::TemplateInstance> instances);
 
   /// Adds the solid of an instance to the solids of the feature; returns its index there.
@@ -78,6 +79,8 @@ class TemplateInspector {
     std::optional<ValidSolid> solid;  // the solid that all valid instances have
   };
 
+  /// Why so many instances are refused, "" if they are not.
+  std::string refusal_of(std::span<const formats::TemplateInstance> instances) const;
   static Effect effect_of(const geometry::Placement& placement);
   static Effect full_effect_of(const geometry::Placement& placement);
   Inspection judge(std::size_t solid, const formats::TemplateInstance& instance);
@@ -95,8 +98,12 @@ class TemplateInspector {
   std::vector<Uses> uses_;  // one per solid of templates_
 };
 
+/// Adds an empty, invalid solid for each part of the feature that could not be read.
+void add_unreadable(InspectedFeature& inspected, const CertifyOptions& options);
+
 /// Compares the feature's solids and instances in groups, and makes solids of the feature of the
-/// instances that are not valid or in whose groups something was found.
+/// instances that are not valid or in whose groups something was found. Instances that were refused
+/// become an unreadable part.
 void add_groups(InspectedInstances instances, const TemplateInspector& templates,
                 const validate::GroupOptions& options, InspectedFeature& feature);
 

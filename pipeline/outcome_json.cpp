@@ -45,8 +45,7 @@ void write_finding(JsonText& json, const InspectedGroup& group, const Finding& f
 }
 
 void write_group(JsonText& json, const InspectedGroup& group) {
-  const bool is_composite = group.kind == validate::GroupKind::composite_solid;
-  json.open('{').key("kind").value(is_composite ? "composite_solid" : "building_parts");
+  json.open('{').key("kind").value(validate::to_string(group.kind));
   json.key("object").value(group.object_id);
   if (!group.lod.empty()) json.key("lod").value(group.lod);
   json.key("solids").open('[');

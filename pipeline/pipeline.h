@@ -43,10 +43,11 @@ struct SurfaceCounts {
 };
 
 /// Solids of a feature that are compared with each other: the members of one CompositeSolid, or the
-/// solids of one building and its parts in one level of detail.
+/// solids of one building and its parts in one level of detail. For a feature that is a cell of an
+/// indoor model: its solids, which are compared with those of other features.
 struct InspectedGroup {
   validate::GroupKind kind = validate::GroupKind::composite_solid;
-  std::string object_id;             // the composite's object, or the building
+  std::string object_id;             // the composite's object, the building, or the cell
   std::string lod;                   // as written, "" when absent
   std::vector<std::size_t> members;  // indices into the feature's solids, ascending
   validate::GroupReport report;      // Place::solid is an index into `members`
@@ -84,6 +85,7 @@ CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions
 Verdict worse(Verdict a, Verdict b);
 
 class TemplateInspector;
+class CellInspector;
 
 /// The options for groups, with the limit of findings of `options`, and with its poll if they have
 /// none.
@@ -91,12 +93,14 @@ validate::GroupOptions group_options(const validate::GroupOptions& groups,
                                      const CertifyOptions& options);
 
 /// Validates every solid of a feature, its instances of the geometry templates that `templates`
-/// knows (null: of none), and the groups of both. Guarantees one InspectedSolid per solid. A solid
-/// with vertices that the reader rounded, or rings that the source left open, gets the findings for
-/// them. The limit of findings and the cancellation of solids hold for groups too.
+/// knows (null: of none), and the groups of both. The results of a feature that is a cell are taken
+/// from `cells` if not null; without, the cell is not compared with others. Guarantees one
+/// InspectedSolid per solid. A solid with vertices that the reader rounded, or rings that the
+/// source left open, gets the findings for them. The limit of findings and the cancellation of
+/// solids hold for groups too.
 InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
                          const CertifyOptions& options, const validate::GroupOptions& groups = {},
-                         TemplateInspector* templates = nullptr);
+                         TemplateInspector* templates = nullptr, CellInspector* cells = nullptr);
 
 /// Inspects the surfaces of the feature, which it takes out of it. Adds those that are closed or in
 /// which something was found to the solids.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
 #include "pipeline/streaming/feature_stream.h"
 
@@ -31,7 +32,9 @@ class Stream {
         on_feature_(on_feature),
         on_error_(on_error),
         templates_(reader.document().templates, workers, certify_,
-                   group_options(options.groups, certify_)) {}
+                   group_options(options.groups, certify_)),
+        cells_(reader.document(), workers, certify_, options.groups, options.threads,
+               options.is_cancelled) {}
 
   Result<StreamOutcome> run() {
     FeatureStreamOptions stream{options_.threads, options_.is_cancelled, {}};
@@ -60,7 +63,8 @@ class Stream {
       };
     }
     const auto validated = std::make_shared<ValidatedFeature>(ValidatedFeature{
-        number, inspect(*std::move(feature), workers_, certify_, options_.groups, &templates_),
+        number,
+        inspect(*std::move(feature), workers_, certify_, options_.groups, &templates_, &cells_),
         place});
     return [this, validated] { return hand_on(std::move(*validated)); };
   }
@@ -86,6 +90,7 @@ class Stream {
   const FeatureSink& on_feature_;
   const ErrorSink& on_error_;
   TemplateInspector templates_;
+  CellInspector cells_;
   StreamOutcome outcome_;  // only deliveries change it
 };
 

@@ -115,8 +115,7 @@ void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool
 }
 
 void write_group(JsonText& json, const pipeline::InspectedGroup& group) {
-  const bool is_composite = group.kind == validate::GroupKind::composite_solid;
-  json.open('{').key("kind").value(is_composite ? "composite_solid" : "building_parts");
+  json.open('{').key("kind").value(validate::to_string(group.kind));
   json.key("object").value(group.object_id);
   if (!group.lod.empty()) json.key("lod").value(group.lod);
   json.key("solids").open('[');

@@ -3,8 +3,11 @@
 // The handler that sends a whole collection as one file, which is made part by part meanwhile.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include "pipeline/export.h"
 #include "server/export_files.h"
@@ -53,18 +56,35 @@ Response refuse_export(const Error& error) {
   }
 }
 
+/// The number of a sequence that a request asks for, from 1. Errors: invalid_argument.
+Result<std::optional<std::size_t>> part_of_request(const Target& target, const FileFormat& file) {
+  const std::string* text = target.parameter("part");
+  if (text == nullptr) return std::optional<std::size_t>();
+  std::size_t part = 0;
+  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), part);
+  if (error != std::errc{} || end != text->data() + text->size() || part == 0) {
+    return Error{ErrorCode::invalid_argument, "part is a number from 1"};
+  }
+  if (file.format != pipeline::ExportFormat::sequence) {
+    return Error{ErrorCode::invalid_argument, "only f=cityjsonseq has parts"};
+  }
+  return std::optional(part);
+}
+
 /// A request for an export, apart from the message that stated it, so that another thread can
 /// answer it later.
 struct ExportRequest {
   Service service;
   const FileFormat* file;
   pipeline::ExportScope scope;
+  std::optional<std::size_t> part;  // the number of the sequence, from 1
   store::StoredCollection collection;
   Request message;
 
   std::string etag() const {
     std::string representation(file->parameter);
     if (scope == pipeline::ExportScope::proven) representation += "-proven";
+    if (part) representation += "-part-" + std::to_string(*part);
     return etag_of_state(collection.state, representation);
   }
   std::string key() const { return collection.id + "/" + etag(); }
@@ -72,7 +92,9 @@ struct ExportRequest {
 
 std::vector<HeaderField> headers_of(const ExportRequest& request) {
   std::string attachment = "attachment; filename=\"";
-  attachment.append(request.collection.id).append(request.file->ending) += '"';
+  attachment += request.collection.id;
+  if (request.part && *request.part > 1) attachment += "-" + std::to_string(*request.part);
+  attachment.append(request.file->ending) += '"';
   return {{"Vary", "Accept"},
           {"ETag", request.etag()},
           {"Accept-Ranges", "bytes"},
@@ -80,24 +102,90 @@ std::vector<HeaderField> headers_of(const ExportRequest& request) {
           {"Content-Disposition", attachment}};
 }
 
-/// The export that answers a request. Its solids are the blobs that are stored: pages are an eighth
-/// smaller, but coding them anew takes nine times as long.
-Result<pipeline::CollectionExport> export_for(const ExportRequest& request) {
-  return pipeline::CollectionExport::start(*request.service.store, request.collection.id,
-                                           request.file->format, {}, pipeline::SolidLayout::blobs,
-                                           request.scope);
+/// The field that names the members of headers that a sequence cannot keep; none if it keeps all.
+std::optional<HeaderField> losses_field(const pipeline::PlannedSequence& sequence) {
+  constexpr std::size_t kMostNamed = 50;
+  if (sequence.losses.empty()) return std::nullopt;
+  std::string value;
+  for (std::size_t i = 0; i < std::min(sequence.losses.size(), kMostNamed); ++i) {
+    if (i > 0) value += ", ";
+    value += percent_encode(sequence.losses[i]);
+  }
+  if (sequence.losses.size() > kMostNamed) value += ", ...";
+  return HeaderField{"Watertight-Losses", std::move(value)};
+}
+
+/// The export that answers a request, with the fields that it adds to the answer. The solids of a
+/// Watertight file are the blobs that are stored: pages are an eighth smaller, but coding them anew
+/// takes nine times as long.
+struct StartedExport {
+  pipeline::CollectionExport exporting;
+  std::vector<HeaderField> headers;
+};
+using ExportOrRefusal = std::variant<StartedExport, Response>;
+
+/// The answer for a collection that needs several sequences when the request names none.
+Response refuse_parts(const ExportRequest& request, const pipeline::SequencePlan& plan) {
+  Problem problem;
+  problem.status = 406;
+  problem.kind = "not-acceptable";
+  problem.detail = "the collection needs " + std::to_string(plan.sequences().size()) +
+                   " sequences, as its documents have different headers; ask for each with part=N, "
+                   "or for all in a Watertight file (f=wt)";
+  Json parts = Json::array();
+  const std::string path = "/collections/" + percent_encode(request.collection.id) +
+                           "/export?f=cityjsonseq" +
+                           (request.scope == pipeline::ExportScope::proven ? "&proven=true" : "");
+  for (std::size_t i = 0; i < plan.sequences().size(); ++i) {
+    const pipeline::PlannedSequence& sequence = plan.sequences()[i];
+    Json part{{"href", path + "&part=" + std::to_string(i + 1)}, {"headers", sequence.headers}};
+    if (!sequence.reason.empty()) part["reason"] = sequence.reason;
+    if (!sequence.losses.empty()) part["losses"] = sequence.losses;
+    parts.push_back(std::move(part));
+  }
+  problem.extension = Json{{"parts", std::move(parts)}}.dump();
+  return to_response(problem);
+}
+
+ExportOrRefusal start_sequence(const ExportRequest& request, const CancelPoll& is_cancelled) {
+  SolidStore& store = *request.service.store;
+  auto made = pipeline::SequencePlan::make(store, request.collection.id, is_cancelled);
+  if (!made) return refuse_export(made.error());
+  const auto plan = std::make_shared<const pipeline::SequencePlan>(*std::move(made));
+  if (!request.part && plan->sequences().size() > 1) return refuse_parts(request, *plan);
+  const std::size_t number = request.part.value_or(1) - 1;
+  auto started = pipeline::CollectionExport::start_sequence(store, request.collection.id, plan,
+                                                            number, request.scope);
+  if (!started) return refuse_export(started.error());
+  StartedExport exporting{*std::move(started), {}};
+  auto losses = losses_field(plan->sequences()[number]);
+  if (losses) exporting.headers.push_back(*std::move(losses));
+  return exporting;
+}
+
+ExportOrRefusal export_for(const ExportRequest& request, const CancelPoll& is_cancelled) {
+  if (request.file->format == pipeline::ExportFormat::sequence) {
+    return start_sequence(request, is_cancelled);
+  }
+  auto started = pipeline::CollectionExport::start(*request.service.store, request.collection.id,
+                                                   request.file->format, {},
+                                                   pipeline::SolidLayout::blobs, request.scope);
+  if (!started) return refuse_export(started.error());
+  return StartedExport{*std::move(started), {}};
 }
 
 /// Sends the file while it is made.
 Response streamed(const ExportRequest& request, const CancelPoll& is_cancelled) {
-  auto started = export_for(request);
-  if (!started) return refuse_export(started.error());
-  const auto exporting = std::make_shared<pipeline::CollectionExport>(*std::move(started));
+  auto started = export_for(request, is_cancelled);
+  if (auto* refusal = std::get_if<Response>(&started)) return std::move(*refusal);
+  auto& [made, headers] = std::get<StartedExport>(started);
+  const auto exporting = std::make_shared<pipeline::CollectionExport>(std::move(made));
   // The first part is made before the status is sent, because most errors show there.
   auto first = exporting->next(is_cancelled);
   if (!first) return refuse_export(first.error());
   Response response{200, std::string(request.file->type), std::string(as_text(*first)),
                     headers_of(request)};
+  for (HeaderField& field : headers) response.headers.push_back(std::move(field));
   if (exporting->is_at_end()) return response;
   response.rest = [exporting](const CancelPoll& is_unwanted) -> Result<std::string> {
     const auto part = exporting->next(is_unwanted);
@@ -109,11 +197,15 @@ Response streamed(const ExportRequest& request, const CancelPoll& is_cancelled) 
 
 /// Makes the whole file, of which a range is wanted: its length has to be known. Errors:
 /// unavailable when the collection changes meanwhile, or the disk has no room; limit_exceeded when
-/// there are too many bytes of such files; cancelled.
+/// there are too many bytes of such files; unsupported when there is no such file, which streamed()
+/// explains; cancelled.
 Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelPoll& is_cancelled) {
   ExportFiles& files = *request.service.export_files;
-  auto exporting = export_for(request);
-  if (!exporting) return std::move(exporting).error();
+  auto started = export_for(request, is_cancelled);
+  if (!std::holds_alternative<StartedExport>(started)) {
+    return Error{ErrorCode::unsupported, "there is no such file"};
+  }
+  pipeline::CollectionExport* const exporting = &std::get<StartedExport>(started).exporting;
   auto file = TemporaryFile::make();
   if (!file) return std::move(file).error();
   while (!exporting->is_at_end()) {
@@ -161,7 +253,8 @@ Response ranged(const ExportRequest& request) {
                     const auto made = whole_file(request, is_cancelled);
                     if (made) return part_of(*made, request);
                     // A service may ignore a range (RFC 9110, section 14.2).
-                    if (made.error().code == ErrorCode::limit_exceeded) {
+                    if (made.error().code == ErrorCode::limit_exceeded ||
+                        made.error().code == ErrorCode::unsupported) {
                       return streamed(request, is_cancelled);
                     }
                     return refuse_export(made.error());
@@ -184,9 +277,12 @@ Response get_export(const RoutedRequest& request) {
     return refuse(400, "invalid-argument", "an export has all features, or with proven=true those");
   }
   const auto scope = *is_proven ? pipeline::ExportScope::proven : pipeline::ExportScope::all;
+  const auto part = part_of_request(request.target, *file);
+  if (!part) return to_response(to_problem(part.error()));
   auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  const ExportRequest wanted{request.service, file, scope, *std::move(collection), request.request};
+  const ExportRequest wanted{request.service,        file,           scope, *part,
+                             *std::move(collection), request.request};
   auto unneeded = unless_needed(request.request, wanted.etag());
   if (unneeded) return *std::move(unneeded);
   // With a size of "all that there are", any range that is understood is a part.

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "pipeline/outcome_json.h"
+#include "pipeline/stored/collection_header.h"
 #include "pipeline/streaming/ingestion.h"
 #include "pipeline/validate_stream.h"
 #include "report/feature_report.h"
@@ -129,9 +130,15 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
   head.overlap_metres = options.groups.overlap_metres;
   head.is_strict = options.certify.ladder.strict;
   head.surfaces = surfaces;
+  const std::size_t longest = request.service.options.longest_report;
   const auto report = make_report(
       kind,
-      [&response](std::string_view text) -> Status {
+      [&response, longest](std::string_view text) -> Status {
+        if (response.body.size() + text.size() > longest) {
+          return Error{ErrorCode::limit_exceeded,
+                       "the report is longer than " + std::to_string(longest) +
+                           " bytes; validate the document in parts, or with the command line"};
+        }
         response.body += text;
         return Done{};
       },
@@ -157,33 +164,14 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
 /// The header of the collection if the body is a bare feature, which needs one; else "". Errors:
 /// conflict when its features have several headers, as the feature would be read wrongly.
 Result<std::string> header_for(const RoutedRequest& request) {
-  // So many that there is another header among them if there is one: each format may come once.
-  constexpr std::uint64_t kFormats = 16;
   if (!is_bare_feature(request)) return std::string();
-  const std::string& id = request.target.segments[1];
-  const auto documents = request.service.store->documents(id, kFormats);
-  if (!documents) return documents.error();
-  std::string header;
-  for (const store::StoredHeader& document : *documents) {
-    if (document.header.empty() || document.header == header) continue;
-    if (header.empty()) {
-      header = document.header;
-      continue;
-    }
-    return Error{ErrorCode::conflict,
-                 "collection '" + id +
-                     "' has features under several headers, so the transform of a CityJSONFeature "
-                     "alone is not known: send a CityJSONSeq whose first line is the header"};
-  }
-  if (!header.empty()) return header;
-  const auto collection = request.service.store->collection(id);
-  if (collection) return collection->header;
-  if (collection.error().code == ErrorCode::not_found) return std::string();
-  return collection.error();
+  return pipeline::collection_header(*request.service.store, request.target.segments[1]);
 }
 
 /// The most features of which the answer has the outcomes, valid or not.
 constexpr std::size_t kMostOutcomes = 1000;
+/// The most bytes of their reports; a feature with longer ones is in the answer if it is the only.
+constexpr std::uint64_t kMostOutcomeBytes = 64ULL << 20U;
 
 Response answer_of(const pipeline::IngestOutcome& outcome, const std::string& collection) {
   // With invalid=skip some features may be stored; the report says which.
@@ -201,6 +189,8 @@ Response answer_of(const pipeline::IngestOutcome& outcome, const std::string& co
 std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedRequest& request,
                                  formats::Surfaces surfaces) {
   if (is_container_body(request)) {
+    const Submission memory = container_submission(request);
+    if (memory.problem) return memory.problem;
     const Status added =
         ingestion.add_container(as_bytes(request.request.body), request.service.options.limits);
     return added ? std::nullopt : std::optional(problem_of_body(added.error()));
@@ -233,7 +223,7 @@ Response post_items(const RoutedRequest& request) {
   auto condition = write_condition(request.request);
   if (!condition) return to_response(to_problem(condition.error()));
   options.condition = *std::move(condition);
-  pipeline::OutcomeKeeper keeper(kMostOutcomes);
+  pipeline::OutcomeKeeper keeper(kMostOutcomes, kMostOutcomeBytes);
   pipeline::Ingestion ingestion(*request.service.store, request.service.workers, options,
                                 [&](pipeline::FeatureOutcome&& feature) -> Status {
                                   keeper.add(std::move(feature));

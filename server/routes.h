@@ -26,7 +26,8 @@ struct RouteOptions {
   std::uint64_t largest_page = 1000;  // the most features of a page
   std::uint64_t default_page = 10;
   std::uint64_t largest_findings = 1000;  // the most findings of a report in an answer
-  bool requires_preconditions = false;    // on every write; without one it gets 428
+  std::size_t longest_report = std::size_t{256} << 20U;  // of POST /validate, bytes
+  bool requires_preconditions = false;                   // on every write; without one it gets 428
 };
 
 /// The parts that routes work with. Store and workers must outlive the service and be thread-safe.

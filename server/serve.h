@@ -29,7 +29,11 @@ struct ServeOptions {
   std::size_t cache_bytes = 64ULL << 20;       // of the answers for items that are kept
   std::string connection;                      // libpq connection string or URL of the database
   std::size_t database_connections = 24;
-  Limits limits;
+  /// A hostile feature takes some 1.3 GB for its text or 200 MB for its reports at these limits.
+  Limits limits{.feature_bytes = 32ULL << 20,
+                .solids = 20'000,
+                .placed_solids = 20'000,
+                .expanded = 16ULL << 20};
   /// Whether the database can be used, answered at once; beside the answer of the store. Null:
   /// Done.
   std::function<Status()> database_health = nullptr;

@@ -127,6 +127,16 @@ bool is_sequence(std::string_view body) {
          Json::accept(line);
 }
 
+std::uint64_t longest_line(std::string_view text) {
+  std::size_t longest = 0;
+  while (!text.empty()) {
+    const std::size_t line = first_line(text).size();
+    longest = std::max(longest, line);
+    text.remove_prefix(std::min(text.size(), line + 1));
+  }
+  return longest;
+}
+
 Result<Document> read_bare_feature(std::string body, const std::string& header,
                                    const formats::ReadOptions& options) {
   if (header.empty()) {
@@ -135,22 +145,7 @@ Result<Document> read_bare_feature(std::string body, const std::string& header,
                  "collection with one: "
                  "send a CityJSONSeq whose first line is the CityJSON header"};
   }
-  auto city_header = formats::read_city_json_header(header);
-  if (!city_header) return std::move(city_header).error();
-  // Line ends outside strings are white space, and JSON allows none inside strings.
-  std::replace(body.begin(), body.end(), '\n', ' ');
-  std::replace(body.begin(), body.end(), '\r', ' ');
-  auto feature = formats::read_city_json_feature(*city_header, body, options);
-  if (!feature) return std::move(feature).error();
-  Document document;
-  document.format = Format::city_json_seq;
-  document.header = header;
-  auto templates = formats::read_geometry_templates(*city_header, options.limits, options.surfaces);
-  if (!templates) return std::move(templates).error();
-  document.templates = std::move(templates->solids);
-  document.template_surfaces = std::move(templates->surfaces);
-  document.features.push_back(*std::move(feature));
-  return document;
+  return formats::read_lone_feature(std::move(body), header, options);
 }
 
 /// A source of the bytes of a text, which must outlive it.
@@ -168,11 +163,13 @@ formats::ByteSource source_of(std::string_view text) {
 /// cities take 8 to 10.
 constexpr std::uint64_t kMemoryOfText = 40;
 
-/// Takes the memory for a body that is read whole. Returns the problem if there is not so much.
-std::optional<Problem> take_memory(const RoutedRequest& request, Submission& submission) {
+/// Takes the memory for so many bytes of text that are values at one time. Returns the problem if
+/// there is not so much.
+std::optional<Problem> take_memory(const RoutedRequest& request, std::uint64_t text_bytes,
+                                   Submission& submission) {
   Budget* budget = request.service.document_memory;
   if (budget == nullptr) return std::nullopt;
-  const std::uint64_t bytes = request.request.body.size() * kMemoryOfText;
+  const std::uint64_t bytes = text_bytes * kMemoryOfText;
   const char* advice = "; a CityJSONSeq is read line by line and takes little";
   if (bytes > budget->total()) {
     const std::string most = std::to_string(budget->total() / kMemoryOfText);
@@ -187,15 +184,15 @@ std::optional<Problem> take_memory(const RoutedRequest& request, Submission& sub
 }
 
 Result<formats::FeatureReader> open_body(const RoutedRequest& request, Format format,
-                                         const std::string& header,
+                                         const std::string& header, bool is_stored,
                                          const formats::ReadOptions& options) {
   const std::string& body = request.request.body;
   if (format == Format::city_json_seq) {
     return formats::FeatureReader::open(source_of(body), ".jsonl", options);
   }
-  auto document = format == Format::city_json && is_bare_feature(request)
-                      ? read_bare_feature(body, header, options)
-                      : formats::read_document(as_bytes(body), format, options);
+  const bool needs_header = is_stored && is_bare_feature(request);
+  auto document = needs_header ? read_bare_feature(body, header, options)
+                               : formats::read_document(as_bytes(body), format, options);
   if (!document) return std::move(document).error();
   return formats::FeatureReader::of(*std::move(document));
 }
@@ -210,7 +207,9 @@ std::string top_level_type(std::string_view json) {
 
 bool is_bare_feature(const RoutedRequest& request) {
   const auto format = stated_format(request, AcceptedFormats::city_models);
-  return format == Format::city_json && top_level_type(request.request.body) == "CityJSONFeature";
+  const std::string& body = request.request.body;
+  if (format == Format::city_json_seq) return formats::is_lone_feature(body);
+  return format == Format::city_json && top_level_type(body) == "CityJSONFeature";
 }
 
 bool is_container_body(const RoutedRequest& request) {
@@ -218,6 +217,15 @@ bool is_container_body(const RoutedRequest& request) {
   const std::string type = stated_type(request);
   if (!type.empty()) return type == kContainer;
   return pipeline::is_container(as_bytes(request.request.body));
+}
+
+Submission container_submission(const RoutedRequest& request) {
+  const Limits& limits = request.service.options.limits;
+  Submission submission;
+  submission.problem = take_memory(
+      request, std::min(limits.expanded_from(request.request.body.size()), limits.feature_bytes),
+      submission);
+  return submission;
 }
 
 Problem problem_of_body(const Error& error) {
@@ -242,9 +250,14 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   options.keep_text = is_stored || surfaces != formats::Surfaces::as_solids;
   options.surfaces = surfaces;
   if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
-  if (*format != Format::city_json_seq) submission.problem = take_memory(request, submission);
+  if (*format == Format::city_json_seq && formats::is_lone_feature(body)) {
+    format = Format::city_json;
+  }
+  const bool is_sequence_body = *format == Format::city_json_seq;
+  submission.problem =
+      take_memory(request, is_sequence_body ? longest_line(body) : body.size(), submission);
   if (submission.problem) return submission;
-  auto reader = open_body(request, *format, header, options);
+  auto reader = open_body(request, *format, header, is_stored, options);
   if (reader) {
     submission.reader = *std::move(reader);
   } else {

@@ -22,9 +22,9 @@ enum class AcceptedFormats : std::uint8_t { city_models, all };
 
 /// The document in a body, or the problem with it: 400 malformed, 413, 415, 422, 503. The format
 /// follows from f=, else from Content-Type. A CityJSONSeq is read while it is used, so the request
-/// must outlive the reader; other documents are read whole, and hold a share of the memory for such
+/// must outlive the reader; other documents are read whole. Both hold a share of the memory for
 /// documents until they are stored. `header` is the document header that a bare CityJSONFeature
-/// needs (that of the collection), "" when there is none.
+/// needs to be stored (that of the collection), "" when there is none.
 struct Submission {
   std::unique_ptr<BudgetShare> memory;
   std::optional<formats::FeatureReader> reader;
@@ -33,6 +33,9 @@ struct Submission {
 Submission read_submission(const RoutedRequest& request, AcceptedFormats accepted,
                            const std::string& header,
                            formats::Surfaces surfaces = formats::Surfaces::ignore);
+
+/// The memory for a body that is a Watertight file, which has no reader; or the problem: 413, 503.
+Submission container_submission(const RoutedRequest& request);
 
 /// The problem with a body that could not be read.
 Problem problem_of_body(const Error& error);

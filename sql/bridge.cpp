@@ -182,7 +182,11 @@ struct Examined {
   Inspection inspection;
 };
 
-/// Reads and certifies a solid at the default tolerances. Fails unless the verdict is valid or
+wt_rule_choice rules_of(const wt_job& job) {
+  return job.rules == nullptr ? wt_default_rules() : *job.rules;
+}
+
+/// Reads a solid and certifies it by the rules of the job. Fails unless the verdict is valid or
 /// invalid.
 Result<Examined> examine(const wt_job& job, const CallLimits& call) {
   Result<SubmittedSolid> submitted = formats::read_ewkb(bytes_of(job), call.of_input());
@@ -190,6 +194,11 @@ Result<Examined> examine(const wt_job& job, const CallLimits& call) {
   CertifyOptions options;
   options.rounded = submitted->rounded;
   options.limits = call.of_input();
+  const wt_rule_choice rules = rules_of(job);
+  options.tolerances.planarity_metres = rules.planarity;
+  options.tolerances.planarity_degrees = rules.planarity_angle;
+  options.proof = rules.is_boundary_enough ? Proof::boundary : Proof::tetrahedralization;
+  options.ladder.strict = rules.is_strict;
   options.ladder.cancel = call.poll();
   options.ladder.memory_in_engine = call.memory_bytes();
   Inspection inspection =
@@ -229,6 +238,7 @@ void validate_into(const wt_job& job, wt_reply* reply) {
   report.refilled_facets.clear();
   validate::ReportJsonOptions options;
   options.include_times = false;
+  options.is_strict = rules_of(job).is_strict;
   answer(reply, as_bytes(validate::report_json(report, examined->submitted.solid, options)));
 }
 
@@ -267,6 +277,14 @@ void info_into(const wt_job& job, wt_reply* reply) {
   if (!info) return fail(reply, call.of_reading(info.error()));
   if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
   answer(reply, as_bytes(info_json(*info, job.size)));
+}
+
+void rules_into(const wt_job& job, wt_reply* reply) {
+  const CallLimits call(job);
+  const Result<codec::BlobInfo> info = codec::describe(bytes_of(job), call.of_input());
+  if (!info) return fail(reply, call.of_reading(info.error()));
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
+  answer(reply, as_bytes(rules_json(info->acceptance)));
 }
 
 }  // namespace
@@ -319,5 +337,16 @@ void wt_bridge_decode(const wt_job* job, wt_reply* reply) noexcept {
 void wt_bridge_info(const wt_job* job, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::info_into(*job, reply); });
 }
+
+void wt_bridge_rules_of(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::rules_into(*job, reply); });
+}
+
+wt_rule_choice wt_default_rules() noexcept {
+  const watertight::Tolerances tolerances;
+  return {tolerances.planarity_metres, tolerances.planarity_degrees, false, false};
+}
+
+uint32_t wt_rule_set() noexcept { return watertight::geometry::kRuleSet; }
 
 const char* wt_bridge_version() noexcept { return WATERTIGHT_VERSION; }

@@ -47,6 +47,25 @@ wt_engine* wt_engine_make(const char* libexec) WATERTIGHT_NOEXCEPT;
 /** Kills the helpers. NULL does nothing. */
 void wt_engine_end(wt_engine* engine) WATERTIGHT_NOEXCEPT;
 
+/** The ranges of the tolerances; both ends are allowed. */
+#define WATERTIGHT_LEAST_PLANARITY 1e-9 /* metres */
+#define WATERTIGHT_MOST_PLANARITY 1000.0
+#define WATERTIGHT_LEAST_ANGLE 1e-6 /* degrees */
+#define WATERTIGHT_MOST_ANGLE 90.0
+
+/** The rules by which a solid is judged. */
+typedef struct wt_rule_choice {
+  double planarity;       /* metres: the largest distance of a vertex from the plane of its facet */
+  double planarity_angle; /* degrees: the largest angle between two triangles of a facet */
+  bool is_boundary_enough; /* exact tests alone; false: also a certified tetrahedralization */
+  bool is_strict;          /* only the canonical triangles of facets count */
+} wt_rule_choice;
+
+/** The rules where none are stated, which are the same in every session. */
+wt_rule_choice wt_default_rules(void) WATERTIGHT_NOEXCEPT;
+/** The number of the rule set that this program applies; blobs state it. */
+uint32_t wt_rule_set(void) WATERTIGHT_NOEXCEPT;
+
 /** A blob or EWKB to work on, the helpers to do it with, and when to stop. */
 typedef struct wt_job {
   const uint8_t* bytes;
@@ -60,21 +79,26 @@ typedef struct wt_job {
    *  the call itself: a value is refused before the work if its bytes and facets, at 4 KiB a facet
    *  or vertex, need more. */
   uint32_t max_memory;
+  const wt_rule_choice* rules; /* NULL: the default ones */
 } wt_job;
 
 /* Each function below fills a reply that is all zero. An undecided solid is a failure (57014, can
  * be tried again), never a value; a reached limit is a failure too (54000). */
 
-/** Answers EWKB with the report as JSON, without times. */
+/** Answers EWKB with the report as JSON, without times; its parameters are the rules. */
 void wt_bridge_validate(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers EWKB with whether the solid is valid. */
 void wt_bridge_is_valid(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** Answers EWKB with a blob. An invalid solid fails with 22023; its findings are the detail. */
+/** Answers EWKB with a blob, which states the rules. An invalid solid fails with 22023; its
+ * findings are the detail. */
 void wt_bridge_encode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with EWKB. */
 void wt_bridge_decode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with its header, counts and part sizes as JSON. */
 void wt_bridge_info(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with the rules under which its solid was accepted, as JSON. A blob does not say
+ *  whether they were strict: strict rules accept fewer solids, and none by another proof. */
+void wt_bridge_rules_of(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** The version, such as "0.1.0"; static. */
 const char* wt_bridge_version(void) WATERTIGHT_NOEXCEPT;
 

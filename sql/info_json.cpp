@@ -70,10 +70,14 @@ std::string lattice_json(const Lattice& lattice) {
       .close();
 }
 
+std::string proof_json(Proof proof) {
+  return quoted(proof == Proof::boundary ? "boundary" : "tetrahedralization");
+}
+
 std::string acceptance_json(const Acceptance& acceptance) {
   const Tolerances& tolerances = acceptance.tolerances;
   return JsonObject()
-      .add("proof", quoted(acceptance.proof == Proof::boundary ? "boundary" : "tetrahedralization"))
+      .add("proof", proof_json(acceptance.proof))
       .add("rule_set", acceptance.rule_set)
       .add("planarity_metres", number(tolerances.planarity_metres))
       .add("planarity_degrees", number(tolerances.planarity_degrees))
@@ -107,6 +111,17 @@ std::string info_json(const codec::BlobInfo& info, std::size_t bytes) {
       .add("checksum", info.checksum)
       .add("parts", parts.close())
       .close();
+}
+
+std::string rules_json(const Acceptance& acceptance) {
+  const Tolerances& tolerances = acceptance.tolerances;
+  JsonObject json;
+  json.add("planarity", number(tolerances.planarity_metres))
+      .add("planarity_angle", number(tolerances.planarity_degrees))
+      .add("proof", proof_json(acceptance.proof))
+      .add("rule_set", acceptance.rule_set);
+  if (tolerances.snap_metres != 0) json.add("snap", number(tolerances.snap_metres));
+  return json.close();
 }
 
 }  // namespace watertight::sql

@@ -13,4 +13,8 @@ namespace watertight::sql {
 /// part. Deterministic.
 std::string info_json(const codec::BlobInfo& info, std::size_t bytes);
 
+/// The rules under which a solid was accepted, as wt_rules() writes them; `snap` (metres) only if
+/// the solid was snapped, which this program never does.
+std::string rules_json(const Acceptance& acceptance);
+
 }  // namespace watertight::sql

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "validate/groups.h"
+
 namespace watertight::validate {
 namespace {
 
@@ -78,6 +80,18 @@ constexpr std::array kKinds{
                 "Write the separate parts as a multi solid.", false},
     FindingKind{601, "BUILDINGPARTS_OVERLAP", kError, "two parts of a building overlap",
                 "Cut one of the two so that they share a face at most.", false},
+    FindingKind{701, "CELLS_OVERLAP", kError, "two cells of an indoor model overlap",
+                "Cut one of the two so that they share a face at most.", false},
+    FindingKind{702, "DUAL_VERTEX_OUTSIDE_CELL", kError,
+                "the state of a cell lies outside the cell",
+                "Move the state into its cell, or link it to the cell in which it lies.", false},
+    FindingKind{703, "PRIMAL_DUAL_XLINKS_ERROR", kError,
+                "a reference between cells, states and transitions is wrong",
+                "Let the cell and its state refer to each other, and the transition to two states.",
+                false},
+    FindingKind{704, "PRIMAL_DUAL_ADJACENCIES_INCONSISTENT", kError,
+                "a transition joins two cells that do not touch",
+                "Remove the transition, or close the gap between the two cells.", false},
     FindingKind{801, "NEAR_DUPLICATE_VERTICES", kWarning, "two vertices are nearly the same",
                 "Merge the vertices, or ask for a snap tolerance.", false},
     FindingKind{802, "UNUSED_VERTICES", kWarning, "a vertex is used by no ring",
@@ -134,6 +148,18 @@ std::string_view to_string(Verdict verdict) {
       break;
   }
   return "undecided";
+}
+
+std::string_view to_string(GroupKind kind) {
+  switch (kind) {
+    case GroupKind::composite_solid:
+      return "composite_solid";
+    case GroupKind::building_parts:
+      return "building_parts";
+    case GroupKind::indoor_cells:
+      break;
+  }
+  return "indoor_cells";
 }
 
 std::string_view to_string(Severity severity) {

@@ -40,6 +40,10 @@ enum FindingCode : int {
   kDuplicatedSolids = 502,
   kDisconnectedSolids = 503,
   kBuildingPartsOverlap = 601,
+  kCellsOverlap = 701,
+  kDualVertexOutsideCell = 702,
+  kXlinksError = 703,
+  kAdjacenciesInconsistent = 704,
   kNearDuplicateVertices = 801,
   kUnusedVertices = 802,
   kSliverFacet = 803,
@@ -68,7 +72,7 @@ std::span<const FindingKind> finding_kinds();
 const FindingKind* find_kind(int code);
 
 /// The level of a code, by which findings are ordered: 0 input, 1 ring, 2 facet, 3 shell, 4 solid,
-/// 5 composite solid, 6 building, 9 warnings.
+/// 5 composite solid, 6 building, 7 indoor model, 9 warnings.
 int finding_level(int code);
 
 }  // namespace watertight::validate

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "geometry/lattice/shared_grid.h"
 #include "tessellate/facets.h"
 #include "validate/finding_kinds.h"
+#include "validate/overlap/gap.h"
 #include "validate/overlap/solid_overlap.h"
 
 namespace watertight::validate {
@@ -24,6 +26,8 @@ using Pair = std::pair<Index, Index>;
 constexpr std::size_t kMostNamed = 8;
 /// The largest numbers of pairs of overlapping boxes, and of tests of boxes to find them.
 constexpr std::size_t kMostPairs = 10'000'000;
+/// The largest number of pairs of members that are compared as neighbours.
+constexpr std::size_t kMostNeighbours = 1'000'000;
 constexpr std::uint64_t kMostLooks = 2'000'000'000;
 
 /// The distance, in steps of the grid, by which rounded vertices are assumed to be wrong. Rounding
@@ -65,12 +69,21 @@ class GroupExaminer {
         surfaces_(members.size()),
         connected_(members.size()) {}
 
-  GroupReport run();
+  /// Members of the two units of each of `neighbours` are compared too; see check_cells().
+  GroupReport run(std::span<CellPair> neighbours = {});
 
  private:
   bool is_composite() const { return kind_ == GroupKind::composite_solid; }
-  std::string_view noun() const { return is_composite() ? "member" : "solid"; }
+  int overlap_code() const {
+    if (is_composite()) return kIntersectionSolids;
+    return kind_ == GroupKind::indoor_cells ? kCellsOverlap : kBuildingPartsOverlap;
+  }
+  std::string_view noun() const {
+    if (is_composite()) return "member";
+    return kind_ == GroupKind::indoor_cells ? "cell" : "solid";
+  }
   std::vector<int> codes() const {
+    if (kind_ == GroupKind::indoor_cells) return {kCellsOverlap, kAdjacenciesInconsistent};
     if (!is_composite()) return {kBuildingPartsOverlap};
     return {kIntersectionSolids, kDuplicatedSolids, kDisconnectedSolids};
   }
@@ -99,6 +112,9 @@ class GroupExaminer {
   bool compare(const ComparedPair& pair);
   void report_overlap(const ComparedPair& pair, const SolidRelation& relation);
   void check_connected();
+  bool find_neighbours(std::span<CellPair> neighbours);
+  bool compare_neighbours(const std::vector<Pair>& compared);
+  void note_contact(const ComparedPair& pair, const SolidRelation& relation);
   Place place(Index member, Index facet) const;
   std::string named(Index member) const;
   std::string overlap_detail(const Pair& pair, const SolidRelation& relation) const;
@@ -115,6 +131,7 @@ class GroupExaminer {
   std::vector<std::unique_ptr<SolidSurface>> surfaces_;
   geometry::DisjointSets connected_;
   std::vector<Finding> duplicates_;
+  std::map<Pair, CellPair*> neighbours_;  // by the members that are compared
   GroupReport report_;
 };
 
@@ -309,7 +326,7 @@ Place GroupExaminer::place(Index member, Index facet) const {
 std::string GroupExaminer::named(Index member) const {
   std::string name(noun());
   name += ' ';
-  name += std::to_string(member);
+  name += members_[member].name.empty() ? std::to_string(member) : members_[member].name;
   return name;
 }
 
@@ -367,9 +384,7 @@ void GroupExaminer::report_overlap(const ComparedPair& compared, const SolidRela
   if (!is_below_steps) report_.verdict = Verdict::invalid;
   Finding finding;
   if (is_below_steps) finding.severity = Severity::warning;
-  finding.code = is_duplicate     ? kDuplicatedSolids
-                 : is_composite() ? kIntersectionSolids
-                                  : kBuildingPartsOverlap;
+  finding.code = is_duplicate ? kDuplicatedSolids : overlap_code();
   finding.place = place(pair.first, is_duplicate ? kNone : relation.facet);
   finding.other = place(pair.second, is_duplicate ? kNone : relation.other_facet);
   if (extent.witness) finding.witness = compared.grid->grid.world(*extent.witness);
@@ -429,6 +444,7 @@ bool GroupExaminer::compare(const ComparedPair& pair) {
                            pair.grid->step_metres, pair.rounding);
   }
   if (relation.do_overlap) report_overlap(pair, relation);
+  note_contact(pair, relation);
   if (relation.do_overlap || relation.share_area) connected_.join(pair.first, pair.second);
   return true;
 }
@@ -459,7 +475,61 @@ void GroupExaminer::check_connected() {
   }
 }
 
-GroupReport GroupExaminer::run() {
+/// Names the pairs of members that stand for neighbours. False if there are too many.
+bool GroupExaminer::find_neighbours(std::span<CellPair> neighbours) {
+  const auto members_of = [&](Index unit) {
+    const auto [begin, end] = std::equal_range(unit_of_.begin(), unit_of_.end(), unit);
+    return IndexRange{static_cast<Index>(begin - unit_of_.begin()),
+                      static_cast<Index>(end - unit_of_.begin())};
+  };
+  for (CellPair& pair : neighbours) {
+    const IndexRange first = members_of(pair.first);
+    const IndexRange second = members_of(pair.second);
+    for (Index a = first.begin; a < first.end; ++a) {
+      for (Index b = second.begin; b < second.end; ++b) {
+        if (neighbours_.size() >= kMostNeighbours) return false;
+        neighbours_.emplace(std::minmax(a, b), &pair);
+      }
+    }
+  }
+  return true;
+}
+
+/// Compares the neighbours that are not among the pairs compared before. False if the comparison
+/// ended early.
+bool GroupExaminer::compare_neighbours(const std::vector<Pair>& compared) {
+  for (const auto& [pair, neighbours] : neighbours_) {
+    if (std::binary_search(compared.begin(), compared.end(), pair)) continue;
+    if (!compare(pair)) return false;
+  }
+  return true;
+}
+
+void GroupExaminer::note_contact(const ComparedPair& pair, const SolidRelation& relation) {
+  const auto found = neighbours_.find(Pair{pair.first, pair.second});
+  if (found == neighbours_.end()) return;
+  const RegionSurface& first = pair.first_surface->boundary();
+  const RegionSurface& second = pair.second_surface->boundary();
+  const auto are_near = [&](double metres) {
+    return metres > 0 && is_gap_at_most(first, second, pair.grid->step_metres, metres);
+  };
+  const auto least_step = [&] {
+    return std::min(step(pair.first, *pair.grid), step(pair.second, *pair.grid));
+  };
+  CellContact contact = CellContact::apart;
+  if (relation.do_overlap || relation.share_area) {
+    contact = CellContact::area;
+  } else if (are_near(options_.overlap_metres)) {
+    contact = CellContact::allowed;
+  } else if (do_touch(first, second)) {
+    contact = CellContact::at_points;
+  } else if (options_.do_steps_warn && are_near(least_step() * (1 + kDepthError))) {
+    contact = CellContact::within_steps;
+  }
+  found->second->contact = std::max(found->second->contact, contact);
+}
+
+GroupReport GroupExaminer::run(std::span<CellPair> neighbours) {
   name_invalid_members();
   if (present_.size() < 2 || !find_grid()) return std::move(report_);
   const auto candidates = pairs();
@@ -482,6 +552,11 @@ GroupReport GroupExaminer::run() {
       break;
     }
   }
+  if (is_complete && !find_neighbours(neighbours)) {
+    skip({kAdjacenciesInconsistent}, "there are too many pairs of solids of neighbours");
+    is_complete = false;
+  }
+  if (is_complete) is_complete = compare_neighbours(*candidates);
   report_.findings.insert(report_.findings.end(), std::make_move_iterator(duplicates_.begin()),
                           std::make_move_iterator(duplicates_.end()));
   if (is_composite() && is_complete && present_.size() == members_.size()) {
@@ -499,6 +574,11 @@ GroupReport GroupExaminer::run() {
 }
 
 }  // namespace
+
+GroupReport check_cells(std::span<const GroupMember> members, std::span<const Index> unit_of,
+                        std::span<CellPair> neighbours, const GroupOptions& options) {
+  return GroupExaminer(members, GroupKind::indoor_cells, options, unit_of).run(neighbours);
+}
 
 GroupReport check_group(std::span<const GroupMember> members, GroupKind kind,
                         const GroupOptions& options, std::span<const Index> unit_of) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rules about several solids: the members of a composite solid (501, 502, 503) and the parts of a
-// building in one level of detail (601). Exact, on the coordinates of the solids; no Nef polyhedra.
+// Rules about several solids: the members of a composite solid (501, 502, 503), the parts of a
+// building in one level of detail (601), and the cells of an indoor model (701). Exact, on the
+// coordinates of the solids; no Nef polyhedra.
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/cancel.h"
@@ -15,7 +17,9 @@
 
 namespace watertight::validate {
 
-enum class GroupKind : std::uint8_t { composite_solid, building_parts };
+enum class GroupKind : std::uint8_t { composite_solid, building_parts, indoor_cells };
+/// "composite_solid", "building_parts" or "indoor_cells", as in reports.
+std::string_view to_string(GroupKind kind);
 
 /// The most that a step of coordinates counts for GroupOptions::do_steps_warn, metres: a solid in
 /// whole metres can overlap another one visibly.
@@ -40,6 +44,7 @@ struct GroupOptions {
 struct GroupMember {
   const ValidSolid* solid = nullptr;
   const geometry::Placement* placement = nullptr;
+  std::string name = {};  // the name in details, for cells; "": the index
 };
 
 /// The result of a comparison. Places name a member by Place::solid, its index in `members`.
@@ -55,9 +60,9 @@ struct GroupReport {
 /// Compares valid solids of one coordinate reference system pair by pair; a member that is not
 /// valid is not compared, and not_run says so.
 ///
-/// 501, 601: the interiors of two solids have a point in common; the finding has both facets, the
-/// depth in metres (GroupOptions::overlap_metres) and, where one was found, a point inside both. It
-/// is a warning if the depth is no more than the steps of the coordinates (do_steps_warn).
+/// 501, 601, 701: the interiors of two solids have a point in common; the finding has both facets,
+/// the depth in metres (GroupOptions::overlap_metres) and, where one was found, a point inside
+/// both. It is a warning if the depth is no more than the steps of the coordinates (do_steps_warn).
 /// 502: two members are the same points, however their facets are divided. 503: areas that two
 /// members have in common do not connect all members; there is one finding for each part but that
 /// of the first member; not tested if members overlap or are the same, as in val3dity.
@@ -74,5 +79,30 @@ struct GroupReport {
 /// The comparison ends soon after Limits::findings overlaps, and not_run says so.
 GroupReport check_group(std::span<const GroupMember> members, GroupKind kind,
                         const GroupOptions& options = {}, std::span<const Index> unit_of = {});
+
+/// How two cells that are said to be neighbours meet, from the worst to the best.
+enum class CellContact : std::uint8_t {
+  unknown,       // not compared: a cell is not valid, or the comparison ended before
+  apart,         // no point in common
+  within_steps,  // apart by no more than the steps of the coordinates (do_steps_warn)
+  at_points,     // points or edges in common, but no area
+  allowed,       // apart by no more than GroupOptions::overlap_metres
+  area           // an area in common, or interiors
+};
+
+/// Two cells that should be neighbours, as entries of `unit_of`.
+struct CellPair {
+  Index first = kNone;
+  Index second = kNone;
+  CellContact contact = CellContact::unknown;  // the result
+};
+
+/// Compares the cells of an indoor model as check_group() does (701), and decides how the
+/// neighbours meet. `unit_of` has the cell of each member, ascending; all members are valid.
+/// Whether two cells have points, areas or interiors in common is decided exactly; the distance of
+/// cells that are apart is computed in doubles. Cost: that of check_group(), and for each pair of
+/// neighbours near linear in the triangles near the other cell.
+GroupReport check_cells(std::span<const GroupMember> members, std::span<const Index> unit_of,
+                        std::span<CellPair> neighbours, const GroupOptions& options = {});
 
 }  // namespace watertight::validate

@@ -230,6 +230,7 @@ std::string report_json(const Report& report, const Solid& submitted,
   json["validity"] = report.verdict == Verdict::valid;
   if (!report.undecided_reason.empty()) json["undecided_reason"] = report.undecided_reason;
   json["parameters"] = parameters_json(report.acceptance);
+  if (options.is_strict) json["parameters"]["strict"] = true;
   std::set<int> codes;
   for (const Finding& finding : report.findings) {
     if (finding.severity == Severity::error) codes.insert(finding.code);

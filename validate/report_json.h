@@ -33,6 +33,8 @@ struct ReportJsonOptions {
   Index solid_number = kNone;
   /// False leaves out wall times, so that equal solids give equal bytes.
   bool include_times = true;
+  /// True adds `strict` to the parameters: the solid was judged with LadderOptions::strict.
+  bool is_strict = false;
   JsonStyle style = JsonStyle::compact;
 };
 

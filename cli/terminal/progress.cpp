@@ -76,6 +76,14 @@ void ProgressBar::show(std::uint64_t features, std::optional<double> share) {
   std::fprintf(stderr, "\r\033[K%s", line.c_str());
 }
 
+std::string position_among(std::size_t number, std::size_t files) {
+  if (files < 2) return {};
+  return std::string("file ")
+      .append(std::to_string(number))
+      .append(" of ")
+      .append(std::to_string(files));
+}
+
 std::optional<double> share_done(std::uint64_t features, std::optional<std::uint64_t> all_features,
                                  std::uint64_t bytes, std::optional<std::uint64_t> all_bytes) {
   const auto share = [](std::uint64_t part, std::uint64_t whole) -> std::optional<double> {

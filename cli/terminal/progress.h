@@ -31,6 +31,9 @@ class ProgressBar {
   std::chrono::steady_clock::time_point drawn_;
 };
 
+/// "file 3 of 41", the position for a ProgressBar; "" in a run over one file. `number` is from 1.
+std::string position_among(std::size_t number, std::size_t files);
+
 /// The share of a document that is done: by the number of its features if known, else by bytes.
 std::optional<double> share_done(std::uint64_t features, std::optional<std::uint64_t> all_features,
                                  std::uint64_t bytes, std::optional<std::uint64_t> all_bytes);

@@ -186,7 +186,8 @@ Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, Pag
                     .vertices = kNone,
                     .facets = kNone,
                     .rings = kNone,
-                    .shells = kNone};
+                    .shells = kNone,
+                    .claimed = ~std::uint64_t{0}};
   EntropyStream stream = EntropyStream::writer();
   if (kind == PageKind::page) stream.code_uniform(page.solids.size() - 1, kMaxPageSolids);
   if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.frame); !status) {
@@ -215,7 +216,8 @@ Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, Pag
 
 Limits limits_of_stream(std::size_t bytes, const Limits& limits) {
   Limits result = limits;
-  const std::uint64_t most = kFreeVertices + kVerticesPerByte * bytes;
+  const std::uint64_t most =
+      std::min(kFreeVertices + kVerticesPerByte * bytes, limits.claimed_by(bytes));
   result.vertices = std::min(limits.vertices, most);
   result.facets = std::min(limits.facets, 2 * most);
   result.rings = std::min(limits.rings, 2 * most);

@@ -321,14 +321,13 @@ class Canonicalizer {
 }  // namespace
 
 Result<std::string> canonical_skeleton(const Feature& feature, Contract contract) {
-  auto model = parse_city_model(feature.skeleton, CityText::skeleton,
-                                Limits{.bytes = ~0ULL, .nesting = 256});
+  auto model = parse_city_model(feature.skeleton, CityText::skeleton, kOwnText);
   if (!model) return std::move(model).error();
   return Canonicalizer(std::move(*model), feature).run(contract);
 }
 
 Result<std::string> boundary_header(std::string_view header) {
-  auto root = parse_json(header, Limits{.bytes = ~0ULL, .nesting = 256});
+  auto root = parse_json(header, kOwnText);
   if (!root) return std::move(root).error();
   if (root->is_object()) keep_reference(*root);
   return json_text(*root);

@@ -55,7 +55,16 @@ Result<std::string> canonical_skeleton(const Feature& feature, Contract contract
 /// The header that goes with skeletons of contract boundary. Errors: malformed.
 Result<std::string> boundary_header(std::string_view header);
 
+/// Reads a CityJSON, or a CityJSONFeature alone. The vertices of the latter are known only if it
+/// states a transform of its own; else its solids cannot be read.
 Result<Document> read_city_json(std::string_view text, const ReadOptions& options);
+/// Whether a text is a CityJSONFeature and no more, as far as it is there: over several lines, or
+/// in one line after which nothing follows.
+bool is_lone_feature(std::string_view text);
+/// Reads a CityJSONFeature alone under the header of the documents to which it belongs, as the one
+/// line of a sequence: line ends become spaces. Errors: those of read_document().
+Result<Document> read_lone_feature(std::string text, const std::string& header,
+                                   const ReadOptions& options);
 Result<Document> read_city_json_seq(std::string_view text, const ReadOptions& options);
 Result<std::string> write_city_json(const Document& document);
 Result<std::string> write_city_json_seq(const Document& document);

@@ -16,14 +16,42 @@ struct ReadModel {
   std::vector<TemplateInstance> instances;
 };
 
+/// Makes the solids of a CityJSONFeature without transform unreadable.
+void forget_solids(ModelIndex& index) {
+  for (GeometryRef& ref : index.geometries) {
+    if (!ref.is_of_solids()) continue;
+    UnreadablePart part;
+    part.source = {index.ids[ref.object],
+                   ref.type,
+                   ref.lod,
+                   ref.geometry,
+                   0,
+                   "/CityObjects" + pointer_token(index.ids[ref.object]) + "/geometry" +
+                       pointer_token(ref.geometry) + "/boundaries"};
+    part.error = {
+        ErrorCode::malformed,
+        "a CityJSONFeature alone has no transform, so its coordinates are not known: send "
+        "the CityJSON line of its sequence first",
+        {},
+        part.source.pointer};
+    ref.is_unreadable = true;
+    index.unreadable.push_back({ref.object, std::move(part)});
+  }
+}
+
 Result<ReadModel> read_model(CityModel model, const CityHeader& header,
                              const ReadOptions& options) {
   auto index = index_city_model(model, header.template_count);
   if (!index) return std::move(index).error();
+  const bool is_feature = string_member(model.root, "type") == "CityJSONFeature";
+  if (is_feature && !header.transform) forget_solids(*index);
   if (header.transform) {
     if (auto status = require_integers(model.vertices); !status) return status.error();
   }
-  auto solids = city_solids(model, *index, header, options.limits, options.surfaces);
+  // Without a transform the coordinates of surfaces are not known either.
+  const bool is_placed = !is_feature || header.transform.has_value();
+  const Surfaces surfaces = is_placed ? options.surfaces : Surfaces::ignore;
+  auto solids = city_solids(model, *index, header, options.limits, surfaces);
   if (!solids) return std::move(solids).error();
   auto instances = city_instances(model, *index, header);
   return ReadModel{std::move(model), std::move(*index), std::move(*solids), std::move(instances)};
@@ -159,6 +187,21 @@ void keep_text(const CityHeader& header, std::string_view text, Feature& feature
   feature.layout = describe_layout(plain ? *plain : std::string(), text);
 }
 
+/// The header of a CityJSONFeature alone. Errors: malformed.
+Result<CityHeader> lone_header(const Json& root) {
+  Json header = Json::object();
+  append_member(header, "type", "CityJSON");
+  append_member(header, "version", "2.0");
+  if (const Json* transform = find_member(root, "transform"); transform != nullptr) {
+    append_member(header, "transform", *transform);
+  }
+  append_member(header, "CityObjects", Json::object());
+  append_member(header, "vertices", Json::array());
+  auto made = city_header(header);
+  if (made) made->text = json_text(header);
+  return made;
+}
+
 Error type_error(const Json& root) {
   const std::string type = string_member(root, "type");
   if (type == "CityJSONFeature") {
@@ -201,7 +244,50 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   return feature;
 }
 
+/// The document of a CityJSONFeature alone, in which it is the only feature.
+Result<Document> read_feature_document(Document document, CityModel model, std::string_view text,
+                                       const ReadOptions& options) {
+  auto header = lone_header(model.root);
+  if (!header) return std::move(header).error();
+  document.header = header->text;
+  if (!header->transform && model.vertices.size() > 0) {
+    document.notes.emplace_back(
+        "a CityJSONFeature alone has no transform: the solids in it cannot be read");
+  }
+  auto feature = read_feature_model(std::move(model), *header, options);
+  if (!feature) return std::move(feature).error();
+  if (options.split_features) {
+    document.features.push_back(*std::move(feature));
+    return document;
+  }
+  feature->id.clear();
+  feature->type = "CityJSON";  // the whole document, as which it is written
+  if (options.keep_text) keep_text(*header, text, *feature);
+  document.features.push_back(*std::move(feature));
+  return document;
+}
+
 }  // namespace
+
+Result<Document> read_lone_feature(std::string text, const std::string& header,
+                                   const ReadOptions& options) {
+  auto city_header = read_city_json_header(header);
+  if (!city_header) return std::move(city_header).error();
+  // Line ends outside strings are white space, and JSON allows none inside strings.
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::replace(text.begin(), text.end(), '\r', ' ');
+  auto feature = read_city_json_feature(*city_header, text, options);
+  if (!feature) return std::move(feature).error();
+  Document document;
+  document.format = Format::city_json_seq;
+  document.header = header;
+  auto templates = read_geometry_templates(*city_header, options.limits, options.surfaces);
+  if (!templates) return std::move(templates).error();
+  document.templates = std::move(templates->solids);
+  document.template_surfaces = std::move(templates->surfaces);
+  document.features.push_back(*std::move(feature));
+  return document;
+}
 
 Result<CityHeader> read_city_json_header(std::string_view line, const Limits& limits) {
   auto model = parse_city_model(line, CityText::document, limits);
@@ -235,6 +321,11 @@ Result<Feature> read_city_json_feature(const CityHeader& header, std::string_vie
     return Error{ErrorCode::malformed, "the type is not \"CityJSONFeature\"", {}, "/type"};
   }
   auto feature = read_feature_model(std::move(*model), header, options);
+  if (feature) {
+    if (Status status = check_solid_count(*feature, options.limits); !status) {
+      return std::move(status).error();
+    }
+  }
   if (feature && options.keep_text) keep_text(header, line, *feature);
   return feature;
 }
@@ -245,6 +336,9 @@ Result<Document> read_city_json(std::string_view text, const ReadOptions& option
   if (text.starts_with(kByteOrderMark)) document.notes.push_back("byte order mark skipped");
   auto model = parse_city_model(text, CityText::document, options.limits);
   if (!model) return std::move(model).error();
+  if (string_member(model->root, "type") == "CityJSONFeature") {
+    return read_feature_document(std::move(document), *std::move(model), text, options);
+  }
   if (string_member(model->root, "type") != "CityJSON") return type_error(model->root);
   auto header = city_header(model->root);
   if (!header) return std::move(header).error();

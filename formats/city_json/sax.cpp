@@ -383,6 +383,7 @@ Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, cons
   }
   CitySax sax(is_city, kind, limits);
   if (!Json::sax_parse(text.begin(), text.end(), &sax)) return std::move(sax.error());
+  sax.model().text_bytes = text.size();
   return std::move(sax.model());
 }
 

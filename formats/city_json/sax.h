@@ -47,6 +47,7 @@ struct CityModel {
   std::vector<BoundaryToken> tokens;
   std::vector<std::size_t> boundary_begin{0};  // the start of each boundary in `tokens`, then their
                                                // end
+  std::uint64_t text_bytes = 0;                // the length of the text
 
   std::span<const BoundaryToken> boundary(std::size_t index) const {
     return std::span<const BoundaryToken>(tokens).subspan(

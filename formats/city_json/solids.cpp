@@ -43,13 +43,17 @@ class SolidCutter {
   SolidCutter(std::span<const BoundaryToken> tokens, int levels_above)
       : tokens_(tokens), levels_above_(levels_above) {}
 
-  Status cut(std::size_t vertex_count) {
+  /// Errors: malformed; limit_exceeded for more than `most_solids`.
+  Status cut(std::size_t vertex_count, std::uint64_t most_solids) {
     for (position_ = 0; position_ < tokens_.size(); ++position_) {
       const BoundaryToken token = tokens_[position_];
       if (token == kOpen) {
         if (++depth_ > levels_above_ + 4) return wrong("arrays are nested too deep for a solid");
       } else if (token == kClose) {
         end_level(depth_-- - levels_above_);
+        if (solids_.size() > most_solids) {
+          return Error{ErrorCode::limit_exceeded, "", {}, pointer_to(tokens_, position_)};
+        }
       } else {
         if (depth_ - levels_above_ != 4) {
           return wrong("a vertex index outside of a ring: the arrays are not nested deep enough");
@@ -133,7 +137,10 @@ CutSolid cut_solid(SolidArrays arrays, const GeometryRef& ref, const ModelIndex&
   return cut;
 }
 
-std::vector<CutSolid> cut_solids(const CityModel& model, ModelIndex& index) {
+/// Errors: limit_exceeded for more solids than a text of this length can have.
+Result<std::vector<CutSolid>> cut_solids(const CityModel& model, ModelIndex& index,
+                                         const Limits& limits) {
+  const std::uint64_t most = limits.solids_of(model.text_bytes);
   std::vector<CutSolid> all;
   std::vector<Index> number_of(model.vertices.size(), kNone);
   for (GeometryRef& ref : index.geometries) {
@@ -156,7 +163,15 @@ std::vector<CutSolid> cut_solids(const CityModel& model, ModelIndex& index) {
       continue;
     }
     SolidCutter cutter(tokens, levels_above(ref));
-    if (auto status = cutter.cut(model.vertices.size()); !status) {
+    const std::uint64_t found = all.size() + index.unreadable.size();
+    if (auto status = cutter.cut(model.vertices.size(), most - std::min(found, most)); !status) {
+      if (status.error().code == ErrorCode::limit_exceeded || found >= most) {
+        return Error{ErrorCode::limit_exceeded,
+                     "more than " + std::to_string(most) + " solids in " +
+                         quantity(model.text_bytes, "byte"),
+                     {},
+                     pointer};
+      }
       note_unreadable(std::move(status).error());
       continue;
     }
@@ -309,7 +324,7 @@ class SurfaceReader {
  private:
   Result<CitySolid> read_one(const GeometryRef& ref, std::span<const BoundaryToken> tokens) {
     SolidCutter cutter(tokens, kLevelsAboveSurface);
-    if (auto status = cutter.cut(model_.vertices.size()); !status) return status.error();
+    if (auto status = cutter.cut(model_.vertices.size(), 1); !status) return status.error();
     return lattice_.place_alone(
         cut_solid(std::move(cutter.solids().front()), ref, index_, 0, number_of_));
   }
@@ -341,7 +356,9 @@ Result<std::vector<CitySolid>> city_solids(const CityModel& model, ModelIndex& i
     auto status = SurfaceReader(model, index, header, limits).read(surfaces == Surfaces::as_solids);
     if (!status) return std::move(status).error();
   }
-  std::vector<CutSolid> cut = cut_solids(model, index);
+  auto found = cut_solids(model, index, limits);
+  if (!found) return std::move(found).error();
+  std::vector<CutSolid> cut = *std::move(found);
   const bool is_one_feature = string_member(model.root, "type") == "CityJSONFeature";
 
   std::vector<std::size_t> order(cut.size());

@@ -19,7 +19,9 @@ Error wrong(std::string message, std::string pointer) {
 // errors found, as in a document.
 class TemplateReader {
  public:
-  explicit TemplateReader(const Json& section) : section_(section) {}
+  TemplateReader(const Json& section, std::uint64_t text_bytes) : section_(section) {
+    model_.text_bytes = text_bytes;
+  }
 
   Result<ModelIndex> read() {
     const Json* templates = find_member(section_, "templates");
@@ -151,7 +153,7 @@ Result<TemplateSolids> read_geometry_templates(const CityHeader& header, const L
   if (!root) return root.error();
   const Json* section = find_member(*root, "geometry-templates");
   if (section == nullptr) return found;
-  TemplateReader reader(*section);
+  TemplateReader reader(*section, header.text.size());
   auto index = reader.read();
   if (!index) return std::move(index).error();
   auto solids = city_solids(reader.model(), *index, CityHeader{}, limits, surfaces);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <charconv>
 #include <set>
 #include <utility>
 
 #include "formats/city_json/appearance.h"
+#include "formats/city_json/merge_headers.h"
 #include "formats/city_json/model.h"
 #include "formats/text/numbers.h"
 #include "formats/text/text_layout.h"
@@ -165,13 +167,36 @@ Status check_references(const OpenFeature& open) {
 }
 
 Result<OpenFeature> open_feature(const CityHeader& header, const Feature& feature) {
-  const Limits limits{.bytes = ~0ULL, .nesting = 256};
+  const Limits& limits = kOwnText;
   auto model = parse_city_model(feature.skeleton, CityText::skeleton, limits);
   if (!model) return std::move(model).error();
   OpenFeature open{std::move(*model), &feature, {}, {}};
   if (auto status = place_vertices(open, header); !status) return status.error();
   if (auto status = check_references(open); !status) return status.error();
   return open;
+}
+
+// The vertex "[x,y,z]" under another header.
+Status map_vertex(std::string& text, const VertexMap& map) {
+  __extension__ using Wide = __int128;
+  constexpr std::int64_t kMost = (std::int64_t{1} << 53) - 1;
+  std::array<std::string, 3> axes;
+  const char* next = text.data();
+  const char* const end = next + text.size();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::int64_t value = 0;
+    const auto [rest, error] = std::from_chars(next + 1, end, value);
+    if (error != std::errc{} || rest == end) return unfit("vertices that are no integers");
+    const Wide moved = Wide{value} * map.factor[axis] + map.shift[axis];
+    if (moved > kMost || moved < -kMost) {
+      return Error{ErrorCode::limit_exceeded,
+                   "vertex " + text + " would be 2^53 or more under the header of the sequence"};
+    }
+    axes[axis] = std::to_string(static_cast<std::int64_t>(moved));
+    next = rest;
+  }
+  text = vertex_text(axes);
+  return Done{};
 }
 
 void append_ring(std::string& out, std::span<const Index> ring, const std::vector<Index>& vertex_of,
@@ -268,7 +293,7 @@ std::string print_whole(const OpenFeature& open) {
 }
 
 Result<CityHeader> header_of(const Document& document, Json& root) {
-  auto parsed = parse_json(document.header, Limits{.bytes = ~0ULL, .nesting = 256});
+  auto parsed = parse_json(document.header, kOwnText);
   if (!parsed) return std::move(parsed).error();
   auto header = city_header(*parsed);
   root = std::move(*parsed);
@@ -387,6 +412,17 @@ Result<std::string> write_city_json_feature(const CityHeader& header, const Feat
   return apply_layout(*text, feature.layout, Limits{}.bytes);
 }
 
+Result<std::string> write_city_json_feature(const CityHeader& header, const Feature& feature,
+                                            const VertexMap& map) {
+  if (map.is_identity()) return write_city_json_feature(header, feature);
+  auto open = open_feature(header, feature);
+  if (!open) return std::move(open).error();
+  for (std::string& vertex : open->vertices) {
+    if (auto status = map_vertex(vertex, map); !status) return status.error();
+  }
+  return print_whole(*open);
+}
+
 Result<std::string> write_city_json(const Document& document) {
   Json root;
   auto header = header_of(document, root);
@@ -405,7 +441,7 @@ Result<std::string> write_city_json_seq(const Document& document) {
   if (is_whole(document)) {
     auto whole = write_city_json(document);
     if (!whole) return whole;
-    auto split = read_city_json(*whole, ReadOptions{.limits = {.bytes = ~0ULL, .nesting = 256}});
+    auto split = read_city_json(*whole, ReadOptions{.limits = kOwnText});
     if (!split) return std::move(split).error();
     return write_city_json_seq(*split);
   }

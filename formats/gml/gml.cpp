@@ -68,6 +68,7 @@ class GmlReader {
 
   Result<Document> read() {
     document_.format = Format::gml;
+    document_.graph = model_.graph;
     // The geometries of one feature need not follow one another: features can hold collections.
     std::vector<std::vector<Index>> of_object(model_.objects.size());
     std::vector<std::vector<Index>> groups;
@@ -91,6 +92,7 @@ class GmlReader {
       if (!status) return std::move(status).error();
     }
     if (auto status = add_instances(); !status) return std::move(status).error();
+    place_states();
     add_notes();
     return std::move(document_);
   }
@@ -125,6 +127,7 @@ class GmlReader {
       const GmlObject& top = model_.objects[model_.objects[first.object].feature];
       feature.id = top.id;
       feature.type = top.type;
+      feature.cell = top.cell;
     } else {
       feature.id = drafts_.empty() ? feature.surfaces.front().source.object_id
                                    : drafts_.front().source.object_id;
@@ -132,6 +135,7 @@ class GmlReader {
     if (drafts_.empty()) feature.srid = feature.surfaces.front().solid.srid();
     auto status = drafts_.empty() ? Status(Done{}) : finish(feature);
     if (!status) return in_object(std::move(status).error(), feature.id);
+    if (feature.cell != kNone) cells_.push_back({feature.cell, feature.srid, is_y_first_});
     if (first.is_template) {
       for (SubmittedSolid& solid : feature.solids) {
         document_.templates.push_back(std::move(solid));
@@ -189,6 +193,33 @@ class GmlReader {
       }
     }
     return Done{};
+  }
+
+  // Brings the positions of states into the order of axes of their cells. A position in another
+  // system than the cell is not known.
+  void place_states() {
+    std::vector<const CellSystem*> system_of(document_.graph.cells.size());
+    for (const CellSystem& cell : cells_) system_of[cell.cell] = &cell;
+    std::vector<Index> cell_of(document_.graph.states.size(), kNone);
+    for (Index i = 0; i < document_.graph.cells.size(); ++i) {
+      const geometry::GraphCell& cell = document_.graph.cells[i];
+      if (!cell.duals.empty() && cell.duals.front().target != kNone) {
+        cell_of[cell.duals.front().target] = i;
+      }
+    }
+    for (Index i = 0; i < document_.graph.states.size(); ++i) {
+      geometry::GraphState& state = document_.graph.states[i];
+      const bool has_dual = !state.duals.empty() && state.duals.front().target != kNone;
+      const Index cell = has_dual ? state.duals.front().target : cell_of[i];
+      if (!state.position || cell == kNone || system_of[cell] == nullptr) continue;
+      const std::uint32_t srid = model_.srids_of_states[i];
+      if (srid != 0 && system_of[cell]->srid != 0 && srid != system_of[cell]->srid) {
+        state.position.reset();
+        state.fault = "its position is in another reference system than its cell";
+      } else if (system_of[cell]->is_y_first) {
+        std::swap((*state.position)[0], (*state.position)[1]);
+      }
+    }
   }
 
   std::string id_of(const GmlGeometry& geometry, Index node) const {
@@ -530,6 +561,14 @@ class GmlReader {
   std::set<std::string> unknown_systems_;
   std::set<std::string> latitude_first_;
   std::set<std::string> wrongly_ordered_;
+  // How the positions of a cell were read.
+  struct CellSystem {
+    Index cell = kNone;
+    std::uint32_t srid = 0;
+    bool is_y_first = false;
+  };
+
+  std::vector<CellSystem> cells_;
   std::vector<Draft> drafts_;
   GmlPositions positions_;
   bool is_template_ = false;           // the drafts are those of a template

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/gml/elements.h"
+#include "formats/gml/indoor.h"
 
 namespace watertight::formats {
 namespace {
@@ -41,6 +42,7 @@ std::string_view trimmed(std::string_view text) {
 class GmlBuilder : public XmlHandler {
  public:
   Status start(const XmlElement& element) override {
+    graph_.start(element, gml_id(element).substr(0, kLongestId + 1));
     if (skipped_ > 0) {
       ++skipped_;
       return Done{};
@@ -73,6 +75,7 @@ class GmlBuilder : public XmlHandler {
   }
 
   Status text(std::string_view text) override {
+    graph_.text(text);
     if (skipped_ == 0 && !frames_.empty() && frames_.back().kind == FrameKind::numbers) {
       model_.positions.append(text);
     }
@@ -84,6 +87,7 @@ class GmlBuilder : public XmlHandler {
   }
 
   Status end() override {
+    graph_.end();
     if (skipped_ > 0) {
       --skipped_;
       return Done{};
@@ -97,7 +101,11 @@ class GmlBuilder : public XmlHandler {
 
   /// Errors: malformed for XML that is not GML, such as a page of HTML saved instead of the data.
   Result<GmlModel> take() {
-    if (is_of_ogc_) return std::move(model_);
+    if (is_of_ogc_) {
+      model_.graph = graph_.take();
+      model_.srids_of_states = graph_.srids_of_states();
+      return std::move(model_);
+    }
     return error_at(root_.place, ErrorCode::malformed,
                     "not GML: the root element is '" + root_.name +
                         "', and nothing is in a namespace http://www.opengis.net/...");
@@ -133,6 +141,7 @@ class GmlBuilder : public XmlHandler {
     std::string type;
     bool is_feature = false;
     bool is_container = false;
+    Index cell = kNone;     // index in GmlModel::graph.cells
     Index number = kNone;   // index in model_.objects
     Index feature = kNone;  // index of a top-level object in model_.objects; kNone until needed
   };
@@ -262,6 +271,7 @@ class GmlBuilder : public XmlHandler {
     OpenObject object;
     object.id = gml_id(element);
     object.type = element.name;
+    object.cell = graph_.opened_cell();
     object.is_container = is_container(element.name);
     object.is_feature = !object.is_container && (objects_.empty() || objects_.back().is_container);
     objects_.push_back(std::move(object));
@@ -283,14 +293,15 @@ class GmlBuilder : public XmlHandler {
     OpenObject& feature = objects_[top];
     if (feature.feature == kNone) {
       feature.number = feature.feature = static_cast<Index>(model_.objects.size());
-      model_.objects.push_back({feature.id, feature.type, building_of(top), feature.feature});
+      model_.objects.push_back(
+          {feature.id, feature.type, building_of(top), feature.feature, feature.cell});
       model_.features.push_back(feature.feature);
     }
     OpenObject& object = objects_.back();
     if (object.number == kNone) {
       object.number = static_cast<Index>(model_.objects.size());
       const std::string building = building_of(objects_.size() - 1);
-      model_.objects.push_back({object.id, object.type, building, feature.feature});
+      model_.objects.push_back({object.id, object.type, building, feature.feature, object.cell});
     }
     return object.number;
   }
@@ -490,6 +501,7 @@ class GmlBuilder : public XmlHandler {
   }
 
   GmlModel model_;
+  CellGraphReader graph_;
   std::vector<Frame> frames_;
   std::vector<OpenObject> objects_;
   Numbers numbers_;

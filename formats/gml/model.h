@@ -14,6 +14,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "formats/gml/xml.h"
+#include "geometry/cell_graph.h"
 #include "geometry/point.h"
 
 namespace watertight::formats {
@@ -68,6 +69,7 @@ struct GmlObject {
   std::string type;
   std::string building_id;  // the value of SolidSource::building_id
   Index feature = 0;
+  Index cell = kNone;  // index into GmlModel::graph.cells, for a cell of an indoor model
 };
 
 /// A geometry property of an object.
@@ -101,6 +103,8 @@ struct GmlModel {
   std::vector<Index> features;       // the top-level objects
   std::vector<std::string> systems;  // values of srsName
   std::vector<Error> defects;
+  geometry::CellGraph graph;                   // of an indoor model; empty for other documents
+  std::vector<std::uint32_t> srids_of_states;  // one for each of graph.states; 0: none stated
   std::string names;
   std::string positions;
 

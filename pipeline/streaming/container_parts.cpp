@@ -11,11 +11,6 @@ namespace {
 /// solid does not say where in the text it stands.
 Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
                            const Limits& limits) {
-  if (feature.id.empty() && feature.type == "CityJSON") {
-    return Error{ErrorCode::unsupported,
-                 "the file holds a CityJSON as a whole, not its features: decode it, and use the "
-                 "CityJSON"};
-  }
   const auto line = formats::write_city_json_feature(header, feature);
   if (!line) return line.error();
   formats::ReadOptions options;
@@ -39,12 +34,18 @@ Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
   return feature;
 }
 
+/// Whether a feature is a CityJSON as a whole.
+bool is_whole_model(const Feature& feature) {
+  return feature.id.empty() && feature.type == "CityJSON";
+}
+
 }  // namespace
 
-Result<ContainerParts> ContainerParts::open(ByteView bytes, const Limits& limits) {
+Result<ContainerParts> ContainerParts::open(ByteView bytes, const Limits& limits,
+                                            WholeModels models) {
   auto reader = ContainerReader::open(bytes, limits);
   if (!reader) return std::move(reader).error();
-  return ContainerParts(*reader, limits);
+  return ContainerParts(*reader, limits, models);
 }
 
 Status ContainerParts::add(ContainerDocument added) {
@@ -64,11 +65,19 @@ Status ContainerParts::add(ContainerDocument added) {
   return Done{};
 }
 
-Result<Feature> ContainerParts::whole(ContainerFeature feature) const {
-  const Shared& shared = documents_[feature.document];
-  auto decoded = restored(std::move(feature), shared.document.format, limits_);
-  if (!decoded || !shared.header) return decoded;
-  return read_again(*shared.header, *std::move(decoded), limits_);
+/// The features of a CityJSON as a whole, as a reader of its text finds them.
+Result<Document> ContainerParts::split(const formats::CityHeader& header,
+                                       const Feature& model) const {
+  if (models_ == WholeModels::refuse) {
+    return Error{ErrorCode::unsupported,
+                 "the file holds a CityJSON as a whole, not its features: decode it, and use the "
+                 "CityJSON"};
+  }
+  const auto text = formats::write_city_json_feature(header, model);
+  if (!text) return text.error();
+  formats::ReadOptions options;
+  options.limits = limits_;
+  return formats::read_city_json(*text, options);
 }
 
 Result<std::optional<std::vector<Document>>> ContainerParts::next() {
@@ -81,10 +90,20 @@ Result<std::optional<std::vector<Document>>> ContainerParts::next() {
   std::map<std::uint64_t, Document> found;
   for (ContainerFeature& feature : (*part)->features) {
     const std::uint64_t number = feature.document;
-    auto [document, is_new] = found.try_emplace(number);
-    if (is_new) document->second = documents_[number].document;
-    auto complete = whole(std::move(feature));
+    const Shared& shared = documents_[number];
+    auto complete = restored(std::move(feature), shared.document.format, limits_);
+    if (complete && shared.header && is_whole_model(*complete)) {
+      auto model = split(*shared.header, *complete);
+      if (!model) return std::move(model).error();
+      found.insert_or_assign(number, *std::move(model));
+      continue;
+    }
+    if (complete && shared.header) {
+      complete = read_again(*shared.header, *std::move(complete), limits_);
+    }
     if (!complete) return std::move(complete).error();
+    auto [document, is_new] = found.try_emplace(number);
+    if (is_new) document->second = shared.document;
     document->second.features.push_back(*std::move(complete));
   }
   std::vector<Document> documents;

@@ -11,15 +11,21 @@
 
 namespace watertight::pipeline {
 
+/// What becomes of a CityJSON that the file holds as a whole, not by its features: it is refused,
+/// or its text is made again and split, which takes the memory of a document that is read whole.
+enum class WholeModels : std::uint8_t { refuse, split };
+
 class ContainerParts {
  public:
   /// `bytes` must outlive the object. Errors: those of ContainerReader::open().
-  static Result<ContainerParts> open(ByteView bytes, const Limits& limits);
+  static Result<ContainerParts> open(ByteView bytes, const Limits& limits,
+                                     WholeModels models = WholeModels::refuse);
 
   /// The documents with features in the next part, each with these features only; nullopt
   /// after the last part. Features of city models have the sources and instances, and documents
   /// the templates, that their text would give. Errors: those of ContainerReader::next() and
-  /// decode_feature(); malformed when skeleton and solids do not fit.
+  /// decode_feature(); malformed when skeleton and solids do not fit; unsupported for a CityJSON as
+  /// a whole that is refused.
   Result<std::optional<std::vector<Document>>> next();
 
  private:
@@ -27,13 +33,14 @@ class ContainerParts {
     Document document;  // without features
     std::optional<formats::CityHeader> header;
   };
-  ContainerParts(const ContainerReader& reader, const Limits& limits)
-      : reader_(reader), limits_(limits) {}
+  ContainerParts(const ContainerReader& reader, const Limits& limits, WholeModels models)
+      : reader_(reader), limits_(limits), models_(models) {}
   Status add(ContainerDocument added);
-  Result<Feature> whole(ContainerFeature feature) const;
+  Result<Document> split(const formats::CityHeader& header, const Feature& model) const;
 
   ContainerReader reader_;
   Limits limits_;
+  WholeModels models_;
   std::vector<Shared> documents_;
 };
 

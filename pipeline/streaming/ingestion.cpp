@@ -7,7 +7,6 @@
 
 #include "formats/city_json/city_json.h"
 #include "pipeline/instances.h"
-#include "pipeline/streaming/container_parts.h"
 #include "pipeline/streaming/feature_stream.h"
 #include "pipeline/streaming/process.h"
 
@@ -50,11 +49,13 @@ Status Ingestion::add(formats::FeatureReader& reader) {
   if (!shared) return std::move(shared).error();
   TemplateInspector templates(reader.document().templates, workers_, options_.certify,
                               group_options(options_.groups, options_.certify));
+  CellInspector cells(reader.document(), workers_, options_.certify, options_.groups,
+                      options_.threads, options_.is_cancelled);
   const FeatureWork work = [&](std::uint64_t, const formats::FeaturePlace& place,
                                Result<Feature> feature) -> Delivery {
     if (!feature) return [error = std::move(feature).error()]() -> Status { return error; };
     const std::uint32_t srid = feature->srid;
-    auto processed = process(*std::move(feature), *shared, workers_, options_, templates);
+    auto processed = process(*std::move(feature), *shared, workers_, options_, templates, cells);
     if (!processed) return [error = std::move(processed).error()]() -> Status { return error; };
     const auto taken =
         std::make_shared<Processed>(Processed{std::move(processed->outcome), place, srid, {}});
@@ -72,8 +73,8 @@ Status Ingestion::add(formats::FeatureReader& reader) {
   return Done{};
 }
 
-Status Ingestion::add_container(ByteView bytes, const Limits& limits) {
-  auto parts = ContainerParts::open(bytes, limits);
+Status Ingestion::add_container(ByteView bytes, const Limits& limits, WholeModels models) {
+  auto parts = ContainerParts::open(bytes, limits, models);
   if (!parts) return std::move(parts).error();
   for (;;) {
     auto documents = parts->next();
@@ -149,12 +150,17 @@ Result<IngestCounts> Ingestion::finish() {
 void OutcomeKeeper::add(FeatureOutcome&& outcome) {
   const bool is_valid = outcome.verdict == Verdict::valid;
   const std::uint64_t rank = outcome.is_stored ? stored_++ : stored_;
-  if (has_all_ && kept_.size() == most_) {
+  std::uint64_t bytes = 0;
+  for (const SolidOutcome& solid : outcome.solids) bytes += solid.report_json.size();
+  if (has_all_ && is_full_with(bytes)) {
     has_all_ = false;
     std::erase_if(kept_, [](const Kept& kept) { return kept.outcome.verdict == Verdict::valid; });
+    bytes_ = 0;
+    for (const Kept& kept : kept_) bytes_ += kept.bytes;
   }
-  if ((is_valid && !has_all_) || kept_.size() == most_) return;
-  kept_.push_back({std::move(outcome), rank});
+  if ((is_valid && !has_all_) || is_full_with(bytes)) return;
+  bytes_ += bytes;
+  kept_.push_back({std::move(outcome), bytes, rank});
 }
 
 IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
@@ -170,7 +176,8 @@ IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
 
 Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options) {
-  OutcomeKeeper keeper(std::numeric_limits<std::size_t>::max());
+  OutcomeKeeper keeper(std::numeric_limits<std::size_t>::max(),
+                       std::numeric_limits<std::uint64_t>::max());
   Ingestion ingestion(store, workers, options, [&](FeatureOutcome&& outcome) -> Status {
     keeper.add(std::move(outcome));
     return Done{};

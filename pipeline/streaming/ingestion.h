@@ -13,6 +13,7 @@
 
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/streaming/container_parts.h"
 #include "pipeline/streaming/feature_spool.h"
 
 namespace watertight::pipeline {
@@ -38,8 +39,10 @@ class Ingestion {
   /// (another CRS than the collection's); cancelled; those of the sink; unavailable (the spool).
   Status add(formats::FeatureReader& reader);
   /// The same for all documents of a Watertight file. City models are checked as their texts would
-  /// be. Memory: one part of the file. Errors: those of add() and of ContainerParts.
-  Status add_container(ByteView bytes, const Limits& limits = {});
+  /// be. Memory: one part of the file, or a CityJSON that the file holds as a whole. Errors: those
+  /// of add() and of ContainerParts.
+  Status add_container(ByteView bytes, const Limits& limits = {},
+                       WholeModels models = WholeModels::refuse);
 
   /// Stores the features in one transaction. Nothing is stored after an error. Errors: cancelled;
   /// those of SolidStore::put().
@@ -74,11 +77,12 @@ class Ingestion {
   std::vector<std::uint64_t> versions_;
 };
 
-/// Keeps the outcomes of features for an answer: all while they are few, else the first of those
-/// that are not valid.
+/// Keeps the outcomes of features for an answer: all while they are few and their reports short,
+/// else the first of those that are not valid. One is kept, however long its reports are.
 class OutcomeKeeper {
  public:
-  explicit OutcomeKeeper(std::size_t most) : most_(most) {}
+  OutcomeKeeper(std::size_t most, std::uint64_t most_bytes)
+      : most_(most), most_bytes_(most_bytes) {}
   void add(FeatureOutcome&& outcome);
   /// The outcomes with what finish() of the ingestion has made of them.
   IngestOutcome outcome(const IngestCounts& counts, const std::vector<std::uint64_t>& versions) &&;
@@ -86,9 +90,16 @@ class OutcomeKeeper {
  private:
   struct Kept {
     FeatureOutcome outcome;
-    std::uint64_t rank = 0;  // the number of features to be stored before it
+    std::uint64_t bytes = 0;  // of its reports
+    std::uint64_t rank = 0;   // the number of features to be stored before it
   };
+  bool is_full_with(std::uint64_t bytes) const {
+    return kept_.size() == most_ || (!kept_.empty() && bytes_ + bytes > most_bytes_);
+  }
+
   std::size_t most_;
+  std::uint64_t most_bytes_;
+  std::uint64_t bytes_ = 0;  // of the reports that are kept
   bool has_all_ = true;
   std::uint64_t stored_ = 0;
   std::vector<Kept> kept_;

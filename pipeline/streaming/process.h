@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
 #include "pipeline/pipeline.h"
 
@@ -16,14 +17,19 @@ struct ProcessedFeature {
   std::optional<EncodedFeature> encoded;
 };
 
-/// Format, header and framing of a document, reduced to what the contract promises; no features.
+/// The values that all features of a document share, reduced to what the contract promises.
+struct SharedPart {
+  Document document;                        // format, header and framing; no features
+  std::optional<formats::CityHeader> city;  // the header as values; absent unless a city model
+};
+
 /// Errors: malformed header.
-Result<Document> shared_part(const Document& document, formats::Contract contract);
+Result<SharedPart> shared_part(const Document& document, formats::Contract contract);
 
 /// Validates a feature of the document that `shared` is a part of, and encodes it if it is valid.
 /// Errors: those of encode_feature().
-Result<ProcessedFeature> process(Feature feature, const Document& shared,
+Result<ProcessedFeature> process(Feature feature, const SharedPart& shared,
                                  delaunay::EngineWorkers* workers, const IngestOptions& options,
-                                 TemplateInspector& templates);
+                                 TemplateInspector& templates, CellInspector& cells);
 
 }  // namespace watertight::pipeline

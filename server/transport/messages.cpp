@@ -8,6 +8,7 @@
 
 #include "base/ascii.h"
 #include "server/problem.h"
+#include "server/transport/body_coding.h"
 
 namespace watertight::server {
 namespace {
@@ -135,11 +136,16 @@ std::optional<Response> refusal_of(const RequestParser& parser, const ServerOpti
     return problem(411, "length-required",
                    "send Content-Length or Transfer-Encoding: chunked with the body");
   }
-  const auto [first, last] = request.equal_range(http::field::content_encoding);
-  for (auto coding = first; coding != last; ++coding) {
-    if (lower(coding->value()) == "identity") continue;
-    return problem(415, "unsupported",
-                   "this service does not accept Content-Encoding: send the body uncompressed");
+  if (!coding_of(to_request(parser))) {
+    Problem problem{415,
+                    "unsupported",
+                    "a body may have one Content-Encoding, one of: " + std::string(kBodyCodings),
+                    {},
+                    {},
+                    {},
+                    {}};
+    problem.headers.push_back({"Accept-Encoding", std::string(kBodyCodings)});
+    return to_response(problem);
   }
   return std::nullopt;
 }

@@ -18,6 +18,7 @@
 #include <optional>
 
 #include "base/ascii.h"
+#include "server/transport/body_coding.h"
 #include "server/transport/client_watch.h"
 #include "server/transport/messages.h"
 
@@ -163,11 +164,12 @@ class Session {
   awaitable<bool> serve_one();
   awaitable<std::optional<Response>> receive(RequestParser& parser);
   awaitable<std::optional<Response>> receive_body(RequestParser& parser);
-  awaitable<Response> answer(const Request& request);
+  awaitable<Response> answer(Request& request);
   // These take references to objects with names: GCC 12 destroys a temporary object in the argument
   // of a co_await twice.
   awaitable<Response> run(Lane lane, const std::function<Response()>& make,
                           const CancelPoll& cancel);
+  awaitable<Response> respond(Request& request, const CancelPoll& cancel);
   awaitable<Response> finish(const std::shared_ptr<const FurtherWork>& first,
                              const CancelPoll& cancel);
   awaitable<Status> send(Response response, bool keep_alive);
@@ -327,17 +329,52 @@ awaitable<Response> Session::finish(const std::shared_ptr<const FurtherWork>& fi
   }
 }
 
+/// Makes the answer, or its first step. A compressed body that expands to little is expanded among
+/// the small works, and the request goes to the lane of its expanded size. Any other is expanded
+/// and used in one computing work, so that no more of them are in memory than there are threads for
+/// computing.
+awaitable<Response> Session::respond(Request& request, const CancelPoll& cancel) {
+  constexpr unsigned kIsExpanded = 0;  // no status of an answer
+  const Application& application = environment_.application;
+  const auto coding = coding_of(request).value_or(archives::Compression::none);
+  const std::function<Response()> make = [&] { return application.respond(request, cancel); };
+  const bool is_packed = coding != archives::Compression::none && !request.body.empty();
+  if (!is_packed || application.lane(request) == Lane::quick) {
+    Response response = co_await run(application.lane(request), make, cancel);
+    co_return response;
+  }
+  const auto has_room = [&, packed = request.body.size()](std::uint64_t bytes) {
+    return bytes <= kUnbudgeted || body_share_->grow_to(packed + bytes);
+  };
+  const std::function<Response()> expand_little = [&] {
+    auto problem = expand_body(request, coding, kUnbudgeted, has_room, cancel);
+    return problem ? *std::move(problem) : Response{kIsExpanded, "", "", {}};
+  };
+  const std::function<Response()> expand_and_make = [&] {
+    auto problem = expand_body(request, coding, options_.body_bytes, has_room, cancel);
+    return problem ? *std::move(problem) : made_guarded(make);
+  };
+  if (request.body.size() <= kUnbudgeted) {
+    Response little = co_await run(Lane::small, expand_little, cancel);
+    if (little.status == kIsExpanded) {
+      Response response = co_await run(application.lane(request), make, cancel);
+      co_return response;
+    }
+    if (little.status != 413) co_return little;
+  }
+  Response response = co_await run(Lane::computing, expand_and_make, cancel);
+  co_return response;
+}
+
 /// Answers the request on the threads of its lane.
-awaitable<Response> Session::answer(const Request& request) {
+awaitable<Response> Session::answer(Request& request) {
   const Clock::time_point deadline = Clock::now() + seconds(options_.answer_seconds);
   const SessionEnvironment& environment = environment_;
   const ClientWatch watch(connection_);
   const CancelPoll is_cancelled = [deadline, &environment, left = watch.has_left()] {
     return environment.is_cancelled || *left || Clock::now() > deadline;
   };
-  const Application& application = environment_.application;
-  const std::function<Response()> make = [&] { return application.respond(request, is_cancelled); };
-  Response response = co_await run(application.lane(request), make, is_cancelled);
+  Response response = co_await respond(request, is_cancelled);
   if (!response.further) co_return response;
   const std::shared_ptr<const FurtherWork> further = std::move(response.further);
   Response made = co_await finish(further, is_cancelled);

@@ -9,7 +9,7 @@ set -euo pipefail
 source=$(cd "$1" && pwd)
 build=$(cd "$2" && pwd)
 program=${3:-}
-tests=(functions encode hostile helpers limits)
+tests=(functions encode hostile helpers limits rules)
 
 folder=$(mktemp -d /tmp/watertight-sql-XXXXXX)
 started=no
@@ -53,6 +53,44 @@ if ! run env LD_LIBRARY_PATH= PGTZ=UTC "$regress" --inputdir="$folder" --outputd
   tail -20 "$folder/server.log"
   exit 1
 fi
+
+# A table of solids comes back from a dump whatever the settings of the new database are: rules are in the
+# table and in the blobs.
+ask() { run "$bin/psql" -X -q -At -v ON_ERROR_STOP=1 "${connect[@]}" -d "$1" -c "$2"; }
+sum="SELECT md5(string_agg(id || encode(ewkb, 'hex') || encode(blob, 'hex'), ',' ORDER BY id)), count(*) FROM shapes"
+run "$bin/pg_dump" "${connect[@]}" -d regression -t shapes >"$folder/shapes.sql"
+ask postgres "CREATE DATABASE restored"
+ask postgres "ALTER DATABASE restored SET watertight.planarity = 1e-9"
+ask restored "CREATE EXTENSION watertight"
+run "$bin/psql" -X -q -v ON_ERROR_STOP=1 "${connect[@]}" -d restored <"$folder/shapes.sql" >/dev/null
+[ "$(ask restored "SELECT wt_rules()->>'planarity'")" = 0.000000001 ] || { echo "the setting has no effect"; exit 1; }
+[ "$(ask restored "$sum")" = "$(ask regression "$sum")" ] || { echo "a dump brought other solids back"; exit 1; }
+echo "a dump brings solids back under other settings"
+
+# An installation of the former version is updated; its functions, indexes and columns stay.
+functions="SELECT p.oid::regprocedure, provolatile, proisstrict, proparallel, procost, obj_description(p.oid, 'pg_proc')
+  FROM pg_proc p JOIN pg_depend d ON d.objid = p.oid AND d.deptype = 'e'
+  JOIN pg_extension e ON e.oid = d.refobjid AND e.extname = 'watertight' ORDER BY p.oid::regprocedure::text"
+ask postgres "CREATE DATABASE former"
+ask former "CREATE EXTENSION watertight VERSION '0.1.0'"
+[ "$(ask former "$functions" | wc -l)" -eq 6 ] || { echo "version 0.1.0 has other functions"; exit 1; }
+cube=$(ask regression "SELECT encode(ewkb, 'hex') FROM solids WHERE name = 'cube'")
+ask former "CREATE TABLE shapes (id int PRIMARY KEY, ewkb bytea CHECK (wt_is_valid(ewkb)),
+  blob bytea GENERATED ALWAYS AS (wt_encode(ewkb)) STORED)"
+ask former "CREATE INDEX shapes_valid ON shapes (wt_is_valid(ewkb))"
+ask former "CREATE VIEW reports AS SELECT id, wt_validate(ewkb)->>'verdict' AS verdict FROM shapes"
+ask former "INSERT INTO shapes VALUES (1, '\\x$cube')"
+before=$(ask former "$sum")
+ask former "ALTER EXTENSION watertight UPDATE"
+[ "$(ask former "$functions")" = "$(ask restored "$functions")" ] || { echo "an update gives other functions"; exit 1; }
+[ "$(ask former "$sum")" = "$before" ] || { echo "an update changed solids"; exit 1; }
+[ "$(ask former "SELECT id, verdict, wt_rules_of(blob)->>'planarity' FROM reports JOIN shapes USING (id)")" = "1|valid|0.01" ] ||
+  { echo "an update broke a view"; exit 1; }
+ask former "INSERT INTO shapes VALUES (2, '\\x$cube')"
+run "$bin/pg_dump" "${connect[@]}" -d former | run "$bin/psql" -X -q -v ON_ERROR_STOP=1 "${connect[@]}" \
+  -d postgres >/dev/null || { echo "an updated database cannot be restored"; exit 1; }
+[ "$(ask postgres "SELECT count(*) FROM shapes")" -eq 2 ] || { echo "a restored database lacks solids"; exit 1; }
+echo "an installation of version 0.1.0 is updated"
 
 if [ -n "$program" ]; then
   query() { run "$bin/psql" -X -q -At "${connect[@]}" -d regression -c "$1"; }

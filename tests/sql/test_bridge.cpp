@@ -29,11 +29,24 @@ struct Reply {
   Bytes bytes() const { return Bytes(value.bytes, value.bytes + value.size); }
 };
 
-Reply call(Function function, ByteView bytes, wt_poll poll = nullptr) {
+Reply call(Function function, ByteView bytes, wt_poll poll = nullptr,
+           const wt_rule_choice* rules = nullptr) {
   Reply reply;
-  const wt_job job{bytes.data(), bytes.size(), nullptr, poll, 0, 0};
+  const wt_job job{bytes.data(), bytes.size(), nullptr, poll, 0, 0, rules};
   function(&job, &reply.value);
   return reply;
+}
+
+/// A box of 10 m whose roof has one corner raised by `raised` metres, as four quads around it.
+Bytes warped(double raised) {
+  const std::string top = std::to_string(10 + raised);
+  const auto submitted = formats::read_wkt(
+      "POLYHEDRALSURFACE Z (((0 0 0,0 10 0,10 10 0,10 0 0,0 0 0)),((0 0 10,10 0 10,10 10 " + top +
+      ",0 10 10,0 0 10)),((0 0 0,10 0 0,10 0 10,0 0 10,0 0 0)),((0 10 0,0 10 10,10 10 " + top +
+      ",10 10 0,0 10 0)),((0 0 0,0 0 10,0 10 10,0 10 0,0 0 0)),((10 0 0,10 10 0,10 10 " + top +
+      ",10 0 10,10 0 0)))");
+  REQUIRE(submitted);
+  return formats::write_ewkb(submitted->solid);
 }
 
 /// A unit cube at (84000.5, 447000.25, 0) without its first `missing` facets.
@@ -89,7 +102,7 @@ TEST_CASE("the bridge separates valid from invalid and names the findings") {
 
 TEST_CASE("the bridge fails on bytes that are no solid, with the offset") {
   for (const Function function : {wt_bridge_validate, wt_bridge_is_valid, wt_bridge_encode,
-                                  wt_bridge_decode, wt_bridge_info}) {
+                                  wt_bridge_decode, wt_bridge_info, wt_bridge_rules_of}) {
     CHECK(!call(function, {}).state().empty());
     CHECK(!call(function, as_bytes("garbage")).state().empty());
     const Reply truncated = call(function, ByteView(cube()).first(20));
@@ -103,6 +116,33 @@ TEST_CASE("the bridge fails on bytes that are no solid, with the offset") {
   CHECK(std::string(truncated.value.failure.detail).starts_with("At byte "));
 }
 
+TEST_CASE("the bridge judges by the rules of the call, and the blob states them") {
+  const Bytes ewkb = warped(0.1);
+  wt_rule_choice rules = wt_default_rules();
+  CHECK(rules.planarity == 0.01);
+  CHECK(rules.planarity_angle == 20);
+  CHECK(!call(wt_bridge_is_valid, ewkb).value.truth);
+  CHECK(!call(wt_bridge_is_valid, ewkb, nullptr, &rules).value.truth);
+  rules.planarity = 0.05;
+  CHECK(call(wt_bridge_is_valid, ewkb, nullptr, &rules).value.truth);
+  rules.planarity_angle = 0.5;
+  CHECK(!call(wt_bridge_is_valid, ewkb, nullptr, &rules).value.truth);
+  rules.planarity_angle = 5;
+  rules.is_boundary_enough = true;
+  const Reply blob = call(wt_bridge_encode, ewkb, nullptr, &rules);
+  INFO(blob.value.failure.message);
+  REQUIRE(blob.state().empty());
+  CHECK(call(wt_bridge_rules_of, blob.bytes()).text() ==
+        R"({"planarity":0.05,"planarity_angle":5,"proof":"boundary","rule_set":1})");
+  const std::string report = call(wt_bridge_validate, ewkb, nullptr, &rules).text();
+  CHECK(report.find("\"planarity_d2p_tol\":0.05") != std::string::npos);
+  CHECK(report.find("\"proof\":\"boundary\"") != std::string::npos);
+  CHECK(report.find("strict") == std::string::npos);
+  rules.is_strict = true;
+  CHECK(call(wt_bridge_validate, ewkb, nullptr, &rules).text().find("\"strict\":true") !=
+        std::string::npos);
+}
+
 TEST_CASE("the bridge gives no value once it is asked to stop") {
   const Reply stopped = call(wt_bridge_is_valid, cube(), [] { return true; });
   CHECK(stopped.state() == "57014");
@@ -112,7 +152,7 @@ TEST_CASE("an engine that finds no helpers is made and ended") {
   wt_engine* const engine = wt_engine_make("/no/such/folder");
   REQUIRE(engine != nullptr);
   const Bytes ewkb = cube();
-  const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr, 0, 0};
+  const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr, 0, 0, nullptr};
   Reply reply;
   wt_bridge_is_valid(&job, &reply.value);
   CHECK(reply.value.truth);  // a cube needs no helper

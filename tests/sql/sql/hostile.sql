@@ -16,7 +16,7 @@ SELECT wt_validate(surface(ARRAY[polygon(ARRAY['NaN', 0, 0, 1, 0, 0, 0, 1, 0]::f
 \set VERBOSITY default
 
 -- Every truncated prefix and every single changed byte of blobs and of EWKB.
-CREATE FUNCTION outcome(function regproc, argument bytea) RETURNS text LANGUAGE plpgsql AS $$
+CREATE FUNCTION outcome(function text, argument bytea) RETURNS text LANGUAGE plpgsql AS $$
 DECLARE state text;
 BEGIN
   EXECUTE format('SELECT %s($1)', function) USING argument;

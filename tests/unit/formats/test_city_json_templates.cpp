@@ -197,10 +197,30 @@ TEST_CASE("empty boundaries and a missing lod are read without an error") {
             .solids.empty());
 }
 
-TEST_CASE("a lone CityJSONFeature is refused by name") {
-  const std::string text = R"({"type":"CityJSONFeature","id":"a","CityObjects":{},"vertices":[]})";
-  CHECK(error_of(text).message.find("transform") != std::string::npos);
-  CHECK_FALSE(read(text, Format::city_json_seq));
+TEST_CASE("a lone CityJSONFeature has solids only with a transform of its own") {
+  const std::string start = R"({"type":"CityJSONFeature",)";
+  const std::string rest =
+      R"("id":"a","CityObjects":{"a":{"type":"Building","geometry":[{"type":"Solid","lod":"1",)"
+      R"("boundaries":[[[[0,2,1]],[[0,1,3]],[[1,2,3]],[[2,0,3]]]]}]}},)"
+      R"("vertices":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]})";
+  const auto without = read(start + rest, Format::city_json);
+  REQUIRE(without);
+  REQUIRE(without->features.size() == 1);
+  CHECK(without->features[0].id == "a");
+  CHECK(without->features[0].solids.empty());
+  REQUIRE(without->features[0].unreadable.size() == 1);
+  const Error& error = without->features[0].unreadable[0].error;
+  CHECK(error.message.find("has no transform") != std::string::npos);
+  CHECK(error.pointer == "/CityObjects/a/geometry/0/boundaries");
+  const std::string transform = R"("transform":{"scale":[0.5,0.5,0.5],"translate":[0,0,0]},)";
+  const auto with = read(start + transform + rest, Format::city_json);
+  REQUIRE(with);
+  REQUIRE(with->features[0].solids.size() == 1);
+  CHECK(with->features[0].unreadable.empty());
+  const Solid& solid = with->features[0].solids[0].solid;
+  CHECK(solid.lattice().world_text(solid.vertices()[1][1], 1) == "0.5");
+  // The id must still be that of an object.
+  CHECK_FALSE(read(start + R"("id":"b","CityObjects":{},"vertices":[]})", Format::city_json));
 }
 
 }  // namespace

@@ -98,6 +98,40 @@ TEST_CASE("separators, carriage returns and a byte order mark around lines are s
   CHECK(read.errors.empty());
 }
 
+TEST_CASE("a feature alone is read under the header that is found for it") {
+  const std::string feature = samples::feature("a");
+  std::string pretty = "{\n";
+  pretty.append(feature, 1, feature.size() - 2).append("\n}\n");
+  int calls = 0;
+  const auto find = [&calls]() -> Result<std::string> {
+    ++calls;
+    return std::string(samples::kHeader);
+  };
+  for (const std::string& text : {feature, feature + "\n\n", pretty}) {
+    for (const std::string name : {"x.jsonl", "x.json", ""}) {
+      const int before = calls;
+      auto reader = formats::FeatureReader::open(in_pieces(text, 50), name, {}, find);
+      REQUIRE(reader);
+      CHECK(calls == before + 1);
+      CHECK(reader->document().header.str() == samples::kHeader);
+      const auto found = reader->next();
+      REQUIRE(found);
+      REQUIRE(*found);
+      CHECK((*found)->ready->id == "a");
+      CHECK((*found)->ready->solids.size() == 1);
+      CHECK((*found)->ready->unreadable.empty());
+    }
+  }
+  // A sequence has a header of its own.
+  const std::string sequence = samples::sequence({feature});
+  const int before = calls;
+  CHECK(formats::FeatureReader::open(in_pieces(sequence, 50), "x.jsonl", {}, find));
+  CHECK(calls == before);
+  // Features without header are no feature alone.
+  const std::string headless = feature + "\n" + feature + "\n";
+  CHECK_FALSE(formats::FeatureReader::open(in_pieces(headless, 50), "x.jsonl", {}, find));
+}
+
 TEST_CASE("other documents are read whole and given feature by feature") {
   const std::string text =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no first\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"

@@ -73,6 +73,41 @@ TEST_CASE("a document that is read whole takes at most the memory that the servi
   CHECK(times_its_text(city(R"({"a":1,"b":[2,3,4,5],"c":"text"})", 50'000)) < kCounted);
 }
 
+/// A building whose only geometry is a MultiSolid of `count` solids without shells.
+std::string empty_solids(int count) {
+  std::string solids = "[]";
+  for (int i = 1; i < count; ++i) solids += ",[]";
+  return R"({"type":"CityJSON","version":"2.0","vertices":[],"CityObjects":{"a":{)"
+         R"("type":"Building","geometry":[{"type":"MultiSolid","lod":"1","boundaries":[)" +
+         solids + "]}]}}}";
+}
+
+TEST_CASE("solids without facets do not take more memory than the length of their text allows") {
+  const std::string text = empty_solids(300'000);
+  const double peak = peak_of([&] {
+    const auto document = formats::read_document(as_bytes(text), formats::Format::city_json);
+    REQUIRE_FALSE(document);
+    CHECK(document.error().code == ErrorCode::limit_exceeded);
+    CHECK(document.error().pointer == "/CityObjects/a/geometry/0/boundaries");
+  });
+  CHECK(peak < 40 * static_cast<double>(text.size()));
+  CHECK(formats::read_document(as_bytes(empty_solids(10'000)), formats::Format::city_json));
+}
+
+TEST_CASE("a feature has at most the solids that the caller allows") {
+  formats::ReadOptions options;
+  options.limits.solids = 99;
+  const auto read = [&](int count) {
+    return formats::read_document(as_bytes(empty_solids(count)), formats::Format::city_json,
+                                  options);
+  };
+  CHECK(read(99));
+  const auto document = read(100);
+  REQUIRE_FALSE(document);
+  CHECK(document.error().code == ErrorCode::limit_exceeded);
+  CHECK(document.error().message == "100 solids in the feature 'a'; the limit is 99");
+}
+
 TEST_CASE("a sequence of any length takes the memory of its longest line") {
   const std::string header = samples::sequence({});
   const std::string line = samples::feature("a") + '\n';

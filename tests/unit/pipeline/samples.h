@@ -238,9 +238,11 @@ class MemoryStore : public SolidStore {
   store::StoredCollection summary(const std::string& id) {
     store::StoredCollection collection;
     collection.id = id;
+    std::uint64_t first = UINT64_MAX;
     for (const auto& [name, feature] : features_[id]) {
       collection.srid = feature.srid;
-      collection.header = feature.header;
+      if (feature.version < first) collection.header = feature.header;
+      first = std::min(first, feature.version);
       ++collection.features;
       collection.solids += feature.solids.size();
       collection.unproven += feature.unproven();

@@ -345,10 +345,35 @@ TEST_CASE("texts that name more features than their file has bytes for are refus
   CHECK(documents.error().code == ErrorCode::malformed);
 }
 
-TEST_CASE("the texts of all parts together stay below the limit of bytes") {
-  const Bytes container = container_of(row_of_boxes(40));
+TEST_CASE("texts expand to a hundred times the bytes of their file, and a constant besides") {
+  const std::string long_text(2'000'000, 'a');
+  std::string line = samples::feature("b");
+  line.replace(line.find("\"height\":2.50"), 13, "\"note\":\"" + long_text + '"');
+  const Bytes container = container_of(samples::sequence({line}));
+  REQUIRE(container.size() < 5000);
+  CHECK(pipeline::decode_container(container));
   Limits limits;
-  limits.bytes = container.size();
+  limits.expanded = 1'000'000;
+  const auto documents = pipeline::decode_container(container, limits);
+  REQUIRE_FALSE(documents);
+  CHECK(documents.error().code == ErrorCode::limit_exceeded);
+  limits.expanded = 2'500'000;
+  CHECK(pipeline::decode_container(container, limits));
+  limits.feature_bytes = 1'000'000;
+  const auto feature = pipeline::decode_container(container, limits);
+  REQUIRE_FALSE(feature);
+  CHECK(feature.error().code == ErrorCode::limit_exceeded);
+  CHECK(feature.error().message.find("'b'") != std::string::npos);
+}
+
+TEST_CASE(
+    "the solids of a file have eight vertices for each of its bytes, and a constant besides") {
+  const Bytes container = container_of(row_of_boxes(1000));
+  REQUIRE(container.size() < 20'000);
+  Limits limits;
+  limits.claimed = 0;
+  CHECK(pipeline::decode_container(container, limits));
+  limits.vertices = 7;
   const auto documents = pipeline::decode_container(container, limits);
   REQUIRE_FALSE(documents);
   CHECK(documents.error().code == ErrorCode::limit_exceeded);
@@ -383,7 +408,7 @@ TEST_CASE("an export as a sequence has the header and each feature's line") {
   auto begun = pipeline::CollectionExport::start(store, "town", pipeline::ExportFormat::sequence);
   REQUIRE(begun);
   std::string other = samples::sequence({samples::feature("zz")});
-  other.replace(other.find("100.0"), 5, "900.0");
+  other.replace(other.find("100.0"), 5, "0.12345678901");
   put(store, other);
   const auto mixed = export_all(store, pipeline::ExportFormat::sequence);
   REQUIRE_FALSE(mixed);

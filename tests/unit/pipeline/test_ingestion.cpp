@@ -75,7 +75,7 @@ pipeline::IngestOptions into(const std::string& collection) {
 Result<pipeline::IngestOutcome> ingest_text(const std::string& text, SolidStore& store,
                                             const pipeline::IngestOptions& options,
                                             std::size_t most_outcomes = 1000) {
-  pipeline::OutcomeKeeper keeper(most_outcomes);
+  pipeline::OutcomeKeeper keeper(most_outcomes, 1'000'000);
   pipeline::Ingestion ingestion(store, nullptr, options,
                                 [&](pipeline::FeatureOutcome&& outcome) -> Status {
                                   keeper.add(std::move(outcome));
@@ -271,6 +271,46 @@ TEST_CASE("nothing of a damaged Watertight file is stored") {
                                 [](pipeline::FeatureOutcome&&) -> Status { return Done{}; });
   CHECK_FALSE(ingestion.add_container(file));
   CHECK_FALSE(store.collection("copy"));
+}
+
+TEST_CASE(
+    "a CityJSON that a Watertight file holds as a whole is split and stored by its features") {
+  const std::string sequence = samples::sequence({samples::feature("a"), samples::feature("b")});
+  const auto split = formats::read_city_json_seq(sequence, {});
+  REQUIRE(split);
+  const auto text = formats::write_city_json(*split);
+  REQUIRE(text);
+  formats::ReadOptions read;
+  read.split_features = false;
+  read.keep_text = true;
+  auto document = formats::read_city_json(*text, read);
+  REQUIRE(document);
+  auto encoded = pipeline::encode_document(*std::move(document), nullptr, into("town"));
+  REQUIRE(encoded);
+  const auto file = pipeline::write_container(encoded->document);
+  REQUIRE(file);
+  const auto nothing = [](pipeline::FeatureOutcome&&) -> Status { return Done{}; };
+  samples::MemoryStore store;
+  {
+    pipeline::Ingestion refusing(store, nullptr, into("town"), nothing);
+    const Status refused = refusing.add_container(*file);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == ErrorCode::unsupported);
+  }
+  pipeline::Ingestion ingestion(store, nullptr, into("town"), nothing);
+  REQUIRE(ingestion.add_container(*file, {}, pipeline::WholeModels::split));
+  const auto counts = ingestion.finish();
+  REQUIRE(counts);
+  CHECK(counts->stored == 2);
+  samples::MemoryStore wanted;
+  REQUIRE(pipeline::ingest(*formats::read_city_json(*text, {}), wanted, nullptr, into("town")));
+  for (const char* id : {"a", "b"}) {
+    const auto found = store.get("town", id);
+    const auto same = wanted.get("town", id);
+    REQUIRE(found);
+    REQUIRE(same);
+    check_equal(*found, *same);
+  }
 }
 
 }  // namespace

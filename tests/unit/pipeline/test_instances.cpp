@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/container.h"
+#include "pipeline/instances.h"
 #include "pipeline/validate_stream.h"
 #include "tests/unit/pipeline/samples.h"
 
@@ -120,6 +121,29 @@ TEST_CASE("instances that are not valid are solids of their features") {
     REQUIRE(again.size() == 5);
     for (std::size_t i = 0; i < 5; ++i) CHECK(again[i].solids == seen[i].solids);
   }
+}
+
+TEST_CASE("templates that place too many solids in a feature are one finding") {
+  std::string text = city({{0, kSame}, {0, kSame}});
+  CertifyOptions options;
+  options.limits.placed_solids = 0;  // and four for each instance
+  const auto judge = [&](const std::string& document) {
+    Document found = read(document, true);
+    pipeline::TemplateInspector templates(found.templates, nullptr, options, {});
+    return pipeline::inspect(found.features[0], nullptr, options, {}, &templates);
+  };
+  CHECK(judge(text).verdict() == Verdict::valid);
+  const std::size_t begin = kCube.find("[[[[");
+  const std::string solid = kCube.substr(begin, kCube.size() - 1 - begin);
+  std::string five = R"({"type":"MultiSolid","lod":"2","boundaries":[)" + solid;
+  for (int i = 1; i < 5; ++i) five += ',' + solid;
+  text.replace(text.find(kCube), kCube.size(), five + "]}");
+  const pipeline::InspectedFeature refused = judge(text);
+  REQUIRE(refused.solids.size() == 1);
+  const Report& report = refused.solids[0].inspection.report;
+  REQUIRE(report.findings.size() == 1);
+  CHECK(report.findings[0].code == 901);
+  CHECK(report.findings[0].detail.find("place 5 solids") != std::string::npos);
 }
 
 TEST_CASE("a template whose instances are all invalid does not count") {

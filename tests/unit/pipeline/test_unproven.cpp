@@ -193,6 +193,34 @@ TEST_CASE("skip leaves out what cannot be read, and keeps the rest of the featur
   CHECK(outcome.rejected.find("[[[[0,1,99]]]]") != std::string::npos);
 }
 
+TEST_CASE("skip counts the bytes of the solids that it keeps, whose geometries have new numbers") {
+  // Geometry 0 is open; 1 and 2 are boxes, which become 0 and 1.
+  const auto geometry = [](const std::string& lod, std::string_view facets) {
+    std::string text = R"({"type":"Solid","lod":")" + lod + R"(","boundaries":[)";
+    return text.append(facets).append("]}");
+  };
+  std::string line = samples::feature("a");
+  const std::size_t begin = line.find(R"({"type":"Solid")");
+  const std::size_t end = line.find("]}},\"vertices\"");
+  line.replace(begin, end - begin,
+               geometry("1", samples::kOpenFacets) + "," + geometry("2", samples::kBoxFacets) +
+                   "," + geometry("3", samples::kBoxFacets));
+  pipeline::IngestOptions options = keeping();
+  options.policy = store::Policy::skip;
+  const auto encoded =
+      pipeline::encode_document(document_of(samples::sequence({line})), nullptr, options);
+  REQUIRE(encoded);
+  REQUIRE(encoded->document.features.size() == 1);
+  const auto& kept = encoded->document.features.front().solids;
+  REQUIRE(kept.size() == 2);
+  const pipeline::FeatureOutcome& outcome = encoded->outcome.features.front();
+  REQUIRE(outcome.solids.size() == 3);
+  CHECK(outcome.solids[0].blob_bytes == 0);
+  CHECK(outcome.solids[1].blob_bytes == kept[0].blob.size());
+  CHECK(outcome.solids[2].blob_bytes == kept[1].blob.size());
+  CHECK_FALSE(kept[0].blob.empty());
+}
+
 TEST_CASE("an export of what is proven leaves the other features out") {
   samples::MemoryStore store;
   REQUIRE(pipeline::ingest(document_of(kMixed), store, nullptr, keeping()));

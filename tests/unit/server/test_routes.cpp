@@ -181,9 +181,10 @@ TEST_CASE_METHOD(Fixture, "an id that cannot be stored is refused with its place
   }
 }
 
-TEST_CASE_METHOD(Fixture, "documents that are read whole share a budget of memory") {
+TEST_CASE_METHOD(Fixture, "documents that are being read share a budget of memory") {
   const std::string wkt = "POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)))";
-  server::Budget memory(40 * (wkt.size() + 100));
+  constexpr std::size_t kText = 2000;  // longer than each line of kTwo
+  server::Budget memory(40 * kText);
   const auto send_with_budget = [&](const std::string& body, const std::string& type) {
     server::Service service{&store, nullptr, {}};
     service.document_memory = &memory;
@@ -191,14 +192,29 @@ TEST_CASE_METHOD(Fixture, "documents that are read whole share a budget of memor
                            [] { return false; });
   };
   CHECK(send_with_budget(wkt, "text/wkt").status == 200);
-  const server::Response large = send_with_budget(wkt + std::string(200, ' '), "text/wkt");
+  const server::Response large = send_with_budget(wkt + std::string(kText, ' '), "text/wkt");
   REQUIRE(large.status == 413);
   CHECK(problem_of(large)["detail"].get<std::string>().find("CityJSONSeq") != std::string::npos);
-  CHECK(send_with_budget(kTwo, "application/city+json-seq").status == 200);
-  const server::BudgetShare of_others(memory, 40 * 101);
+  std::string sequence(kTwo);
+  while (sequence.size() < 2 * kText) sequence += '\n';
+  CHECK(send_with_budget(sequence, "application/city+json-seq").status == 200);
+  sequence += std::string(kText + 1, ' ') + '\n';
+  CHECK(send_with_budget(sequence, "application/city+json-seq").status == 413);
+  const server::BudgetShare of_others(memory, 40 * (kText - wkt.size() + 1));
   const server::Response refused = send_with_budget(wkt, "text/wkt");
   CHECK(refused.status == 503);
   CHECK(header_of(refused, "Retry-After") != nullptr);
+}
+
+TEST_CASE_METHOD(Fixture, "a report that would be longer than an answer may be is refused") {
+  server::Service service{&store, nullptr, {}};
+  const server::Request request{
+      "POST", "/validate", {{"content-type", "application/city+json-seq"}}, kTwo};
+  CHECK(server::respond(service, request, [] { return false; }).status == 200);
+  service.options.longest_report = 1000;
+  const server::Response refused = server::respond(service, request, [] { return false; });
+  CHECK(refused.status == 413);
+  CHECK(problem_of(refused)["detail"].get<std::string>().find("1000 bytes") != std::string::npos);
 }
 
 TEST_CASE_METHOD(Fixture,
@@ -458,7 +474,7 @@ TEST_CASE_METHOD(Fixture, "an impossible export is refused before its first byte
   REQUIRE(store.put({&*feature, 1}));
   refused("/collections/town/export?f=cityjsonseq", 500, "cannot be exported");
   std::string other = samples::sequence({samples::feature("zz")});
-  other.replace(other.find("100.0"), 5, "900.0");
+  other.replace(other.find("100.0"), 5, "0.12345678901");
   REQUIRE(post("/collections/town/items", other).status == 201);
   refused("/collections/town/export?f=cityjsonseq", 406, "different headers");
   for (const char* id : {"a", "b", "zz"}) REQUIRE(store.remove("town", id));

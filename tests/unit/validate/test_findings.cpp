@@ -13,6 +13,7 @@
 #include "tests/unit/validate/solids.h"
 #include "validate/finding_kinds.h"
 #include "validate/groups.h"
+#include "validate/indoor/indoor_model.h"
 #include "validate/report_json.h"
 
 using namespace watertight;
@@ -39,6 +40,8 @@ bool is_about_input(int code) {
 bool is_about_groups(int code) {
   return validate::finding_level(code) == 5 || validate::finding_level(code) == 6;
 }
+
+bool is_about_indoor_models(int code) { return validate::finding_level(code) == 7; }
 
 /// The solids of the only feature of a file, read as the program reads them.
 std::vector<SubmittedSolid> read_solids(const std::filesystem::path& path) {
@@ -82,6 +85,7 @@ std::filesystem::path sample_path(int code) {
 TEST_CASE("every finding about a solid has a sample that shows it and an expected report") {
   for (const validate::FindingKind& kind : validate::finding_kinds()) {
     if (is_about_input(kind.code) || is_about_groups(kind.code)) continue;
+    if (is_about_indoor_models(kind.code)) continue;
     INFO("finding " << kind.code);
     const std::filesystem::path path = sample_path(kind.code);
     REQUIRE_FALSE(path.empty());
@@ -129,6 +133,35 @@ TEST_CASE("every finding about several solids has a sample that shows it and an 
     CHECK(std::any_of(report.findings.begin(), report.findings.end(),
                       [&](const Finding& finding) { return finding.code == kind.code; }));
     check_expected(kind.code, ".report.txt", text);
+  }
+}
+
+TEST_CASE("every finding about an indoor model has a sample that shows it alone, and a report") {
+  for (const validate::FindingKind& kind : validate::finding_kinds()) {
+    if (!is_about_indoor_models(kind.code)) continue;
+    INFO("finding " << kind.code);
+    REQUIRE_FALSE(sample_path(kind.code).empty());
+    const std::string text = read_text(sample_path(kind.code));
+    const auto document = formats::read_document(as_bytes(text), formats::Format::gml);
+    REQUIRE(document);
+    std::vector<Inspection> cells;
+    for (const Feature& feature : document->features) {
+      REQUIRE(feature.cell == cells.size());
+      cells.push_back(certify(feature.solids.at(0).solid, nullptr));
+      REQUIRE(cells.back().certified);
+    }
+    std::vector<validate::CellSolids> solids;
+    for (const Inspection& cell : cells) solids.push_back({&cell.certified->solid});
+    std::string report;
+    for (const auto& cell : validate::check_indoor_model(document->graph, solids)) {
+      CHECK(cell.not_run.empty());
+      for (const Finding& finding : cell.findings) {
+        CHECK(finding.code == kind.code);
+        report += validate::finding_text(finding) + "\n";
+      }
+    }
+    CHECK_FALSE(report.empty());
+    check_expected(kind.code, ".report.txt", report);
   }
 }
 

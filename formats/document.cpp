@@ -223,7 +223,7 @@ bool has_byte_order_mark(ByteView bytes, Format format) {
 }  // namespace
 
 std::uint64_t solid_count(const Feature& feature) {
-  return feature.solids.size() + feature.unreadable.size();
+  return feature.solids.size() + feature.unreadable.size() + feature.surfaces.size();
 }
 
 Status check_solid_count(const Feature& feature, const Limits& limits) {

@@ -122,7 +122,7 @@ struct Feature {
   Index cell = kNone;  // the index in Document::graph.cells of the cell that the feature is
 };
 
-/// The number of solids of a feature, with its parts that could not be read.
+/// The number of solids of a feature, with its surfaces and its parts that could not be read.
 std::uint64_t solid_count(const Feature& feature);
 /// Errors: limit_exceeded for more than Limits::solids.
 Status check_solid_count(const Feature& feature, const Limits& limits);

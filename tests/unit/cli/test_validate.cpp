@@ -62,7 +62,7 @@ TEST_CASE_METHOD(Fixture, "the summary tells of checked surfaces in a file witho
   CHECK(required.output.find("none.city.json: only surfaces were checked") != std::string::npos);
 }
 
-TEST_CASE_METHOD(Fixture, "--surfaces decides what a bad ring of a surface is") {
+TEST_CASE_METHOD(Fixture, "the option --surfaces decides what a bad ring of a surface is") {
   std::string bad = kSurface;
   bad.replace(bad.find("[[[0,1,2]]]"), 11, "[[[0,1,1,2]]]");
   write("bad.city.json", bad);

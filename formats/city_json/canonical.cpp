@@ -174,6 +174,14 @@ class Canonicalizer {
     return Done{};
   }
 
+  /// The number of vertices in others_: three numbers each, or an array for an element that is
+  /// none.
+  std::size_t other_count() const {
+    const auto faulty = static_cast<std::size_t>(std::count_if(
+        others_.begin(), others_.end(), [](const Json& value) { return value.is_array(); }));
+    return faulty + (others_.size() - faulty) / 3;
+  }
+
   /// Adds a solid that has no canonical form, in its own order.
   void add_as_it_came(const Solid& source, const std::vector<Index>& document_vertices) {
     const auto identity = [](std::size_t size) {
@@ -296,7 +304,7 @@ class Canonicalizer {
   }
 
   void append_vertices(std::string& out) const {
-    out += "{\"count\":" + std::to_string(solid_vertices_ + others_.size() / 3) + ",\"kind\":";
+    out += "{\"count\":" + std::to_string(solid_vertices_ + other_count()) + ",\"kind\":";
     append_json_string(out, kind_);
     out += ",\"solids\":[";
     for (std::size_t i = 0; i < solids_.size(); ++i) {

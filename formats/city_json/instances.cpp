@@ -42,9 +42,8 @@ Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const Instan
     return wrong("a geometry instance needs the vertex it stands on", pointer);
   }
   const VertexList& list = model.vertices;
-  for (std::size_t i = 0; i < tokens.size(); ++i) {
-    if (tokens[i] >= kClose || tokens[i] < list.size()) continue;
-    return wrong("vertex index is out of range", pointer + pointer_token(i > 0 ? i - 1 : 0));
+  if (auto status = check_vertices(tokens, list); !status) {
+    return wrong(status.error().message, pointer + status.error().pointer);
   }
   auto points = list.are_integers ? geometry::lattice_of_integers(
                                         {&list.integers[*vertex], 1},

@@ -225,22 +225,33 @@ std::optional<std::int64_t> as_integer(const GridNumber& number) {
 
 }  // namespace
 
-Status require_integers(VertexList& list) {
-  if (list.are_integers) return Done{};
-  list.integers.resize(list.decimals.size());
-  for (std::size_t i = 0; i < list.decimals.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto value = as_integer(list.decimals[i][axis]);
-      if (!value) {
-        return wrong("with a transform, coordinates must be integers of at most 64 bits",
-                     "/vertices" + pointer_token(i) + pointer_token(axis));
-      }
-      list.integers[i][axis] = *value;
+void require_integers(VertexList& list) {
+  if (list.are_integers) return;
+  std::vector<FaultyVertex> faulty;
+  auto known = list.faulty.begin();
+  list.integers.assign(list.decimals.size(), {});
+  for (Index vertex = 0; vertex < list.decimals.size(); ++vertex) {
+    if (known != list.faulty.end() && known->vertex == vertex) {
+      faulty.push_back(std::move(*known++));
+      continue;
+    }
+    std::array<std::int64_t, 3> integers{};
+    std::size_t axis = 0;
+    for (; axis < 3; ++axis) {
+      const auto value = as_integer(list.decimals[vertex][axis]);
+      if (!value) break;
+      integers[axis] = *value;
+    }
+    if (axis == 3) {
+      list.integers[vertex] = integers;
+    } else {
+      faulty.push_back({vertex, json_of(list.decimals[vertex]), pointer_token(axis),
+                        "with a transform, coordinates must be integers of at most 64 bits"});
     }
   }
+  list.faulty = std::move(faulty);
   list.decimals = {};
   list.are_integers = true;
-  return Done{};
 }
 
 Result<CityHeader> city_header(const Json& root) {

@@ -10,7 +10,8 @@
 //   - "vertices" is {"count": N, "kind": "integers" | "decimals", "solids": [runs...],
 //     "others": [x, y, z, x, ...]}. "solids" has, for each solid, the vertices of the document that
 //     are its vertices, as runs [first, length, first, length, ...]; "others" has the coordinates
-//     of the vertices that no solid uses, in their order.
+//     of the vertices that no solid uses, in their order; an element that is no vertex is there as
+//     an array of one value, as it came.
 #pragma once
 
 #include <array>
@@ -121,8 +122,11 @@ Result<std::vector<CitySolid>> city_solids(const CityModel& model, ModelIndex& i
 std::string solid_reference(std::string_view geometry_type, std::size_t first, std::size_t count);
 
 /// Turns the vertices into grid integers, which a transform requires; 10.0 is an integer too.
-/// Errors: malformed.
-Status require_integers(VertexList& list);
+/// Others become faulty.
+void require_integers(VertexList& list);
+/// Errors: malformed when a boundary has the index of a vertex that does not exist or is faulty;
+/// the pointer leads from the boundary to the index.
+Status check_vertices(std::span<const BoundaryToken> tokens, const VertexList& list);
 
 /// The header that a document or first line states. Errors: malformed, unsupported.
 Result<CityHeader> city_header(const Json& root);

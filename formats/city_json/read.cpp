@@ -45,9 +45,7 @@ Result<ReadModel> read_model(CityModel model, const CityHeader& header,
   if (!index) return std::move(index).error();
   const bool is_feature = string_member(model.root, "type") == "CityJSONFeature";
   if (is_feature && !header.transform) forget_solids(*index);
-  if (header.transform) {
-    if (auto status = require_integers(model.vertices); !status) return status.error();
-  }
+  if (header.transform) require_integers(model.vertices);
   // Without a transform the coordinates of surfaces are not known either.
   const bool is_placed = !is_feature || header.transform.has_value();
   const Surfaces surfaces = is_placed ? options.surfaces : Surfaces::ignore;

@@ -5,9 +5,12 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "base/assert.h"
 #include "formats/text/numbers.h"
 
 namespace watertight::formats {
@@ -31,6 +34,17 @@ struct Frame {
   std::vector<Json> values;
   std::string key;  // the key of the member that comes next
 };
+
+constexpr std::string_view kNotThreeNumbers = "a vertex is an array of three numbers";
+constexpr std::string_view kTooManyBits = "a vertex coordinate needs more than 64 bits";
+constexpr std::string_view kNoDouble = "a vertex coordinate is beyond the range of doubles";
+
+Json number_of(const GridNumber& number) {
+  const std::string text = plain_text(number);
+  double value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return number_value(value, text);
+}
 
 // Messages of the parser quote the input; they are made short and printable.
 constexpr std::size_t kLongestMessage = 300;  // the most bytes of a parser's message
@@ -61,14 +75,14 @@ class CitySax {
     if (capture_ == Capture::boundaries) return vertex_index(value);
     if (capture_ == Capture::vertices) {
       if (value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
-        return fail(ErrorCode::limit_exceeded, "a vertex coordinate needs more than 64 bits");
+        return keep_faulty(kTooManyBits, value);
       }
       return coordinate(static_cast<std::int64_t>(value));
     }
     return scalar(value);
   }
   bool number_float(double value, const std::string& text) {
-    if (capture_ == Capture::vertices) return decimal_coordinate(text);
+    if (capture_ == Capture::vertices) return decimal_coordinate(value, text);
     return scalar(number_value(value, text));
   }
   bool string(std::string& value) { return scalar(std::move(value)); }
@@ -126,12 +140,17 @@ class CitySax {
 
   std::string pointer() const {
     std::string path;
-    for (const Frame& frame : frames_) {
-      path += frame.is_array ? pointer_token(frame.values.size()) : pointer_token(frame.key);
-    }
+    const auto append = [&path](std::span<const Frame> frames) {
+      for (const Frame& frame : frames) {
+        path += frame.is_array ? pointer_token(frame.values.size()) : pointer_token(frame.key);
+      }
+    };
+    const std::size_t captured = faulty_base_.value_or(frames_.size());
+    append(std::span(frames_).first(captured));
     // counters_[0] belongs to the captured array itself; a counter is the index of the next
     // element.
     for (const std::size_t position : counters_) path += pointer_token(position);
+    append(std::span(frames_).subspan(captured));
     return path;
   }
 
@@ -141,15 +160,66 @@ class CitySax {
     return true;
   }
 
-  bool not_captured() {
-    return fail(ErrorCode::malformed, "a vertex is an array of three numbers");
+  // Makes a Json value of the element of `vertices` that is open, because it is no vertex: until it
+  // ends, nothing is captured.
+  void begin_faulty(std::string_view reason) {
+    FaultyVertex fault{static_cast<Index>(model_.vertices.size()), {}, {}, reason};
+    faulty_base_ = frames_.size();
+    capture_ = Capture::none;
+    if (counters_.size() == 2) {
+      fault.place = pointer_token(counters_.back());
+      counters_.pop_back();
+      frames_.push_back(Frame{true, Role::other, {}, open_coordinates(), {}});
+    }
+    model_.vertices.faulty.push_back(std::move(fault));
+  }
+
+  // Ends the element that begin_faulty() has begun.
+  void end_faulty(Json value) {
+    model_.vertices.faulty.back().value = std::move(value);
+    faulty_base_.reset();
+    capture_ = Capture::vertices;
+    integer_ = {};
+    decimal_ = {};
+    is_rounded_ = false;
+    add_vertex();
+    ++counters_.back();
+  }
+
+  bool keep_faulty(std::string_view reason, Json value) {
+    if (!has_place_for_vertex()) return false;
+    begin_faulty(reason);
+    add(std::move(value));
+    return true;
+  }
+
+  // The coordinates of the open vertex so far.
+  std::vector<Json> open_coordinates() const {
+    std::vector<Json> values;
+    for (std::size_t axis = 0; axis < axis_; ++axis) {
+      if (model_.vertices.are_integers) {
+        values.emplace_back(integer_[axis]);
+      } else {
+        values.push_back(number_of(decimal_[axis]));
+      }
+    }
+    return values;
+  }
+
+  bool has_place_for_vertex() {
+    if (model_.vertices.size() < kMostVertices) return true;
+    return fail(ErrorCode::limit_exceeded, "more vertices than a 32-bit index can name");
   }
 
   // Ends the capture before a value that cannot be in what is captured. Boundaries become Json
-  // values, from their start on; vertices are for all objects, so the document cannot be read.
+  // values, from their start on; of vertices, the open one.
   bool leave_capture() {
     if (capture_ == Capture::none) return true;
-    if (capture_ == Capture::vertices) return not_captured();
+    if (capture_ == Capture::vertices) {
+      if (!has_place_for_vertex()) return false;
+      begin_faulty(kNotThreeNumbers);
+      return true;
+    }
     capture_ = Capture::none;
     counters_.clear();
     const std::size_t begin = model_.boundary_begin.back();
@@ -170,6 +240,7 @@ class CitySax {
   }
 
   void add(Json value) {
+    if (faulty_base_ == frames_.size()) return end_faulty(std::move(value));
     if (frames_.empty()) {
       model_.root = std::move(value);
       return;
@@ -245,12 +316,11 @@ class CitySax {
     if (capture_ == Capture::boundaries) {
       model_.tokens.push_back(kOpen);
     } else if (counters_.size() >= 2) {
-      return not_captured();
+      begin_faulty(kNotThreeNumbers);
+      return open(true);
     } else if (counters_.size() == 1) {
       axis_ = 0;
-      if (model_.vertices.size() >= kMostVertices) {
-        return fail(ErrorCode::limit_exceeded, "more vertices than a 32-bit index can name");
-      }
+      if (!has_place_for_vertex()) return false;
     }
     counters_.push_back(0);
     return true;
@@ -258,7 +328,10 @@ class CitySax {
 
   bool close_captured() {
     if (capture_ == Capture::vertices && counters_.size() == 2) {
-      if (axis_ != 3) return not_captured();
+      if (axis_ != 3) {
+        begin_faulty(kNotThreeNumbers);
+        return end_array();
+      }
       add_vertex();
     }
     counters_.pop_back();
@@ -288,12 +361,12 @@ class CitySax {
   }
 
   bool coordinate(std::int64_t value) {
-    if (counters_.size() != 2 || axis_ >= 3) return not_captured();
+    if (counters_.size() != 2 || axis_ >= 3) return scalar(value);
     if (model_.vertices.are_integers) {
       integer_[axis_] = value;
     } else {
       auto exact = exact_number(std::to_string(value));
-      if (!exact) return fail(exact.error().code, exact.error().message);
+      if (!exact) return keep_faulty(kNoDouble, value);
       decimal_[axis_] = exact->value;
       is_rounded_ = is_rounded_ || exact->is_rounded;
     }
@@ -302,36 +375,32 @@ class CitySax {
     return true;
   }
 
-  bool decimal_coordinate(const std::string& text) {
-    if (counters_.size() != 2 || axis_ >= 3) return not_captured();
+  bool decimal_coordinate(double value, const std::string& text) {
+    if (counters_.size() != 2 || axis_ >= 3) return scalar(number_value(value, text));
     auto exact = exact_number(text);
-    if (!exact) return fail(exact.error().code, exact.error().message);
-    if (model_.vertices.are_integers && !change_to_decimals()) return false;
+    if (!exact) return keep_faulty(kNoDouble, number_value(value, text));
+    if (model_.vertices.are_integers) change_to_decimals();
     decimal_[axis_++] = exact->value;
     is_rounded_ = is_rounded_ || exact->is_rounded;
     ++counters_.back();
     return true;
   }
 
-  bool change_to_decimals() {
+  void change_to_decimals() {
     VertexList& list = model_.vertices;
-    const auto change = [](const std::array<std::int64_t, 3>& from, std::size_t axes,
-                           std::array<GridNumber, 3>& to) {
-      for (std::size_t axis = 0; axis < axes; ++axis) {
-        auto exact = exact_number(std::to_string(from[axis]));
-        if (!exact) return false;
-        to[axis] = exact->value;
-      }
-      return true;
+    const auto decimal = [](std::int64_t value) {
+      const auto exact = exact_number(std::to_string(value));
+      WATERTIGHT_ASSERT(exact);  // 64 bits are within the range of doubles
+      return exact->value;
     };
     list.decimals.resize(list.integers.size());
     for (std::size_t i = 0; i < list.integers.size(); ++i) {
-      if (!change(list.integers[i], 3, list.decimals[i])) return not_captured();
+      std::transform(list.integers[i].begin(), list.integers[i].end(), list.decimals[i].begin(),
+                     decimal);
     }
-    if (!change(integer_, axis_, decimal_)) return not_captured();
+    for (std::size_t axis = 0; axis < axis_; ++axis) decimal_[axis] = decimal(integer_[axis]);
     list.integers = {};
     list.are_integers = false;
-    return true;
   }
 
   void add_vertex() {
@@ -357,6 +426,8 @@ class CitySax {
     return twice == sorted.end() ? nullptr : *twice;
   }
 
+  // While an element of `vertices` becomes a Json value: the number of frames around `vertices`.
+  std::optional<std::size_t> faulty_base_;
   bool is_city_;
   CityText kind_;
   const Limits& limits_;
@@ -388,6 +459,19 @@ Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, cons
 }
 
 }  // namespace
+
+const FaultyVertex* VertexList::fault_of(Index vertex) const {
+  const auto found = std::lower_bound(
+      faulty.begin(), faulty.end(), vertex,
+      [](const FaultyVertex& fault, Index number) { return fault.vertex < number; });
+  return found != faulty.end() && found->vertex == vertex ? &*found : nullptr;
+}
+
+Json json_of(const std::array<GridNumber, 3>& vertex) {
+  Json::array_t axes;
+  for (const GridNumber& axis : vertex) axes.push_back(number_of(axis));
+  return axes;
+}
 
 Result<CityModel> parse_city_model(std::string_view text, CityText kind, const Limits& limits) {
   return parse(text, true, kind, limits);

@@ -29,13 +29,25 @@ inline constexpr BoundaryToken kClose = 0xFFFFFFFE;
 /// Vertex indices and the number of vertices are below this.
 inline constexpr std::uint64_t kMostVertices = 0xFFFFFFF0;
 
+/// An element of `vertices` that is no vertex. It takes a place in the list, with coordinates 0,
+/// which nothing may use.
+struct FaultyVertex {
+  Index vertex = 0;
+  Json value;               // the element as it came
+  std::string place;        // the JSON Pointer from the element to the fault, "" for the element
+  std::string_view reason;  // one clause; a literal
+};
+
 /// The `vertices` of a city model: integers, or exact decimals as soon as one number is no integer.
 struct VertexList {
   bool are_integers = true;
   bool is_present = false;
   std::vector<std::array<std::int64_t, 3>> integers;
   std::vector<std::array<GridNumber, 3>> decimals;
-  std::vector<Index> rounded;  // vertices with a number of more than 18 digits
+  std::vector<Index> rounded;             // vertices with a number of more than 18 digits
+  std::vector<FaultyVertex> faulty = {};  // ascending
+  /// The fault of a vertex, or null. Cost: logarithmic.
+  const FaultyVertex* fault_of(Index vertex) const;
   std::size_t size() const { return are_integers ? integers.size() : decimals.size(); }
 };
 
@@ -54,6 +66,9 @@ struct CityModel {
         boundary_begin[index], boundary_begin[index + 1] - boundary_begin[index]);
   }
 };
+
+/// A vertex of decimals as a JSON array.
+Json json_of(const std::array<GridNumber, 3>& vertex);
 
 /// Whether a text is a document from outside or a skeleton (formats/city_json/model.h), in which
 /// `vertices` and the boundaries of solids are objects, which stay Json values.

@@ -39,8 +39,7 @@ void append_geometries(std::string& out, const Json& geometries, const BoundaryP
 
 std::map<std::string, std::uint64_t> other_geometries(std::string_view skeleton) {
   std::map<std::string, std::uint64_t> counts;
-  const Limits limits{.bytes = ~0ULL, .nesting = 256};
-  const auto model = parse_city_model(skeleton, CityText::skeleton, limits);
+  const auto model = parse_city_model(skeleton, CityText::skeleton, kOwnText);
   const Json* objects = model ? find_member(model->root, "CityObjects") : nullptr;
   if (objects == nullptr || !objects->is_object()) return counts;
   for (const auto& [id, object] : objects->get_ref<const Json::object_t&>()) {
@@ -151,6 +150,12 @@ std::string skeleton_vertices(const CityModel& model, std::size_t count,
   out += "],\"others\":[";
   bool is_first = true;
   for (const Index vertex : others) {
+    if (const FaultyVertex* fault = list.fault_of(vertex); fault != nullptr) {
+      if (!is_first) out += ',';
+      is_first = false;
+      out += '[' + json_text(fault->value) + ']';
+      continue;
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!is_first) out += ',';
       is_first = false;
@@ -198,7 +203,7 @@ Result<std::uint64_t> turn_surfaces_into_solids(Document& document) {
       ++turned;
     }
     if (!has_surfaces || feature.skeleton.empty()) continue;
-    auto root = parse_json(feature.skeleton, Limits{.bytes = ~0ULL, .nesting = 256});
+    auto root = parse_json(feature.skeleton, kOwnText);
     if (!root) return std::move(root).error();
     Json* objects = find_member(*root, "CityObjects");
     if (objects == nullptr || !objects->is_object()) continue;

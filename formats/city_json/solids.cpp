@@ -99,19 +99,6 @@ struct CutSolid {
   std::size_t boundary = 0;
 };
 
-Status check_range(std::span<const BoundaryToken> tokens, std::size_t vertex_count) {
-  for (std::size_t i = 0; i < tokens.size(); ++i) {
-    if (tokens[i] < kClose && tokens[i] >= vertex_count) {
-      return Error{ErrorCode::malformed,
-                   "vertex index " + std::to_string(tokens[i]) + " is out of range (" +
-                       quantity(vertex_count, "vertex", "vertices") + ')',
-                   {},
-                   pointer_to(tokens, i)};
-    }
-  }
-  return Done{};
-}
-
 std::string boundary_pointer(const ModelIndex& index, const GeometryRef& ref) {
   if (index.are_templates) {
     return "/geometry-templates/templates" + pointer_token(ref.geometry) + "/boundaries";
@@ -157,7 +144,7 @@ Result<std::vector<CutSolid>> cut_solids(const CityModel& model, ModelIndex& ind
     const auto tokens = model.boundary(ref.boundary);
     if (ref.type == "GeometryInstance") continue;  // city_instances() checks them
     if (!ref.is_of_solids()) {
-      if (auto status = check_range(tokens, model.vertices.size()); !status) {
+      if (auto status = check_vertices(tokens, model.vertices); !status) {
         note_unreadable(std::move(status).error());
       }
       continue;
@@ -173,6 +160,12 @@ Result<std::vector<CutSolid>> cut_solids(const CityModel& model, ModelIndex& ind
                      pointer};
       }
       note_unreadable(std::move(status).error());
+      continue;
+    }
+    auto usable =
+        model.vertices.faulty.empty() ? Status(Done{}) : check_vertices(tokens, model.vertices);
+    if (!usable) {
+      note_unreadable(std::move(usable).error());
       continue;
     }
     std::uint32_t ordinal = 0;
@@ -308,7 +301,7 @@ class SurfaceReader {
     for (GeometryRef& ref : index_.geometries) {
       if (!ref.is_surface() || ref.is_unreadable) continue;
       const auto tokens = model_.boundary(ref.boundary);
-      if (!check_range(tokens, model_.vertices.size())) continue;  // cut_solids() notes the fault
+      if (!check_vertices(tokens, model_.vertices)) continue;  // cut_solids() notes the fault
       auto surface = read_one(ref, tokens);
       if (!surface) {
         if (auto status = add_unreadable(ref, surface.error()); !status) return status;
@@ -348,6 +341,28 @@ class SurfaceReader {
 };
 
 }  // namespace
+
+Status check_vertices(std::span<const BoundaryToken> tokens, const VertexList& list) {
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    if (tokens[i] >= kClose) continue;
+    if (tokens[i] >= list.size()) {
+      return Error{ErrorCode::malformed,
+                   "vertex index " + std::to_string(tokens[i]) + " is out of range (" +
+                       quantity(list.size(), "vertex", "vertices") + ')',
+                   {},
+                   pointer_to(tokens, i)};
+    }
+    if (const FaultyVertex* fault = list.fault_of(tokens[i]); fault != nullptr) {
+      return Error{ErrorCode::malformed,
+                   "vertex " + std::to_string(tokens[i]) +
+                       " is none: " + std::string(fault->reason) + " (at /vertices" +
+                       pointer_token(tokens[i]) + fault->place + ')',
+                   {},
+                   pointer_to(tokens, i)};
+    }
+  }
+  return Done{};
+}
 
 Result<std::vector<CitySolid>> city_solids(const CityModel& model, ModelIndex& index,
                                            const CityHeader& header, const Limits& limits,

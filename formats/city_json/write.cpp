@@ -28,6 +28,7 @@ struct OpenFeature {
   const Feature* feature = nullptr;
   std::vector<std::vector<Index>> vertex_of;  // the document's vertices of each solid
   std::vector<std::string> vertices;          // the texts "[x,y,z]" of the vertices
+  std::vector<std::size_t> faulty = {};       // those of elements that are no vertices, ascending
 };
 
 std::string vertex_text(const std::array<std::string, 3>& axes) {
@@ -71,11 +72,19 @@ std::string plain_decimal(const Json& value) {
   return text;
 }
 
-Status place_others(const Json& others, bool are_integers, std::vector<std::string>& vertices) {
+Status place_others(const Json& others, bool are_integers, OpenFeature& open) {
   std::size_t next = 0;
   if (!others.is_array()) return unfit("other vertices");
-  for (std::string& vertex : vertices) {
+  for (std::size_t i = 0; i < open.vertices.size(); ++i) {
+    std::string& vertex = open.vertices[i];
     if (!vertex.empty()) continue;
+    if (next < others.size() && others[next].is_array()) {
+      const Json& faulty = others[next++];
+      if (faulty.size() != 1) return unfit("other vertices");
+      vertex = json_text(faulty[0]);
+      open.faulty.push_back(i);
+      continue;
+    }
     if (next + 3 > others.size()) return unfit("too few other vertices");
     std::array<std::string, 3> axes;
     for (std::string& axis : axes) {
@@ -101,7 +110,7 @@ Status place_vertices(OpenFeature& open, const CityHeader& header) {
   }
   if (solids->size() != open.feature->solids.size()) return unfit("number of solids");
 
-  std::uint64_t most = others->size() / 3;
+  std::uint64_t most = others->size();
   for (const SubmittedSolid& solid : open.feature->solids) most += solid.solid.vertex_count();
   if (*count > most) return unfit("number of vertices");
   open.vertices.resize(*count);
@@ -118,7 +127,7 @@ Status place_vertices(OpenFeature& open, const CityHeader& header) {
     }
     open.vertex_of.push_back(std::move(*vertex_of));
   }
-  return place_others(*others, kind == "integers", open.vertices);
+  return place_others(*others, kind == "integers", open);
 }
 
 // The solids to which {"solid": k}, {"solids": [k, n]} or {"surface": k} in a skeleton refers.
@@ -417,8 +426,9 @@ Result<std::string> write_city_json_feature(const CityHeader& header, const Feat
   if (map.is_identity()) return write_city_json_feature(header, feature);
   auto open = open_feature(header, feature);
   if (!open) return std::move(open).error();
-  for (std::string& vertex : open->vertices) {
-    if (auto status = map_vertex(vertex, map); !status) return status.error();
+  for (std::size_t i = 0; i < open->vertices.size(); ++i) {
+    if (std::binary_search(open->faulty.begin(), open->faulty.end(), i)) continue;
+    if (auto status = map_vertex(open->vertices[i], map); !status) return status.error();
   }
   return print_whole(*open);
 }

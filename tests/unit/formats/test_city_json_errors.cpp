@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/document.h"
@@ -118,22 +119,79 @@ TEST_CASE("empty boundaries, facets and rings are left to the validator") {
   }
 }
 
-TEST_CASE("vertices that are not three numbers are errors") {
-  const auto with_vertices = [](const std::string& vertices) {
+TEST_CASE("an element of vertices that is no vertex is a fault of what uses it") {
+  // Vertices 0 to 2 are good; objects a and b use vertices 0, 1, 2 and 3, and "c" the good ones.
+  const auto with_vertex = [](const std::string& vertex) {
+    const std::string good = R"({"type":"Building","geometry":[{"type":"Solid","lod":"1",)"
+                             R"("boundaries":[[[[0,1,2]]]]}]})";
     return R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],)"
-           R"("translate":[0,0,0]},"CityObjects":{},"vertices":)" +
-           vertices + "}";
+           R"("translate":[0,0,0]},"CityObjects":{"a":{"type":"Building","geometry":[)"
+           R"({"type":"Solid","lod":"1","boundaries":[[[[0,1,3]]]]}]},"b":{"type":"Road",)"
+           R"("geometry":[{"type":"MultiSurface","lod":"1","boundaries":[[[0,3,1]]]}]},"c":)" +
+           good + R"(},"vertices":[[0,0,0],[1,0,0],[0,1,0],)" + vertex + "]}";
   };
-  CHECK(read(with_vertices("[[1,2,3],[1.0,2e2,-3]]"), Format::city_json));
-  CHECK(error_of(with_vertices("[[1,2]]")).pointer == "/vertices/0/2");
-  CHECK(error_of(with_vertices("[[1,2,3,4]]")).pointer == "/vertices/0/3");
-  CHECK(error_of(with_vertices("[1]")).pointer == "/vertices/0");
-  CHECK(error_of(with_vertices("[[[1]]]")).pointer == "/vertices/0/0");
-  CHECK(error_of(with_vertices("[[1,2,\"3\"]]")).pointer == "/vertices/0/2");
-  CHECK(error_of(with_vertices("[[0,0,0],[1,2,3.5]]")).pointer == "/vertices/1/2");
-  CHECK(error_of(with_vertices("[[18446744073709551616,0,0]]")).pointer == "/vertices/0/0");
-  CHECK(error_of(with_vertices("[[18446744073709551615,0,0]]")).code == ErrorCode::limit_exceeded);
-  CHECK(error_of(with_vertices("[[1e400,0,0]]")).code == ErrorCode::malformed);
+  const auto place_of = [](const formats::Feature& feature) -> std::string {
+    REQUIRE(feature.unreadable.size() == 1);
+    const Error& error = feature.unreadable[0].error;
+    CHECK(error.pointer.ends_with(feature.id == "a" ? "/boundaries/0/0/0/2" : "/boundaries/0/0/1"));
+    CHECK(error.message.starts_with("vertex 3 is none: "));
+    const std::size_t at = error.message.find("(at /vertices/3");
+    REQUIRE(at != std::string::npos);
+    return error.message.substr(at + 15, error.message.size() - at - 16);
+  };
+  struct Fault {
+    std::string vertex, place;
+  };
+  for (const auto& [vertex, place] : std::vector<Fault>{
+           {"[1,2]", "/2"},
+           {"[]", "/0"},
+           {"[1,2,3,4]", "/3"},
+           {"[1,2,3,[4],5]", "/3"},
+           {"7", ""},
+           {"7.25", ""},
+           {"null", ""},
+           {"true", ""},
+           {R"("text")", ""},
+           {"{}", ""},
+           {R"({"x":[1,{"y":2}],"z":3})", ""},
+           {"[[1]]", "/0"},
+           {"[1,[[]],3]", "/1"},
+           {R"([1,2,"3"])", "/2"},
+           {R"([1,{"y":[2]},3])", "/1"},
+           {"[1,2,3.5]", "/2"},
+           {"[18446744073709551616,0,0]", "/0"},
+           {"[18446744073709551615,0,0]", "/0"},
+           {"[0,-9223372036854775809,0]", "/1"},
+           {"[0,0,1e300]", "/2"},
+       }) {
+    CAPTURE(vertex);
+    for (const bool is_split : {false, true}) {
+      const std::string text = with_vertex(vertex);
+      formats::ReadOptions options;
+      options.split_features = is_split;
+      options.keep_text = !is_split;
+      const auto document = formats::read_document(as_bytes(text), Format::city_json, options);
+      REQUIRE(document);
+      const auto again = formats::write_document(*document, Format::city_json);
+      REQUIRE(again);
+      CHECK(nlohmann::json::parse(as_text(*again))
+                .dump()
+                .find(nlohmann::json::parse(vertex).dump()) != std::string::npos);
+      if (!is_split) {
+        CHECK(as_text(*again) == text);
+        CHECK(document->features[0].solids.size() == 1);
+        continue;
+      }
+      REQUIRE(document->features.size() == 3);
+      CHECK(place_of(document->features[0]) == place);
+      CHECK(place_of(document->features[1]) == place);
+      CHECK(document->features[2].unreadable.empty());
+      CHECK(document->features[2].solids.size() == 1);
+    }
+  }
+  CHECK(read(with_vertex("[1.0,2e2,-3]"), Format::city_json)->features[0].unreadable.empty());
+  CHECK(error_of(with_vertex("[1e400,0,0]")).code == ErrorCode::malformed);
+  CHECK(error_of(with_vertex("[1,{\"x\":1,\"x\":2},3]")).pointer == "/vertices/3/1/x");
 }
 
 TEST_CASE("a transform needs six numbers and positive scales") {

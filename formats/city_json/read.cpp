@@ -228,17 +228,18 @@ Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
   auto read = read_model(std::move(model), header, options);
   if (!read) return std::move(read).error();
   const Json* object = find_member(*find_member(read->model.root, "CityObjects"), id);
-  if (object == nullptr) {
-    return Error{
-        ErrorCode::malformed, "the id is not that of a city object in CityObjects", {}, "/id"};
-  }
   Feature feature;
   feature.id = id;
-  feature.type = string_member(*object, "type");
+  if (object != nullptr) feature.type = string_member(*object, "type");
   feature.srid = header.srid;
   feature.skeleton = whole_skeleton(*read);
   take_solids(read->solids, feature);
   take_others(*read, feature);
+  if (object == nullptr) {
+    Error error{
+        ErrorCode::malformed, "the id is not that of a city object in CityObjects", {}, "/id"};
+    feature.unreadable.push_back({{id, "", "", 0, 0, error.pointer}, std::move(error)});
+  }
   return feature;
 }
 

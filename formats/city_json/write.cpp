@@ -450,7 +450,7 @@ Result<std::string> write_city_json(const Document& document) {
 Result<std::string> write_city_json_seq(const Document& document) {
   if (is_whole(document)) {
     auto whole = write_city_json(document);
-    if (!whole) return whole;
+    if (!whole || is_lone_feature(*whole)) return whole;  // a file .jsonl may hold it as it is
     auto split = read_city_json(*whole, ReadOptions{.limits = kOwnText});
     if (!split) return std::move(split).error();
     return write_city_json_seq(*split);

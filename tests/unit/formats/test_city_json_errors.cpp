@@ -280,7 +280,14 @@ TEST_CASE("errors in a sequence name line, byte and pointer") {
 
   std::string renamed = text;
   renamed.replace(renamed.find("\"id\":\"a\""), 8, "\"id\":\"z\"");
-  CHECK(error_of(renamed, Format::city_json_seq).pointer == "/id");
+  const auto unnamed = read(renamed, Format::city_json_seq);
+  REQUIRE(unnamed);
+  REQUIRE(unnamed->features.size() == 2);
+  CHECK(unnamed->features[0].id == "z");
+  REQUIRE(unnamed->features[0].unreadable.size() == 1);
+  CHECK(unnamed->features[0].unreadable[0].error.pointer == "/id");
+  CHECK(unnamed->features[0].solids.size() == document->features[0].solids.size());
+  CHECK(unnamed->features[1].unreadable.empty());
   CHECK(error_of("", Format::city_json_seq).code == ErrorCode::malformed);
   CHECK(error_of("\n \n", Format::city_json_seq).code == ErrorCode::malformed);
 }

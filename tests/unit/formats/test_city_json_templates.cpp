@@ -219,8 +219,23 @@ TEST_CASE("a lone CityJSONFeature has solids only with a transform of its own") 
   CHECK(with->features[0].unreadable.empty());
   const Solid& solid = with->features[0].solids[0].solid;
   CHECK(solid.lattice().world_text(solid.vertices()[1][1], 1) == "0.5");
-  // The id must still be that of an object.
-  CHECK_FALSE(read(start + R"("id":"b","CityObjects":{},"vertices":[]})", Format::city_json));
+  // An id that is not that of an object is a fault of the feature.
+  const auto other = read(start + R"("id":"b","CityObjects":{},"vertices":[]})", Format::city_json);
+  REQUIRE(other);
+  REQUIRE(other->features[0].unreadable.size() == 1);
+  CHECK(other->features[0].unreadable[0].error.pointer == "/id");
+  // It is its own text, whatever the name of the file.
+  formats::ReadOptions exact;
+  exact.split_features = false;
+  exact.keep_text = true;
+  const std::string text = start + transform + rest;
+  const auto whole = formats::read_document(as_bytes(text), Format::city_json, exact);
+  REQUIRE(whole);
+  for (const Format format : {Format::city_json, Format::city_json_seq}) {
+    const auto again = formats::write_document(*whole, format);
+    REQUIRE(again);
+    CHECK(as_text(*again) == text);
+  }
 }
 
 }  // namespace

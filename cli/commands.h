@@ -105,7 +105,8 @@ struct IngestCommand {
   StoreChoice store;
   std::vector<std::string> files;
   std::string collection;
-  std::string invalid;  // "" for the policy of the collection
+  std::string invalid;   // "" for the policy of the collection
+  std::string rejected;  // file for what --invalid skip leaves out, "" for none
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
   std::string contract = "exact";

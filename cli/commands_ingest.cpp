@@ -14,6 +14,7 @@
 #include "cli/files.h"
 #include "cli/inputs.h"
 #include "cli/opened_store.h"
+#include "cli/rejected_files.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
@@ -52,12 +53,16 @@ class IngestRun {
   /// The facts about a file before all of it is stored.
   struct FileRun {
     Summary summary;
-    std::vector<std::string> valid;  // ids; none in a run over one file
+    std::vector<std::string> valid;                  // ids; none in a run over one file
+    std::string header;                              // that of the document
+    std::vector<pipeline::FeatureOutcome> left_out;  // with --rejected
   };
 
   Result<pipeline::IngestCounts> ingest(std::size_t number, SolidStore& store, FileRun& run);
   Status take(std::size_t number, pipeline::FeatureOutcome&& outcome, FileRun& run);
   void tell_replaced(std::size_t number, const FileRun& run);
+  Status open_rejected(bool gives_up_rights);
+  Status add_rejected(std::size_t number, FileRun run);
   bool has_several_files() const { return inputs_.size() > 1; }
 
   const IngestCommand& command_;
@@ -65,6 +70,8 @@ class IngestRun {
   const pipeline::IngestOptions options_;
   std::optional<delaunay::EngineWorkers> workers_;
   EarlyFiles early_;
+  std::optional<RejectedFiles> rejected_;
+  pipeline::IngestCounts counts_;  // of all files
   FilesOfFeatures files_;
   Summary summary_;
 };
@@ -86,9 +93,9 @@ Status IngestRun::take(std::size_t number, pipeline::FeatureOutcome&& outcome, F
   }
   if (!command_.is_quiet && !command_.is_json) print_findings(inputs_[number].name, outcome);
   run.summary.add(outcome);
-  if (has_several_files() && outcome.is_stored) {
-    run.valid.push_back(std::move(outcome.id));
-  }
+  if (has_several_files() && outcome.is_stored) run.valid.push_back(outcome.id);
+  const bool is_whole = outcome.is_stored && outcome.left_out.empty();
+  if (rejected_ && !is_whole) run.left_out.push_back(std::move(outcome));
   return Done{};
 }
 
@@ -111,6 +118,9 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
         bar.show(features, share_done(features, count, bytes, whole));
       });
   if (input->kind == InputKind::container) {
+    if (rejected_) {
+      return Error{ErrorCode::unsupported, "--rejected takes documents, no Watertight files"};
+    }
     whole.reset();
     const auto bytes = read_all(input->source, {});
     if (!bytes) return bytes.error();
@@ -126,6 +136,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   auto opened = open_input(*std::move(input), read, header);
   if (!opened) return std::move(opened).error();
   count = opened->reader.feature_count();
+  run.header = opened->reader.document().header.str();
   if (!command_.is_quiet && !command_.is_json) tell_losses(name, opened->reader.document());
   if (Status added = ingestion.add(opened->reader); !added) return std::move(added).error();
   run.summary.add_file_bytes(opened->reader.bytes_read());
@@ -146,6 +157,47 @@ void IngestRun::tell_replaced(std::size_t number, const FileRun& run) {
   }
 }
 
+Status IngestRun::open_rejected(bool gives_up_rights) {
+  if (command_.rejected.empty()) return Done{};
+  const auto wrong = [](std::string text) {
+    return Error{ErrorCode::invalid_argument, std::move(text)};
+  };
+  if (command_.invalid != "skip") return wrong("needs --invalid skip");
+  if (command_.rejected == "-") return wrong("needs the name of a file");
+  for (const InputFile& input : inputs_) {
+    for (const std::string& file : {command_.rejected, command_.rejected + ".report.json"}) {
+      if (is_same_file(file, input.file)) return wrong("'" + file + "' would replace an input");
+    }
+  }
+  auto files = RejectedFiles::open(command_.rejected, gives_up_rights);
+  if (!files) return std::move(files).error();
+  rejected_.emplace(*std::move(files));
+  return Done{};
+}
+
+/// Writes what was left out of a document that is stored.
+Status IngestRun::add_rejected(std::size_t number, FileRun run) {
+  if (!rejected_) return Done{};
+  const auto without_text = rejected_->add(run.header, std::move(run.left_out));
+  if (!without_text) return without_text.error();
+  if (*without_text == 0) return Done{};
+  const std::string text = quantity(*without_text, "feature") +
+                           " are left out and in the report only: --rejected writes city models";
+  std::fprintf(stderr, "watertight: %s: %s\n", printable(inputs_[number].name).c_str(),
+               text.c_str());
+  return Done{};
+}
+
+void add(const pipeline::IngestCounts& more, pipeline::IngestCounts& all) {
+  all.total += more.total;
+  all.invalid += more.invalid;
+  all.undecided += more.undecided;
+  all.stored += more.stored;
+  all.unproven += more.unproven;
+  all.unproven_features += more.unproven_features;
+  all.verdict = pipeline::worse(all.verdict, more.verdict);
+}
+
 void tell_invalid(const std::string& file, const pipeline::IngestCounts& counts) {
   std::string text = "not all features are valid; " + std::to_string(counts.stored) + " of " +
                      std::to_string(counts.total) + " were stored";
@@ -163,6 +215,10 @@ Exit IngestRun::run() {
   // As root, opening a private cluster gives up the right to open other users' files.
   const bool gives_up_rights = ::geteuid() == 0 && command_.store.database_url.empty();
   early_ = EarlyFiles(inputs_, gives_up_rights);
+  if (Status opened = open_rejected(gives_up_rights); !opened) {
+    complain("--rejected", opened.error());
+    return Exit::error;
+  }
   const auto opened = open_store(command_.store);
   if (!opened) {
     complain("store", opened.error());
@@ -185,7 +241,18 @@ Exit IngestRun::run() {
     if (counts->stored > 0) tell_replaced(i, run);
     run.summary.add_stored(counts->stored);
     summary_.add(run.summary);
+    add(*counts, counts_);
+    if (Status added = add_rejected(i, std::move(run)); !added) {
+      complain(command_.rejected, added.error());
+      return Exit::error;
+    }
     exit = worse(exit, exit_of(counts->verdict));
+  }
+  if (rejected_) {
+    if (Status committed = rejected_->commit(counts_); !committed) {
+      complain(command_.rejected, committed.error());
+      exit = Exit::error;
+    }
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -253,6 +253,9 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
                   "is not proven as it came; default: the policy of the collection, refuse for a "
                   "new one")
       ->check(CLI::IsMember({"refuse", "skip", "keep"}));
+  sub->add_option("--rejected", command.rejected,
+                  "a CityJSONSeq for what --invalid skip leaves out; the findings go to FILE "
+                  "with .report.json");
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
   add_contract(*sub, command.contract);

@@ -481,6 +481,43 @@ TEST_CASE_METHOD(StoreFixture, "ingest takes more files than may be open, and ex
   CHECK(run("collections list").status == 2);
 }
 
+TEST_CASE_METHOD(StoreFixture, "ingest writes what it leaves out as sequences, with a report") {
+  const std::string bad = samples::feature("bad", samples::kOpenFacets);
+  const std::string worse = samples::feature("worse", samples::kOpenFacets);
+  write("a.jsonl", samples::sequence({samples::feature("good"), bad}));
+  std::string other = samples::sequence({worse});
+  other.replace(other.find("0.001,0.001"), 11, "0.002,0.001");
+  write("b.jsonl", other);
+  write("good.jsonl", samples::sequence({samples::feature("best")}));
+  CHECK(on_store("ingest -q good.jsonl --collection town --invalid skip --rejected no.jsonl")
+            .status == 0);
+  CHECK_FALSE(fs::exists(folder / "no.jsonl"));
+  CHECK_FALSE(fs::exists(folder / "no.jsonl.report.json"));
+  const Ran stored =
+      on_store("ingest -q a.jsonl b.jsonl --collection town --invalid skip --rejected left.jsonl");
+  INFO(stored.output);
+  CHECK(stored.status == 1);
+  const std::string first = read("a.jsonl");
+  // The header of the document, then a line for each feature that is left out.
+  const auto check_left_out = [](const std::string& text, const std::string& document,
+                                 const std::string& id) {
+    const std::size_t line = text.find('\n') + 1;
+    CHECK(text.substr(0, line) == document.substr(0, document.find('\n') + 1));
+    CHECK(nlohmann::json::parse(text.substr(line))["id"] == id);
+  };
+  check_left_out(read("left.jsonl"), first, "bad");
+  check_left_out(read("left-2.jsonl"), other, "worse");
+  const auto report = nlohmann::json::parse(read("left.jsonl.report.json"));
+  CHECK(report["stored"] == 1);
+  CHECK(report["counts"]["features"] == 3);
+  REQUIRE(report["features"].size() == 2);
+  CHECK(report["features"][1]["id"] == "worse");
+  CHECK(on_store("collections list").output.find("town: 2 features") == 0);
+  CHECK(on_store("ingest a.jsonl --collection town --rejected left.jsonl").status == 2);
+  CHECK(on_store("ingest a.jsonl --collection town --invalid skip --rejected a.jsonl").status == 2);
+  CHECK(read("a.jsonl") == first);
+}
+
 TEST_CASE_METHOD(Fixture, "damaged Watertight files are refused") {
   write("in.city.jsonl", kValid);
   REQUIRE(run("encode in.city.jsonl -o x.wt").status == 0);

@@ -153,8 +153,8 @@ Status FeatureReader::read_header() {
   auto header = read_city_json_header((*text)->line, options_.limits);
   if (!header) return in_line(std::move(header).error(), **text);
   if (!header->transform) {
-    return in_line({ErrorCode::malformed, "a CityJSONSeq needs a transform", {}, "/transform"},
-                   **text);
+    document_.notes.emplace_back(
+        "the CityJSONSeq has no transform: the solids in it cannot be read");
   }
   header_ = *std::move(header);
   auto templates = read_geometry_templates(header_, options_.limits, options_.surfaces);

@@ -16,8 +16,14 @@ struct ReadModel {
   std::vector<TemplateInstance> instances;
 };
 
-/// Makes the solids of a CityJSONFeature without transform unreadable.
-void forget_solids(ModelIndex& index) {
+constexpr std::string_view kFeatureAlone =
+    "a CityJSONFeature alone has no transform, so its coordinates are not known: send the CityJSON "
+    "line of its sequence first";
+constexpr std::string_view kSequenceWithout =
+    "the first line of the sequence has no transform, so the coordinates are not known";
+
+/// Makes the solids of a CityJSONFeature without transform unreadable, for the reason.
+void forget_solids(ModelIndex& index, std::string_view reason) {
   for (GeometryRef& ref : index.geometries) {
     if (!ref.is_of_solids()) continue;
     UnreadablePart part;
@@ -28,23 +34,18 @@ void forget_solids(ModelIndex& index) {
                    0,
                    "/CityObjects" + pointer_token(index.ids[ref.object]) + "/geometry" +
                        pointer_token(ref.geometry) + "/boundaries"};
-    part.error = {
-        ErrorCode::malformed,
-        "a CityJSONFeature alone has no transform, so its coordinates are not known: send "
-        "the CityJSON line of its sequence first",
-        {},
-        part.source.pointer};
+    part.error = {ErrorCode::malformed, std::string(reason), {}, part.source.pointer};
     ref.is_unreadable = true;
     index.unreadable.push_back({ref.object, std::move(part)});
   }
 }
 
-Result<ReadModel> read_model(CityModel model, const CityHeader& header,
-                             const ReadOptions& options) {
+Result<ReadModel> read_model(CityModel model, const CityHeader& header, const ReadOptions& options,
+                             std::string_view without_transform = {}) {
   auto index = index_city_model(model, header.template_count);
   if (!index) return std::move(index).error();
   const bool is_feature = string_member(model.root, "type") == "CityJSONFeature";
-  if (is_feature && !header.transform) forget_solids(*index);
+  if (is_feature && !header.transform) forget_solids(*index, without_transform);
   if (header.transform) require_integers(model.vertices);
   // Without a transform the coordinates of surfaces are not known either.
   const bool is_placed = !is_feature || header.transform.has_value();
@@ -219,13 +220,14 @@ void note_vertices_without_transform(const CityHeader& header, std::vector<std::
   }
 }
 
+/// `without_transform`: why coordinates are not known if the header has no transform.
 Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
-                                   const ReadOptions& options) {
+                                   const ReadOptions& options, std::string_view without_transform) {
   const std::string id = string_member(model.root, "id");
   if (id.empty()) {
     return Error{ErrorCode::malformed, "the CityJSONFeature has no id", {}, "/id"};
   }
-  auto read = read_model(std::move(model), header, options);
+  auto read = read_model(std::move(model), header, options, without_transform);
   if (!read) return std::move(read).error();
   const Json* object = find_member(*find_member(read->model.root, "CityObjects"), id);
   Feature feature;
@@ -253,7 +255,7 @@ Result<Document> read_feature_document(Document document, CityModel model, std::
     document.notes.emplace_back(
         "a CityJSONFeature alone has no transform: the solids in it cannot be read");
   }
-  auto feature = read_feature_model(std::move(model), *header, options);
+  auto feature = read_feature_model(std::move(model), *header, options, kFeatureAlone);
   if (!feature) return std::move(feature).error();
   if (options.split_features) {
     document.features.push_back(*std::move(feature));
@@ -319,7 +321,7 @@ Result<Feature> read_city_json_feature(const CityHeader& header, std::string_vie
   if (string_member(model->root, "type") != "CityJSONFeature") {
     return Error{ErrorCode::malformed, "the type is not \"CityJSONFeature\"", {}, "/type"};
   }
-  auto feature = read_feature_model(std::move(*model), header, options);
+  auto feature = read_feature_model(std::move(*model), header, options, kSequenceWithout);
   if (feature) {
     if (Status status = check_solid_count(*feature, options.limits); !status) {
       return std::move(status).error();

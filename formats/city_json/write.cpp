@@ -458,7 +458,7 @@ Result<std::string> write_city_json_seq(const Document& document) {
   Json root;
   auto header = header_of(document, root);
   if (!header) return std::move(header).error();
-  if (!header->transform) {
+  if (!header->transform && document.format != Format::city_json_seq) {
     return Error{ErrorCode::unsupported,
                  "a CityJSONSeq needs a transform and this city model has none"};
   }

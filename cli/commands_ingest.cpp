@@ -14,7 +14,7 @@
 #include "cli/files.h"
 #include "cli/inputs.h"
 #include "cli/opened_store.h"
-#include "cli/rejected_files.h"
+#include "cli/outputs/rejected_files.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"

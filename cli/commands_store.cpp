@@ -13,7 +13,7 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/opened_store.h"
-#include "cli/output_files.h"
+#include "cli/outputs/output_files.h"
 #include "cli/terminal/printable.h"
 #include "pipeline/export.h"
 #include "server/serve.h"

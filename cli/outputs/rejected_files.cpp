@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/rejected_files.h"
+#include "cli/outputs/rejected_files.h"
 
 #include <algorithm>
 #include <utility>

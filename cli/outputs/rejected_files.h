@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/output_files.h"
+#include "cli/outputs/output_files.h"
 #include "pipeline/pipeline.h"
 
 namespace watertight::cli {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/output_files.h"
+#include "cli/outputs/output_files.h"
 
 #include <fcntl.h>
 #include <sys/socket.h>

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "columns/columns.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "columns/mark_coder.h"
+#include "columns/models/context_mixer.h"
+#include "columns/models/number_form.h"
+#include "columns/models/string_coder.h"
+#include "columns/paths/json_path.h"
+#include "columns/paths/json_tokens.h"
+#include "columns/paths/xml_path.h"
+#include "columns/paths/xml_tokens.h"
+#include "columns/rings/ring_coder.h"
+#include "columns/rings/vertex_coder.h"
+#include "columns/value_coder.h"
+
+namespace watertight::columns {
+namespace {
+
+constexpr int kKindBits = 2;
+constexpr Hash kBytesColumn = 0x42595445;
+
+/// A whole number as it is written: without point, sign or zeros in front.
+std::optional<std::int64_t> whole_number(std::string_view text) {
+  return number_in(NumberForm{NumberForm::Kind::short_trimmed, 0}, text);
+}
+
+/// Writes texts to a stream, or reads them from it.
+class TextCoder {
+ public:
+  explicit TextCoder(EntropyStream& stream, std::uint64_t most_bytes)
+      : stream_(stream), left_(most_bytes) {}
+
+  /// Codes one text and returns it.
+  std::string code(const Text& text) {
+    const auto kind = static_cast<TextKind>(mixer_.symbol(
+        stream_, Question::text_kind, {1}, kKindBits, static_cast<std::uint32_t>(text.kind)));
+    switch (kind) {
+      case TextKind::bytes:
+        return code_bytes(text.text);
+      case TextKind::json:
+        return code_tokens<JsonPath, JsonTokens>(json_path_, text.text);
+      case TextKind::xml:
+        return code_tokens<XmlPath, XmlTokens>(xml_path_, text.text);
+    }
+    stream_.fail();
+    return {};
+  }
+  bool is_over_limit() const { return is_over_limit_; }
+
+ private:
+  std::size_t most_bytes() const {
+    return static_cast<std::size_t>(
+        std::min<std::uint64_t>(left_, std::numeric_limits<std::size_t>::max()));
+  }
+  /// Appends to a text that is read.
+  void append(std::string& out, std::string_view more) {
+    if (!stream_.is_reading() || stream_.failed()) return;
+    if (more.size() > left_) {
+      is_over_limit_ = true;
+      stream_.fail();
+      return;
+    }
+    left_ -= more.size();
+    out += more;
+  }
+
+  std::string code_bytes(std::string_view text) {
+    const std::string coded = strings_.code(stream_, mixer_, kBytesColumn, text, most_bytes());
+    std::string out;
+    append(out, coded);
+    return out;
+  }
+
+  template <class Path, class Tokens>
+  std::string code_tokens(Path& path, std::string_view text) {
+    Tokens tokens(text);
+    path.restart();
+    marks_.restart();
+    values_.restart();
+    rings_.restart();
+    vertices_.restart(0);
+    last_value_ = 0;
+    std::string out;
+    while (!stream_.failed()) {
+      const bool is_reading = stream_.is_reading();
+      const Mark mark = marks_.code(stream_, mixer_, strings_, path.place(), last_value_,
+                                    is_reading ? Mark{} : tokens.next_mark(path), most_bytes());
+      append(out, mark.text);
+      if (mark.is_last) break;
+      path.follow(mark.text);
+      append(out, code_value(path.place(), is_reading ? std::string_view() : tokens.next_value()));
+    }
+    return out;
+  }
+
+  std::string_view code_value(const Place& place, std::string_view text) {
+    if (place.role == Role::vertex_index && place.is_in_array) {
+      if (const auto coded = code_vertex_index(place, text)) return *coded;
+    }
+    if (place.role == Role::coordinate && vertices_.is_ready()) {
+      if (auto coded = vertices_.code(stream_, mixer_, rings_, text))
+        return keep(*std::move(coded));
+    }
+    const std::string_view value =
+        values_.code(stream_, mixer_, strings_, place, text, most_bytes());
+    last_value_ = values_.last();
+    if (place.role == Role::vertex_count) {
+      vertices_.restart(static_cast<std::uint64_t>(whole_number(value).value_or(0)));
+    }
+    if (place.role == Role::vertex_run) vertices_.take_run(whole_number(value).value_or(-1));
+    return value;
+  }
+
+  /// None for a value that is no index of a vertex.
+  std::optional<std::string_view> code_vertex_index(const Place& place, std::string_view text) {
+    auto vertex = stream_.is_reading() ? std::nullopt : whole_number(text);
+    if (vertex && (*vertex < 0 || *vertex >= kMostVertexNumbers)) vertex.reset();
+    if (!mixer_.flag(stream_, Question::text_kind, {place.column}, vertex.has_value()))
+      return std::nullopt;
+    const VertexNumber coded = rings_.code(stream_, mixer_, place.index, vertex.value_or(0));
+    values_.pass(coded);
+    last_value_ = 0;
+    return keep(std::to_string(coded));
+  }
+
+  std::string_view keep(std::string text) {
+    last_text_ = std::move(text);
+    return last_text_;
+  }
+
+  EntropyStream& stream_;
+  std::uint64_t left_;
+  bool is_over_limit_ = false;
+  ContextMixer mixer_;
+  JsonPath json_path_;
+  XmlPath xml_path_;
+  MarkCoder marks_;
+  StringCoder strings_;
+  ValueCoder values_;
+  RingCoder rings_;
+  VertexCoder vertices_;
+  Hash last_value_ = 0;
+  std::string last_text_;
+};
+
+constexpr std::uint64_t kMostTextsForAByte = 4096;
+
+}  // namespace
+
+Bytes pack_texts(std::span<const Text> texts) {
+  auto stream = EntropyStream::writer();
+  TextCoder coder(stream, ~std::uint64_t{0});
+  for (const Text& text : texts) coder.code(text);
+  ByteWriter writer;
+  writer.varint(texts.size());
+  writer.append(std::move(stream).finish());
+  return std::move(writer).bytes();
+}
+
+Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most_bytes) {
+  ByteReader reader(bytes);
+  const std::uint64_t count = reader.varint();
+  if (reader.failed() || count > kMostTextsForAByte * bytes.size()) return reader.error("texts");
+  auto stream = EntropyStream::reader(reader.take(reader.remaining()));
+  TextCoder coder(stream, most_bytes);
+  std::vector<std::string> texts;
+  for (std::uint64_t i = 0; i < count && !stream.failed(); ++i) texts.push_back(coder.code({}));
+  if (coder.is_over_limit()) {
+    return Error{ErrorCode::limit_exceeded,
+                 "packed texts of more than " + std::to_string(most_bytes) + " bytes"};
+  }
+  if (!stream.is_finished()) {
+    return Error{ErrorCode::malformed, "packed texts that are damaged", stream.position(), {}};
+  }
+  return texts;
+}
+
+}  // namespace watertight::columns

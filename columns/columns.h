@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Texts of city models in few bytes. A text is taken apart into marks (brackets, keys, white space)
+// and values; each value is predicted from the values of its column, that is of its path in the
+// document, and from those around it, and goes to one entropy coded stream
+// (docs/format-columns.md). Any text comes back byte for byte; texts of JSON come back from few
+// bytes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/result.h"
+
+namespace watertight::columns {
+
+/// How a text is taken apart. Wrong kinds cost bytes only.
+enum class TextKind : std::uint8_t {
+  bytes,  // any bytes: one string
+  json,   // JSON, for example the skeleton of a feature
+  xml     // XML, for example a document of CityGML
+};
+
+struct Text {
+  TextKind kind = TextKind::bytes;
+  std::string_view text;
+};
+
+/// Packs texts. Later ones cost less where they resemble earlier ones. Cost: linear, about 10 MB a
+/// second.
+Bytes pack_texts(std::span<const Text> texts);
+
+/// The texts that were packed. `bytes` may be hostile: time is bounded by its length and the length
+/// of the texts. Errors: malformed; limit_exceeded as soon as the texts have more than
+/// `most_bytes`.
+Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most_bytes);
+
+}  // namespace watertight::columns

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Codes strings character by character, each predicted from the characters before it, from its
+// column, and from an earlier string that begins or goes on alike. Internal to columns/.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "columns/models/context_mixer.h"
+
+namespace watertight::columns {
+
+class StringCoder {
+ public:
+  /// Codes a string of a column. The stream fails when a string that is read is longer than
+  /// `most_bytes`.
+  std::string code(EntropyStream& stream, ContextMixer& mixer, Hash column, std::string_view text,
+                   std::size_t most_bytes);
+
+ private:
+  /// Where an earlier string goes on like this one.
+  struct Match {
+    std::size_t at = 0;
+    std::uint32_t length = 0;  // 0: none
+  };
+  bool code_character(EntropyStream& stream, ContextMixer& mixer, Hash column, std::size_t position,
+                      Match& match, unsigned char& character, bool& is_end);
+
+  std::string history_;  // all strings, a NUL after each
+  std::unordered_map<Hash, std::size_t>
+      last_of_column_;                                 // where the last string of a column begins
+  std::unordered_map<Hash, std::size_t> after_three_;  // what followed three characters
+  std::uint32_t before_ = 0;  // the last four characters, the last one lowest
+};
+
+}  // namespace watertight::columns

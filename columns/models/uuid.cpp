@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "columns/models/uuid.h"
+
+namespace watertight::columns {
+namespace {
+
+constexpr std::size_t kTextSize = 36;
+constexpr char kPlaceholder = '\1';
+constexpr std::size_t kVersionDigit = 12;  // the version
+constexpr std::size_t kVariantDigit = 16;  // the variant, in its upper bits
+constexpr std::string_view kSmall = "0123456789abcdef";
+constexpr std::string_view kCapital = "0123456789ABCDEF";
+
+bool is_dash(std::size_t position) {
+  return position == 8 || position == 13 || position == 18 || position == 23;
+}
+
+std::optional<Uuid> uuid_at(std::string_view text, std::size_t at) {
+  Uuid uuid;
+  uuid.at = at;
+  bool has_small = false;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < kTextSize; ++i) {
+    const char c = text[at + i];
+    if (is_dash(i)) {
+      if (c != '-') return std::nullopt;
+      continue;
+    }
+    if (c >= '0' && c <= '9') {
+      uuid.digits[next++] = static_cast<std::uint8_t>(c - '0');
+    } else if (c >= 'a' && c <= 'f') {
+      has_small = true;
+      uuid.digits[next++] = static_cast<std::uint8_t>(c - 'a' + 10);
+    } else if (c >= 'A' && c <= 'F') {
+      uuid.is_upper_case = true;
+      uuid.digits[next++] = static_cast<std::uint8_t>(c - 'A' + 10);
+    } else {
+      return std::nullopt;
+    }
+  }
+  if (has_small && uuid.is_upper_case) return std::nullopt;
+  return uuid;
+}
+
+}  // namespace
+
+std::optional<Uuid> find_uuid(std::string_view text) {
+  if (text.size() < kTextSize || text.find(kPlaceholder) != std::string_view::npos) {
+    return std::nullopt;
+  }
+  for (std::size_t at = 0; at + kTextSize <= text.size(); ++at) {
+    if (text[at + 8] != '-' || text[at + 13] != '-') continue;
+    if (auto uuid = uuid_at(text, at)) return uuid;
+  }
+  return std::nullopt;
+}
+
+bool resembles(const Uuid& uuid, const std::optional<Uuid>& other) {
+  constexpr std::size_t kMany = 10;
+  if (!other || other->at != uuid.at) return false;
+  std::size_t equal = 0;
+  for (std::size_t i = 0; i < uuid.digits.size(); ++i) {
+    if (uuid.digits[i] == other->digits[i]) ++equal;
+  }
+  return equal > kMany;
+}
+
+std::string affixes_of(const Uuid& uuid, std::string_view text) {
+  std::string affixes(text.substr(0, uuid.at));
+  affixes += kPlaceholder;
+  if (text.size() >= uuid.at + kTextSize) affixes += text.substr(uuid.at + kTextSize);
+  return affixes;
+}
+
+std::optional<std::string> with_uuid(std::string_view affixes, const Uuid& uuid) {
+  const std::size_t at = affixes.find(kPlaceholder);
+  if (at == std::string_view::npos) return std::nullopt;
+  std::string text(affixes.substr(0, at));
+  const std::string_view letters = uuid.is_upper_case ? kCapital : kSmall;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < kTextSize; ++i) {
+    text += is_dash(i) ? '-' : letters[uuid.digits[next++]];
+  }
+  text += affixes.substr(at + 1);
+  return text;
+}
+
+Uuid code_uuid_digits(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid) {
+  Uuid coded;
+  for (std::size_t i = 0; i < coded.digits.size(); ++i) {
+    const bool is_predictable = i == kVersionDigit || i == kVariantDigit;
+    const std::uint64_t digit =
+        is_predictable ? mixer.symbol(stream, Question::uuid_version,
+                                      {hash_of(column, static_cast<Hash>(i)), static_cast<Hash>(i)},
+                                      4, uuid.digits[i])
+                       : stream.code_bits(uuid.digits[i], 4);
+    coded.digits[i] = static_cast<std::uint8_t>(digit);
+  }
+  coded.is_upper_case = mixer.flag(stream, Question::is_upper_case, {column}, uuid.is_upper_case);
+  return coded;
+}
+
+}  // namespace watertight::columns

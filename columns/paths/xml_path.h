@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Follows the structure of an XML text as it is taken apart into marks and values: values are those
+// of attributes, and the contents of elements, number by number. Internal to columns/.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "columns/place.h"
+
+namespace watertight::columns {
+
+class XmlPath {
+ public:
+  XmlPath() { restart(); }
+  /// Goes to the start of another text. What is known about lengths of lists stays.
+  void restart();
+  /// Follows the text of a mark. Takes any bytes; a text that is not XML gives arbitrary places.
+  void follow(std::string_view mark);
+  /// Where the next value or mark is.
+  Place place() const;
+  bool is_in_tag() const { return is_in_tag_; }
+
+ private:
+  struct Level {
+    Hash path = 0;
+    Hash child = 0;           // the name of the last element in it
+    std::uint32_t index = 0;  // the number of values in its content
+  };
+  void open(Hash name);
+  void close();
+
+  std::vector<Level> levels_;
+  std::size_t beyond_ = 0;  // levels that are deeper than kMostLevels
+  bool is_in_tag_ = false;
+  bool is_in_quotes_ = false;
+  bool is_element_ = false;  // the tag is of an element, not a comment or an instruction
+  Hash attribute_ = 0;
+  std::unordered_map<Hash, std::uint32_t> last_length_;  // of lists in contents, by path
+};
+
+}  // namespace watertight::columns

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "columns/rings/ring_coder.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "columns/models/number_coder.h"
+
+namespace watertight::columns {
+namespace {
+
+constexpr std::size_t kMostRecent = 256;
+constexpr std::uint32_t kFarPosition = 5;
+constexpr int kModelledBits = 4;
+
+std::optional<VertexNumber> find(const std::unordered_map<VertexNumber, VertexNumber>& map,
+                                 VertexNumber key) {
+  const auto found = map.find(key);
+  return found == map.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
+
+void RingCoder::restart() { *this = RingCoder(); }
+
+bool RingCoder::is_in_ring(VertexNumber vertex) const {
+  return std::find(ring_.begin(), ring_.end(), vertex) != ring_.end();
+}
+
+RingCoder::Guess RingCoder::guess(std::uint32_t position) const {
+  Guess guess;
+  if (ring_.empty()) return guess;
+  guess.before = find(before_, ring_.back());
+  if (position >= 2) guess.after = find(after_, ring_.front());
+  if (guess.before && is_in_ring(*guess.before)) guess.before.reset();
+  if (guess.after && is_in_ring(*guess.after)) guess.after.reset();
+  guess.agree = guess.before && guess.after && *guess.before == *guess.after;
+  if (guess.agree) guess.after.reset();
+  return guess;
+}
+
+// A rank counts the vertices used since, without those that are denied already.
+std::optional<std::uint64_t> RingCoder::rank_of(const Guess& guess, VertexNumber vertex) const {
+  std::uint64_t rank = 0;
+  for (auto recent = recent_.rbegin(); recent != recent_.rend(); ++recent) {
+    if (*recent == guess.before || *recent == guess.after || is_in_ring(*recent)) continue;
+    if (*recent == vertex) return rank;
+    ++rank;
+  }
+  return std::nullopt;
+}
+
+std::optional<VertexNumber> RingCoder::of_rank(const Guess& guess, std::uint64_t rank) const {
+  for (auto recent = recent_.rbegin(); recent != recent_.rend(); ++recent) {
+    if (*recent == guess.before || *recent == guess.after || is_in_ring(*recent)) continue;
+    if (rank-- == 0) return *recent;
+  }
+  return std::nullopt;
+}
+
+void RingCoder::end_ring() {
+  const std::size_t size = ring_.size();
+  if (size == 0) return;
+  for (std::size_t i = 0; i < size; ++i) {
+    const VertexNumber next = ring_[i + 1 == size ? 0 : i + 1];
+    after_[ring_[i]] = next;
+    before_[next] = ring_[i];
+  }
+  rings_.push_back(std::move(ring_));
+  ring_.clear();
+}
+
+const std::vector<std::vector<VertexNumber>>& RingCoder::finish() {
+  end_ring();
+  return rings_;
+}
+
+void RingCoder::take(VertexNumber vertex, Kind kind) {
+  if (kind == Kind::fresh || kind == Kind::far) last_found_ = vertex;
+  largest_ = std::max(largest_, vertex);
+  before_last_kind_ = last_kind_;
+  last_kind_ = kind;
+  ring_.push_back(vertex);
+  const auto known = std::find(recent_.rbegin(), recent_.rend(), vertex);
+  if (known != recent_.rend()) recent_.erase(std::next(known).base());
+  recent_.push_back(vertex);
+  if (recent_.size() > 2 * kMostRecent) {
+    recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(kMostRecent));
+  }
+}
+
+VertexNumber RingCoder::code(EntropyStream& stream, ContextMixer& mixer, std::uint32_t position,
+                             VertexNumber vertex) {
+  if (position == 0) end_ring();
+  const Guess guessed = guess(position);
+  const VertexNumber fresh = largest_ + 1;
+  const Hash where = std::min(position, kFarPosition);
+  const Hash known = (guessed.before ? 1U : 0U) + (guessed.after ? 2U : 0U) +
+                     (guessed.agree ? 4U : 0U) +
+                     (!ring_.empty() && ring_.back() == largest_ ? 8U : 0U);
+  const auto last = static_cast<Hash>(last_kind_);
+  const Hash all = hash_of(where, last, static_cast<Hash>(before_last_kind_), known);
+  const auto finish_with = [&](VertexNumber coded, Kind kind) {
+    take(coded, kind);
+    return coded;
+  };
+  if (mixer.flag(stream, Question::is_new_vertex,
+                 {all, hash_of(where, known, last), hash_of(where, known)}, vertex == fresh)) {
+    return finish_with(fresh, Kind::fresh);
+  }
+  if (guessed.before &&
+      mixer.flag(stream, Question::is_before_neighbour, {all, hash_of(where, known, last), known},
+                 vertex == *guessed.before)) {
+    return finish_with(*guessed.before, Kind::before);
+  }
+  if (guessed.after && mixer.flag(stream, Question::is_after_neighbour,
+                                  {all, hash_of(where, known, last)}, vertex == *guessed.after)) {
+    return finish_with(*guessed.after, Kind::after);
+  }
+  const auto rank = stream.is_reading() ? std::nullopt : rank_of(guessed, vertex);
+  if (mixer.flag(stream, Question::is_recent, {all, hash_of(where, last)}, rank.has_value())) {
+    const std::uint64_t coded =
+        mixer.number(stream, Question::recent_rank,
+                     {hash_of(where, last), hash_of(where, last_rank_), hash_of(where, known)},
+                     rank.value_or(0), kModelledBits);
+    last_rank_ = static_cast<std::uint32_t>(std::bit_width(coded));
+    const auto found = of_rank(guessed, coded);
+    if (!found) stream.fail();
+    return finish_with(found.value_or(0), Kind::recent);
+  }
+  const std::int64_t residual = vertex - last_found_;
+  const std::uint64_t size = mixer.number(stream, Question::vertex_distance,
+                                          {where, hash_of(where, last)}, magnitude(residual), 3);
+  const bool is_negative = size > 0 && mixer.flag(stream, Question::vertex_sign,
+                                                  {where, hash_of(where, last)}, residual < 0);
+  if (size >= static_cast<std::uint64_t>(kMostVertexNumbers)) stream.fail();
+  const std::int64_t far =
+      stream.failed() ? 0 : last_found_ + static_cast<std::int64_t>(is_negative ? 0 - size : size);
+  if (far < 0 || far >= kMostVertexNumbers) {
+    stream.fail();
+    return finish_with(0, Kind::far);
+  }
+  return finish_with(far, Kind::far);
+}
+
+}  // namespace watertight::columns

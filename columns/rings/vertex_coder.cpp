@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "columns/rings/vertex_coder.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace watertight::columns {
+namespace {
+
+constexpr int kModelledBits = 4;
+constexpr int kMemory = 4;  // a length of a residual counts for 1/16 in the usual length
+constexpr std::size_t kMostCorners = 64;  // of a vertex that are looked at
+constexpr std::array<Question, 3> kAxes{Question::coordinate_x, Question::coordinate_y,
+                                        Question::coordinate_z};
+
+}  // namespace
+
+void VertexCoder::restart(std::uint64_t vertices) {
+  rings_ = nullptr;
+  corners_.clear();
+  vertices_.clear();
+  of_solids_.clear();
+  run_.reset();
+  count_ = vertices;
+  next_ = 0;
+  next_run_ = 0;
+  is_started_ = false;
+  axis_ = 0;
+}
+
+void VertexCoder::take_run(std::int64_t number) {
+  if (!run_) {
+    run_ = number;
+    return;
+  }
+  const std::int64_t first = *run_;
+  run_.reset();
+  if (first < 0 || number <= 0 || first >= kMostVertexNumbers || number >= kMostVertexNumbers)
+    return;
+  of_solids_.emplace_back(first, first + number);
+}
+
+bool VertexCoder::is_ready() const { return is_started_ || count_ > 0; }
+
+void VertexCoder::find_parallelogram(const std::vector<VertexNumber>& ring, Corner corner) {
+  const std::size_t size = ring.size();
+  const auto at = [&](std::size_t after) { return ring[(corner.position + after) % size]; };
+  if (size == 3) {
+    const VertexNumber a = at(1);
+    const VertexNumber b = at(2);
+    if (!is_known(a) || !is_known(b)) return;
+    const auto corners = corners_.find(a);
+    if (corners == corners_.end()) return;
+    std::size_t looked_at = 0;
+    for (const Corner& other : corners->second) {
+      if (++looked_at > kMostCorners) return;
+      const auto& across = (*rings_)[other.ring];
+      if (across.size() != 3 || other.ring == corner.ring) continue;
+      const VertexNumber next = across[(other.position + 1) % 3];
+      const VertexNumber last = across[(other.position + 2) % 3];
+      const VertexNumber opposite = next == b ? last : last == b ? next : -1;
+      if (opposite >= 0 && opposite != static_cast<VertexNumber>(next_) && is_known(opposite)) {
+        around_.parallelogram = {a, b, opposite};
+      }
+    }
+  } else if (size > 3 && around_.parallelogram[0] < 0) {
+    const VertexNumber last = at(size - 1);
+    const VertexNumber before = at(size - 2);
+    const VertexNumber first = at(size - 3);
+    if (is_known(last) && is_known(before) && is_known(first)) {
+      around_.parallelogram = {last, first, before};
+    }
+  }
+}
+
+void VertexCoder::look_around() {
+  around_ = {};
+  const auto corners = corners_.find(static_cast<VertexNumber>(next_));
+  if (corners == corners_.end()) return;
+  std::size_t looked_at = 0;
+  for (const Corner& corner : corners->second) {
+    if (++looked_at > kMostCorners) return;
+    const auto& ring = (*rings_)[corner.ring];
+    for (const std::size_t step : {ring.size() - 1, std::size_t{1}}) {
+      const VertexNumber neighbour = ring[(corner.position + step) % ring.size()];
+      if (!is_known(neighbour)) continue;
+      around_.neighbours.push_back(neighbour);
+      around_.nearest = std::max(around_.nearest, neighbour);
+    }
+    find_parallelogram(ring, corner);
+  }
+}
+
+std::int64_t VertexCoder::value(VertexNumber vertex, std::size_t axis, int decimals) const {
+  const Coordinate& known = vertices_.at(vertex)[axis];
+  return with_decimals(known.number, known.decimals, decimals);
+}
+
+std::array<std::int64_t, VertexCoder::kPredictions> VertexCoder::predictions(std::size_t axis,
+                                                                             int decimals) const {
+  const std::int64_t last =
+      with_decimals(last_vertex_[axis].number, last_vertex_[axis].decimals, decimals);
+  const std::int64_t nearest = around_.nearest < 0 ? last : value(around_.nearest, axis, decimals);
+  std::int64_t middle = nearest;
+  if (!around_.neighbours.empty()) {
+    std::int64_t total = 0;
+    for (const VertexNumber neighbour : around_.neighbours) {
+      total = sum(total, difference(value(neighbour, axis, decimals), nearest));
+    }
+    middle = sum(nearest, total / static_cast<std::int64_t>(around_.neighbours.size()));
+  }
+  if (around_.parallelogram[0] < 0) return {last, nearest, middle, middle, middle};
+  const auto& [first, second, third] = around_.parallelogram;
+  const std::int64_t corner =
+      sum(value(first, axis, decimals),
+          difference(value(second, axis, decimals), value(third, axis, decimals)));
+  return {last, nearest, middle, corner, sum(middle, difference(corner, middle) / 2)};
+}
+
+std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer& mixer,
+                                             RingCoder& rings, std::string_view text) {
+  if (!is_started_) {
+    is_started_ = true;
+    rings_ = &rings.finish();
+    for (std::uint32_t ring = 0; ring < rings_->size(); ++ring) {
+      for (std::uint32_t i = 0; i < (*rings_)[ring].size(); ++i) {
+        corners_[(*rings_)[ring][i]].push_back({ring, i});
+      }
+    }
+    std::sort(of_solids_.begin(), of_solids_.end());
+  }
+  NumberColumn& column = forms_[axis_];
+  const auto axis = static_cast<Hash>(axis_);
+  const auto chosen = stream.is_reading() ? std::nullopt : choose_form(text, column.form());
+  if (!mixer.flag(stream, Question::text_kind, {axis}, chosen.has_value())) return std::nullopt;
+  if (axis_ == 0) {
+    while (next_run_ < of_solids_.size() && of_solids_[next_run_].first <= next_) {
+      next_ = std::max(next_, of_solids_[next_run_++].second);
+    }
+    look_around();
+  }
+  const FormedNumber given = chosen.value_or(FormedNumber{});
+  const NumberForm form = column.code_form(stream, mixer, hash_of(20, axis), given.form);
+  if (!form.is_decimal()) {
+    const std::int64_t number =
+        column.code_number(stream, mixer, hash_of(21, axis), 0, std::nullopt, given.number);
+    vertex_[axis_] = {};
+    axis_ = (axis_ + 1) % 3;
+    return print(form, number);
+  }
+  const auto predicted = predictions(axis_, form.decimals);
+  const std::size_t best = best_of(misses_[axis_]);
+  const auto which = static_cast<Hash>(best);
+  const Hash known = (around_.nearest >= 0 ? 1U : 0U) + (around_.parallelogram[0] >= 0 ? 2U : 0U);
+  const Hash others = hash_of(axis_ > 0 ? last_residual_[0] : 0, axis_ > 1 ? last_residual_[1] : 0);
+  const std::int64_t residual = difference(given.number, predicted[best]);
+  const std::uint64_t size =
+      mixer.number(stream, kAxes[axis_],
+                   {hash_of(which, known), hash_of(others, known), last_residual_[axis_], 0},
+                   magnitude(residual), kModelledBits);
+  const auto length = static_cast<std::uint32_t>(std::bit_width(size));
+  const bool is_negative =
+      size > 0 && mixer.flag(stream, Question::coordinate_sign,
+                             {hash_of(axis, others), hash_of(axis, which), hash_of(axis, length)},
+                             residual < 0);
+  const std::int64_t number =
+      sum(predicted[best], static_cast<std::int64_t>(is_negative ? 0 - size : size));
+  judge(misses_[axis_], predicted, number, kMemory);
+  last_residual_[axis_] = length * 2 + (is_negative ? 1 : 0);
+  vertex_[axis_] = {number, form.decimals};
+  if (++axis_ == 3) {
+    axis_ = 0;
+    vertices_[static_cast<VertexNumber>(next_++)] = vertex_;
+    last_vertex_ = vertex_;
+  }
+  return print(form, number);
+}
+
+}  // namespace watertight::columns

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Codes the coordinates of vertices that belong to no solid, after the rings that use them: a
+// vertex is near its neighbours, or completes a parallelogram with them. Internal to columns/.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "columns/models/context_mixer.h"
+#include "columns/models/number_coder.h"
+#include "columns/rings/ring_coder.h"
+
+namespace watertight::columns {
+
+class VertexCoder {
+ public:
+  /// Starts another feature, with so many vertices. What is known about coordinates stays.
+  void restart(std::uint64_t vertices);
+  /// Takes the first vertex of a run, then its length: a solid has these vertices.
+  void take_run(std::int64_t number);
+  /// Whether there is a vertex whose coordinates are to come.
+  bool is_ready() const;
+  /// Codes the next coordinate of the next vertex that no solid has: x, y, z, x, ...; none when
+  /// its text is no number.
+  std::optional<std::string> code(EntropyStream& stream, ContextMixer& mixer, RingCoder& rings,
+                                  std::string_view text);
+
+ private:
+  static constexpr std::size_t kPredictions = 5;
+  struct Corner {
+    std::uint32_t ring = 0;
+    std::uint32_t position = 0;
+  };
+  /// A coordinate in units of 10^-decimals, of a form that has them.
+  struct Coordinate {
+    std::int64_t number = 0;
+    int decimals = 0;
+  };
+  using Vertex = std::array<Coordinate, 3>;
+  /// The neighbours of a vertex that are known.
+  struct Surroundings {
+    VertexNumber nearest = -1;  // the neighbour with the largest number
+    std::vector<VertexNumber> neighbours;
+    std::array<VertexNumber, 3> parallelogram{-1, -1, -1};  // its place is first + second - third
+  };
+  void look_around();
+  void find_parallelogram(const std::vector<VertexNumber>& ring, Corner corner);
+  bool is_known(VertexNumber vertex) const { return vertices_.contains(vertex); }
+  std::int64_t value(VertexNumber vertex, std::size_t axis, int decimals) const;
+  std::array<std::int64_t, kPredictions> predictions(std::size_t axis, int decimals) const;
+
+  const std::vector<std::vector<VertexNumber>>* rings_ = nullptr;
+  std::unordered_map<VertexNumber, std::vector<Corner>> corners_;
+  std::unordered_map<VertexNumber, Vertex> vertices_;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> of_solids_;  // first and end; sorted later
+  std::optional<std::int64_t> run_;                                 // the first vertex of a run
+  std::uint64_t count_ = 0;
+  std::uint64_t next_ = 0;
+  std::size_t next_run_ = 0;
+  bool is_started_ = false;
+  std::size_t axis_ = 0;
+  Vertex vertex_;
+  Vertex last_vertex_;
+  Surroundings around_;
+  std::array<std::array<std::int32_t, kPredictions>, 3> misses_{};
+  std::array<std::uint32_t, 3> last_residual_{};
+  std::array<NumberColumn, 3> forms_;
+};
+
+}  // namespace watertight::columns

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "columns/columns.h"
+
+namespace watertight {
+namespace {
+
+using columns::Text;
+using columns::TextKind;
+
+constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
+
+std::vector<Text> lines_of(const std::string& text, TextKind kind) {
+  std::vector<Text> lines;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n');
+    lines.push_back({kind, rest.substr(0, end)});
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  }
+  return lines;
+}
+
+void check_round_trip(const std::vector<Text>& texts) {
+  const Bytes packed = columns::pack_texts(texts);
+  const auto unpacked = columns::unpack_texts(packed, kNoLimit);
+  REQUIRE(unpacked);
+  REQUIRE(unpacked->size() == texts.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) CHECK((*unpacked)[i] == texts[i].text);
+}
+
+std::size_t packed_size(const std::string& text, TextKind kind) {
+  return columns::pack_texts(std::vector<Text>{{kind, text}}).size();
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Features as a sequence has them, with ids, attributes, a surface and vertices.
+std::string features(int count) {
+  std::mt19937 random(7);
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    const std::string id = "NL.IMBAG.Pand.05031000000" + std::to_string(10'000 + 7 * i);
+    const int x = static_cast<int>(random() % 1'000'000);
+    const std::string p = std::to_string(x);
+    const std::string q = std::to_string(x + 5'000);
+    text +=
+        R"({"type":"CityJSONFeature","id":")" + id + R"(","CityObjects":{")" + id +
+        R"(":{"type":"Building","attributes":{"year":)" + std::to_string(1900 + i % 120) +
+        R"(,"height":)" + std::to_string(3 + i % 9) + R"(.5,"roof":"slanted"},"geometry":[{)" +
+        R"("type":"MultiSurface","lod":"0","boundaries":[[[0,1,2,3]]]}]}},"vertices":{"count":4,)" +
+        R"("kind":"integers","solids":[],"others":[)" + p + "," + p + ",0," + q + "," + p + ",0," +
+        q + "," + q + ",0," + p + "," + q + ",0]}}\n";
+  }
+  return text;
+}
+
+TEST_CASE("texts come back byte for byte") {
+  check_round_trip({});
+  check_round_trip({{TextKind::json, ""}, {TextKind::xml, ""}, {TextKind::bytes, ""}});
+  for (
+      const char* text :
+      {"{}", "[]", "0", "\"", "\"\"", "{\"a\":", "{\"a\":1}", "[[[1,2],[3,-4.50]],null,true]",
+       "  { \"a\" : [ ] }\n",
+       R"({"CityObjects":{"a":{"geometry":[{"boundaries":[[0,1,"x",-1,]]}]}}})",
+       R"({"vertices":{"count":99999999999999,"kind":0,"solids":[[5,-1,7]],"others":[1,"",2.5,[]]}})",
+       R"({"a":"\"\\","b":"\u0000"})", "}}}]]]", "<a b='c' d=\"e\">1 2 3</a><!-- x --><b/>", "<a",
+       "<a b=\"", "</a></a>text<", "1.5 2.5\n3.5"}) {
+    CAPTURE(text);
+    for (const TextKind kind : {TextKind::json, TextKind::xml, TextKind::bytes}) {
+      check_round_trip({{kind, text}, {kind, text}});
+    }
+  }
+}
+
+TEST_CASE("any bytes come back") {
+  std::mt19937 random(1);
+  constexpr std::string_view kLikely = "{}[],:\"\\<>/ =0123456789.-eabc\n\x01\x02";
+  for (int i = 0; i < 300; ++i) {
+    std::string text;
+    const std::size_t size = random() % 60;
+    for (std::size_t j = 0; j < size; ++j) {
+      text += random() % 4 == 0 ? static_cast<char>(random() % 256)
+                                : kLikely[random() % kLikely.size()];
+    }
+    const auto kind = static_cast<TextKind>(random() % 3);
+    check_round_trip({{kind, text}});
+  }
+}
+
+TEST_CASE("numbers of every kind come back as they were written") {
+  std::string text = "[";
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 500; ++i) {
+    const auto mantissa = static_cast<std::int64_t>(random() >> (random() % 60));
+    std::string number = std::to_string(random() % 2 == 0 ? mantissa : -mantissa);
+    if (random() % 3 == 0) number.append(".").append(std::to_string(random() % 100'000));
+    if (random() % 7 == 0) number += "e-5";
+    if (random() % 7 == 0) number += ".10";
+    text += number + ",";
+  }
+  text += "-0,-0.0,1E400,9223372036854775807,-9223372036854775808,0.1,0.10000000149011612]";
+  for (const TextKind kind : {TextKind::json, TextKind::xml}) check_round_trip({{kind, text}});
+  const std::string others = R"({"vertices":{"count":200,"solids":[],"others":)" + text + "}}";
+  check_round_trip({{TextKind::json, others}});
+}
+
+TEST_CASE("every document of the test data comes back") {
+  std::size_t documents = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(WATERTIGHT_TEST_DATA)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending != ".json" && ending != ".jsonl" && ending != ".gml") continue;
+    CAPTURE(entry.path().filename().string());
+    const std::string text = read_file(entry.path());
+    ++documents;
+    if (ending == ".gml") {
+      check_round_trip({{TextKind::xml, text}});
+    } else {
+      check_round_trip(lines_of(text, TextKind::json));
+    }
+  }
+  CHECK(documents > 50);
+}
+
+TEST_CASE("a thousand features take few bytes each") {
+  const std::string text = features(1000);
+  const std::vector<Text> lines = lines_of(text, TextKind::json);
+  check_round_trip(lines);
+  // A place (20 bits for x and y each) and a step of the id are all that is new in a feature.
+  CHECK(columns::pack_texts(lines).size() < 9 * 1000);
+}
+
+TEST_CASE("digits of a UUID cost four bits each, and nothing the second time") {
+  std::mt19937 random(5);
+  std::string text = "[";
+  for (int i = 0; i < 500; ++i) {
+    std::string uuid = "GUID_";
+    for (int j = 0; j < 36; ++j) {
+      uuid += j == 8 || j == 13 || j == 18 || j == 23 ? '-' : "0123456789ABCDEF"[random() % 16];
+    }
+    text += "{\"id\":\"" + uuid + "\",\"same\":\"" + uuid + "\"},";
+  }
+  CHECK(packed_size(text, TextKind::json) < 500 * 33 / 2);
+}
+
+TEST_CASE("floats of 32 bits cost no more than their bits") {
+  std::mt19937 random(9);
+  std::string text = "[";
+  for (int i = 0; i < 1000; ++i) {
+    const float value = 5 + static_cast<float>(random() % 1'000'000) / 999'983.0F;
+    std::array<char, 40> digits{};
+    const int size =
+        std::snprintf(digits.data(), digits.size(), "%.17g", static_cast<double>(value));
+    double shortest = 0;
+    for (int precision = 1; precision <= size; ++precision) {
+      std::snprintf(digits.data(), digits.size(), "%.*g", precision, static_cast<double>(value));
+      shortest = std::strtod(digits.data(), nullptr);
+      if (shortest == static_cast<double>(value)) break;
+    }
+    text += std::string(digits.data()) + ",";
+  }
+  CHECK(packed_size(text, TextKind::json) < 1000 * 16 / 5);
+}
+
+TEST_CASE("damaged bytes give an error or other texts, in bounds") {
+  const std::string text = features(20);
+  const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));
+  std::size_t refused = 0;
+  for (std::size_t size = 0; size < packed.size(); ++size) {
+    if (!columns::unpack_texts(ByteView(packed).first(size), 1'000'000)) ++refused;
+  }
+  CHECK(refused + 5 > packed.size());  // few prefixes are packed texts too: others, which end early
+  std::mt19937 random(11);
+  for (int i = 0; i < 2000; ++i) {
+    Bytes damaged = packed;
+    for (int j = 0; j < 3; ++j) {
+      std::uint8_t& byte = damaged[random() % damaged.size()];
+      byte = static_cast<std::uint8_t>(byte ^ (1U << (random() % 8)));
+    }
+    const auto unpacked = columns::unpack_texts(damaged, 100'000);
+    if (!unpacked) continue;
+    std::size_t size = 0;
+    for (const std::string& unpacked_text : *unpacked) size += unpacked_text.size();
+    CHECK(size <= 100'000);
+  }
+}
+
+TEST_CASE("texts beyond the limit are refused") {
+  const std::string text = features(50);
+  const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));
+  const auto refused = columns::unpack_texts(packed, text.size() / 2);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::limit_exceeded);
+  CHECK(columns::unpack_texts(packed, text.size()));
+}
+
+}  // namespace
+}  // namespace watertight

@@ -64,8 +64,9 @@ ValueCoder::Kind ValueCoder::choose_kind(const Context& context, std::string_vie
   if (known && !(number && text.size() < kShortNumber)) return Kind::known;
   if (number) return Kind::number;
   const auto uuid = find_uuid(text);
-  const bool is_alike = uuid && resembles(*uuid, find_uuid(values_.text(context.column.last)));
-  return uuid && !is_alike ? Kind::uuid : Kind::string;
+  if (!uuid) return Kind::string;
+  const bool is_alike = resembles(*uuid, find_uuid(values_.text(context.column.last)));
+  return uuids_.knows(*uuid) || !is_alike ? Kind::uuid : Kind::string;
 }
 
 ValueCoder::Kind ValueCoder::code_kind(EntropyStream& stream, ContextMixer& mixer,
@@ -104,27 +105,36 @@ std::uint32_t ValueCoder::code_listed(EntropyStream& stream, ContextMixer& mixer
   return 0;
 }
 
+/// The value that came first after this one in the column where both came first.
+std::optional<std::uint32_t> ValueCoder::next_known(std::uint32_t value) const {
+  const Origin& origin = origins_[value];
+  if (origin.column == nullptr || origin.index + 1 >= origin.column->values.size()) {
+    return std::nullopt;
+  }
+  return origin.column->values[origin.index + 1];
+}
+
 std::uint32_t ValueCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
                                      const Context& context, std::string_view text) {
   Column& column = context.column;
   const Hash place = context.place.column;
+  const Hash last = hash_of(place, column.last_distance);
   const std::uint32_t value = stream.is_reading() ? 0 : values_.find(text).value_or(0);
-  if (mixer.flag(stream, Question::is_next_known, {place, hash_of(place, column.last_distance)},
-                 value == last_known_ + 1)) {
+  const auto next = next_known(last_known_);
+  if (next && mixer.flag(stream, Question::is_next_known, {place, last}, value == *next)) {
     column.last_distance = 0;
-    last_known_ = last_known_ + 1;
-  } else {
-    const std::uint64_t distance = mixer.number(stream, Question::known_distance,
-                                                {place, hash_of(place, column.last_distance)},
-                                                values_.size() - 1 - value, kDistanceBits);
-    column.last_distance = static_cast<std::uint32_t>(std::bit_width(distance));
-    last_known_ = static_cast<std::uint32_t>(values_.size() - 1 -
-                                             std::min<std::uint64_t>(distance, values_.size()));
+    last_known_ = *next;
+    return last_known_;
   }
-  if (last_known_ >= values_.size()) {
+  const std::uint32_t newest = values_.size() - 1;
+  const std::uint64_t distance = mixer.number(stream, Question::known_distance, {place, last},
+                                              newest - value, kDistanceBits);
+  column.last_distance = static_cast<std::uint32_t>(std::bit_width(distance));
+  if (distance > newest) {
     stream.fail();
-    last_known_ = 0;
+    return 0;
   }
+  last_known_ = newest - static_cast<std::uint32_t>(distance);
   return last_known_;
 }
 
@@ -163,7 +173,7 @@ std::uint32_t ValueCoder::code_uuid(EntropyStream& stream, ContextMixer& mixer,
         affixes_.add(strings.code(stream, mixer, hash_of(column, 1), around, context.most_bytes));
   }
   context.column.affixes = number;
-  auto coded = with_uuid(affixes_.text(number), code_uuid_digits(stream, mixer, column, uuid));
+  auto coded = with_uuid(affixes_.text(number), uuids_.code(stream, mixer, column, uuid));
   if (!coded) {
     stream.fail();
     return 0;
@@ -201,7 +211,10 @@ std::uint32_t ValueCoder::code_of_kind(EntropyStream& stream, ContextMixer& mixe
 
 std::uint32_t ValueCoder::add(std::string text, std::optional<FormedNumber> number) {
   const std::uint32_t value = values_.add(std::move(text));
-  if (value == numbers_.size()) numbers_.push_back(number);
+  if (value == numbers_.size()) {
+    numbers_.push_back(number);
+    origins_.emplace_back();
+  }
   return value;
 }
 
@@ -214,6 +227,7 @@ void ValueCoder::learn(EntropyStream& stream, const Context& context, Kind kind,
       index_of_.insert_or_assign(key_of(context.place.column, value),
                                  static_cast<std::uint32_t>(column.values.size()));
     }
+    if (origins_[value].column == nullptr) origins_[value] = {&column, column.values.size()};
     column.values.push_back(value);
   }
   if (kind != Kind::number && numbers_[value]) column.numbers.see(*numbers_[value]);

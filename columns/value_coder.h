@@ -18,6 +18,7 @@
 #include "columns/models/context_mixer.h"
 #include "columns/models/number_coder.h"
 #include "columns/models/string_coder.h"
+#include "columns/models/uuid.h"
 #include "columns/place.h"
 #include "columns/value_table.h"
 
@@ -58,6 +59,11 @@ class ValueCoder {
     std::uint32_t affixes = 0;          // of the last uuid
     NumberColumn numbers;
   };
+  /// Where a value came first.
+  struct Origin {
+    const Column* column = nullptr;
+    std::size_t index = 0;  // among the values of the column
+  };
   /// What is known before a value.
   struct Context {
     const Place& place;
@@ -72,6 +78,7 @@ class ValueCoder {
   Kind code_kind(EntropyStream& stream, ContextMixer& mixer, const Context& context, Kind kind);
   std::uint32_t code_listed(EntropyStream& stream, ContextMixer& mixer, const Context& context,
                             std::string_view text);
+  std::optional<std::uint32_t> next_known(std::uint32_t value) const;
   std::uint32_t code_known(EntropyStream& stream, ContextMixer& mixer, const Context& context,
                            std::string_view text);
   std::uint32_t code_number(EntropyStream& stream, ContextMixer& mixer, const Context& context,
@@ -88,6 +95,8 @@ class ValueCoder {
   Candidates candidates_;
   std::unordered_map<Hash, Column> columns_;
   std::deque<std::optional<FormedNumber>> numbers_;  // of values that are numbers
+  std::deque<Origin> origins_;                       // of values
+  UuidCoder uuids_;
   /// Where a column lists a value, by column and value. Empty for a reader.
   std::unordered_map<std::uint64_t, std::uint32_t> index_of_;
   std::uint32_t last_ = 0;         // the last value at all

@@ -8,6 +8,7 @@ constexpr std::size_t kTextSize = 36;
 constexpr char kPlaceholder = '\1';
 constexpr std::size_t kVersionDigit = 12;  // the version
 constexpr std::size_t kVariantDigit = 16;  // the variant, in its upper bits
+constexpr int kDistanceBits = 4;
 constexpr std::string_view kSmall = "0123456789abcdef";
 constexpr std::string_view kCapital = "0123456789ABCDEF";
 
@@ -85,18 +86,63 @@ std::optional<std::string> with_uuid(std::string_view affixes, const Uuid& uuid)
   return text;
 }
 
-Uuid code_uuid_digits(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid) {
-  Uuid coded;
-  for (std::size_t i = 0; i < coded.digits.size(); ++i) {
+UuidCoder::Digits UuidCoder::code_digits(EntropyStream& stream, ContextMixer& mixer, Hash column,
+                                         const Digits& digits) {
+  Digits coded{};
+  for (std::size_t i = 0; i < coded.size(); ++i) {
     const bool is_predictable = i == kVersionDigit || i == kVariantDigit;
     const std::uint64_t digit =
-        is_predictable ? mixer.symbol(stream, Question::uuid_version,
-                                      {hash_of(column, static_cast<Hash>(i)), static_cast<Hash>(i)},
-                                      4, uuid.digits[i])
-                       : stream.code_bits(uuid.digits[i], 4);
-    coded.digits[i] = static_cast<std::uint8_t>(digit);
+        is_predictable
+            ? mixer.symbol(stream, Question::uuid_version,
+                           {hash_of(column, static_cast<Hash>(i)), static_cast<Hash>(i)}, 4,
+                           digits[i])
+            : stream.code_bits(digits[i], 4);
+    coded[i] = static_cast<std::uint8_t>(digit);
   }
-  coded.is_upper_case = mixer.flag(stream, Question::is_upper_case, {column}, uuid.is_upper_case);
+  return coded;
+}
+
+/// Codes whether a UUID is the last one, the one after it, or an earlier one; none for a new one.
+std::optional<std::size_t> UuidCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
+                                                 Hash column, std::optional<std::size_t> known) {
+  if (known_.empty()) return std::nullopt;
+  if (mixer.flag(stream, Question::is_last_uuid, {column}, known == last_)) return last_;
+  if (!mixer.flag(stream, Question::is_known_uuid, {column}, known.has_value())) {
+    return std::nullopt;
+  }
+  const bool has_next = last_ + 1 < known_.size();
+  if (has_next && mixer.flag(stream, Question::is_next_uuid, {column}, known == last_ + 1)) {
+    return last_ + 1;
+  }
+  const std::size_t newest = known_.size() - 1;
+  const std::uint64_t distance = mixer.number(stream, Question::uuid_distance, {column},
+                                              newest - known.value_or(newest), kDistanceBits);
+  if (distance > newest) {
+    stream.fail();
+    return 0;
+  }
+  return newest - static_cast<std::size_t>(distance);
+}
+
+Uuid UuidCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid) {
+  std::optional<std::size_t> known;
+  if (!stream.is_reading()) {
+    const auto found = number_of_.find(uuid.digits);
+    if (found != number_of_.end()) known = found->second;
+  }
+  known = code_known(stream, mixer, column, known);
+  Uuid coded;
+  if (known) {
+    coded.digits = known_[*known];
+    last_ = *known;
+  } else {
+    coded.digits = code_digits(stream, mixer, column, uuid.digits);
+    last_ = known_.size();
+    known_.push_back(coded.digits);
+    if (!stream.is_reading()) number_of_.emplace(coded.digits, last_);
+  }
+  coded.is_upper_case =
+      mixer.flag(stream, Question::is_upper_case, {column}, uuid.is_upper_case);
   return coded;
 }
 

@@ -6,9 +6,11 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "columns/models/context_mixer.h"
 
@@ -29,7 +31,25 @@ bool resembles(const Uuid& uuid, const std::optional<Uuid>& other);
 std::string affixes_of(const Uuid& uuid, std::string_view text);
 /// The string with the UUID back in its place; none when no byte is 1.
 std::optional<std::string> with_uuid(std::string_view affixes, const Uuid& uuid);
-/// Codes the digits of a UUID and the case of its letters.
-Uuid code_uuid_digits(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid);
+/// Codes UUIDs. Ids that belong together often have one UUID and different ends.
+class UuidCoder {
+ public:
+  /// Codes the digits of a UUID and the case of its letters.
+  Uuid code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid);
+
+  /// Whether a UUID was coded before. For writers.
+  bool knows(const Uuid& uuid) const { return number_of_.contains(uuid.digits); }
+
+ private:
+  using Digits = std::array<std::uint8_t, 32>;
+  std::optional<std::size_t> code_known(EntropyStream& stream, ContextMixer& mixer, Hash column,
+                                        std::optional<std::size_t> known);
+  static Digits code_digits(EntropyStream& stream, ContextMixer& mixer, Hash column,
+                            const Digits& digits);
+
+  std::vector<Digits> known_;
+  std::map<Digits, std::size_t> number_of_;  // empty for a reader
+  std::size_t last_ = 0;                     // the number of the last UUID
+};
 
 }  // namespace watertight::columns

@@ -72,6 +72,7 @@ void JsonPath::take_key(std::string_view key) {
     case Names::root:
       if (key == "CityObjects") level.of_key = Names::ids;
       if (key == "vertices") level.of_key = Names::vertices;
+      if (key == "boundaries") level.of_member = Role::vertex_index;
       break;
     case Names::vertices:
       if (key == "count") level.of_member = Role::vertex_count;

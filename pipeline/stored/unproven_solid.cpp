@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The line is a list of numbers with single spaces between them: the kind of the lattice; mantissa
-// and exponent of its three steps and its origin's three coordinates; the EPSG code; the vertices;
-// the vertices of the rings; the sizes of rings, facets and shells. Each list begins with its
-// length. Integer coordinates are written as differences to the vertex before, which compress well,
-// and doubles in the shortest digits that read back as the same doubles.
+// The line is JSON, in the form of a geometry of a skeleton (formats/city_json/model.h), so that its
+// rings and vertices are packed like those:
+//
+//   {"lattice":[kind,step and origin as mantissa and exponent...],"srid":7415,
+//    "boundaries":[shells],"vertices":{"count":8,"solids":[],"others":[x,y,z,x,...]}}
+//
+// Coordinates are those on the lattice. Lines that were stored before this form are a list of
+// numbers with single spaces between them: the kind of the lattice; mantissa and exponent of its
+// three steps and its origin's three coordinates; the EPSG code; the vertices; the vertices of the
+// rings; the sizes of rings, facets and shells. Each list begins with its length; integer
+// coordinates are differences to the vertex before.
 #include "pipeline/stored/unproven_solid.h"
 
 #include <array>
@@ -18,27 +24,15 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr double kLargestInteger = 0x1p53;
-
-class NumberWriter {
- public:
-  template <class Number>
-  void add(Number number) {
-    std::array<char, 32> digits{};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-    if (!text_.empty()) text_ += ' ';
-    text_.append(digits.data(), end);
-  }
-  /// The sizes of the ranges between offsets.
-  void add_sizes(const std::vector<Index>& offsets) {
-    add(offsets.size() - 1);
-    for (std::size_t i = 1; i < offsets.size(); ++i) add(offsets[i] - offsets[i - 1]);
-  }
-  std::string take() { return std::move(text_); }
-
- private:
-  std::string text_;
-};
+void append_number(std::string& out, double number) {
+  constexpr double kLargestInteger = 0x1p53;
+  std::array<char, 40> digits{};
+  char* const end = digits.data() + digits.size();
+  const bool is_integer = std::abs(number) < kLargestInteger && number == std::floor(number);
+  const auto rest = is_integer ? std::to_chars(digits.data(), end, number, std::chars_format::fixed)
+                               : std::to_chars(digits.data(), end, number);
+  out.append(digits.data(), rest.ptr);
+}
 
 /// Reads numbers from the front. After a failure all numbers are 0.
 class NumberReader {
@@ -84,38 +78,7 @@ class NumberReader {
   bool is_at_end_ = false;
 };
 
-bool is_integer(double value) {
-  return std::abs(value) < kLargestInteger && value == std::floor(value);
-}
-
-/// Whether all coordinates can be written as integers.
-bool are_integers(std::span<const Point> points) {
-  for (const Point& p : points) {
-    if (!is_integer(p.x) || !is_integer(p.y) || !is_integer(p.z)) return false;
-  }
-  return true;
-}
-
 using Steps = std::array<std::int64_t, 3>;
-
-void add_vertices(NumberWriter& writer, std::span<const Point> points) {
-  const bool integers = are_integers(points);
-  writer.add(points.size());
-  writer.add(integers ? 1 : 0);
-  Steps last{};
-  for (const Point& p : points) {
-    const std::array<double, 3> place{p.x, p.y, p.z};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!integers) {
-        writer.add(place[axis]);
-        continue;
-      }
-      const auto value = static_cast<std::int64_t>(place[axis]);
-      writer.add(value - last[axis]);
-      last[axis] = value;
-    }
-  }
-}
 
 std::vector<Point> take_vertices(NumberReader& reader) {
   const std::size_t count = reader.take_length(6);
@@ -141,37 +104,168 @@ std::vector<Point> take_vertices(NumberReader& reader) {
   return points;
 }
 
+/// Reads the text of JSON from the front. After a failure all numbers are 0.
+class JsonCursor {
+ public:
+  explicit JsonCursor(std::string_view text) : text_(text) {}
+
+  void expect(std::string_view text) {
+    if (!take(text)) has_failed_ = true;
+  }
+  /// Takes this text if it comes next.
+  bool take(std::string_view text) {
+    if (has_failed_ || !text_.starts_with(text)) return false;
+    text_.remove_prefix(text.size());
+    return true;
+  }
+  template <class Number>
+  Number number() {
+    Number number{};
+    const auto [rest, error] = std::from_chars(text_.data(), text_.data() + text_.size(), number);
+    if (has_failed_ || error != std::errc{}) {
+      has_failed_ = true;
+      return Number{};
+    }
+    text_.remove_prefix(static_cast<std::size_t>(rest - text_.data()));
+    return number;
+  }
+  /// Reads a list, whose elements `read` reads.
+  template <class Read>
+  void list(Read read) {
+    expect("[");
+    if (take("]")) return;
+    do read();
+    while (!has_failed_ && take(","));
+    expect("]");
+  }
+  bool is_done() const { return !has_failed_ && text_.empty(); }
+  bool has_failed() const { return has_failed_; }
+
+ private:
+  std::string_view text_;
+  bool has_failed_ = false;
+};
+
+/// Appends elements between brackets, with commas between them.
+template <class Append>
+void append_list(std::string& out, IndexRange range, Append append) {
+  out += '[';
+  for (Index i = range.begin; i < range.end; ++i) {
+    if (i > range.begin) out += ',';
+    append(i);
+  }
+  out += ']';
+}
+
+void append_boundaries(std::string& out, const Solid& solid) {
+  append_list(out, {0, static_cast<Index>(solid.shell_count())}, [&](Index shell) {
+    append_list(out, solid.facets_of(shell), [&](Index facet) {
+      append_list(out, solid.rings_of(facet), [&](Index ring) {
+        const std::span<const Index> vertices = solid.ring(ring);
+        append_list(out, {0, static_cast<Index>(vertices.size())},
+                    [&](Index i) { out += std::to_string(vertices[i]); });
+      });
+    });
+  });
+}
+
+SolidArrays read_boundaries(JsonCursor& cursor) {
+  SolidArrays arrays;
+  arrays.ring_offsets = {0};
+  arrays.facet_offsets = {0};
+  arrays.shell_offsets = {0};
+  const auto end = [](std::vector<Index>& offsets, std::size_t size) {
+    offsets.push_back(static_cast<Index>(size));
+  };
+  cursor.list([&] {
+    cursor.list([&] {
+      cursor.list([&] {
+        cursor.list([&] { arrays.ring_vertices.push_back(cursor.number<Index>()); });
+        end(arrays.ring_offsets, arrays.ring_vertices.size());
+      });
+      end(arrays.facet_offsets, arrays.ring_offsets.size() - 1);
+    });
+    end(arrays.shell_offsets, arrays.facet_offsets.size() - 1);
+  });
+  return arrays;
+}
+
+Error malformed_line() {
+  return Error{ErrorCode::malformed, "truncated or malformed numbers of an unproven solid"};
+}
+
+Result<geometry::LatticeKind> kind_of(int kind) {
+  if (kind >= 0 && kind <= static_cast<int>(geometry::LatticeKind::float64)) {
+    return static_cast<geometry::LatticeKind>(kind);
+  }
+  return Error{ErrorCode::malformed, "an unproven solid on an unknown lattice"};
+}
+
+Result<Solid> read_json(std::string_view line, const Limits& limits) {
+  JsonCursor cursor(line);
+  geometry::Lattice lattice;
+  cursor.expect(R"({"lattice":[)");
+  const auto kind = kind_of(cursor.number<int>());
+  if (!kind) return kind.error();
+  lattice.kind = *kind;
+  for (auto* numbers : {&lattice.step, &lattice.origin}) {
+    for (geometry::GridNumber& number : *numbers) {
+      cursor.expect(",");
+      number.mantissa = cursor.number<std::int64_t>();
+      cursor.expect(",");
+      number.exponent = cursor.number<std::int32_t>();
+    }
+  }
+  cursor.expect(R"(],"srid":)");
+  const auto srid = cursor.number<std::uint32_t>();
+  cursor.expect(R"(,"boundaries":)");
+  SolidArrays arrays = read_boundaries(cursor);
+  cursor.expect(R"(,"vertices":{"count":)");
+  const auto count = cursor.number<std::uint64_t>();
+  cursor.expect(R"(,"solids":[],"others":)");
+  std::vector<double> coordinates;
+  cursor.list([&] { coordinates.push_back(cursor.number<double>()); });
+  cursor.expect("}}");
+  if (!cursor.is_done() || count > coordinates.size() || coordinates.size() != 3 * count) {
+    return malformed_line();
+  }
+  arrays.vertices.reserve(count);
+  for (std::size_t i = 0; i < coordinates.size(); i += 3) {
+    arrays.vertices.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+  }
+  return Solid::make(std::move(arrays), lattice, srid, limits);
+}
+
 }  // namespace
 
 std::string write_unproven(const Solid& solid) {
-  NumberWriter writer;
+  std::string out = R"({"lattice":[)";
   const geometry::Lattice& lattice = solid.lattice();
-  writer.add(static_cast<int>(lattice.kind));
+  out += std::to_string(static_cast<int>(lattice.kind));
   for (const auto& numbers : {lattice.step, lattice.origin}) {
     for (const geometry::GridNumber& number : numbers) {
-      writer.add(number.mantissa);
-      writer.add(number.exponent);
+      out.append(",").append(std::to_string(number.mantissa));
+      out.append(",").append(std::to_string(number.exponent));
     }
   }
-  writer.add(solid.srid());
-  const SolidArrays& arrays = solid.arrays();
-  add_vertices(writer, arrays.vertices);
-  writer.add(arrays.ring_vertices.size());
-  for (const Index vertex : arrays.ring_vertices) writer.add(vertex);
-  for (const auto* offsets : {&arrays.ring_offsets, &arrays.facet_offsets, &arrays.shell_offsets}) {
-    writer.add_sizes(*offsets);
-  }
-  return writer.take();
+  out.append(R"(],"srid":)").append(std::to_string(solid.srid())).append(R"(,"boundaries":)");
+  append_boundaries(out, solid);
+  out.append(R"(,"vertices":{"count":)").append(std::to_string(solid.vertex_count()));
+  out += R"(,"solids":[],"others":)";
+  const std::span<const Point> points = solid.vertices();
+  append_list(out, {0, static_cast<Index>(3 * points.size())}, [&](Index i) {
+    append_number(out, points[i / 3][static_cast<int>(i % 3)]);
+  });
+  return out + "}}";
 }
 
 Result<Solid> read_unproven(std::string_view line, const Limits& limits) {
+  if (line.starts_with('{')) return read_json(line, limits);
   NumberReader reader(line);
   geometry::Lattice lattice;
-  const int kind = reader.take<int>();
-  if (kind < 0 || kind > static_cast<int>(geometry::LatticeKind::float64)) {
-    return Error{ErrorCode::malformed, "an unproven solid on an unknown lattice"};
-  }
-  lattice.kind = static_cast<geometry::LatticeKind>(kind);
+  const auto kind = kind_of(reader.take<int>());
+  if (!kind) return kind.error();
+  lattice.kind = *kind;
   for (auto* numbers : {&lattice.step, &lattice.origin}) {
     for (geometry::GridNumber& number : *numbers) {
       number.mantissa = reader.take<std::int64_t>();
@@ -189,9 +283,7 @@ Result<Solid> read_unproven(std::string_view line, const Limits& limits) {
   for (auto* offsets : {&arrays.ring_offsets, &arrays.facet_offsets, &arrays.shell_offsets}) {
     *offsets = reader.take_sizes();
   }
-  if (!reader.is_done()) {
-    return Error{ErrorCode::malformed, "truncated or malformed numbers of an unproven solid"};
-  }
+  if (!reader.is_done()) return malformed_line();
   return Solid::make(std::move(arrays), lattice, srid, limits);
 }
 

@@ -12,6 +12,7 @@
 #include "cli/files.h"
 #include "cli/rules.h"
 #include "cli/summary.h"
+#include "pipeline/pipeline.h"
 
 namespace watertight::cli {
 
@@ -49,6 +50,7 @@ struct EncodeCommand {
   std::string rejected;  // file for what --invalid skip leaves out, "" for none
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
+  std::string purpose = "size";     // or "ranges"
   bool is_bare = false;             // one blob instead of a Watertight file
   bool explains = false;            // print the bytes that the solids take in each mode
   std::size_t jobs = 1;
@@ -60,14 +62,45 @@ Exit run(const EncodeCommand& command);
 Exit encode_input(const EncodeCommand& command, const InputFile& source,
                   const std::string& position);
 
+/// A document that was validated and encoded; none if it was refused or could not be read, which
+/// was reported then.
+struct EncodedInput {
+  Exit exit = Exit::valid;
+  std::optional<pipeline::EncodedDocument> document;
+};
+EncodedInput encode_one(const EncodeCommand& command, const InputFile& source,
+                        const std::string& position);
+
+struct AppendCommand {
+  std::string target;
+  EncodeCommand encode;  // of the documents; purpose is that of the new blocks
+};
+Exit run(const AppendCommand& command);
+
+struct DeleteCommand {
+  std::string target;
+  std::vector<std::string> ids;
+};
+Exit run(const DeleteCommand& command);
+
 struct DecodeCommand {
   std::string input;
   std::string output;
 };
 Exit run(const DecodeCommand& command);
 
+/// Some features of a Watertight file.
+struct GetCommand {
+  std::string input;  // file or URL
+  std::vector<std::string> ids;
+  std::vector<double> box;  // 4 or 6 numbers, none for ids
+  std::string output = "-";
+};
+Exit run(const GetCommand& command);
+
 struct InfoCommand {
   std::string input;
+  bool lists_blocks = false;
   bool is_json = false;
 };
 Exit run(const InfoCommand& command);

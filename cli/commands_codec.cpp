@@ -14,7 +14,10 @@
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/inputs.h"
+#include "cli/outputs/documents.h"
+#include "cli/remote/http_file.h"
 #include "cli/sources/input_list.h"
+#include "cli/sources/ranged_file.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
 #include "codec/explain.h"
@@ -70,11 +73,7 @@ Result<WholeInput> read_argument(const std::string& argument) {
   return read_whole(*input, {});
 }
 
-Result<Input> load(const InputFile& file, bool keep_text, formats::Surfaces surfaces) {
-  formats::ReadOptions options;
-  options.split_features = false;
-  options.keep_text = keep_text;
-  options.surfaces = surfaces;
+Result<Input> load(const InputFile& file, const formats::ReadOptions& options) {
   const auto whole = read_whole(file, options.limits);
   if (!whole) return whole.error();
   return load_input(whole->name, whole->bytes, options);
@@ -90,9 +89,10 @@ Mode mode_named(const std::string& name) {
 
 Result<Bytes> pack(const EncodeCommand& command, const pipeline::EncodedDocument& document) {
   if (!command.is_bare) {
-    EncodeOptions pages;
-    pages.mode = mode_named(command.mode);
-    return pipeline::write_container(document, pages);
+    pipeline::ContainerOptions options;
+    options.pages.mode = mode_named(command.mode);
+    options.purpose = *pipeline::file_purpose_named(command.purpose);
+    return pipeline::write_container(document, options);
   }
   std::size_t solids = 0;
   const Bytes* blob = nullptr;
@@ -111,13 +111,35 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::EncodedDocument
       "--bare needs a document with exactly one solid; this one has " + std::to_string(solids)};
 }
 
+/// What an argument stands for: a Watertight file, or the bytes of something else.
+struct Encoded {
+  WholeInput whole;  // without bytes if it is on a web server
+  std::optional<pipeline::ContainerFile> container;
+};
+
+/// Opens an argument. A torn end of a Watertight file is reported and left out.
+Status open_encoded(const std::string& argument, Encoded& encoded) {
+  if (is_url(argument)) {
+    auto file = open_container(argument);
+    if (!file) return std::move(file).error();
+    encoded.container = *std::move(file);
+    return Done{};
+  }
+  auto whole = read_argument(argument);
+  if (!whole) return std::move(whole).error();
+  encoded.whole = *std::move(whole);
+  if (kind_of_input(encoded.whole.bytes) != InputKind::container) return Done{};
+  auto file = pipeline::ContainerFile::open(encoded.whole.bytes, {}, pipeline::TornTail::leave_out);
+  if (!file) return std::move(file).error();
+  warn_of_torn(argument, *file);
+  encoded.container = *std::move(file);
+  return Done{};
+}
+
 /// The documents of a Watertight file, or the one document of a blob.
-Result<std::vector<Document>> load_encoded(const std::string& path) {
-  const auto whole = read_argument(path);
-  if (!whole) return whole.error();
-  const Bytes& bytes = whole->bytes;
-  if (kind_of_input(bytes) == InputKind::container) return pipeline::decode_container(bytes);
-  auto input = load_input(whole->name, bytes, {});
+Result<std::vector<Document>> load_encoded(Encoded& encoded) {
+  if (encoded.container) return pipeline::decode_container(*encoded.container);
+  auto input = load_input(encoded.whole.name, encoded.whole.bytes, {});
   if (!input) return std::move(input).error();
   if (input->kind == InputKind::document) {
     return Error{ErrorCode::malformed, "neither a Watertight file nor a blob"};
@@ -125,33 +147,6 @@ Result<std::vector<Document>> load_encoded(const std::string& path) {
   std::vector<Document> documents;
   documents.push_back(std::move(input->document));
   return documents;
-}
-
-/// Writes each document to a file of its own; writes none if one cannot be converted or written (if
-/// a rename fails in the end, the files before it stay). The documents were read from `input`,
-/// which the message about a failed conversion names.
-Exit save(std::span<const Document> documents, const std::string& input,
-          const std::string& output) {
-  std::vector<std::string> names;
-  std::vector<FileWriter> files;
-  for (const Document& document : documents) {
-    const std::string& name = names.emplace_back(numbered_name(output, names.size()));
-    if (replaces(name, input)) return refuse_to_replace(input, name);
-    const auto format = name == "-" ? Result<Format>(document.format) : format_of_name(name);
-    if (!format) return fail_to_write(name, format.error());
-    const auto bytes = pipeline::convert_document(document, *format);
-    if (!bytes) return fail(input, bytes.error());
-    auto file = FileWriter::open(name);
-    if (!file) return fail_to_write(name, file.error());
-    const Status written = file->write(as_text(*bytes));
-    if (!written) return fail_to_write(name, written.error());
-    files.push_back(*std::move(file));
-  }
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const Status status = files[i].commit();
-    if (!status) return fail_to_write(names[i], status.error());
-  }
-  return Exit::valid;
 }
 
 Json json_of(const codec::BlobInfo& info) {
@@ -238,31 +233,61 @@ void print_unproven(const Json& unproven) {
   }
 }
 
-Result<Json> info_of_container(ByteView bytes) {
-  const auto info = pipeline::describe_container(bytes);
+/// The blocks of a file, each with its place, its features and its box.
+Json blocks_json(const pipeline::ContainerInfo& info) {
+  Json blocks = Json::array();
+  for (const pipeline::BlockEntry& block : info.blocks) {
+    Json json{{"offset", block.extent.offset},
+              {"bytes", block.extent.size},
+              {"features", block.features}};
+    if (block.box) {
+      json["box"] = {block.box->min[0], block.box->min[1], block.box->max[0], block.box->max[1]};
+    }
+    blocks.push_back(std::move(json));
+  }
+  return blocks;
+}
+
+Result<Json> info_of_container(pipeline::ContainerFile& file, bool lists_blocks) {
+  const auto info = pipeline::describe_container(file);
   if (!info) return info.error();
-  Json json{{"file", "Watertight file"}, {"bytes", bytes.size()}};
+  Json json{{"file", "Watertight file"}, {"bytes", file.size()}};
+  if (file.torn()) json["tornBytes"] = file.size() - file.committed();
   json["documents"] = info->formats.size();
   json["format"] = names_of(info->formats);
   json["features"] = info->features;
+  if (info->deleted > 0) json["deletedFeatures"] = info->deleted;
   json["solids"] = info->solids;
   for (const auto& [type, count] : info->other_geometries) json["otherGeometries"][type] = count;
   json["unproven"] = unproven_json(*info);
+  json["blocks"] = info->blocks.size();
+  json["index"] = file.has_index();
   json["pages"] = info->pages;
   json["solidBytes"] = info->solid_bytes;
-  json["documentBytes"] = bytes.size() - info->solid_bytes;
+  json["documentBytes"] = file.size() - info->solid_bytes;
   // Sums of hundredths are rounded again, because binary numbers do not hold hundredths exactly.
   for (const auto& [name, size] : info->parts) json["parts"][name] = std::round(size * 100) / 100;
+  if (lists_blocks) json["blockList"] = blocks_json(*info);
   return json;
 }
 
-Result<Json> info_of(ByteView bytes) {
-  const InputKind kind = kind_of_input(bytes);
-  if (kind == InputKind::container) return info_of_container(bytes);
-  if (kind == InputKind::page_file) return page_file_error();
+Result<Json> info_of(Encoded& encoded, bool lists_blocks) {
+  if (encoded.container) return info_of_container(*encoded.container, lists_blocks);
+  const Bytes& bytes = encoded.whole.bytes;
+  if (kind_of_input(bytes) == InputKind::page_file) return page_file_error();
   const auto info = codec::describe(bytes);
   if (!info) return info.error();
   return json_of(*info);
+}
+
+void print_blocks(const Json& blocks) {
+  std::printf("%6s %12s %10s %9s  %s\n", "block", "offset", "bytes", "features", "box");
+  std::size_t number = 0;
+  for (const Json& block : blocks) {
+    std::printf("%6zu %12s %10s %9s  %s\n", number++, block["offset"].dump().c_str(),
+                block["bytes"].dump().c_str(), block["features"].dump().c_str(),
+                block.contains("box") ? block["box"].dump().c_str() : "");
+  }
 }
 
 /// The bytes of all solids in one mode.
@@ -376,17 +401,17 @@ Status check_rejected(const EncodeCommand& command, const std::string& input) {
 
 }  // namespace
 
-Exit encode_input(const EncodeCommand& command, const InputFile& source,
-                  const std::string& position) {
+EncodedInput encode_one(const EncodeCommand& command, const InputFile& source,
+                        const std::string& position) {
   const auto contract = formats::contract_named(command.contract);
-  if (!contract) return fail("--contract", contract.error());
-  if (replaces(command.output, source.file)) return refuse_to_replace(source.file, command.output);
-  if (Status possible = check_rejected(command, source.file); !possible) {
-    return fail("--rejected", possible.error());
-  }
-  auto input =
-      load(source, *contract == formats::Contract::exact, surface_rule(command.surfaces).reading);
-  if (!input) return fail(command.input, input.error());
+  if (!contract) return {fail("--contract", contract.error()), {}};
+  formats::ReadOptions reading;
+  // A CityJSON whose features are to be found has no text of its own.
+  reading.split_features = command.purpose == "ranges";
+  reading.keep_text = *contract == formats::Contract::exact;
+  reading.surfaces = surface_rule(command.surfaces).reading;
+  auto input = load(source, reading);
+  if (!input) return {fail(command.input, input.error()), {}};
   delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
   pipeline::IngestOptions options;
   options.threads = command.jobs;
@@ -404,7 +429,7 @@ Exit encode_input(const EncodeCommand& command, const InputFile& source,
     };
     return pipeline::encode_document(std::move(input->document), &workers, options);
   }();
-  if (!encoded) return fail(command.input, encoded.error());
+  if (!encoded) return {fail(command.input, encoded.error()), {}};
   const Exit exit = exit_of(encoded->outcome.verdict);
   if (exit != Exit::valid) {
     for (const pipeline::FeatureOutcome& feature : encoded->outcome.features) {
@@ -413,34 +438,51 @@ Exit encode_input(const EncodeCommand& command, const InputFile& source,
     if (options.policy == store::Policy::refuse) {
       std::fprintf(stderr, "watertight: %s: not all solids are valid; nothing was written\n",
                    printable(command.input).c_str());
-      return exit;
+      return {exit, {}};
     }
     tell_unproven(command, *encoded);
     if (!command.rejected.empty()) {
       const Status written =
           write_rejected(command, encoded->document.header.str(), encoded->outcome);
-      if (!written) return fail_to_write(command.rejected, written.error());
+      if (!written) return {fail_to_write(command.rejected, written.error()), {}};
     }
   }
   tell_rounded(command.input, encoded->outcome);
-  const auto packed = pack(command, encoded->document);
+  return {exit, std::move(encoded->document)};
+}
+
+Exit encode_input(const EncodeCommand& command, const InputFile& source,
+                  const std::string& position) {
+  if (replaces(command.output, source.file)) return refuse_to_replace(source.file, command.output);
+  if (Status possible = check_rejected(command, source.file); !possible) {
+    return fail("--rejected", possible.error());
+  }
+  const EncodedInput encoded = encode_one(command, source, position);
+  if (!encoded.document) return encoded.exit;
+  const auto packed = pack(command, *encoded.document);
   if (!packed) return fail(command.input, packed.error());
   const Status status = write_file(command.output, *packed);
   if (!status) return fail_to_write(command.output, status.error());
-  if (!command.explains) return exit;
+  if (!command.explains) return encoded.exit;
   const Status explained =
-      explain_features(encoded->document.features, command.output == "-" ? stderr : stdout);
-  return explained ? exit : fail(command.input, explained.error());
+      explain_features(encoded.document->features, command.output == "-" ? stderr : stdout);
+  return explained ? encoded.exit : fail(command.input, explained.error());
 }
 
 Exit run(const DecodeCommand& command) {
-  const auto documents = load_encoded(command.input);
+  Encoded encoded;
+  if (Status opened = open_encoded(command.input, encoded); !opened) {
+    return fail(command.input, opened.error());
+  }
+  const auto documents = load_encoded(encoded);
   if (!documents) return fail(command.input, documents.error());
   if (documents->empty()) return fail(command.input, {ErrorCode::malformed, "no document in it"});
   if (documents->size() > 1 && command.output == "-") {
     return fail(command.input, {ErrorCode::unsupported, "several documents need names: -o FILE"});
   }
-  return save(*documents, command.input, command.output);
+  const Exit saved = save_documents(*documents, command.input, command.output);
+  const bool is_torn = encoded.container && encoded.container->torn();
+  return is_torn ? worse(saved, Exit::invalid) : saved;
 }
 
 /// Whether a GML document is to become a city model, which keeps more of it than its solids.
@@ -484,7 +526,7 @@ Exit save_converted(const ConvertCommand& command, Document document) {
     const Status made = make_solids(command.input, document);
     if (!made) return fail(command.input, made.error());
   }
-  return save({&document, 1}, command.input, command.output);
+  return save_documents({&document, 1}, command.input, command.output);
 }
 
 Exit run(const ConvertCommand& command) {
@@ -510,18 +552,23 @@ Exit run(const ConvertCommand& command) {
 }
 
 Exit run(const InfoCommand& command) {
-  const auto whole = read_argument(command.input);
-  if (!whole) return fail(command.input, whole.error());
-  auto json = info_of(whole->bytes);
+  Encoded encoded;
+  if (Status opened = open_encoded(command.input, encoded); !opened) {
+    return fail(command.input, opened.error());
+  }
+  auto json = info_of(encoded, command.lists_blocks);
   if (!json) return fail(command.input, json.error());
   if (command.is_json) {
     std::printf("%s\n", json->dump().c_str());
     return Exit::valid;
   }
   Json unproven = std::move((*json)["unproven"]);
+  Json blocks = json->contains("blockList") ? std::move((*json)["blockList"]) : Json::array();
   json->erase("unproven");
+  json->erase("blockList");
   print_info(*json, "");
   if (!unproven.is_null()) print_unproven(unproven);
+  if (!blocks.empty()) print_blocks(blocks);
   return Exit::valid;
 }
 

@@ -134,9 +134,8 @@ class ExportRun {
   }
 
   Exit write_container(SolidStore& store) {
-    auto exporting = pipeline::CollectionExport::start(store, command_.collection,
-                                                       pipeline::ExportFormat::container, {},
-                                                       pipeline::SolidLayout::pages, scope_);
+    auto exporting = pipeline::CollectionExport::start(
+        store, command_.collection, pipeline::ExportFormat::container, {}, scope_);
     if (!exporting) return fail(command_.collection, exporting.error());
     const Exit exit = write(*exporting, 0);
     if (exit == Exit::valid) sentences_.push_back(counts_of(*exporting) + " written");

@@ -184,6 +184,11 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
                   "findings to FILE.report.json");
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
+  sub->add_option("--for", command.purpose,
+                  "size, a file that is as small as it can be; ranges, a file whose features are "
+                  "read one by one, from a web server too")
+      ->check(CLI::IsMember({"size", "ranges"}))
+      ->capture_default_str();
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
   add_contract(*sub, command.contract);
   sub->add_flag("--explain", command.explains,
@@ -192,13 +197,66 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
+void add_append(CLI::App& app, AppendCommand& command, Chosen& chosen) {
+  CLI::App* sub =
+      app.add_subcommand("append", "Add the features of documents to a Watertight file");
+  EncodeCommand& encode = command.encode;
+  encode.purpose = "ranges";
+  sub->add_option("FILE", command.target, "Watertight file")->required();
+  sub->add_option("DOCUMENT", encode.files,
+                  "documents; a feature replaces the one with the same id in FILE")
+      ->required();
+  sub->add_option("--invalid", encode.invalid,
+                  "what is not proven to be valid: keep, as it came and marked as unproven; skip, "
+                  "leave it out; refuse, write nothing")
+      ->check(CLI::IsMember({"keep", "skip", "refuse"}))
+      ->capture_default_str();
+  add_rules(*sub, encode.rules);
+  add_surfaces(*sub, encode.surfaces);
+  add_contract(*sub, encode.contract);
+  add_jobs(*sub, encode.jobs);
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
+void add_delete(CLI::App& app, DeleteCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("delete", "Delete features of a Watertight file");
+  sub->add_option("FILE", command.target, "Watertight file")->required();
+  sub->add_option("ID", command.ids, "ids of features")->required();
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
 void add_decode(CLI::App& app, DecodeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("decode", "Restore the document of a Watertight file or blob");
-  sub->add_option("IN", command.input, "Watertight file or blob; - for standard input")->required();
+  sub->add_option("IN", command.input, "Watertight file, its URL, or blob; - for standard input")
+      ->required();
   sub->add_option("-o,--output", command.output,
                   "its extension decides the format; - for standard output in the stored format")
       ->required();
   sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
+void add_get(CLI::App& app, GetCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("get", "Write some features of a Watertight file");
+  sub->add_option("FILE", command.input,
+                  "Watertight file, of which only the parts with these features are read; also a "
+                  "http or https URL")
+      ->required();
+  auto* ids = sub->add_option("ID", command.ids, "ids of features, or of city objects in them");
+  sub->add_option("--bbox", command.box,
+                  "features whose boxes meet this one: minx,miny,maxx,maxy or "
+                  "minx,miny,minz,maxx,maxy,maxz")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->excludes(ids);
+  sub->add_option("-o,--output", command.output,
+                  "its extension decides the format; - for standard output as CityJSONSeq")
+      ->capture_default_str();
+  sub->callback([&] {
+    if (command.ids.empty() == command.box.empty()) {
+      throw CLI::ValidationError("either IDs or --bbox are required");
+    }
+    chosen = [&] { return run(command); };
+  });
 }
 
 void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
@@ -211,7 +269,8 @@ void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
 
 void add_info(CLI::App& app, InfoCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("info", "Describe a blob or a Watertight file");
-  sub->add_option("BLOB", command.input, "file; - for standard input")->required();
+  sub->add_option("BLOB", command.input, "file or URL; - for standard input")->required();
+  sub->add_flag("--blocks", command.lists_blocks, "also each block of a Watertight file");
   sub->add_flag("--json", command.is_json, "as one line of JSON");
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
@@ -348,6 +407,9 @@ int run_command_line(int argc, char** argv) {
   DecodeCommand decode_command;
   InfoCommand info_command;
   ConvertCommand convert_command;
+  GetCommand get_command;
+  AppendCommand append_command;
+  DeleteCommand delete_command;
   ServeCommand serve_command;
   IngestCommand ingest_command;
   ExportCommand export_command;
@@ -357,6 +419,9 @@ int run_command_line(int argc, char** argv) {
   add_advise(app, advise_command, chosen);
   add_encode(app, encode_command, chosen);
   add_decode(app, decode_command, chosen);
+  add_get(app, get_command, chosen);
+  add_append(app, append_command, chosen);
+  add_delete(app, delete_command, chosen);
   add_info(app, info_command, chosen);
   add_convert(app, convert_command, chosen);
   add_serve(app, serve_command, chosen);

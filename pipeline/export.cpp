@@ -22,14 +22,14 @@ void append(Bytes& bytes, ByteView more) { bytes.insert(bytes.end(), more.begin(
 }  // namespace
 
 Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::string& collection,
-                                                 ExportFormat format, const EncodeOptions& pages,
-                                                 SolidLayout layout, ExportScope scope) {
+                                                 ExportFormat format,
+                                                 const ContainerOptions& options,
+                                                 ExportScope scope) {
   if (const auto found = store.collection(collection); !found) return found.error();
   CollectionExport started(store, collection);
   started.scope_ = scope;
   if (format == ExportFormat::container) {
-    // A file of proven features can be of version 1, which older programs read.
-    started.container_.emplace(pages, layout, scope == ExportScope::all ? kContainerVersion : 1);
+    started.container_.emplace(options);
     return started;
   }
   auto plan = SequencePlan::make(store, collection);

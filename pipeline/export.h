@@ -2,8 +2,8 @@
 //
 // Writes a whole collection of a store, in order of place numbers (SolidStore::walk), so that
 // neighbours share pages. Memory does not grow with the collection: one batch of features, or one
-// part of a Watertight file, at a time. When features change meanwhile, the export holds old or new
-// ones, and a feature that moves may be in it twice; each feature is whole.
+// block of a Watertight file, at a time. When features change meanwhile, the export holds old or
+// new ones, and a feature that moves may be in it twice; each feature is whole.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,7 @@ class CollectionExport {
   /// Starts an export. Errors: those of the store; not_found (no collection, no features); those of
   /// SequencePlan::make(); unsupported when the features need several sequences.
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
-                                        ExportFormat format, const EncodeOptions& pages = {},
-                                        SolidLayout layout = SolidLayout::pages,
+                                        ExportFormat format, const ContainerOptions& options = {},
                                         ExportScope scope = ExportScope::all);
   /// Starts the export of one sequence of a plan, by its number. Errors: those of the store;
   /// invalid_argument when the plan has no such sequence.
@@ -49,7 +48,7 @@ class CollectionExport {
                                                  std::size_t sequence,
                                                  ExportScope scope = ExportScope::all);
 
-  /// The next bytes of the file: a batch of a sequence, some parts of a Watertight file; the first
+  /// The next bytes of the file: a batch of a sequence, some blocks of a Watertight file; the first
   /// call returns after one feature. Empty after the last ones. Errors: those of the store;
   /// malformed when a stored feature is damaged; unsupported as for start(); cancelled, asked for
   /// before each feature. After an error the file has no end.

@@ -167,9 +167,9 @@ ExportOrRefusal export_for(const ExportRequest& request, const CancelPoll& is_ca
   if (request.file->format == pipeline::ExportFormat::sequence) {
     return start_sequence(request, is_cancelled);
   }
-  auto started = pipeline::CollectionExport::start(*request.service.store, request.collection.id,
-                                                   request.file->format, {},
-                                                   pipeline::SolidLayout::blobs, request.scope);
+  auto started = pipeline::CollectionExport::start(
+      *request.service.store, request.collection.id, request.file->format,
+      {.layout = pipeline::SolidLayout::blobs}, request.scope);
   if (!started) return refuse_export(started.error());
   return StartedExport{*std::move(started), {}};
 }

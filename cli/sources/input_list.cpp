@@ -10,6 +10,7 @@
 #include "archives/expansion.h"
 #include "base/ascii.h"
 #include "base/quantity.h"
+#include "cli/remote/http_file.h"
 #include "cli/sources/zip_file.h"
 #include "cli/terminal/printable.h"
 #include "formats/document.h"
@@ -28,6 +29,25 @@ InputFile failing(const std::string& name, Error error) {
 
 InputFile plain(const std::string& path, const std::string& relative) {
   return {path, path, relative, [path] { return open_file(path); }};
+}
+
+/// A document on a web server, which is read whole.
+InputFile remote(const std::string& url) {
+  const std::string path = url.substr(0, url.find_first_of("?#"));
+  const auto open = [url]() -> Result<OpenedFile> {
+    auto bytes = read_http_file(url, {});
+    if (!bytes) return std::move(bytes).error();
+    const std::uint64_t size = bytes->size();
+    ByteSource source = [all = *std::move(bytes), given = std::size_t{0}](
+                            std::span<std::uint8_t> part) mutable -> Result<std::size_t> {
+      const std::size_t count = std::min(part.size(), all.size() - given);
+      std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(given), count, part.begin());
+      given += count;
+      return count;
+    };
+    return OpenedFile{std::move(source), size};
+  };
+  return {url, url, path.substr(path.find_last_of('/') + 1), open};
 }
 
 bool is_zip(const std::string& path) {
@@ -58,6 +78,8 @@ class Collector {
     std::error_code ignored;
     if (argument == "-") {
       inputs_.push_back(plain(argument, "standard-input"));
+    } else if (is_url(argument)) {
+      inputs_.push_back(remote(argument));
     } else if (fs::is_directory(argument, ignored)) {
       add_folder(argument);
     } else if (fs::is_regular_file(argument, ignored) && is_zip(argument)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The inputs that the arguments of a command stand for: files, the files in folders, the members of
-// zip archives.
+// zip archives, documents on web servers.
 #pragma once
 
 #include <span>

@@ -93,6 +93,10 @@ Result<DividedText> divide_city_model(std::string_view text, const std::set<Geom
 /// came. Empty for a text that is no skeleton of a city model. Cost: linear.
 std::map<std::string, std::uint64_t> other_geometries(std::string_view skeleton);
 
+/// The ids of the city objects of a skeleton, in its order. Empty for a text that is no skeleton of
+/// a city model. Cost: linear.
+std::vector<std::string> object_ids(std::string_view skeleton);
+
 /// Makes geometries of type Solid of the surfaces that Surfaces::as_solids has read as solids;
 /// lists of values by facet get a level for the shell. Returns how many. Errors: malformed. Cost:
 /// linear, the text of such features as JSON values.

@@ -55,6 +55,15 @@ std::map<std::string, std::uint64_t> other_geometries(std::string_view skeleton)
   return counts;
 }
 
+std::vector<std::string> object_ids(std::string_view skeleton) {
+  std::vector<std::string> ids;
+  const auto model = parse_city_model(skeleton, CityText::skeleton, kOwnText);
+  const Json* objects = model ? find_member(model->root, "CityObjects") : nullptr;
+  if (objects == nullptr || !objects->is_object()) return ids;
+  for (const auto& [id, object] : objects->get_ref<const Json::object_t&>()) ids.push_back(id);
+  return ids;
+}
+
 std::string solid_reference(std::string_view geometry_type, std::size_t first, std::size_t count) {
   const std::string number = std::to_string(first);
   if (geometry_type == "Solid") return std::string("{\"solid\":").append(number) + '}';

@@ -14,6 +14,7 @@
 #include "formats/text/packed_text.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/stored/feature_facts.h"
 #include "pipeline/stored/merged_vertices.h"
 #include "pipeline/stored/unproven_solid.h"
 #include "validate/report_json.h"
@@ -237,6 +238,39 @@ std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feat
   const auto lines = take_solid_lines(skeleton, feature.solids.size());
   if (!lines || !skeleton.starts_with('{')) return {};
   return formats::other_geometries(skeleton.substr(0, skeleton.find('\n')));
+}
+
+std::vector<std::string> ids_of(const EncodedFeature& feature) {
+  std::vector<std::string> ids{feature.id};
+  std::string_view skeleton = feature.skeleton;
+  const auto lines = take_solid_lines(skeleton, feature.solids.size());
+  if (lines && skeleton.starts_with('{')) {
+    for (std::string& id : formats::object_ids(skeleton.substr(0, skeleton.find('\n')))) {
+      ids.push_back(std::move(id));
+    }
+  }
+  for (const StoredSolid& solid : feature.solids) ids.push_back(solid.object_id);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  std::erase(ids, std::string());
+  return ids;
+}
+
+Result<std::optional<store::StoredBox>> box_of(const EncodedFeature& feature,
+                                               std::span<const Decoded> solids,
+                                               const Limits& limits) {
+  std::optional<store::StoredBox> box;
+  for (const Decoded& decoded : solids) include(box, decoded.solid);
+  std::string_view skeleton = feature.skeleton;
+  const auto lines = take_solid_lines(skeleton, feature.solids.size());
+  if (!lines) return lines.error();
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    if (feature.solids[i].is_proven) continue;
+    const auto solid = read_unproven((*lines)[i].unproven, limits);
+    if (!solid) return solid.error();
+    include(box, *solid);
+  }
+  return box;
 }
 
 Result<StoredFeature> pack(EncodedFeature feature) {

@@ -4,6 +4,9 @@
 #include <map>
 #include <utility>
 
+#include "pipeline/container.h"
+#include "pipeline/file/whole_model.h"
+
 namespace watertight::pipeline {
 namespace {
 
@@ -34,26 +37,25 @@ Result<Feature> read_again(const formats::CityHeader& header, Feature feature,
   return feature;
 }
 
-/// Whether a feature is a CityJSON as a whole.
-bool is_whole_model(const Feature& feature) {
-  return feature.id.empty() && feature.type == "CityJSON";
-}
-
 }  // namespace
 
 Result<ContainerParts> ContainerParts::open(ByteView bytes, const Limits& limits,
                                             WholeModels models) {
-  auto reader = ContainerReader::open(bytes, limits);
-  if (!reader) return std::move(reader).error();
-  return ContainerParts(*reader, limits, models);
+  auto file = ContainerFile::open(bytes, limits);
+  if (!file) return std::move(file).error();
+  ContainerParts parts(*std::move(file), limits, models);
+  for (const BlockDocument& document : parts.file_.documents()) {
+    if (Status added = parts.add(document); !added) return std::move(added).error();
+  }
+  return parts;
 }
 
-Status ContainerParts::add(ContainerDocument added) {
+Status ContainerParts::add(const BlockDocument& added) {
   const auto format = formats::format_named(added.format);
   if (!format) return format.error();
   Shared& shared = documents_.emplace_back();
   shared.document.format = *format;
-  shared.document.header = std::move(added.header);
+  shared.document.header = added.header;
   const bool is_city_model = *format == Format::city_json || *format == Format::city_json_seq;
   if (!is_city_model || shared.document.header.empty()) return Done{};
   auto header = formats::read_city_json_header(shared.document.header, limits_);
@@ -65,33 +67,24 @@ Status ContainerParts::add(ContainerDocument added) {
   return Done{};
 }
 
-/// The features of a CityJSON as a whole, as a reader of its text finds them.
+/// The features of a CityJSON as a whole.
 Result<Document> ContainerParts::split(const formats::CityHeader& header,
                                        const Feature& model) const {
-  if (models_ == WholeModels::refuse) {
-    return Error{ErrorCode::unsupported,
-                 "the file holds a CityJSON as a whole, not its features: decode it, and use the "
-                 "CityJSON"};
-  }
-  const auto text = formats::write_city_json_feature(header, model);
-  if (!text) return text.error();
-  formats::ReadOptions options;
-  options.limits = limits_;
-  return formats::read_city_json(*text, options);
+  if (models_ == WholeModels::split) return split_model(header, model, limits_);
+  return Error{ErrorCode::unsupported,
+               "the file holds a CityJSON as a whole, not its features: decode it, and use the "
+               "CityJSON"};
 }
 
 Result<std::optional<std::vector<Document>>> ContainerParts::next() {
-  auto part = reader_.next();
-  if (!part) return std::move(part).error();
-  if (!*part) return std::optional<std::vector<Document>>();
-  for (ContainerDocument& added : (*part)->new_documents) {
-    if (Status status = add(std::move(added)); !status) return std::move(status).error();
-  }
+  if (next_ == file_.block_count()) return std::optional<std::vector<Document>>();
+  auto block = file_.block(next_++);
+  if (!block) return std::move(block).error();
   std::map<std::uint64_t, Document> found;
-  for (ContainerFeature& feature : (*part)->features) {
+  for (ReadFeature& feature : block->features) {
     const std::uint64_t number = feature.document;
     const Shared& shared = documents_[number];
-    auto complete = restored(std::move(feature), shared.document.format, limits_);
+    auto complete = restored(std::move(feature), limits_);
     if (complete && shared.header && is_whole_model(*complete)) {
       auto model = split(*shared.header, *complete);
       if (!model) return std::move(model).error();

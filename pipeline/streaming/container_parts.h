@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The documents of a Watertight file for a store, part by part.
+// The documents of a Watertight file for a store, block by block.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "formats/city_json/city_json.h"
-#include "pipeline/container_reader.h"
+#include "pipeline/file/container_file.h"
 
 namespace watertight::pipeline {
 
@@ -17,13 +19,13 @@ enum class WholeModels : std::uint8_t { refuse, split };
 
 class ContainerParts {
  public:
-  /// `bytes` must outlive the object. Errors: those of ContainerReader::open().
+  /// `bytes` must outlive the object. Errors: those of ContainerFile::open().
   static Result<ContainerParts> open(ByteView bytes, const Limits& limits,
                                      WholeModels models = WholeModels::refuse);
 
-  /// The documents with features in the next part, each with these features only; nullopt
-  /// after the last part. Features of city models have the sources and instances, and documents
-  /// the templates, that their text would give. Errors: those of ContainerReader::next() and
+  /// The documents with features in the next block, each with these features only; nullopt
+  /// after the last block. Features of city models have the sources and instances, and documents
+  /// the templates, that their text would give. Errors: those of ContainerFile::block() and
   /// decode_feature(); malformed when skeleton and solids do not fit; unsupported for a CityJSON as
   /// a whole that is refused.
   Result<std::optional<std::vector<Document>>> next();
@@ -33,12 +35,13 @@ class ContainerParts {
     Document document;  // without features
     std::optional<formats::CityHeader> header;
   };
-  ContainerParts(const ContainerReader& reader, const Limits& limits, WholeModels models)
-      : reader_(reader), limits_(limits), models_(models) {}
-  Status add(ContainerDocument added);
+  ContainerParts(ContainerFile file, const Limits& limits, WholeModels models)
+      : file_(std::move(file)), limits_(limits), models_(models) {}
+  Status add(const BlockDocument& added);
   Result<Document> split(const formats::CityHeader& header, const Feature& model) const;
 
-  ContainerReader reader_;
+  ContainerFile file_;
+  std::uint64_t next_ = 0;  // the number of the next block
   Limits limits_;
   WholeModels models_;
   std::vector<Shared> documents_;

@@ -106,7 +106,7 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
     if (!encoded) return std::move(encoded).error();
     pipeline::EncodedDocument document{encoded->format, encoded->header, {}, {}};
     document.features.push_back(*std::move(encoded));
-    return pipeline::write_container(document, {}, pipeline::SolidLayout::blobs);
+    return pipeline::write_container(document, {.layout = pipeline::SolidLayout::blobs});
   }
   auto document = pipeline::from_stored(std::move(feature), item.service.options.limits);
   if (!document) {

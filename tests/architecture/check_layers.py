@@ -58,6 +58,7 @@ HOMES = [
     (r"zlib\.h", "zlib", [r"archives/", r"tests/unit/(archives|cli|server)/"]),
     (r"minizip/", "minizip", [r"archives/"]),
     (r"expat\.h", "expat", [r"formats/"]),
+    (r"curl/", "libcurl", [r"cli/remote/"]),
     (r"draco/", "Draco", [r"bench/"]),
     (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|mb|port|storage|parser|"
      r"nodes|commands|common|tcop)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/[^/]+\.c$"]),
@@ -456,6 +457,7 @@ BREAKS = [
     ("codec/blob.cpp", SPDX + "#include <nlohmann/json.hpp>\n", "homes", "nlohmann"),
     ("codec/blob.cpp", SPDX + "#include <CLI/CLI.hpp>\n", "homes", "CLI11"),
     ("codec/blob.cpp", SPDX + "#include <tetgen.h>\n", "homes", "TetGen"),
+    ("codec/blob.cpp", SPDX + "#include <curl/curl.h>\n", "homes", "libcurl"),
     ("store/store.cpp", SPDX + "#include <zstd.h>\n", "homes", "zstd"),
     ("sql/bridge.cpp", SPDX + "#include <postgres.h>\n", "homes", "PostgreSQL"),
     ("geometry/solid.h", "#pragma once\n", "licence", "geometry/solid.h"),

@@ -1,63 +1,119 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// libFuzzer harness of the reader of Watertight files. The input is read twice: as a file, with its
-// last four bytes replaced by the right checksum; and as the only part of a file (the length of the
-// texts in two bytes, the texts, the page file and the blobs). The harness compresses the texts of
-// that part itself, so that the parser of the bytes after them is reached. The reader must return
-// the documents or an Error, and a document must be written or refused with an Error.
+// libFuzzer harness of the reader of Watertight files. The input is read twice: as a file whose
+// records get the right checksums; and as the only block of a file (the length of the texts in two
+// bytes, the texts, the page file and the blobs). The harness compresses the texts of that block
+// itself, so that the parser of the bytes after them is reached. The reader must return the
+// documents or an Error, also when it reads the file in ranges, and a document must be written or
+// refused with an Error. What adds to the file must give a file that can be read, or an Error.
 #include <algorithm>
 
-#include "base/checksum.h"
 #include "formats/text/packed_text.h"
 #include "fuzz_formats.h"
 #include "pipeline/container.h"
+#include "pipeline/file/selection.h"
 
 namespace {
 
 using namespace watertight;
+using pipeline::RecordKind;
 
-Bytes with_checksum(ByteView bytes) {
-  if (bytes.size() < 4) return {bytes.begin(), bytes.end()};
+/// The records of a file, each with the right checksum.
+Bytes with_checksums(ByteView bytes) {
+  constexpr std::size_t kHead = 9;
+  constexpr std::size_t kChecksum = 4;
   ByteWriter writer;
-  writer.append(bytes.first(bytes.size() - 4));
-  writer.u32(crc32c(writer.bytes()));
+  writer.append(pipeline::file_head());
+  ByteReader reader(bytes.subspan(std::min(kHead, bytes.size())));
+  while (reader.remaining() > 0 && !reader.failed()) {
+    const std::uint64_t head = reader.varint();
+    const auto kind = static_cast<RecordKind>(head % 4);
+    const ByteView payload = reader.take(
+        static_cast<std::size_t>(std::min<std::uint64_t>(head / 4, reader.remaining())));
+    const Bytes record = pipeline::write_record(kind, payload);
+    writer.append(record);
+    reader.take(std::min(kChecksum, reader.remaining()));
+    std::size_t end = kind == RecordKind::commit ? 1 : 0;  // the bytes of its length
+    while (end > 0 && end < 10 && record.size() >> (7 * end) > 0) ++end;
+    reader.take(std::min(end, reader.remaining()));
+  }
   return std::move(writer).bytes();
 }
 
-/// A whole file of the given texts, pages and blobs, without the checksum.
+/// A whole file of the given texts, pages and blobs.
 Bytes around(ByteView data) {
   ByteReader reader(data);
   const std::size_t size = reader.u16();
   const ByteView texts = reader.take(std::min(size, reader.remaining()));
   const auto packed = formats::pack_text(as_text(texts));
   fuzz::require(packed.has_value());
-  constexpr std::uint8_t kStart[] = {0x89, 'W', 'T', 'F', '\r', '\n', 0x1A, '\n', 1};
+  ByteWriter block;
+  block.varint(packed->bytes.size());
+  block.append(packed->bytes);
+  block.append(reader.take(reader.remaining()));
   ByteWriter writer;
-  writer.append(kStart);
-  writer.varint(packed->bytes.size());
-  writer.append(packed->bytes);
-  writer.append(reader.take(reader.remaining()));
-  writer.u8(0);  // the mark after the last part
-  writer.u32(0);
+  writer.append(pipeline::file_head());
+  writer.append(pipeline::write_record(RecordKind::block, block.bytes()));
+  writer.append(pipeline::write_record(RecordKind::commit, {}));
   return std::move(writer).bytes();
+}
+
+template <class Value>
+bool has_value_or_message(const Result<Value>& result) {
+  fuzz::require(result || !result.error().message.empty());
+  return result.has_value();
+}
+
+pipeline::FileBytes in_ranges(ByteView bytes) {
+  return {bytes.size(), [bytes](std::uint64_t offset, std::uint64_t size) -> Result<Bytes> {
+            fuzz::require(offset <= bytes.size() && size <= bytes.size() - offset);
+            const ByteView part =
+                bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
+            return Bytes(part.begin(), part.end());
+          }};
+}
+
+/// Reads parts of the file by its index, and adds to it.
+void check_ranges(ByteView bytes) {
+  const Limits limits = fuzz::small_limits();
+  auto file =
+      pipeline::ContainerFile::open(in_ranges(bytes), limits, pipeline::TornTail::leave_out);
+  if (!has_value_or_message(file)) return;
+  fuzz::require(file->committed() <= bytes.size());
+  has_value_or_message(pipeline::select_ids(*file, {"a", "b10001"}, limits));
+  has_value_or_message(pipeline::select_box(*file, {{0, 0, 0}, {1e6, 1e6, 1e6}}, limits));
+  auto writer = pipeline::ContainerWriter::append(*file);
+  if (!has_value_or_message(writer)) return;
+  pipeline::EncodedFeature feature;
+  feature.id = "new";
+  feature.format = "off";
+  fuzz::require(writer->add(std::move(feature)).has_value());
+  const auto added = std::move(*writer).finish();
+  fuzz::require(added.has_value());
+  Bytes longer(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(file->committed()));
+  longer.insert(longer.end(), added->begin(), added->end());
+  auto again = pipeline::ContainerFile::open(in_ranges(longer), limits);
+  fuzz::require(again.has_value());
+  const auto found = pipeline::select_ids(*again, {"new"}, limits);
+  has_value_or_message(found);
 }
 
 void check(ByteView bytes) {
   const auto info = pipeline::describe_container(bytes, fuzz::small_limits());
-  if (!info) return fuzz::require(!info.error().message.empty());
+  check_ranges(bytes);
+  if (!has_value_or_message(info)) return;
   const auto documents = pipeline::decode_container(bytes, fuzz::small_limits());
-  if (!documents) return fuzz::require(!documents.error().message.empty());
+  if (!has_value_or_message(documents)) return;
   fuzz::require(documents->size() == info->formats.size());
   for (const Document& document : *documents) {
-    const auto written = formats::write_document(document, document.format);
-    if (!written) fuzz::require(!written.error().message.empty());
+    has_value_or_message(formats::write_document(document, document.format));
   }
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  check(with_checksum(ByteView(data, size)));
-  check(with_checksum(around(ByteView(data, size))));
+  check(with_checksums(ByteView(data, size)));
+  check(around(ByteView(data, size)));
   return 0;
 }

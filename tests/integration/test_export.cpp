@@ -39,7 +39,7 @@ std::string ingest_tile(SolidStore& store, store::Policy policy = store::Policy:
 Bytes export_all(SolidStore& store, pipeline::ExportFormat format,
                  pipeline::Exported* exported = nullptr,
                  pipeline::SolidLayout layout = pipeline::SolidLayout::pages) {
-  auto exporting = pipeline::CollectionExport::start(store, "delft", format, {}, layout);
+  auto exporting = pipeline::CollectionExport::start(store, "delft", format, {.layout = layout});
   REQUIRE(exporting);
   Bytes all;
   for (;;) {
@@ -52,9 +52,10 @@ Bytes export_all(SolidStore& store, pipeline::ExportFormat format,
   return all;
 }
 
-/// The page file of the only part of a Watertight file (docs/cli.md).
+/// The page file of the only block of a Watertight file (docs/format-file.md).
 ByteView page_file_of(ByteView file) {
   ByteReader reader(file.subspan(9));
+  reader.varint();  // kind and length of the record
   reader.take(reader.varint());
   return reader.take(reader.varint());
 }

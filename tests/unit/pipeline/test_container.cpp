@@ -10,7 +10,6 @@
 #include "delaunay/certificate.h"
 #include "formats/text/packed_text.h"
 #include "pipeline/container.h"
-#include "pipeline/container_reader.h"
 #include "pipeline/export.h"
 #include "tests/generated/generated_solids.h"
 #include "tests/unit/pipeline/samples.h"
@@ -89,21 +88,26 @@ Result<Bytes> export_all(SolidStore& store, pipeline::ExportFormat format,
   return all;
 }
 
-/// A file of one part with the given texts, page file and blobs.
+/// A file of one record with a payload.
+Bytes file_around(pipeline::RecordKind kind, ByteView payload) {
+  ByteWriter writer;
+  writer.append(pipeline::file_head());
+  writer.append(pipeline::write_record(kind, payload));
+  writer.append(pipeline::write_record(pipeline::RecordKind::commit, {}));
+  return std::move(writer).bytes();
+}
+
+/// A file of one block with the given texts, page file and blobs.
 Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
   const auto packed = formats::pack_text(as_text(texts.bytes()));
   REQUIRE(packed);
   ByteWriter writer;
-  writer.append(pipeline::kContainerMagic);
-  writer.u8(1);
   writer.varint(packed->bytes.size());
   writer.append(packed->bytes);
   writer.varint(page_file.size());
   writer.append(page_file);
   writer.append(blobs);
-  writer.u8(0);
-  writer.u32(crc32c(writer.bytes()));
-  return std::move(writer).bytes();
+  return file_around(pipeline::RecordKind::block, writer.bytes());
 }
 
 /// The texts of one OFF document with one feature of one solid.
@@ -114,9 +118,9 @@ ByteWriter texts_of_one(std::uint64_t document, std::uint64_t blob_size) {
   texts.append(as_bytes("off"));
   texts.varint(0);  // the header
   texts.varint(0);  // the framing
-  texts.varint(1);
+  texts.varint(2);  // one feature, without number
   texts.varint(document);
-  for (int i = 0; i < 4; ++i) texts.varint(0);  // id, type, SRID and skeleton
+  for (int i = 0; i < 5; ++i) texts.varint(0);  // id, type, SRID, skeleton and findings
   texts.varint(1);
   for (int i = 0; i < 4; ++i) texts.varint(0);  // object, LoD, geometry and ordinal
   texts.varint(blob_size);
@@ -128,7 +132,7 @@ ByteWriter texts_of_one(std::uint64_t document, std::uint64_t blob_size) {
 TEST_CASE("a file of blobs keeps the bytes of each blob, and returns the same document") {
   const std::string text = row_of_boxes(20);
   const pipeline::EncodedDocument document = encoded(text);
-  const auto file = pipeline::write_container(document, {}, pipeline::SolidLayout::blobs);
+  const auto file = pipeline::write_container(document, {.layout = pipeline::SolidLayout::blobs});
   REQUIRE(file);
   for (const pipeline::EncodedFeature& feature : document.features) {
     const Bytes& blob = feature.solids[0].blob;
@@ -174,7 +178,7 @@ TEST_CASE("a Watertight file has its solids in pages when that is smaller") {
   CHECK(one->solids == 1);
 }
 
-TEST_CASE("a file of several parts has its features in order") {
+TEST_CASE("a file of several blocks has its features in order") {
   const auto blob = codec::encode_boundary(generated::box(), {});
   REQUIRE(blob);
   pipeline::EncodedDocument document;
@@ -187,11 +191,11 @@ TEST_CASE("a file of several parts has its features in order") {
   }
   const auto file = pipeline::write_container(document);
   REQUIRE(file);
-  auto reader = pipeline::ContainerReader::open(*file, {});
-  REQUIRE(reader);
-  std::size_t parts = 0;
-  for (auto part = reader->next(); part && *part; part = reader->next()) ++parts;
-  CHECK(parts == 3);
+  const auto opened = pipeline::ContainerFile::open(*file, {});
+  REQUIRE(opened);
+  CHECK(opened->block_count() == 3);
+  CHECK(opened->commit().features == 9000);
+  CHECK(opened->commit().solids == 90);
   const auto documents = pipeline::decode_container(*file);
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
@@ -214,23 +218,21 @@ TEST_CASE(
   pipeline::EncodedFeature feature;
   feature.format = "off";
   for (int i = 0; i < 40; ++i) feature.solids.emplace_back().blob = i == 7 ? *proven : *box;
-  const auto file = pipeline::write_container({"off", {}, {}, {feature}}, {.mode = Mode::raw});
+  const auto file =
+      pipeline::write_container({"off", {}, {}, {feature}}, {.pages = {.mode = Mode::raw}});
   REQUIRE(file);
-  auto reader = pipeline::ContainerReader::open(*file, {});
-  REQUIRE(reader);
-  const auto part = reader->next();
-  REQUIRE(part);
-  REQUIRE(*part);
-  CHECK((*part)->pages == 1);
-  const std::vector<Decoded>& solids = (*part)->features.at(0).solids;
+  auto opened = pipeline::ContainerFile::open(*file, {});
+  REQUIRE(opened);
+  REQUIRE(opened->block_count() == 1);
+  const auto block = opened->block(0);
+  REQUIRE(block);
+  CHECK(block->pages == 1);
+  const std::vector<Decoded>& solids = block->features.at(0).solids;
   REQUIRE(solids.size() == 40);
   CHECK(solids[0].info.mode == Mode::raw);
   CHECK(solids[0].solid == generated::box().solid());
   CHECK(solids[7].info.steiner_vertices == 1);
   CHECK(solids[7].solid == generated::schoenhardt().solid());
-  const auto end = reader->next();
-  REQUIRE(end);
-  CHECK_FALSE(*end);
 }
 
 TEST_CASE("a file of several documents gives back each") {
@@ -291,15 +293,13 @@ TEST_CASE("the Watertight file reader rejects every prefix and every changed byt
 
 TEST_CASE("changed bytes under the right checksum are read or refused") {
   const Bytes container = container_of(row_of_boxes(40));
-  for (std::size_t i = sizeof(pipeline::kContainerMagic); i + 4 < container.size(); ++i) {
-    ByteWriter changed;
-    changed.append(ByteView(container).first(container.size() - 4));
-    Bytes bytes = changed.bytes();
-    bytes[i] ^= 0x41U;
-    changed = {};
-    changed.append(bytes);
-    changed.u32(crc32c(bytes));
-    const auto documents = pipeline::decode_container(changed.bytes());
+  const auto block = pipeline::read_record(ByteView(container).subspan(9), 9);
+  REQUIRE(block);
+  for (std::size_t i = 0; i < block->payload.size(); ++i) {
+    Bytes changed(block->payload.begin(), block->payload.end());
+    changed[i] ^= 0x41U;
+    const auto documents =
+        pipeline::decode_container(file_around(pipeline::RecordKind::block, changed));
     if (!documents) CHECK_FALSE(documents.error().message.empty());
   }
 }
@@ -336,8 +336,8 @@ TEST_CASE("texts that name more features than their file has bytes for are refus
   texts.varint(3);
   texts.append(as_bytes("off"));
   texts.append(Bytes(2));  // header and framing
-  texts.varint(200'000);
-  texts.append(Bytes(6 * 200'000));
+  texts.varint(2 * 200'000);
+  texts.append(Bytes(7 * 200'000));
   const Bytes bomb = file_of(texts, {}, {});
   CHECK(bomb.size() < 1000);
   const auto documents = pipeline::decode_container(bomb);

@@ -120,15 +120,6 @@ TEST_CASE("a file keeps solids that are not proven with their findings, and its 
   CHECK(as_text(*text) == kMixed);
 }
 
-TEST_CASE("a file in which all is proven is of version 1, which older programs read") {
-  auto encoded = pipeline::encode_document(
-      document_of(samples::sequence({samples::feature("good")})), nullptr, keeping());
-  REQUIRE(encoded);
-  const auto file = pipeline::write_container(encoded->document);
-  REQUIRE(file);
-  CHECK((*file)[8] == 1);
-}
-
 TEST_CASE("a collection takes the policy of the write that makes it, and later writes follow it") {
   samples::MemoryStore store;
   REQUIRE(pipeline::ingest(document_of(kMixed), store, nullptr, keeping()));
@@ -238,8 +229,8 @@ TEST_CASE("an export of what is proven leaves the other features out") {
   samples::MemoryStore store;
   REQUIRE(pipeline::ingest(document_of(kMixed), store, nullptr, keeping()));
   for (const auto scope : {pipeline::ExportScope::all, pipeline::ExportScope::proven}) {
-    auto exporting = pipeline::CollectionExport::start(
-        store, "town", pipeline::ExportFormat::sequence, {}, pipeline::SolidLayout::pages, scope);
+    auto exporting = pipeline::CollectionExport::start(store, "town",
+                                                       pipeline::ExportFormat::sequence, {}, scope);
     REQUIRE(exporting);
     std::string text;
     while (!exporting->is_at_end()) {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/outputs/documents.h"
+
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/inputs.h"
+#include "pipeline/pipeline.h"
+
+namespace watertight::cli {
+namespace {
+
+Exit fail(const std::string& file, const Error& error) {
+  complain(file == "-" ? "standard output" : file, error);
+  return Exit::error;
+}
+
+}  // namespace
+
+Exit save_documents(std::span<const Document> documents, const std::string& input,
+                    const std::string& output, std::optional<Format> standard) {
+  std::vector<std::string> names;
+  std::vector<FileWriter> files;
+  for (const Document& document : documents) {
+    const std::string& name = names.emplace_back(numbered_name(output, names.size()));
+    if (name != "-" && is_same_file(name, input)) {
+      return fail(input, {ErrorCode::invalid_argument,
+                          "the output '" + name + "' would replace the input"});
+    }
+    const auto format =
+        name == "-" ? Result<Format>(standard.value_or(document.format)) : format_of_name(name);
+    if (!format) return fail(name, format.error());
+    const auto bytes = pipeline::convert_document(document, *format);
+    if (!bytes) return fail(input, bytes.error());
+    auto file = FileWriter::open(name);
+    if (!file) return fail(name, file.error());
+    const Status written = file->write(as_text(*bytes));
+    if (!written) return fail(name, written.error());
+    files.push_back(*std::move(file));
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Status status = files[i].commit();
+    if (!status) return fail(names[i], status.error());
+  }
+  return Exit::valid;
+}
+
+}  // namespace watertight::cli

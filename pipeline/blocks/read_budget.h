@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The bound on what the blocks of one Watertight file may claim: in proportion to the bytes of it
+// that were read, so that a small file cannot ask for much memory.
+#pragma once
+
+#include <cstdint>
+
+#include "base/limits.h"
+
+namespace watertight::pipeline {
+
+class ReadBudget {
+ public:
+  explicit ReadBudget(const Limits& limits) : limits_(limits) {}
+
+  /// Raises the bounds: so many bytes more of the file were read.
+  void add_bytes(std::uint64_t bytes) { bytes_ += bytes; }
+
+  /// The bytes of texts that may still come.
+  std::uint64_t texts_left() const { return left(limits_.expanded_from(bytes_), texts_); }
+  /// Take what a block claims; false if that is more than may still come.
+  bool take_text(std::uint64_t bytes) { return take(bytes, texts_left(), texts_); }
+  bool take_vertices(std::uint64_t count) {
+    return take(count, left(limits_.claimed_by(bytes_), vertices_), vertices_);
+  }
+  /// Documents, features and solids. Texts may be compressed a thousandfold, so the bytes of the
+  /// file bound the number of their items.
+  bool take_items(std::uint64_t count) {
+    return take(count, left(kFreeItems + kItemsPerByte * bytes_, items_), items_);
+  }
+  const Limits& limits() const { return limits_; }
+
+ private:
+  static constexpr std::uint64_t kFreeItems = 65'536;
+  static constexpr std::uint64_t kItemsPerByte = 4;
+
+  static std::uint64_t left(std::uint64_t most, std::uint64_t used) {
+    return most > used ? most - used : 0;
+  }
+  static bool take(std::uint64_t count, std::uint64_t left, std::uint64_t& used) {
+    if (count > left) return false;
+    used += count;
+    return true;
+  }
+
+  Limits limits_;
+  std::uint64_t bytes_ = 0;
+  std::uint64_t texts_ = 0;
+  std::uint64_t vertices_ = 0;
+  std::uint64_t items_ = 0;
+};
+
+}  // namespace watertight::pipeline

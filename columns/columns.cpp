@@ -12,6 +12,7 @@
 #include "columns/models/string_coder.h"
 #include "columns/paths/json_path.h"
 #include "columns/paths/json_tokens.h"
+#include "columns/paths/table_path.h"
 #include "columns/paths/xml_path.h"
 #include "columns/paths/xml_tokens.h"
 #include "columns/rings/ring_coder.h"
@@ -44,13 +45,15 @@ class TextCoder {
         return code_bytes(text.text);
       case TextKind::json:
         return code_tokens<JsonPath, JsonTokens>(json_path_, text.text);
+      case TextKind::table:
+        return code_tokens<TablePath, TableTokens>(table_path_, text.text);
       case TextKind::xml:
         return code_tokens<XmlPath, XmlTokens>(xml_path_, text.text);
     }
     stream_.fail();
     return {};
   }
-  bool is_over_limit() const { return is_over_limit_; }
+  bool is_over_limit() const { return is_over_limit_ || strings_.is_over_limit(); }
 
  private:
   std::size_t most_bytes() const {
@@ -70,9 +73,10 @@ class TextCoder {
   }
 
   std::string code_bytes(std::string_view text) {
-    const std::string coded = strings_.code(stream_, mixer_, kBytesColumn, text, most_bytes());
+    Place place;
+    place.column = kBytesColumn;
     std::string out;
-    append(out, coded);
+    append(out, values_.code(stream_, mixer_, strings_, place, text, most_bytes()));
     return out;
   }
 
@@ -139,6 +143,7 @@ class TextCoder {
   ContextMixer mixer_;
   JsonPath json_path_;
   XmlPath xml_path_;
+  TablePath table_path_;
   MarkCoder marks_;
   StringCoder strings_;
   ValueCoder values_;

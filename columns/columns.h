@@ -20,9 +20,10 @@ namespace watertight::columns {
 
 /// How a text is taken apart. Wrong kinds cost bytes only.
 enum class TextKind : std::uint8_t {
-  bytes,  // any bytes: one string
+  bytes,  // any bytes: one value
   json,   // JSON, for example the skeleton of a feature
-  xml     // XML, for example a document of CityGML
+  xml,    // XML, for example a document of CityGML
+  table   // a line with a name, then lines of cells with tabs between them
 };
 
 struct Text {

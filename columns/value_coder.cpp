@@ -127,8 +127,8 @@ std::uint32_t ValueCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
     return last_known_;
   }
   const std::uint32_t newest = values_.size() - 1;
-  const std::uint64_t distance = mixer.number(stream, Question::known_distance, {place, last},
-                                              newest - value, kDistanceBits);
+  const std::uint64_t distance =
+      mixer.number(stream, Question::known_distance, {place, last}, newest - value, kDistanceBits);
   column.last_distance = static_cast<std::uint32_t>(std::bit_width(distance));
   if (distance > newest) {
     stream.fail();

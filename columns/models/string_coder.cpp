@@ -67,10 +67,9 @@ std::string StringCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash c
     const bool ends = code_character(stream, mixer, column, i, match, character, is_end);
     history_ += static_cast<char>(character);
     if (ends) break;
-    if (stream.failed() || i >= most_bytes) {
-      stream.fail();
-      break;
-    }
+    is_over_limit_ = is_over_limit_ || i >= most_bytes;
+    if (is_over_limit_) stream.fail();
+    if (stream.failed()) break;
     before_ = (before_ << 8U) | character;
     if (i < 2) continue;
     std::size_t& after = after_three_[before_ & 0xFF'FFFFU];

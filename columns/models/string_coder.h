@@ -20,6 +20,9 @@ class StringCoder {
   std::string code(EntropyStream& stream, ContextMixer& mixer, Hash column, std::string_view text,
                    std::size_t most_bytes);
 
+  /// Whether a string was longer than it may be.
+  bool is_over_limit() const { return is_over_limit_; }
+
  private:
   /// Where an earlier string goes on like this one.
   struct Match {
@@ -33,6 +36,7 @@ class StringCoder {
   std::unordered_map<Hash, std::size_t>
       last_of_column_;                                 // where the last string of a column begins
   std::unordered_map<Hash, std::size_t> after_three_;  // what followed three characters
+  bool is_over_limit_ = false;
   std::uint32_t before_ = 0;  // the last four characters, the last one lowest
 };
 

@@ -92,11 +92,10 @@ UuidCoder::Digits UuidCoder::code_digits(EntropyStream& stream, ContextMixer& mi
   for (std::size_t i = 0; i < coded.size(); ++i) {
     const bool is_predictable = i == kVersionDigit || i == kVariantDigit;
     const std::uint64_t digit =
-        is_predictable
-            ? mixer.symbol(stream, Question::uuid_version,
-                           {hash_of(column, static_cast<Hash>(i)), static_cast<Hash>(i)}, 4,
-                           digits[i])
-            : stream.code_bits(digits[i], 4);
+        is_predictable ? mixer.symbol(stream, Question::uuid_version,
+                                      {hash_of(column, static_cast<Hash>(i)), static_cast<Hash>(i)},
+                                      4, digits[i])
+                       : stream.code_bits(digits[i], 4);
     coded[i] = static_cast<std::uint8_t>(digit);
   }
   return coded;
@@ -141,8 +140,7 @@ Uuid UuidCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column, co
     known_.push_back(coded.digits);
     if (!stream.is_reading()) number_of_.emplace(coded.digits, last_);
   }
-  coded.is_upper_case =
-      mixer.flag(stream, Question::is_upper_case, {column}, uuid.is_upper_case);
+  coded.is_upper_case = mixer.flag(stream, Question::is_upper_case, {column}, uuid.is_upper_case);
   return coded;
 }
 

@@ -12,7 +12,8 @@
 namespace watertight::formats {
 namespace {
 
-enum class Kind : std::uint8_t { tokens = 0, whole_text = 1 };
+/// Layouts of the form `long_tokens`, with a size and 64 bits of the hash, were stored before.
+enum class Kind : std::uint8_t { long_tokens = 0, whole_text = 1, tokens = 2 };
 
 /// The bytes between tokens: white space, those of a byte order mark, and the record separator.
 constexpr std::string_view kBlanks = " \t\r\n\xEF\xBB\xBF\x1E";
@@ -221,8 +222,9 @@ bool describe_tokens(std::string_view plain, std::string_view text, ExceptionWri
 
 Error does_not_fit() { return Error{ErrorCode::malformed, "layout and document do not fit"}; }
 
-Result<std::string> apply_to_tokens(std::string_view plain, ByteReader& reader,
-                                    std::uint64_t size) {
+/// The text of a layout of tokens. Errors: malformed; `too_long` beyond `size` bytes.
+Result<std::string> apply_to_tokens(std::string_view plain, ByteReader& reader, std::uint64_t size,
+                                    const Error& too_long) {
   const std::uint64_t gap_bytes = reader.varint();
   if (reader.failed() || gap_bytes > reader.remaining()) return does_not_fit();
   ExceptionReader gaps(reader.take(static_cast<std::size_t>(gap_bytes)));
@@ -236,7 +238,7 @@ Result<std::string> apply_to_tokens(std::string_view plain, ByteReader& reader,
     std::string_view other;
     if (gaps.next(other)) predictor.learn_gap(other);
     const std::string_view gap = predictor.gap();
-    if (gap.size() > size - text.size()) return does_not_fit();
+    if (gap.size() > size - text.size()) return too_long;
     text += gap;
     if (token.empty()) break;
     if (is_mark(token)) {
@@ -247,7 +249,7 @@ Result<std::string> apply_to_tokens(std::string_view plain, ByteReader& reader,
     } else {
       text += predictor.spelling(token);
     }
-    if (text.size() > size) return does_not_fit();
+    if (text.size() > size) return too_long;
   }
   if (!gaps.is_finished() || !spellings.is_finished()) return does_not_fit();
   return text;
@@ -310,14 +312,16 @@ Bytes describe_layout(std::string_view plain, std::string_view text) {
   ExceptionWriter gaps;
   ExceptionWriter spellings;
   const bool has_same_tokens = describe_tokens(plain, text, gaps, spellings);
+  const std::uint64_t hash = content_hash(as_bytes(text));
   ByteWriter writer;
   writer.u8(static_cast<std::uint8_t>(has_same_tokens ? Kind::tokens : Kind::whole_text));
-  writer.u64(content_hash(as_bytes(text)));
-  writer.varint(text.size());
   if (!has_same_tokens) {
+    writer.u64(hash);
+    writer.varint(text.size());
     writer.append(as_bytes(text));
     return std::move(writer).bytes();
   }
+  writer.u16(static_cast<std::uint16_t>(hash));
   const Bytes gap_bytes = std::move(gaps).finish();
   writer.varint(gap_bytes.size());
   writer.append(gap_bytes);
@@ -325,26 +329,40 @@ Bytes describe_layout(std::string_view plain, std::string_view text) {
   return std::move(writer).bytes();
 }
 
+namespace {
+
+Error too_long(std::uint64_t most_bytes) {
+  return Error{ErrorCode::limit_exceeded,
+               "a document of more than " + std::to_string(most_bytes) + " bytes"};
+}
+
+Error another_text() {
+  return Error{ErrorCode::malformed,
+               "the document is not the one that was stored: its hash differs"};
+}
+
+}  // namespace
+
 Result<std::string> apply_layout(std::string_view plain, ByteView layout,
                                  std::uint64_t most_bytes) {
   ByteReader reader(layout);
   const std::uint8_t kind = reader.u8();
+  if (kind == static_cast<std::uint8_t>(Kind::tokens)) {
+    const std::uint16_t hash = reader.u16();
+    auto text = apply_to_tokens(plain, reader, most_bytes, too_long(most_bytes));
+    if (!text) return text;
+    if (static_cast<std::uint16_t>(content_hash(as_bytes(*text))) != hash) return another_text();
+    return text;
+  }
   const std::uint64_t hash = reader.u64();
   const std::uint64_t size = reader.varint();
   if (reader.failed() || kind > static_cast<std::uint8_t>(Kind::whole_text)) return does_not_fit();
-  if (size > most_bytes) {
-    return Error{ErrorCode::limit_exceeded, "a document of " + std::to_string(size) +
-                                                " bytes; the limit is " +
-                                                std::to_string(most_bytes)};
-  }
+  if (size > most_bytes) return too_long(most_bytes);
   auto text = static_cast<Kind>(kind) == Kind::whole_text
                   ? Result<std::string>(std::string(as_text(reader.take(reader.remaining()))))
-                  : apply_to_tokens(plain, reader, size);
+                  : apply_to_tokens(plain, reader, size, does_not_fit());
   if (!text) return text;
-  if (text->size() != size || content_hash(as_bytes(*text)) != hash) {
-    return Error{ErrorCode::malformed,
-                 "the document is not the one that was stored: its hash differs"};
-  }
+  if (text->size() != size || content_hash(as_bytes(*text)) != hash) return another_text();
   return text;
 }
 

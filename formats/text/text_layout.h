@@ -20,13 +20,13 @@
 
 namespace watertight::formats {
 
-/// The layout that turns `plain` into `text`, with size and hash of `text`. For two texts without
-/// the same tokens it holds all of `text`. Cost: linear.
+/// The layout that turns `plain` into `text`, with 16 bits of the hash of `text`. For two texts
+/// without the same tokens it holds all of `text`. Cost: linear.
 Bytes describe_layout(std::string_view plain, std::string_view text);
 
 /// The text that was given to describe_layout(plain, text), if `layout` is its result. Errors:
-/// malformed if the layout does not fit `plain`, or if the text does not have the size and hash
-/// that the layout states; limit_exceeded if it is longer than `most_bytes`.
+/// malformed if the layout does not fit `plain`, or if the text does not have the hash that the
+/// layout states; limit_exceeded if it is longer than `most_bytes`.
 Result<std::string> apply_layout(std::string_view plain, ByteView layout, std::uint64_t most_bytes);
 
 /// True if the layout holds the whole text, so that apply_layout() does not read `plain`.

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "codec/page_file.h"
-#include "formats/text/packed_text.h"
 #include "pipeline/blocks/block.h"
-#include "pipeline/blocks/block_bytes.h"
+#include "pipeline/blocks/block_texts.h"
 
 namespace watertight::pipeline {
 namespace {
@@ -16,78 +14,6 @@ ByteView read_bytes(ByteReader& reader) {
   return reader.take(size > reader.remaining() ? reader.remaining() + 1
                                                : static_cast<std::size_t>(size));
 }
-
-std::string read_text(ByteReader& reader) { return std::string(as_text(read_bytes(reader))); }
-
-std::uint32_t read_index(ByteReader& reader, bool& is_in_range) {
-  const std::uint64_t value = reader.varint();
-  if (value > std::numeric_limits<std::uint32_t>::max()) is_in_range = false;
-  return static_cast<std::uint32_t>(value);
-}
-
-/// Reads the texts of a block.
-class TextReader {
- public:
-  TextReader(ByteView texts, std::size_t documents, ReadBudget& budget)
-      : reader_(texts), documents_(documents), budget_(budget) {}
-
-  /// False when the texts do not hold a block.
-  bool read() {
-    const std::uint64_t documents = reader_.varint();
-    if (!budget_.take_items(documents)) return false;
-    for (std::uint64_t i = 0; i < documents && !reader_.failed(); ++i) read_document();
-    if (documents_ == 0) documents_ = block.documents.size();
-    const std::uint64_t features = reader_.varint();
-    block.has_numbers = features % 2 == 1;
-    if (reader_.failed() || !budget_.take_items(features / 2)) return false;
-    for (std::uint64_t i = 0; i < features / 2; ++i) {
-      if (!read_feature()) return false;
-    }
-    return reader_.remaining() == 0;
-  }
-
-  ReadBlock block;
-  std::vector<std::uint64_t> sizes;  // the bytes of each solid's blob, 0 for one in the page file
-
- private:
-  void read_document() {
-    BlockDocument& document = block.documents.emplace_back();
-    document.format = read_text(reader_);
-    document.header = read_text(reader_);
-    const ByteView framing = read_bytes(reader_);
-    document.framing.assign(framing.begin(), framing.end());
-  }
-
-  bool read_feature() {
-    bool is_in_range = true;
-    ReadFeature& feature = block.features.emplace_back();
-    feature.ordinal = block.features.size() - 1;
-    feature.document = reader_.varint();
-    if (block.has_numbers) feature.number = reader_.varint();
-    feature.encoded.id = read_text(reader_);
-    feature.encoded.type = read_text(reader_);
-    feature.encoded.srid = read_index(reader_, is_in_range);
-    feature.encoded.skeleton = read_text(reader_);
-    feature.encoded.findings = read_text(reader_);
-    const std::uint64_t count = reader_.varint();
-    if (!budget_.take_items(count)) return false;
-    for (std::uint64_t i = 0; i < count && !reader_.failed() && is_in_range; ++i) {
-      StoredSolid& solid = feature.encoded.solids.emplace_back();
-      solid.object_id = read_text(reader_);
-      solid.lod = read_text(reader_);
-      solid.geometry = read_index(reader_, is_in_range);
-      solid.ordinal = read_index(reader_, is_in_range);
-      sizes.push_back(reader_.varint());
-      solid.is_proven = sizes.back() != kNoBlob;
-      if (!solid.is_proven) solid.report = read_text(reader_);
-    }
-    return !reader_.failed() && is_in_range && feature.document < documents_;
-  }
-
-  ByteReader reader_;
-  std::size_t documents_;
-  ReadBudget& budget_;
-};
 
 Status take_vertices(const Decoded& decoded, ReadBudget& budget) {
   if (budget.take_vertices(decoded.solid.vertex_count())) return Done{};
@@ -182,22 +108,20 @@ Result<ReadBlock> read_block(ByteView bytes, std::span<const BlockDocument> docu
   };
   const ByteView packed = read_bytes(reader);
   if (reader.failed()) return malformed("truncated block");
-  const auto text = formats::unpack_text(packed, budget.texts_left());
-  if (!text) return text.error();
-  budget.take_text(text->size());
-  TextReader texts(as_bytes(*text), documents.size(), budget);
-  if (!texts.read()) return malformed("malformed texts of a block");
+  auto texts = unpack_block_texts(packed, documents.size(), budget);
+  if (!texts) return std::move(texts).error();
   const std::uint64_t longest = budget.limits().feature_bytes;
-  for (const ReadFeature& feature : texts.block.features) {
+  for (const ReadFeature& feature : texts->block.features) {
     if (feature.encoded.skeleton.size() <= longest) continue;
     return Error{ErrorCode::limit_exceeded, "the text of the feature '" + feature.encoded.id +
                                                 "' is longer than " + std::to_string(longest) +
                                                 " bytes"};
   }
   SolidReader solids(reader, budget);
-  if (Status read = solids.read(texts.block, texts.sizes); !read) return std::move(read).error();
+  if (Status read = solids.read(texts->block, texts->blob_bytes); !read)
+    return std::move(read).error();
   if (reader.remaining() > 0) return malformed("bytes after the last blob of a block");
-  return std::move(texts.block);
+  return std::move(texts->block);
 }
 
 }  // namespace watertight::pipeline

@@ -2,19 +2,16 @@
 #include <utility>
 
 #include "codec/page_file.h"
-#include "formats/text/packed_text.h"
 #include "pipeline/blocks/block.h"
-#include "pipeline/blocks/block_bytes.h"
+#include "pipeline/blocks/block_texts.h"
 
 namespace watertight::pipeline {
 namespace {
 
-void write_text(ByteWriter& writer, ByteView text) {
-  writer.varint(text.size());
-  writer.append(text);
+void write_part(ByteWriter& writer, ByteView part) {
+  writer.varint(part.size());
+  writer.append(part);
 }
-
-void write_text(ByteWriter& writer, std::string_view text) { write_text(writer, as_bytes(text)); }
 
 /// The page file of the solids that may be in pages: all but the solids whose blobs have Steiner
 /// vertices, which pages do not keep.
@@ -57,46 +54,6 @@ Result<Paged> pages_if_smaller(const std::vector<const Bytes*>& blobs, const Enc
   return paged;
 }
 
-void write_feature(ByteWriter& writer, const BlockFeature& feature, bool has_numbers,
-                   const std::vector<bool>& is_paged, std::size_t first_solid) {
-  const EncodedFeature& encoded = feature.encoded;
-  writer.varint(feature.document);
-  if (has_numbers) writer.varint(feature.number);
-  write_text(writer, encoded.id);
-  write_text(writer, encoded.type);
-  writer.varint(encoded.srid);
-  write_text(writer, encoded.skeleton);
-  write_text(writer, encoded.findings);
-  writer.varint(encoded.solids.size());
-  for (std::size_t i = 0; i < encoded.solids.size(); ++i) {
-    const StoredSolid& solid = encoded.solids[i];
-    write_text(writer, solid.object_id);
-    write_text(writer, solid.lod);
-    writer.varint(solid.geometry);
-    writer.varint(solid.ordinal);
-    const std::size_t size = is_paged[first_solid + i] ? 0 : solid.blob.size();
-    writer.varint(solid.is_proven ? size : kNoBlob);
-    if (!solid.is_proven) write_text(writer, solid.report);
-  }
-}
-
-ByteWriter texts_of(const BlockContents& contents, const std::vector<bool>& is_paged) {
-  ByteWriter texts;
-  texts.varint(contents.documents.size());
-  for (const BlockDocument& document : contents.documents) {
-    write_text(texts, document.format);
-    write_text(texts, document.header.str());
-    write_text(texts, ByteView(document.framing));
-  }
-  texts.varint(2 * contents.features.size() + (contents.has_numbers ? 1 : 0));
-  std::size_t solids = 0;
-  for (const BlockFeature& feature : contents.features) {
-    write_feature(texts, feature, contents.has_numbers, is_paged, solids);
-    solids += feature.encoded.solids.size();
-  }
-  return texts;
-}
-
 }  // namespace
 
 Result<Bytes> write_block(const BlockContents& contents,
@@ -108,12 +65,13 @@ Result<Bytes> write_block(const BlockContents& contents,
   }
   const auto paged = pages_if_smaller(blobs, pages, layout);
   if (!paged) return paged.error();
-  const ByteWriter texts = texts_of(contents, paged->is_in_file);
-  const auto packed = formats::pack_text(as_text(texts.bytes()));
-  if (!packed) return packed.error();
+  std::vector<std::uint64_t> blob_bytes;
+  for (std::size_t i = 0; i < blobs.size(); ++i) {
+    blob_bytes.push_back(paged->is_in_file[i] ? 0 : blobs[i]->empty() ? kNoBlob : blobs[i]->size());
+  }
   ByteWriter block;
-  write_text(block, ByteView(packed->bytes));
-  write_text(block, ByteView(paged->file));
+  write_part(block, pack_block_texts(contents, blob_bytes));
+  write_part(block, paged->file);
   for (std::size_t i = 0; i < blobs.size(); ++i) {
     if (!paged->is_in_file[i]) block.append(*blobs[i]);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The line is JSON, in the form of a geometry of a skeleton (formats/city_json/model.h), so that its
-// rings and vertices are packed like those:
+// The line is JSON, in the form of a geometry of a skeleton (formats/city_json/model.h), so that
+// its rings and vertices are packed like those:
 //
 //   {"lattice":[kind,step and origin as mantissa and exponent...],"srid":7415,
 //    "boundaries":[shells],"vertices":{"count":8,"solids":[],"others":[x,y,z,x,...]}}
@@ -253,9 +253,8 @@ std::string write_unproven(const Solid& solid) {
   out.append(R"(,"vertices":{"count":)").append(std::to_string(solid.vertex_count()));
   out += R"(,"solids":[],"others":)";
   const std::span<const Point> points = solid.vertices();
-  append_list(out, {0, static_cast<Index>(3 * points.size())}, [&](Index i) {
-    append_number(out, points[i / 3][static_cast<int>(i % 3)]);
-  });
+  append_list(out, {0, static_cast<Index>(3 * points.size())},
+              [&](Index i) { append_number(out, points[i / 3][static_cast<int>(i % 3)]); });
   return out + "}}";
 }
 

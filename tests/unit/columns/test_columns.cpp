@@ -73,14 +73,29 @@ TEST_CASE("texts come back byte for byte") {
   check_round_trip({{TextKind::json, ""}, {TextKind::xml, ""}, {TextKind::bytes, ""}});
   for (
       const char* text :
-      {"{}", "[]", "0", "\"", "\"\"", "{\"a\":", "{\"a\":1}", "[[[1,2],[3,-4.50]],null,true]",
+      {"{}",
+       "[]",
+       "0",
+       "\"",
+       "\"\"",
+       "{\"a\":",
+       "{\"a\":1}",
+       "[[[1,2],[3,-4.50]],null,true]",
        "  { \"a\" : [ ] }\n",
        R"({"CityObjects":{"a":{"geometry":[{"boundaries":[[0,1,"x",-1,]]}]}}})",
        R"({"vertices":{"count":99999999999999,"kind":0,"solids":[[5,-1,7]],"others":[1,"",2.5,[]]}})",
-       R"({"a":"\"\\","b":"\u0000"})", "}}}]]]", "<a b='c' d=\"e\">1 2 3</a><!-- x --><b/>", "<a",
-       "<a b=\"", "</a></a>text<", "1.5 2.5\n3.5"}) {
+       R"({"a":"\"\\","b":"\u0000"})",
+       "}}}]]]",
+       "<a b='c' d=\"e\">1 2 3</a><!-- x --><b/>",
+       "<a",
+       "<a b=\"",
+       "</a></a>text<",
+       "1.5 2.5\n3.5",
+       "name\n1\t\tab\n2\t\t\n",
+       "name\n",
+       "name\n\t"}) {
     CAPTURE(text);
-    for (const TextKind kind : {TextKind::json, TextKind::xml, TextKind::bytes}) {
+    for (const TextKind kind : {TextKind::json, TextKind::xml, TextKind::bytes, TextKind::table}) {
       check_round_trip({{kind, text}, {kind, text}});
     }
   }
@@ -96,7 +111,7 @@ TEST_CASE("any bytes come back") {
       text += random() % 4 == 0 ? static_cast<char>(random() % 256)
                                 : kLikely[random() % kLikely.size()];
     }
-    const auto kind = static_cast<TextKind>(random() % 3);
+    const auto kind = static_cast<TextKind>(random() % 4);
     check_round_trip({{kind, text}});
   }
 }

@@ -7,8 +7,8 @@
 #include "base/checksum.h"
 #include "codec/encode_boundary.h"
 #include "codec/page_file.h"
+#include "columns/columns.h"
 #include "delaunay/certificate.h"
-#include "formats/text/packed_text.h"
 #include "pipeline/container.h"
 #include "pipeline/export.h"
 #include "tests/generated/generated_solids.h"
@@ -98,33 +98,33 @@ Bytes file_around(pipeline::RecordKind kind, ByteView payload) {
 }
 
 /// A file of one block with the given texts, page file and blobs.
-Bytes file_of(const ByteWriter& texts, ByteView page_file, ByteView blobs) {
-  const auto packed = formats::pack_text(as_text(texts.bytes()));
-  REQUIRE(packed);
+/// A file of one block with these tables, pages and blobs. The texts of documents and features, for
+/// which the rows ask, are empty.
+Bytes file_of(const std::array<std::string, 3>& tables, std::size_t empty_texts, ByteView page_file,
+              ByteView blobs) {
+  std::vector<columns::Text> texts(empty_texts, {columns::TextKind::json, {}});
+  for (const std::string& table : tables) texts.push_back({columns::TextKind::table, table});
+  const Bytes packed = columns::pack_texts(texts);
   ByteWriter writer;
-  writer.varint(packed->bytes.size());
-  writer.append(packed->bytes);
+  writer.varint(packed.size());
+  writer.append(packed);
   writer.varint(page_file.size());
   writer.append(page_file);
   writer.append(blobs);
   return file_around(pipeline::RecordKind::block, writer.bytes());
 }
 
-/// The texts of one OFF document with one feature of one solid.
-ByteWriter texts_of_one(std::uint64_t document, std::uint64_t blob_size) {
-  ByteWriter texts;
-  texts.varint(1);
-  texts.varint(3);
-  texts.append(as_bytes("off"));
-  texts.varint(0);  // the header
-  texts.varint(0);  // the framing
-  texts.varint(2);  // one feature, without number
-  texts.varint(document);
-  for (int i = 0; i < 5; ++i) texts.varint(0);  // id, type, SRID, skeleton and findings
-  texts.varint(1);
-  for (int i = 0; i < 4; ++i) texts.varint(0);  // object, LoD, geometry and ordinal
-  texts.varint(blob_size);
-  return texts;
+/// The tables of one OFF document with one feature of one solid.
+std::array<std::string, 3> tables_of_one(std::uint64_t document, std::uint64_t blob_size) {
+  return {"documents\n1\t0\noff\n",
+          "features\n" + std::to_string(document) + "\t\t\t0\t0\t0\t0\t1\n",
+          "solids\n\t\t0\t0\t" + std::to_string(blob_size) + "\t\n"};
+}
+
+/// A file of one OFF document with one feature, whose header, framing and skeleton are empty.
+Bytes file_of_one(std::uint64_t document, std::uint64_t blob_size, ByteView page_file,
+                  ByteView blobs) {
+  return file_of(tables_of_one(document, blob_size), 3, page_file, blobs);
 }
 
 }  // namespace
@@ -311,17 +311,17 @@ TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
   REQUIRE(writer.add_blob(blob));
   const auto pages = std::move(writer).finish();
   REQUIRE(pages);
-  REQUIRE(pipeline::decode_container(file_of(texts_of_one(0, blob.size()), {}, blob)));
-  REQUIRE(pipeline::decode_container(file_of(texts_of_one(0, 0), *pages, {})));
+  REQUIRE(pipeline::decode_container(file_of_one(0, blob.size(), {}, blob)));
+  REQUIRE(pipeline::decode_container(file_of_one(0, 0, *pages, {})));
   const Bytes wrong[] = {
-      file_of(texts_of_one(1, blob.size()), {}, blob),      // a feature of no document
-      file_of(texts_of_one(0, blob.size() + 1), {}, blob),  // a blob beyond the file
-      file_of(texts_of_one(0, blob.size() - 1), {}, blob),  // a cut blob
-      file_of(texts_of_one(0, ~std::uint64_t{0}), {}, blob),
-      file_of(texts_of_one(0, 0), {}, {}),  // a solid in a page that is not there
+      file_of_one(1, blob.size(), {}, blob),      // a feature of no document
+      file_of_one(0, blob.size() + 1, {}, blob),  // a blob beyond the file
+      file_of_one(0, blob.size() - 1, {}, blob),  // a cut blob
+      file_of_one(0, ~std::uint64_t{0}, {}, blob),
+      file_of_one(0, 0, {}, {}),  // a solid in a page that is not there
       // A solid of the page file in no feature.
-      file_of(texts_of_one(0, blob.size()), *pages, blob),
-      file_of(texts_of_one(0, 0), blob, {}),  // a blob in the place of the page file
+      file_of_one(0, blob.size(), *pages, blob),
+      file_of_one(0, 0, blob, {}),  // a blob in the place of the page file
   };
   for (const Bytes& bytes : wrong) {
     const auto documents = pipeline::decode_container(bytes);
@@ -330,16 +330,37 @@ TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
   }
 }
 
+TEST_CASE("tables that do not fit their texts are malformed") {
+  const auto tables = tables_of_one(0, 1);
+  REQUIRE(pipeline::decode_container(
+      file_of({tables[0], "features\n0\t\t\t0\t0\t0\t0\t0\n", "solids\n"}, 3, {}, {})));
+  const std::array<std::string, 3> wrong[] = {
+      {tables[0], "features\n", "solids\n"},                        // a text of no feature
+      {tables[0], "features\n0\t\t\t0\t0\t1\t0\t0\n", "solids\n"},  // a text that is missing
+      {tables[0], "features\n0\t\t\t0\t0\t0\t0\t0\n", "solids\n0"},
+      {tables[0], "features\n0\t\t\t0\t0\t0\t0\t1\n", "solids\n"},
+      {tables[0], "features\n0\t\t\tx\t0\t0\t0\t0\n", "solids\n"},
+      {tables[0], "features\n0\t\t\t4294967296\t0\t0\t0\t0\n", "solids\n"},
+      {tables[0], "features\n0\t\t\t0\t0\t0\t0\n", "solids\n"},
+      {tables[0], "feature\n0\t\t\t0\t0\t0\t0\t0\n", "solids\n"},
+      {"documents\n2\t0\noff\n", "features\n", "solids\n"},
+      {"documents\n1\t0\n", "features\n", "solids\n"},
+  };
+  for (const auto& changed : wrong) {
+    CAPTURE(changed);
+    const auto documents = pipeline::decode_container(file_of(changed, 3, {}, {}));
+    REQUIRE_FALSE(documents);
+    CHECK(documents.error().code == ErrorCode::malformed);
+  }
+}
+
 TEST_CASE("texts that name more features than their file has bytes for are refused") {
-  ByteWriter texts;
-  texts.varint(1);
-  texts.varint(3);
-  texts.append(as_bytes("off"));
-  texts.append(Bytes(2));  // header and framing
-  texts.varint(2 * 200'000);
-  texts.append(Bytes(7 * 200'000));
-  const Bytes bomb = file_of(texts, {}, {});
-  CHECK(bomb.size() < 1000);
+  std::array<std::string, 3> tables = tables_of_one(0, 1);
+  tables[1] = "features\n";
+  tables[2] = "solids\n";
+  for (int i = 0; i < 200'000; ++i) tables[1] += "0\t\t\t0\t0\t0\t0\t0\n";
+  const Bytes bomb = file_of(tables, 200'002, {}, {});
+  CHECK(bomb.size() < 3000);
   const auto documents = pipeline::decode_container(bomb);
   REQUIRE_FALSE(documents);
   CHECK(documents.error().code == ErrorCode::malformed);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The texts of a block (docs/format-file.md, "Blocks"): those of its documents and features, and
+// three tables with all else that is kept of them. Internal to pipeline/blocks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "columns/columns.h"
+#include "pipeline/blocks/block.h"
+
+namespace watertight::pipeline {
+
+/// In place of the bytes of a blob, of which there are more: the solid is not proven.
+inline constexpr std::uint64_t kNoBlob = 1;
+
+/// Packs the texts of a block. `blob_bytes` has, for each solid of the features, the bytes of its
+/// blob: 0 for one in the page file, kNoBlob for one that is not proven. Of a report the codes of
+/// the errors are kept. Cost: pack_texts().
+Bytes pack_block_texts(const BlockContents& contents, std::span<const std::uint64_t> blob_bytes);
+
+struct BlockTexts {
+  ReadBlock block;                        // without solids
+  std::vector<std::uint64_t> blob_bytes;  // as above
+};
+
+/// The texts of pack_block_texts(). `documents` is the number of documents of the file, 0 for a
+/// block that has its own. Errors: malformed; limit_exceeded.
+Result<BlockTexts> unpack_block_texts(ByteView bytes, std::size_t documents, ReadBudget& budget);
+
+}  // namespace watertight::pipeline

@@ -15,12 +15,6 @@ void append_double(std::string& out, double value) {
   if (out.find_first_of(".e", begin) == std::string::npos) out += ".0";
 }
 
-template <class Integer>
-void append_integer(std::string& out, Integer value) {
-  std::array<char, 24> digits{};
-  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-}
-
 void append_object(std::string& out, const Json& value) {
   out += '{';
   bool is_first = true;

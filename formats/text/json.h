@@ -5,6 +5,9 @@
 // numbers. Internal to formats/.
 #pragma once
 
+#include <array>
+#include <charconv>
+#include <concepts>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -14,6 +17,13 @@
 #include "base/result.h"
 
 namespace watertight::formats {
+
+/// Appends the digits of a whole number.
+template <std::integral Integer>
+void append_integer(std::string& out, Integer value) {
+  std::array<char, 24> digits;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
 
 /// A JSON value. A value of kind `binary` (which JSON text cannot hold) is the text of a number.
 using Json = nlohmann::ordered_json;

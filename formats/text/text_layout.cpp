@@ -148,6 +148,11 @@ class Predictor {
     gaps_[at_depth_] = gaps_[at_any_depth_] = Place{true, gap};
   }
 
+  /// True if the likely spelling of a token is certainly the token itself.
+  bool keeps(std::string_view token) const {
+    if (is_number(token)) return decimals_[place()] == 0;
+    return !token.starts_with('"') || (!escapes_.non_ascii && !escapes_.slashes);
+  }
   void append_spelling(std::string& out, std::string_view token) const {
     if (is_number(token)) {
       append_with_decimals(out, token, decimals_[place()]);
@@ -253,25 +258,38 @@ Result<std::string> apply_to_tokens(std::string_view plain, ByteReader& reader,
   Predictor predictor;
   std::string text;
   text.reserve(std::min<std::uint64_t>(size, 2 * plain.size()));
+  // Tokens that stand in `plain` one after the other as they are to be written, which is so for
+  // nearly all of a compact text; they are copied together.
+  std::string_view run;
+  const auto end_run = [&] { text += std::exchange(run, {}); };
   for (;;) {
     const std::string_view token = tokens.next().text;
     predictor.move_to(token);
     std::string_view other;
     if (gaps.next(other)) predictor.learn_gap(other);
     const std::string_view gap = predictor.gap();
-    if (gap.size() > size - text.size()) return does_not_fit();
-    text += gap;
-    if (token.empty()) break;
-    if (is_mark(token)) {
-      text += token;
-    } else if (spellings.next(other)) {
-      predictor.learn_spelling(token, other);
-      text += other;
-    } else {
-      predictor.append_spelling(text, token);
+    if (gap.size() > size - text.size() - run.size()) return does_not_fit();
+    if (!gap.empty()) {
+      end_run();
+      text += gap;
     }
-    if (text.size() > size) return does_not_fit();
+    if (token.empty()) break;
+    if (!is_mark(token) && spellings.next(other)) {
+      predictor.learn_spelling(token, other);
+      end_run();
+      text += other;
+    } else if (!is_mark(token) && !predictor.keeps(token)) {
+      end_run();
+      predictor.append_spelling(text, token);
+    } else if (!run.empty() && run.data() + run.size() == token.data()) {
+      run = {run.data(), run.size() + token.size()};
+    } else {
+      end_run();
+      run = token;
+    }
+    if (text.size() + run.size() > size) return does_not_fit();
   }
+  end_run();
   if (!gaps.is_finished() || !spellings.is_finished()) return does_not_fit();
   return text;
 }

@@ -39,7 +39,10 @@ struct Source {
 };
 
 Source read_source(const std::string& file) {
-  auto document = bench::read_file(file, {.split_features = false, .keep_text = true});
+  formats::ReadOptions options;
+  options.split_features = false;
+  options.keep_text = true;
+  auto document = bench::read_file(file, options);
   if (!document) give_up(file, document.error());
   Source source{
       file, static_cast<double>(std::filesystem::file_size(file)) / 1e6, *std::move(document), {}};

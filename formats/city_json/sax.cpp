@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/assert.h"
+#include "formats/text/json_events.h"
 #include "formats/text/numbers.h"
 
 namespace watertight::formats {
@@ -443,6 +444,11 @@ class CitySax {
   bool is_rounded_ = false;  // a number of the open vertex was rounded
 };
 
+CityModel finished(CitySax& sax, std::string_view text) {
+  sax.model().text_bytes = text.size();
+  return std::move(sax.model());
+}
+
 Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, const Limits& limits) {
   if (text.size() > limits.bytes) {
     return Error{ErrorCode::limit_exceeded, std::to_string(text.size()) + " bytes; the limit is " +
@@ -452,10 +458,13 @@ Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, cons
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     return Error{ErrorCode::malformed, "a JSON text must not contain a NUL byte", nul, {}};
   }
+  {
+    CitySax quick(is_city, kind, limits);
+    if (JsonEvents(text, quick).run()) return finished(quick, text);
+  }
   CitySax sax(is_city, kind, limits);
   if (!Json::sax_parse(text.begin(), text.end(), &sax)) return std::move(sax.error());
-  sax.model().text_bytes = text.size();
-  return std::move(sax.model());
+  return finished(sax, text);
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ std::string string_member(const Json& object, std::string_view key) {
   return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
 }
 
-Json make_object(std::vector<std::string>&& keys, std::vector<Json>&& values) {
+Json make_object(std::span<std::string> keys, std::span<Json> values) {
   // The vector of an ordered_map copies its elements, whose keys are const, when it grows; reserved
   // room avoids that.
   Json object = Json::object();

@@ -9,9 +9,9 @@
 #include <charconv>
 #include <concepts>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/limits.h"
 #include "base/result.h"
@@ -49,8 +49,9 @@ Json* find_member(Json& object, std::string_view key);
 /// The member's text if it is a string, else "".
 std::string string_member(const Json& object, std::string_view key);
 
-/// An object of the members `keys` and `values`, in this order. The keys must differ. Cost: linear.
-Json make_object(std::vector<std::string>&& keys, std::vector<Json>&& values);
+/// An object of the members `keys` and `values`, which are moved, in this order. The keys must
+/// differ. Cost: linear.
+Json make_object(std::span<std::string> keys, std::span<Json> values);
 
 /// Appends a member whose key the object does not have yet.
 void append_member(Json& object, std::string key, Json value);

@@ -56,6 +56,13 @@ void NearColumns::visit(const std::uint64_t& limit, const Visit& visit) const {
   for (std::size_t i = middle_; i > 0 && !is_beyond(i - 1, 0); --i) consider(i - 1);
 }
 
+NearColumns::Scored NearColumns::nearest() const {
+  WATERTIGHT_ASSERT(size() > 0);
+  Scored best{UINT64_MAX, {}};
+  visit(best.first, [&](const Scored& scored) { best = std::min(best, scored); });
+  return best;
+}
+
 NearColumns::Scored NearColumns::at(std::size_t rank) const {
   WATERTIGHT_ASSERT(rank < size());
   std::vector<Scored> best;  // a heap of the rank + 1 best so far, the worst of them first

@@ -30,6 +30,8 @@ class NearColumns {
   NearColumns(std::span<const GridColumn> columns, const ColumnScore& score, std::size_t window);
 
   std::size_t size() const { return columns_.size(); }
+  /// The column of rank 0, and its score. Requires size() > 0. Cost: as rank_of().
+  Scored nearest() const;
   /// The column of a rank, and its score. Requires rank < size(). Cost: O(window log rank), most
   /// often much less.
   Scored at(std::size_t rank) const;

@@ -223,7 +223,7 @@ bool PositionCoder::code_known_column(const Prediction& prediction) {
   const std::size_t rank = truth_.empty() ? 0 : near.rank_of({truth_at(0), truth_at(1)});
   const Context<kFrames> frame(prediction.frame);
   const Context<3> before(before_ == kNone ? 0U : 1U + in_known_column_[before_]);
-  const NearColumns::Scored nearest = near.at(0);
+  const NearColumns::Scored nearest = near.nearest();
   const auto distance = capped<12>(std::bit_width(nearest.first) / 2);
   if (!models_.code<kKnownColumn>(stream_,
                                   {combine(frame, before, capped<3>(known_columns_)),

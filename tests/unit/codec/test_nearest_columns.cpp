@@ -48,6 +48,7 @@ TEST_CASE("near columns are ranked as if the score of every column in the window
       const auto expected = ranked(columns, score, window);
       const NearColumns near(columns, score, window);
       REQUIRE(near.size() == expected.size());
+      REQUIRE((expected.empty() || near.nearest() == expected.front()));
       for (std::size_t rank = 0; rank < expected.size(); ++rank) {
         REQUIRE(near.at(rank) == expected[rank]);
         REQUIRE(near.rank_of(expected[rank].second) == rank);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/bytes.h"
 
+#include <array>
 #include <bit>
 #include <string>
 
@@ -15,14 +16,17 @@ std::string_view as_text(ByteView bytes) {
 }
 
 namespace {
-void put(Bytes& bytes, std::uint64_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+template <std::size_t count>
+void put(Bytes& bytes, std::uint64_t value) {
+  std::array<std::uint8_t, count> little;
+  for (std::size_t i = 0; i < count; ++i) little[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  bytes.insert(bytes.end(), little.begin(), little.end());
 }
 }  // namespace
 
-void ByteWriter::u16(std::uint16_t value) { put(bytes_, value, 2); }
-void ByteWriter::u32(std::uint32_t value) { put(bytes_, value, 4); }
-void ByteWriter::u64(std::uint64_t value) { put(bytes_, value, 8); }
+void ByteWriter::u16(std::uint16_t value) { put<2>(bytes_, value); }
+void ByteWriter::u32(std::uint32_t value) { put<4>(bytes_, value); }
+void ByteWriter::u64(std::uint64_t value) { put<8>(bytes_, value); }
 void ByteWriter::f64(double value) { u64(std::bit_cast<std::uint64_t>(value)); }
 
 void ByteWriter::varint(std::uint64_t value) {

@@ -173,6 +173,11 @@ CanonicalSolid Arranger::arrange() const {
   SolidArrays arrays;
   arrays.vertices.reserve(vertex_order_.size());
   arrays.ring_vertices.reserve(rotated_.size());
+  arrays.ring_offsets.reserve(ring_order_.size() + 1);
+  arrays.facet_offsets.reserve(facet_order_.size() + 1);
+  order.facet.reserve(facet_order_.size());
+  order.ring.reserve(ring_order_.size());
+  order.ring_start.reserve(ring_order_.size());
   for (const Index vertex : vertex_order_) arrays.vertices.push_back(solid_.vertices()[vertex]);
   for (const Index shell : shell_order_) {
     const IndexRange facets = solid_.facets_of(shell);
@@ -290,6 +295,8 @@ Result<Solid> restore_order(const Solid& canonical, const SourceOrder& order) {
   SolidArrays arrays;
   arrays.vertices.reserve(canonical.vertex_count());
   arrays.ring_vertices.reserve(canonical.arrays().ring_vertices.size());
+  arrays.ring_offsets.reserve(canonical.ring_count() + std::size_t{1});
+  arrays.facet_offsets.reserve(canonical.facet_count() + std::size_t{1});
   for (const Index vertex : inverse->vertex)
     arrays.vertices.push_back(canonical.vertices()[vertex]);
   Index source_facet = 0;

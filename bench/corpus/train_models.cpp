@@ -248,7 +248,7 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
     if (!options.only.empty() && options.only != codec::to_string(mode)) continue;
     const auto start = std::chrono::steady_clock::now();
     const auto choose = [mode](const codec::SolidCoder& coder, const codec::PageSolid& solid) {
-      return coder.measure(solid, mode) ? mode : Mode::automatic;
+      return coder.draft(solid, mode) ? mode : Mode::automatic;
     };
     for (int pass = 0; pass < options.passes; ++pass) train(pages, first, choose);
     const std::string title(codec::to_string(mode));
@@ -261,7 +261,8 @@ void train_all(const std::vector<Page>& pages, const Options& options) {
 
   const std::array<codec::ModelBank, codec::kModelParts> chosen_by = banks_of(first);
   const auto cheapest = [](const codec::SolidCoder& coder, const codec::PageSolid& solid) {
-    return coder.cheapest(solid).mode;
+    const auto draft = coder.cheapest(solid);
+    return draft ? draft->mode : Mode::automatic;
   };
   codec::ModelSet second(chosen_by);
   for (int pass = 0; pass < options.passes; ++pass) train(pages, second, cheapest);

@@ -2,7 +2,6 @@
 #include "codec/entropy/bank_trial.h"
 
 #include <utility>
-#include <vector>
 
 namespace watertight::codec {
 
@@ -11,21 +10,23 @@ BankTrial::BankTrial(ModelBank& bank, std::size_t vertices)
   // A coded vertex changes some hundred values of the bank. To note a value takes several times as
   // long as to copy it.
   constexpr std::size_t kCountersPerVertex = 1000;
-  if (vertices > bank.counters_.size() / kCountersPerVertex) {
+  if (vertices > bank.counters_ / kCountersPerVertex) {
     before_ = bank;
   } else {
     ++bank.trials_;
   }
 }
 
+void BankTrial::keep() { is_kept_ = true; }
+
 BankTrial::~BankTrial() {
   if (before_) {
-    bank_ = *std::move(before_);
+    if (!is_kept_) bank_ = *std::move(before_);
     return;
   }
-  std::vector<ModelBank::Change>& changes = bank_.changes_;
-  for (; changes.size() > first_change_; changes.pop_back()) bank_.undo(changes.back());
   --bank_.trials_;
+  if (!is_kept_) bank_.undo(first_change_);
+  if (bank_.trials_ == 0) bank_.changes_.clear();
 }
 
 }  // namespace watertight::codec

@@ -110,10 +110,22 @@ bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
     }
     shift_out();
   }
+  if (is_recording_) {
+    decisions_.push_back(
+        {static_cast<std::uint16_t>(ones_of_65536), value, static_cast<std::uint8_t>(part_)});
+  }
   const std::uint32_t cost = kCosts[(result ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
   cost_ += cost;
   costs_[part_] += cost;
   return result;
+}
+
+void EntropyStream::append(const EntropyStream& recorder) {
+  WATERTIGHT_ASSERT(!is_reading() && recorder.is_recording_);
+  for (const Decision& decision : recorder.decisions_) {
+    part_ = decision.part;
+    code(decision.value, decision.ones_of_65536);
+  }
 }
 
 std::uint64_t EntropyStream::code_bits(std::uint64_t value, int count) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "base/bytes.h"
 
@@ -32,10 +33,17 @@ class EntropyStream {
     stream.limit_ = limit;
     return stream;
   }
+  /// A meter that also keeps its decisions, for append(). Memory: 4 bytes a decision.
+  static EntropyStream recorder(std::uint64_t limit = ~std::uint64_t{0}) {
+    EntropyStream stream = meter(limit);
+    stream.is_recording_ = true;
+    return stream;
+  }
   /// `bytes` must outlive the stream.
   static EntropyStream reader(ByteView bytes) { return EntropyStream(Direction::read, bytes); }
 
   bool is_reading() const { return direction_ == Direction::read; }
+  bool is_recorder() const { return is_recording_; }
 
   /// Codes one decision whose probability of being 1 is `ones_of_65536` / 65536, 1 to 65535.
   /// Returns `value` when writing or measuring, else the value that was read.
@@ -46,6 +54,10 @@ class EntropyStream {
   /// Codes the `count` low bits of a number, high ones first, all equally likely. Requires count <=
   /// 64.
   std::uint64_t code_bits(std::uint64_t value, int count);
+
+  /// Codes the decisions of a recorder again, which costs far less than to find their
+  /// probabilities. Requires that this stream writes or measures.
+  void append(const EntropyStream& recorder);
 
   /// Reports that the values read so far are malformed. Reading returns zeros from then on. A
   /// reader that runs past the end of its bytes fails by itself. Callers bound their loops, and ask
@@ -69,12 +81,18 @@ class EntropyStream {
 
  private:
   enum class Direction : std::uint8_t { write, read, measure };
+  struct Decision {
+    std::uint16_t ones_of_65536 = 0;
+    bool value = false;
+    std::uint8_t part = 0;
+  };
   EntropyStream(Direction direction, ByteView source);
   void shift_out();
   std::uint32_t next_byte();
 
   Direction direction_;
   bool failed_ = false;
+  bool is_recording_ = false;
   std::uint32_t low_ = 0;
   std::uint32_t high_ = 0xFFFFFFFFU;
   std::uint32_t window_ = 0;  // reading: the next four bytes of the source
@@ -85,6 +103,7 @@ class EntropyStream {
   std::uint64_t cost_ = 0;
   StreamCosts costs_{};
   std::size_t part_ = 0;
+  std::vector<Decision> decisions_;  // those of a recorder
 };
 
 }  // namespace watertight::codec

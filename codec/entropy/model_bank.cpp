@@ -111,6 +111,7 @@ ModelBank::ModelBank(const ModelLayout& layout) : is_agile_(layout.is_agile) {
     add_family(mantissa);
     add_family(sign);
   }
+  set_first_values();
 }
 
 std::int32_t ModelBank::first_weight(std::uint32_t inputs) const {
@@ -120,35 +121,53 @@ std::int32_t ModelBank::first_weight(std::uint32_t inputs) const {
 void ModelBank::add_family(const FamilyShape& shape) {
   Family family;
   family.selectors = shape.selectors;
-  family.first_weight = static_cast<std::uint32_t>(weights_.size());
-  family.first_rate = static_cast<std::uint32_t>(mixed_.size());
+  family.first_weight = static_cast<std::uint32_t>(weights_);
+  family.first_rate = static_cast<std::uint32_t>(rates_);
   family.inputs = static_cast<std::uint32_t>(input_count(shape));
   family.sizes = shape.inputs;
   for (std::uint32_t i = 0; i < family.inputs; ++i) {
-    family.first_counter[i] = static_cast<std::uint32_t>(counters_.size());
-    counters_.insert(counters_.end(), shape.inputs[i], kUnknown);
+    family.first_counter[i] = static_cast<std::uint32_t>(counters_);
+    counters_ += shape.inputs[i];
   }
-  for (std::uint32_t selector = 0; selector < shape.selectors; ++selector) {
-    weights_.insert(weights_.end(), family.inputs, first_weight(family.inputs));
-    weights_.push_back(0);
-    mixed_.push_back(0);
-  }
+  weights_ += shape.selectors * (family.inputs + std::size_t{1});
+  rates_ += shape.selectors;
   families_.push_back(family);
+}
+
+/// Makes the values of a bank that learned nothing. The weights of the families then follow the
+/// counters, and the rates follow the weights.
+void ModelBank::set_first_values() {
+  values_.assign(counters_ + weights_ + rates_, 0);
+  std::fill_n(values_.begin(), counters_, kUnknown);
+  for (Family& family : families_) {
+    family.first_weight += static_cast<std::uint32_t>(counters_);
+    family.first_rate += static_cast<std::uint32_t>(counters_ + weights_);
+    std::uint32_t* weight = &values_[family.first_weight];
+    for (std::uint32_t selector = 0; selector < family.selectors; ++selector) {
+      weight = std::fill_n(weight, family.inputs,
+                           static_cast<std::uint32_t>(first_weight(family.inputs)));
+      ++weight;  // the weight of the constant input is 0
+    }
+  }
 }
 
 ModelBank::Mix ModelBank::mix(const Family& family, std::uint32_t selector,
                               const std::uint32_t* contexts) const {
   Mix result;
-  const std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+  const std::uint32_t* values = values_.data();
+  const std::uint32_t* weight = values + family.first_weight + selector * (family.inputs + 1);
+  const auto weighted = [](std::uint32_t weight_bits, std::int32_t input) {
+    return std::int64_t{static_cast<std::int32_t>(weight_bits)} * input;
+  };
   std::int64_t sum = 0;
   for (std::uint32_t i = 0; i < family.inputs; ++i) {
     WATERTIGHT_ASSERT(contexts[i] < family.sizes[i]);
     result.counter[i] = family.first_counter[i] + contexts[i];
-    result.input[i] = input_of(counters_[result.counter[i]]);
-    sum += static_cast<std::int64_t>(weight[i]) * result.input[i];
+    result.input[i] = input_of(values[result.counter[i]]);
+    sum += weighted(weight[i], result.input[i]);
   }
   result.input[family.inputs] = kBiasInput;
-  sum += static_cast<std::int64_t>(weight[family.inputs]) * kBiasInput;
+  sum += weighted(weight[family.inputs], kBiasInput);
 
   const auto x = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum >> 16, -kDomain, kDomain));
   result.ones = std::clamp(static_cast<std::uint32_t>(squash(x)), kLeastProbability,
@@ -162,17 +181,19 @@ bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32
   if (trials_ > 0) note_changes(family, selector, mixed);
   const bool bit = stream.code(value, mixed.ones);
 
-  std::uint32_t& seen = mixed_[family.first_rate + selector];
-  std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+  std::uint32_t* values = values_.data();
+  std::uint32_t& seen = values[family.first_rate + selector];
+  std::uint32_t* weight = values + family.first_weight + selector * (family.inputs + 1);
   const std::int64_t step = ((bit ? 65536 : 0) - static_cast<std::int64_t>(mixed.ones)) *
                             mixing_rate(seen) * (is_agile_ ? 2 : 1);
   for (std::uint32_t i = 0; i <= family.inputs; ++i) {
-    weight[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(
-        weight[i] + ((step * mixed.input[i]) >> 20), -kWeightLimit, kWeightLimit));
+    const std::int64_t moved =
+        static_cast<std::int32_t>(weight[i]) + ((step * mixed.input[i]) >> 20);
+    weight[i] = static_cast<std::uint32_t>(std::clamp(moved, -kWeightLimit, kWeightLimit));
   }
   seen = std::min(seen + 1, kMaxMixed);
   for (std::uint32_t i = 0; i < family.inputs; ++i) {
-    std::uint32_t& counter = counters_[mixed.counter[i]];
+    std::uint32_t& counter = values[mixed.counter[i]];
     counter = learned(counter, bit);
   }
   return bit;
@@ -186,42 +207,34 @@ void ModelBank::note_from_now() {
 
 bool ModelBank::take_back() {
   if (!is_noting_) return false;
-  for (; !changes_.empty(); changes_.pop_back()) undo(changes_.back());
+  undo(0);
   return true;
 }
 
 void ModelBank::note_changes(const Family& family, std::uint32_t selector, const Mix& mixed) {
   // To note and undo a change takes several times as long as to copy a value.
-  if (is_noting_ && trials_ == 1 && changes_.size() > counters_.size() / 4) {
+  if (is_noting_ && trials_ == 1 && changes_.size() > counters_ / 4) {
     changes_ = {};
     trials_ = 0;
     is_noting_ = false;
     return;
   }
-  const auto weights = static_cast<std::uint32_t>(counters_.size());
-  const auto seen = static_cast<std::uint32_t>(weights + weights_.size());
   const std::size_t noted = changes_.size();
   changes_.resize(noted + 2 * std::size_t{family.inputs} + 2);
   Change* change = &changes_[noted];
-  for (std::uint32_t i = 0; i < family.inputs; ++i) {
-    *change++ = {mixed.counter[i], counters_[mixed.counter[i]]};
-  }
+  const std::uint32_t* values = values_.data();
+  const auto note = [&](std::uint32_t index) { *change++ = {index, values[index]}; };
+  for (std::uint32_t i = 0; i < family.inputs; ++i) note(mixed.counter[i]);
   const std::uint32_t first = family.first_weight + selector * (family.inputs + 1);
-  for (std::uint32_t i = first; i <= first + family.inputs; ++i) {
-    *change++ = {weights + i, static_cast<std::uint32_t>(weights_[i])};
-  }
-  *change = {seen + family.first_rate + selector, mixed_[family.first_rate + selector]};
+  for (std::uint32_t i = first; i <= first + family.inputs; ++i) note(i);
+  note(family.first_rate + selector);
 }
 
-void ModelBank::undo(const Change& change) {
-  const std::size_t weight = change.index - counters_.size();
-  if (change.index < counters_.size()) {
-    counters_[change.index] = change.before;
-  } else if (weight < weights_.size()) {
-    weights_[weight] = static_cast<std::int32_t>(change.before);
-  } else {
-    mixed_[weight - weights_.size()] = change.before;
+void ModelBank::undo(std::size_t left) {
+  for (std::size_t i = changes_.size(); i > left; --i) {
+    values_[changes_[i - 1].index] = changes_[i - 1].before;
   }
+  changes_.resize(left);
 }
 
 std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selector,
@@ -298,17 +311,17 @@ std::int64_t ModelBank::code_signed(EntropyStream& stream, std::uint32_t number,
 Bytes ModelBank::save(const PriorShape& shape) const {
   ByteWriter writer;
   const auto is_kept = [&](std::size_t i) {
-    return (counters_[i] & 1023U) >= std::max(shape.least_count, 1U);
+    return (values_[i] & 1023U) >= std::max(shape.least_count, 1U);
   };
-  for (std::size_t i = 0; i < counters_.size();) {
+  for (std::size_t i = 0; i < counters_;) {
     if (is_kept(i)) {
-      const std::uint32_t count = counters_[i] & 1023U;
+      const std::uint32_t count = values_[i] & 1023U;
       writer.u8(static_cast<std::uint8_t>(std::min({count, shape.max_count, 255U})));
-      writer.u16(static_cast<std::uint16_t>(counters_[i++] >> 16));
+      writer.u16(static_cast<std::uint16_t>(values_[i++] >> 16));
       continue;
     }
     std::size_t next = i;  // the end of a run of counters that observed too little
-    while (next < counters_.size() && !is_kept(next)) ++next;
+    while (next < counters_ && !is_kept(next)) ++next;
     writer.u8(0);
     writer.varint(next - i);
     i = next;
@@ -319,40 +332,40 @@ Bytes ModelBank::save(const PriorShape& shape) const {
   };
   for (const Family& family : families_) {
     for (std::uint32_t selector = 0; selector < family.selectors; ++selector) {
-      const std::int32_t* weight = &weights_[family.first_weight + selector * (family.inputs + 1)];
+      const std::uint32_t* weight = &values_[family.first_weight + selector * (family.inputs + 1)];
       for (std::uint32_t i = 0; i <= family.inputs; ++i) {
         const std::int32_t neutral = i < family.inputs ? first_weight(family.inputs) : 0;
-        put_weight(shape.has_weights ? weight[i] : neutral);
+        put_weight(shape.has_weights ? static_cast<std::int32_t>(weight[i]) : neutral);
       }
     }
   }
-  for (const std::uint32_t mixed : mixed_) {
+  for (const std::uint32_t mixed : std::span(values_).last(rates_)) {
     writer.u8(static_cast<std::uint8_t>(shape.has_weights ? std::min(mixed, 255U) : 0));
   }
   return std::move(writer).bytes();
 }
 
 bool ModelBank::load(ByteView state) {
-  ModelBank loaded = *this;
+  std::vector<std::uint32_t> loaded(values_.size());
   ByteReader reader(state);
-  std::fill(loaded.counters_.begin(), loaded.counters_.end(), kUnknown);
-  for (std::size_t i = 0; i < loaded.counters_.size();) {
+  std::fill_n(loaded.begin(), counters_, kUnknown);
+  for (std::size_t i = 0; i < counters_;) {
     const std::uint32_t count = reader.u8();
     if (reader.failed() || count > kMaxCount) return false;
     if (count > 0) {
-      loaded.counters_[i++] = (static_cast<std::uint32_t>(reader.u16()) << 16) | count;
+      loaded[i++] = (static_cast<std::uint32_t>(reader.u16()) << 16) | count;
       continue;
     }
     const std::uint64_t run = reader.varint();
-    if (run == 0 || run > loaded.counters_.size() - i) return false;
+    if (run == 0 || run > counters_ - i) return false;
     i += run;
   }
-  for (std::int32_t& weight : loaded.weights_) {
-    weight = static_cast<std::int16_t>(reader.u16()) * 16;
+  for (std::uint32_t& weight : std::span(loaded).subspan(counters_, weights_)) {
+    weight = static_cast<std::uint32_t>(static_cast<std::int16_t>(reader.u16()) * 16);
   }
-  for (std::uint32_t& mixed : loaded.mixed_) mixed = reader.u8();
+  for (std::uint32_t& mixed : std::span(loaded).last(rates_)) mixed = reader.u8();
   if (reader.failed() || reader.remaining() != 0) return false;
-  *this = std::move(loaded);
+  values_ = std::move(loaded);
   return true;
 }
 

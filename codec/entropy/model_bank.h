@@ -110,7 +110,7 @@ class ModelBank {
   struct Family {
     std::uint32_t inputs = 0;
     std::uint32_t selectors = 0;
-    std::uint32_t first_weight = 0;
+    std::uint32_t first_weight = 0;  // indices in values_
     std::uint32_t first_rate = 0;
     std::array<std::uint32_t, kMaxInputs> first_counter{};
     std::array<std::uint32_t, kMaxInputs> sizes{};
@@ -124,8 +124,7 @@ class ModelBank {
     std::array<std::int32_t, kMaxInputs + 1> input;
     std::uint32_t ones;
   };
-  /// A value that changed during a trial: its index in the sequence of all counters, then all
-  /// weights, then all elements of mixed_; and the value that it had before.
+  /// A value that changed during a trial: its index in values_, and the value that it had before.
   struct Change {
     std::uint32_t index = 0;
     std::uint32_t before = 0;
@@ -133,8 +132,10 @@ class ModelBank {
   friend class BankTrial;
   [[gnu::noinline]] void note_changes(const Family& family, std::uint32_t selector,
                                       const Mix& mixed);
-  void undo(const Change& change);
+  /// Undoes the latest changes, until `left` are left.
+  void undo(std::size_t left);
   void add_family(const FamilyShape& shape);
+  void set_first_values();
   std::int32_t first_weight(std::uint32_t inputs) const;
   Mix mix(const Family& family, std::uint32_t selector, const std::uint32_t* contexts) const;
   bool code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
@@ -143,10 +144,14 @@ class ModelBank {
   bool is_agile_ = false;
   std::vector<Family> families_;
   std::size_t number_base_ = 0;  // index in families_ of the first family of the first number
-  std::vector<std::uint32_t> counters_;  // each: 22 bits of probability, 10 of count
-  std::vector<std::int32_t> weights_;    // fixed-point numbers, 16.16
-  std::vector<std::uint32_t> mixed_;     // set of weights -> decisions that it mixed, at most 1000
-  std::vector<Change> changes_;          // all changes since the beginning of the outermost trial
+  std::size_t counters_ = 0;     // the number of counters
+  std::size_t weights_ = 0;      // the number of weights
+  std::size_t rates_ = 0;        // the number of sets of weights
+  /// What the bank learns, in one array so that a change is an index and a value: the counters (22
+  /// bits of probability, 10 of count), the weights (the bits of signed fixed-point
+  /// numbers, 16.16), then for each set of weights the decisions that it mixed, at most 1000.
+  std::vector<std::uint32_t> values_;
+  std::vector<Change> changes_;  // all changes since the beginning of the outermost trial
   int trials_ = 0;  // number of trials that live now and note changes; note_from_now() is one
   bool is_noting_ = false;  // the outermost trial is that of note_from_now()
 };

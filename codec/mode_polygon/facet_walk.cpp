@@ -11,6 +11,25 @@
 
 namespace watertight::codec::polygon {
 
+/// Makes room for a building of the usual size, so that few of the many lists have to grow.
+void SurfaceWalk::reserve() {
+  constexpr std::size_t kVertices = 24;
+  PolygonSurface& surface = result_.surface;
+  for (auto* of_vertices : {&surface.degree, &surface.out_half, &remaining_, &chain_count_,
+                            &first_chain_, &seen_in_ring_, &result_.truth_vertex}) {
+    of_vertices->reserve(kVertices);
+  }
+  for (auto* of_facets :
+       {&surface.facet_of, &surface.ring_offsets, &surface.facet_offsets, &result_.exterior}) {
+    of_facets->reserve(kVertices);
+  }
+  for (auto* of_halves : {&surface.vertex, &surface.twin, &surface.ring_of, &half_truth_}) {
+    of_halves->reserve(3 * kVertices);
+  }
+  chains_.reserve(kVertices);
+  level_.reserve(kVertices);
+}
+
 Result<WalkedSurface> SurfaceWalk::run() {
   for (Index shell = 0; !stopped(); ++shell) {
     if (shell >= limits_.shells) {

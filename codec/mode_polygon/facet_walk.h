@@ -58,6 +58,7 @@ class SurfaceWalk {
   SurfaceWalk(EntropyStream& stream, ModelBank& models, const SurfaceTruth* truth,
               const Limits& limits)
       : stream_(stream), models_(models), truth_(truth), limits_(limits) {
+    reserve();
     if (truth_ == nullptr) return;
     known_as_.assign(truth_->vertex_of.size(), kNone);
     facet_done_.assign(truth_->surface.facet_count(), false);
@@ -66,6 +67,7 @@ class SurfaceWalk {
   Result<WalkedSurface> run();
 
  private:
+  void reserve();
   // Shells and facets.
   void code_shell(Index shell);
   void code_component(Index truth_half);

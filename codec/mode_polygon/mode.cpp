@@ -13,6 +13,9 @@ namespace {
 IntegerSolid assemble(const WalkedSurface& walked, const CodedPositions& positions) {
   const PolygonSurface& surface = walked.surface;
   IntegerSolid solid;
+  solid.vertices.reserve(surface.vertex_count());
+  solid.ring_vertices.reserve(surface.vertex.size());
+  solid.ring_offsets.reserve(surface.ring_offsets.size());
   std::vector<Index> number(surface.vertex_count(), kNone);
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex) {
     if (positions.same_as[vertex] != vertex) {
@@ -59,6 +62,7 @@ Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& me
   auto walked = code_surface(stream, models, truth ? &*truth : nullptr, limits);
   if (!walked) return walked.error();
   std::vector<GridPoint> points;
+  points.reserve(walked->truth_vertex.size());
   for (const Index fan : walked->truth_vertex) {
     points.push_back(solid.vertices[truth->vertex_of[fan]]);
   }

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "codec/mode_polygon/plane_geometry.h"
 
@@ -20,11 +20,32 @@ struct ColumnScore {
   std::uint64_t operator()(const GridColumn& column) const;
 };
 
-/// The `keep` columns of the least score, ties by the column, among the last `window` columns less
-/// than the base of the score and the first `window` others. Requires sorted `columns`.
-/// Cost: O(window log keep).
-std::vector<GridColumn> nearest_columns(std::span<const GridColumn> columns,
-                                        const ColumnScore& score, std::size_t window,
-                                        std::size_t keep);
+/// The columns in a window around the base of a score: the last `window` columns less than the base
+/// and the first `window` others. Their ranks are by the score, ties by the column.
+class NearColumns {
+ public:
+  using Scored = std::pair<std::uint64_t, GridColumn>;
+
+  /// Requires sorted `columns`, each once, that outlive the object. Cost: logarithmic.
+  NearColumns(std::span<const GridColumn> columns, const ColumnScore& score, std::size_t window);
+
+  std::size_t size() const { return columns_.size(); }
+  /// The column of rank 0, and its score. Requires size() > 0. Cost: as rank_of().
+  Scored nearest() const;
+  /// The column of a rank, and its score. Requires rank < size(). Cost: O(window log rank), most
+  /// often much less.
+  Scored at(std::size_t rank) const;
+  /// The rank of a column; size() if it is not in the window. Cost: O(window), most often much
+  /// less.
+  std::size_t rank_of(const GridColumn& column) const;
+
+ private:
+  template <class Visit>
+  void visit(const std::uint64_t& limit, const Visit& visit) const;
+
+  std::span<const GridColumn> columns_;  // those in the window
+  std::size_t middle_;  // the index of the first one that is not less than the base
+  ColumnScore score_;
+};
 
 }  // namespace watertight::codec::polygon

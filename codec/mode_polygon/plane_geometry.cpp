@@ -21,15 +21,6 @@ constexpr double kWallSquared = 0.02 * 0.02;
 
 }  // namespace
 
-std::int64_t to_whole(double value) {
-  constexpr double limit = 4611686018427387904.0;  // 2^62
-  if (!(value > -limit && value < limit)) return 0;
-  const double shifted = value + 0.5;
-  auto whole = static_cast<std::int64_t>(shifted);
-  if (static_cast<double>(whole) > shifted) --whole;
-  return whole;
-}
-
 Turn::Turn(Flat direction) {
   for (; quarters_ < 3; ++quarters_) {
     const double across = direction.y < 0 ? -direction.y : direction.y;
@@ -40,20 +31,6 @@ Turn::Turn(Flat direction) {
   const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y);
   shear_ = direction.y / (length + direction.x);
   lift_ = -direction.y / length;
-}
-
-GridColumn Turn::forward(GridColumn offset) const {
-  std::int64_t x = offset[0];
-  std::int64_t y = offset[1];
-  for (int i = 0; i < quarters_; ++i) {
-    const std::int64_t old = x;
-    x = y;
-    y = -old;
-  }
-  x += to_whole(shear_ * static_cast<double>(y));
-  y += to_whole(lift_ * static_cast<double>(x));
-  x += to_whole(shear_ * static_cast<double>(y));
-  return {x, y};
 }
 
 GridColumn Turn::back(GridColumn turned) const {

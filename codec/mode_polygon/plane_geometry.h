@@ -21,7 +21,14 @@ inline double dot(Flat a, Flat b) { return a.x * b.x + a.y * b.y; }
 inline double cross(Flat a, Flat b) { return a.x * b.y - a.y * b.x; }
 
 /// The nearest whole number; halves upward. Magnitudes from 2^62 on become 0: no prediction.
-std::int64_t to_whole(double value);
+inline std::int64_t to_whole(double value) {
+  constexpr double limit = 4611686018427387904.0;  // 2^62
+  if (!(value > -limit && value < limit)) return 0;
+  const double shifted = value + 0.5;
+  auto whole = static_cast<std::int64_t>(shifted);
+  if (static_cast<double>(whole) > shifted) --whole;
+  return whole;
+}
 
 using GridColumn = std::array<std::int64_t, 2>;
 
@@ -39,6 +46,20 @@ class Turn {
   double shear_ = 0;  // -tan of half the angle
   double lift_ = 0;   // sine of the angle
 };
+
+inline GridColumn Turn::forward(GridColumn offset) const {
+  std::int64_t x = offset[0];
+  std::int64_t y = offset[1];
+  for (int i = 0; i < quarters_; ++i) {
+    const std::int64_t old = x;
+    x = y;
+    y = -old;
+  }
+  x += to_whole(shear_ * static_cast<double>(y));
+  y += to_whole(lift_ * static_cast<double>(x));
+  x += to_whole(shear_ * static_cast<double>(y));
+  return {x, y};
+}
 
 /// The plane of three points: normal . (point - origin) = 0.
 struct FacetPlane {

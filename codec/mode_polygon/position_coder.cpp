@@ -218,30 +218,28 @@ bool PositionCoder::code_known_column(const Prediction& prediction) {
   score.base = prediction.base;
   score.turn = Turn(prediction.direction);
   score.across_weight = prediction.frame == PredictionFrame::corner ? kAcrossWeight : 1;
-  const std::vector<GridColumn> near =
-      nearest_columns(memory_.columns, score, is_start ? kFirstWindow : kWindow,
-                      is_start ? kFirstOffered : kOffered);
-  const GridColumn truth{truth_at(0), truth_at(1)};
-  const auto rank = static_cast<std::size_t>(
-      truth_.empty() ? 0 : std::find(near.begin(), near.end(), truth) - near.begin());
+  const NearColumns near(memory_.columns, score, is_start ? kFirstWindow : kWindow);
+  const std::size_t offered = std::min(near.size(), is_start ? kFirstOffered : kOffered);
+  const std::size_t rank = truth_.empty() ? 0 : near.rank_of({truth_at(0), truth_at(1)});
   const Context<kFrames> frame(prediction.frame);
   const Context<3> before(before_ == kNone ? 0U : 1U + in_known_column_[before_]);
-  const std::uint64_t least_score = near.empty() ? 0 : score(near.front());
-  const auto distance = capped<12>(std::bit_width(least_score) / 2);
+  const NearColumns::Scored nearest = near.nearest();
+  const auto distance = capped<12>(std::bit_width(nearest.first) / 2);
   if (!models_.code<kKnownColumn>(stream_,
                                   {combine(frame, before, capped<3>(known_columns_)),
                                    combine(distance, before), combine(capped<8>(current_), before)},
-                                  !truth_.empty() && rank < near.size())) {
+                                  !truth_.empty() && rank < offered)) {
     return false;
   }
   const std::uint64_t coded = models_.code_number<kColumnRank>(
       stream_, {combine(frame, before), distance}, truth_.empty() ? 0 : rank, kRankBits);
-  if (coded >= near.size()) {
+  if (coded >= offered) {
     stream_.fail();
     return true;
   }
-  point()[0] = near[coded][0];
-  point()[1] = near[coded][1];
+  const GridColumn column = coded == 0 ? nearest.second : near.at(coded).second;
+  point()[0] = column[0];
+  point()[1] = column[1];
   in_known_column_[current_] = 1;
   ++known_columns_;
   return true;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -92,13 +93,18 @@ Result<Mode> choose_plain(PageSolid& solid, const Plan& plan) {
   return Mode::bitmap;
 }
 
-/// Returns `plan`, with the mode that costs least if its mode is automatic. Makes the sections of
-/// modes raw and bitmap, unless `solid` has them.
-Result<Plan> complete(const SolidCoder& coder, PageSolid& solid, Plan plan,
-                      const delaunay::Certificate* certificate) {
+/// Gives `plan` the mode that costs least if its mode is automatic, and returns the draft in that
+/// mode, if it is a mode for integers. Makes the sections of modes raw and bitmap, unless `solid`
+/// has them.
+Result<std::unique_ptr<Draft>> complete(const SolidCoder& coder, PageSolid& solid, Plan& plan,
+                                        const delaunay::Certificate* certificate) {
   if (plan.mode == Mode::automatic) {
-    plan = coder.cheapest(solid, plan);
-    if (plan.mode != Mode::automatic) return plan;
+    if (auto draft = coder.cheapest(solid, plan)) {
+      plan.mode = draft->mode;
+      plan.choice = draft->choice;
+      if (!draft->decisions.is_recorder()) draft.reset();
+      return draft;
+    }
     const auto mode = choose_plain(solid, plan);
     if (!mode) return mode.error();
     plan.mode = *mode;
@@ -109,7 +115,7 @@ Result<Plan> complete(const SolidCoder& coder, PageSolid& solid, Plan plan,
     if (!plain) return plain.error();
     solid.plain = std::move(plain).value();
   }
-  return plan;
+  return std::unique_ptr<Draft>();
 }
 
 /// The sizes of the parts of the solid at index `number`. If the page has no other solid, they
@@ -196,11 +202,12 @@ Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, Pag
   SolidCoder coder(stream, *models, page.frame, none);
   for (std::size_t i = 0; i < page.solids.size(); ++i) {
     PageSolid& solid = page.solids[i];
-    auto plan = complete(coder, solid, plans[i], certificate);
-    if (!plan) return plan.error();
-    plans[i] = std::move(plan).value();
+    const auto draft = complete(coder, solid, plans[i], certificate);
+    if (!draft) return draft.error();
     solid.mode = plans[i].mode;
-    if (auto status = coder.code(solid, plans[i].choice); !status) return status.error();
+    if (auto status = coder.code(solid, plans[i].choice, draft->get()); !status) {
+      return status.error();
+    }
   }
   ByteWriter writer;
   writer.append(kMagic);

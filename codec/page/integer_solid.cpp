@@ -184,11 +184,27 @@ Result<Solid> ungrid_solid(const GriddedSolid& gridded, std::uint32_t srid, cons
 void PageMemory::add(const IntegerSolid& solid) {
   if (solid.vertices.empty()) return;
   last_position = *std::min_element(solid.vertices.begin(), solid.vertices.end());
-  const auto known = static_cast<std::ptrdiff_t>(columns.size());
-  for (const GridPoint& vertex : solid.vertices) columns.push_back({vertex[0], vertex[1]});
-  std::sort(columns.begin() + known, columns.end());
-  std::inplace_merge(columns.begin(), columns.begin() + known, columns.end());
-  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  std::vector<std::array<std::int64_t, 2>> added;
+  added.reserve(solid.vertices.size());
+  for (const GridPoint& vertex : solid.vertices) added.push_back({vertex[0], vertex[1]});
+  std::sort(added.begin(), added.end());
+  added.erase(std::unique(added.begin(), added.end()), added.end());
+  std::erase_if(added, [&](const auto& column) {
+    return std::binary_search(columns.begin(), columns.end(), column);
+  });
+  // Merges from the back: each column moves to its place at once, and those before the first new
+  // one stay where they are.
+  std::size_t known = columns.size();
+  columns.resize(known + added.size());
+  for (std::size_t place = columns.size(); !added.empty(); --place) {
+    if (known > 0 && columns[known - 1] > added.back()) {
+      columns[place - 1] = columns[known - 1];
+      --known;
+    } else {
+      columns[place - 1] = added.back();
+      added.pop_back();
+    }
+  }
 }
 
 }  // namespace watertight::codec

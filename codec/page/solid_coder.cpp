@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "codec/entropy/bank_trial.h"
+#include "base/assert.h"
 #include "codec/page/source_order.h"
 #include "codec/sections/coordinates.h"
 #include "codec/sections/facet_listing.h"
@@ -265,7 +265,13 @@ Mode SolidCoder::code_mode(Mode mode) {
   return static_cast<Mode>(last_mode_.value);
 }
 
-Status SolidCoder::code_geometry(PageSolid& solid, const WriterChoice& choice) {
+Status SolidCoder::code_geometry(PageSolid& solid, const WriterChoice& choice, Draft* draft) {
+  if (draft != nullptr) {
+    WATERTIGHT_ASSERT(draft->mode == solid.mode);
+    stream_.append(draft->decisions);
+    draft->learned.keep();
+    return Done{};
+  }
   const ModeCoder coder = coder_of(solid.mode);
   if (coder.code == nullptr) {
     return Error{ErrorCode::unsupported,
@@ -378,11 +384,11 @@ void SolidCoder::take_from_limits(const Solid& solid) {
   take(limits_.shells, solid.shell_count());
 }
 
-Status SolidCoder::code(PageSolid& solid, const WriterChoice& choice) {
+Status SolidCoder::code(PageSolid& solid, const WriterChoice& choice, Draft* draft) {
   stream_.enter(StreamPart::frame);
   solid.mode = code_mode(solid.mode);
   const bool is_plain = solid.mode == Mode::raw || solid.mode == Mode::bitmap;
-  if (auto status = is_plain ? code_plain(solid) : code_geometry(solid, choice); !status) {
+  if (auto status = is_plain ? code_plain(solid) : code_geometry(solid, choice, draft); !status) {
     return status;
   }
   stream_.enter(StreamPart::position);
@@ -398,40 +404,40 @@ Status SolidCoder::code(PageSolid& solid, const WriterChoice& choice) {
   return Done{};
 }
 
-std::optional<SolidCoder::Measure> SolidCoder::measure(const PageSolid& solid, Mode mode,
-                                                       const WriterChoice& choice,
-                                                       std::uint64_t limit) const {
+std::unique_ptr<Draft> SolidCoder::draft(const PageSolid& solid, Mode mode,
+                                         const WriterChoice& choice, std::uint64_t limit) const {
   const ModeCoder coder = coder_of(mode);
-  if (coder.code == nullptr || !solid.integers) return std::nullopt;
-  if (mode == Mode::parallelogram && !is_all_triangles(*solid.integers)) return std::nullopt;
+  if (coder.code == nullptr || !solid.integers) return nullptr;
+  if (mode == Mode::parallelogram && !is_all_triangles(*solid.integers)) return nullptr;
   IntegerSolid integers = *solid.integers;
   ModelBank& models = models_[coder.part];
-  Measure result{0, choice};
-  if (mode == Mode::parallelogram && !choice.vertex_options) {
+  WriterChoice made = choice;
+  if (mode == Mode::parallelogram && !made.vertex_options) {
     auto options = parallelogram::choose_options(integers, models, memory_, limits_);
-    if (!options) return std::nullopt;
-    result.choice.vertex_options = std::move(options).value();
+    if (!options) return nullptr;
+    made.vertex_options = std::move(options).value();
   }
-  EntropyStream meter = EntropyStream::meter(limit);
-  const BankTrial trial(models, integers.vertices.size());
-  const Status coded = coder.code(meter, models, memory_, integers, result.choice, limits_);
-  if (!coded || meter.failed()) return std::nullopt;
-  result.cost = meter.cost();
-  return result;
+  constexpr std::size_t kMostRecorded = 50'000;
+  const std::size_t size = integers.vertices.size();
+  auto draft = std::make_unique<Draft>(
+      mode, models, size,
+      size > kMostRecorded ? EntropyStream::meter(limit) : EntropyStream::recorder(limit));
+  draft->choice = made;
+  const Status coded = coder.code(draft->decisions, models, memory_, integers, made, limits_);
+  if (!coded || draft->decisions.failed()) return nullptr;
+  return draft;
 }
 
-Plan SolidCoder::cheapest(const PageSolid& solid, const Plan& plan) const {
-  Plan best = plan;
-  best.mode = Mode::automatic;
-  std::uint64_t least = ~std::uint64_t{0};
+std::unique_ptr<Draft> SolidCoder::cheapest(const PageSolid& solid, const Plan& plan) const {
+  std::unique_ptr<Draft> best;
+  WriterChoice choice = plan.choice;
   for (const Mode mode : {Mode::polygon, Mode::walk, Mode::parallelogram}) {
     if ((plan.declined >> static_cast<unsigned>(mode) & 1U) != 0) continue;
     if (mode == Mode::walk && solid.integers && is_large_mesh(*solid.integers)) continue;
-    const auto measured = measure(solid, mode, best.choice, least);
-    if (!measured) continue;
-    best.choice = measured->choice;
-    least = measured->cost;
-    best.mode = mode;
+    auto tried = draft(solid, mode, choice, best ? best->cost() : ~std::uint64_t{0});
+    if (!tried) continue;
+    choice = tried->choice;
+    best = std::move(tried);
   }
   return best;
 }

@@ -5,9 +5,12 @@
 // order. A blob is a page of one solid. Each function writes, reads or measures.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "codec/blob.h"
+#include "codec/entropy/bank_trial.h"
 #include "codec/entropy/context.h"
 #include "codec/entropy/entropy_stream.h"
 #include "codec/mode_bitmap/compose.h"
@@ -67,6 +70,20 @@ struct Plan {
   WriterChoice choice = {};
 };
 
+/// A solid coded in a mode for integers by way of trial. The bank of the mode has learned from the
+/// solid; the end of the draft makes it forget, unless SolidCoder::code() has used the draft.
+struct Draft {
+  Draft(Mode of, ModelBank& models, std::size_t vertices, EntropyStream stream)
+      : mode(of), learned(models, vertices), decisions(std::move(stream)) {}
+
+  Mode mode;
+  WriterChoice choice;  // the choices that were made
+  BankTrial learned;
+  EntropyStream decisions;
+  /// The solid's own part of the stream, in 1/65536 bit.
+  std::uint64_t cost() const { return decisions.cost(); }
+};
+
 /// Codes the solids of one page, one after the other. The limits are for all its solids together.
 class SolidCoder {
  public:
@@ -75,27 +92,24 @@ class SolidCoder {
 
   /// Codes one solid. When writing or measuring, `solid` must have this coder's frame and all that
   /// its mode needs, and stays unchanged; errors: not_encodable (the coder is then useless). When
-  /// reading, `solid` must be empty; errors: malformed; limit_exceeded.
-  Status code(PageSolid& solid, const WriterChoice& choice = {});
+  /// reading, `solid` must be empty; errors: malformed; limit_exceeded. `draft` is null or a draft
+  /// of the solid in its mode with its decisions, made by this coder since the last solid: this
+  /// saves most of the work.
+  Status code(PageSolid& solid, const WriterChoice& choice = {}, Draft* draft = nullptr);
 
-  /// The cost of a solid in a mode for integers.
-  struct Measure {
-    std::uint64_t cost = 0;  // the solid's own part of the stream, in 1/65536 bit
-    WriterChoice choice;     // the choice that has this cost
-  };
-  /// Measures a solid in a mode. Makes the choices that `choice` leaves open. Returns nothing if
-  /// the mode cannot hold the solid for less than `limit` or is not for integers.
-  std::optional<Measure> measure(const PageSolid& solid, Mode mode, const WriterChoice& choice = {},
-                                 std::uint64_t limit = ~std::uint64_t{0}) const;
+  /// Codes a solid in a mode by way of trial. Makes the choices that `choice` leaves open. Returns
+  /// null if the mode cannot hold the solid for less than `limit` or is not for integers. The
+  /// decisions of a solid of more than 50,000 vertices are not kept, to save memory.
+  std::unique_ptr<Draft> draft(const PageSolid& solid, Mode mode, const WriterChoice& choice = {},
+                               std::uint64_t limit = ~std::uint64_t{0}) const;
 
-  /// Returns `plan` with the mode for integers that costs least among those that the plan does not
-  /// decline, and with the choices made on the way; the mode is Mode::automatic if no such mode can
-  /// hold the solid.
-  Plan cheapest(const PageSolid& solid, const Plan& plan = {}) const;
+  /// The draft in the mode for integers that costs least among those that the plan does not
+  /// decline; null if no such mode can hold the solid.
+  std::unique_ptr<Draft> cheapest(const PageSolid& solid, const Plan& plan = {}) const;
 
  private:
   Mode code_mode(Mode mode);
-  Status code_geometry(PageSolid& solid, const WriterChoice& choice);
+  Status code_geometry(PageSolid& solid, const WriterChoice& choice, Draft* draft);
   Status code_plain(PageSolid& solid);
   void code_origin(PageSolid& solid);
   Status rebuild(PageSolid& solid) const;

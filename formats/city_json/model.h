@@ -164,8 +164,24 @@ Status for_each_address_vertex(Json& object, Visit visit) {
 }
 
 /// Appends boundaries as nested arrays, with `vertex_of(i)` in place of index i.
-void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
-                     const std::function<std::uint64_t(Index)>& vertex_of);
+template <class VertexOf>
+void append_boundary(std::string& out, std::span<const BoundaryToken> tokens, VertexOf vertex_of) {
+  bool needs_comma = false;
+  for (const BoundaryToken token : tokens) {
+    if (token == kClose) {
+      out += ']';
+      needs_comma = true;
+      continue;
+    }
+    if (needs_comma) out += ',';
+    if (token == kOpen) {
+      out += '[';
+    } else {
+      append_integer(out, vertex_of(token));
+    }
+    needs_comma = token != kOpen;
+  }
+}
 
 /// Appends "[first,length,first,length]": each pair stands for `length` indices from `first` on.
 void append_vertex_runs(std::string& out, std::span<const Index> vertices);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "base/assert.h"
+#include "formats/text/json_events.h"
 #include "formats/text/numbers.h"
 
 namespace watertight::formats {
@@ -30,9 +32,9 @@ enum class Capture : std::uint8_t { none, vertices, boundaries };
 struct Frame {
   bool is_array = false;
   Role role = Role::other;
-  std::vector<std::string> keys;  // the keys of the members that are complete; empty for arrays
-  std::vector<Json> values;
-  std::string key;  // the key of the member that comes next
+  std::size_t first_key = 0;    // the index of its first member among the keys of all frames
+  std::size_t first_value = 0;  // the same among the values
+  std::string key;              // the key of the member that comes next
 };
 
 constexpr std::string_view kNotThreeNumbers = "a vertex is an array of three numbers";
@@ -98,11 +100,14 @@ class CitySax {
   }
   bool end_object() {
     Frame& top = frames_.back();
-    if (const std::string* twice = duplicate_key(top); twice != nullptr) {
+    const auto keys = std::span(keys_).subspan(top.first_key);
+    if (const std::string* twice = duplicate_key(keys); twice != nullptr) {
       top.key = *twice;
       return fail(ErrorCode::malformed, "the key occurs twice in one object");
     }
-    return close(make_object(std::move(top.keys), std::move(top.values)));
+    Json object = make_object(keys, std::span(values_).subspan(top.first_value));
+    keys_.resize(top.first_key);
+    return close(std::move(object));
   }
   bool start_array(std::size_t) {
     if (capture_ != Capture::none) return open_captured();
@@ -114,7 +119,7 @@ class CitySax {
   }
   bool end_array() {
     if (capture_ != Capture::none) return close_captured();
-    return close(Json(Json::array_t(std::move(frames_.back().values))));
+    return close(open_array());
   }
   bool parse_error(std::size_t position, const std::string&, const Json::exception& exception) {
     error_.code = ErrorCode::malformed;
@@ -140,18 +145,41 @@ class CitySax {
 
   std::string pointer() const {
     std::string path;
-    const auto append = [&path](std::span<const Frame> frames) {
-      for (const Frame& frame : frames) {
-        path += frame.is_array ? pointer_token(frame.values.size()) : pointer_token(frame.key);
+    const auto append = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        path += frames_[i].is_array ? pointer_token(value_count(i)) : pointer_token(frames_[i].key);
       }
     };
     const std::size_t captured = faulty_base_.value_or(frames_.size());
-    append(std::span(frames_).first(captured));
+    append(0, captured);
     // counters_[0] belongs to the captured array itself; a counter is the index of the next
     // element.
     for (const std::size_t position : counters_) path += pointer_token(position);
-    append(std::span(frames_).subspan(captured));
+    append(captured, frames_.size());
     return path;
+  }
+
+  // The number of complete values in a frame.
+  std::size_t value_count(std::size_t frame) const {
+    const bool is_top = frame + 1 == frames_.size();
+    const std::size_t end = is_top ? values_.size() : frames_[frame + 1].first_value;
+    return end - frames_[frame].first_value;
+  }
+
+  void push_frame(bool is_array, Role role) {
+    frames_.push_back(Frame{is_array, role, keys_.size(), values_.size(), {}});
+  }
+
+  void pop_frame() {
+    values_.resize(frames_.back().first_value);
+    frames_.pop_back();
+  }
+
+  // The array of the top frame's values, which are moved.
+  Json open_array() {
+    const auto values = std::span(values_).subspan(frames_.back().first_value);
+    return Json::array_t(std::make_move_iterator(values.begin()),
+                         std::make_move_iterator(values.end()));
   }
 
   bool scalar(Json value) {
@@ -169,7 +197,8 @@ class CitySax {
     if (counters_.size() == 2) {
       fault.place = pointer_token(counters_.back());
       counters_.pop_back();
-      frames_.push_back(Frame{true, Role::other, {}, open_coordinates(), {}});
+      push_frame(true, Role::other);
+      add_open_coordinates();
     }
     model_.vertices.faulty.push_back(std::move(fault));
   }
@@ -193,17 +222,15 @@ class CitySax {
     return true;
   }
 
-  // The coordinates of the open vertex so far.
-  std::vector<Json> open_coordinates() const {
-    std::vector<Json> values;
+  // Adds the coordinates of the open vertex so far to the values.
+  void add_open_coordinates() {
     for (std::size_t axis = 0; axis < axis_; ++axis) {
       if (model_.vertices.are_integers) {
-        values.emplace_back(integer_[axis]);
+        values_.emplace_back(integer_[axis]);
       } else {
-        values.push_back(number_of(decimal_[axis]));
+        values_.push_back(number_of(decimal_[axis]));
       }
     }
-    return values;
   }
 
   bool has_place_for_vertex() {
@@ -226,10 +253,10 @@ class CitySax {
     for (std::size_t i = begin; i < model_.tokens.size(); ++i) {
       const BoundaryToken token = model_.tokens[i];
       if (token == kOpen) {
-        frames_.push_back(Frame{true, Role::other, {}, {}, {}});
+        push_frame(true, Role::other);
       } else if (token == kClose) {
-        Json array(Json::array_t(std::move(frames_.back().values)));
-        frames_.pop_back();
+        Json array = open_array();
+        pop_frame();
         add(std::move(array));
       } else {
         add(std::uint64_t{token});
@@ -246,8 +273,8 @@ class CitySax {
       return;
     }
     Frame& top = frames_.back();
-    if (!top.is_array) top.keys.push_back(std::move(top.key));
-    top.values.push_back(std::move(value));
+    if (!top.is_array) keys_.push_back(std::move(top.key));
+    values_.push_back(std::move(value));
   }
 
   Role role_of_next(bool is_array) const {
@@ -285,13 +312,13 @@ class CitySax {
   bool open(bool is_array) {
     if (!has_room()) return false;
     const Role role = role_of_next(is_array);
-    frames_.push_back(Frame{is_array, role, {}, {}, {}});
+    push_frame(is_array, role);
     return true;
   }
 
   bool close(Json value) {
     const Role role = frames_.back().role;
-    frames_.pop_back();
+    pop_frame();
     if (role == Role::geometry) {
       // A number in the source would be mistaken for the index of a captured boundary.
       const Json* boundaries = find_member(value, "boundaries");
@@ -413,11 +440,11 @@ class CitySax {
     }
   }
 
-  static const std::string* duplicate_key(const Frame& frame) {
-    if (frame.keys.size() < 2) return nullptr;
+  static const std::string* duplicate_key(std::span<const std::string> keys) {
+    if (keys.size() < 2) return nullptr;
     std::vector<const std::string*> sorted;
-    sorted.reserve(frame.keys.size());
-    for (const std::string& key : frame.keys) sorted.push_back(&key);
+    sorted.reserve(keys.size());
+    for (const std::string& key : keys) sorted.push_back(&key);
     std::sort(sorted.begin(), sorted.end(),
               [](const std::string* a, const std::string* b) { return *a < *b; });
     const auto twice =
@@ -434,6 +461,8 @@ class CitySax {
   CityModel model_;
   Error error_;
   std::vector<Frame> frames_;
+  std::vector<std::string> keys_;  // the keys of the members that are complete, frame by frame
+  std::vector<Json> values_;       // the values that are complete, frame by frame
   Capture capture_ = Capture::none;
   bool was_captured_ = false;          // the open geometry has captured boundaries
   std::vector<std::size_t> counters_;  // the number of elements so far, by open captured array
@@ -442,6 +471,11 @@ class CitySax {
   std::array<GridNumber, 3> decimal_{};
   bool is_rounded_ = false;  // a number of the open vertex was rounded
 };
+
+CityModel finished(CitySax& sax, std::string_view text) {
+  sax.model().text_bytes = text.size();
+  return std::move(sax.model());
+}
 
 Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, const Limits& limits) {
   if (text.size() > limits.bytes) {
@@ -452,10 +486,13 @@ Result<CityModel> parse(std::string_view text, bool is_city, CityText kind, cons
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     return Error{ErrorCode::malformed, "a JSON text must not contain a NUL byte", nul, {}};
   }
+  {
+    CitySax quick(is_city, kind, limits);
+    if (JsonEvents(text, quick).run()) return finished(quick, text);
+  }
   CitySax sax(is_city, kind, limits);
   if (!Json::sax_parse(text.begin(), text.end(), &sax)) return std::move(sax.error());
-  sax.model().text_bytes = text.size();
-  return std::move(sax.model());
+  return finished(sax, text);
 }
 
 }  // namespace

@@ -79,7 +79,9 @@ void append_vertex_runs(std::string& out, std::span<const Index> vertices) {
     std::size_t end = begin + 1;
     while (end < vertices.size() && vertices[end] == vertices[end - 1] + 1) ++end;
     if (begin > 0) out += ',';
-    out += std::to_string(vertices[begin]) + ',' + std::to_string(end - begin);
+    append_integer(out, vertices[begin]);
+    out += ',';
+    append_integer(out, end - begin);
     begin = end;
   }
   out += ']';
@@ -124,25 +126,6 @@ void append_city_objects(std::string& out, const Json& objects, const BoundaryPr
     append_city_object(out, object, print);
   }
   out += '}';
-}
-
-void append_boundary(std::string& out, std::span<const BoundaryToken> tokens,
-                     const std::function<std::uint64_t(Index)>& vertex_of) {
-  bool needs_comma = false;
-  for (const BoundaryToken token : tokens) {
-    if (token == kClose) {
-      out += ']';
-      needs_comma = true;
-      continue;
-    }
-    if (needs_comma) out += ',';
-    if (token == kOpen) {
-      out += '[';
-    } else {
-      out += std::to_string(vertex_of(token));
-    }
-    needs_comma = token != kOpen;
-  }
 }
 
 std::string skeleton_vertices(const CityModel& model, std::size_t count,

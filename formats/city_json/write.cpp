@@ -22,24 +22,64 @@ std::optional<std::uint64_t> unsigned_of(const Json* value) {
   return value->get<std::uint64_t>();
 }
 
+// The texts "[x,y,z]" of the vertices of a document, one after the other in one string.
+class VertexTexts {
+ public:
+  void resize(std::size_t count) { places_.resize(count); }
+  std::size_t size() const { return places_.size(); }
+  bool has(std::size_t vertex) const { return places_[vertex].size > 0; }
+  std::string_view operator[](std::size_t vertex) const {
+    const Place& place = places_[vertex];
+    return std::string_view(texts_).substr(place.at, place.size);
+  }
+  void set(std::size_t vertex, std::string_view text) {
+    places_[vertex] = {texts_.size(), text.size()};
+    texts_ += text;
+  }
+  // False if the vertex has another text.
+  bool agree(std::size_t vertex, std::string_view text) {
+    if (has(vertex)) return (*this)[vertex] == text;
+    set(vertex, text);
+    return true;
+  }
+
+ private:
+  struct Place {
+    std::size_t at = 0;
+    std::size_t size = 0;
+  };
+  std::string texts_;
+  std::vector<Place> places_;
+};
+
 // A feature that is ready to be printed.
 struct OpenFeature {
   CityModel model;
   const Feature* feature = nullptr;
   std::vector<std::vector<Index>> vertex_of;  // the document's vertices of each solid
-  std::vector<std::string> vertices;          // the texts "[x,y,z]" of the vertices
-  std::vector<std::size_t> faulty = {};       // those of elements that are no vertices, ascending
+  VertexTexts vertices;
+  std::vector<std::size_t> faulty = {};  // those of elements that are no vertices, ascending
 };
 
 std::string vertex_text(const std::array<std::string, 3>& axes) {
   return '[' + axes[0] + ',' + axes[1] + ',' + axes[2] + ']';
 }
 
-// The texts of the solid's vertices: grid integers, or decimals with a point or an exponent.
-Result<std::vector<std::string>> solid_vertex_texts(
-    const Solid& solid, const std::optional<geometry::Transform>& transform, bool are_integers) {
-  std::vector<std::string> texts;
-  texts.reserve(solid.vertex_count());
+void set_vertex_text(std::string& text, const std::array<std::int64_t, 3>& axes) {
+  text = '[';
+  append_integer(text, axes[0]);
+  text += ',';
+  append_integer(text, axes[1]);
+  text += ',';
+  append_integer(text, axes[2]);
+  text += ']';
+}
+
+// Makes the texts of a solid's vertices: grid integers, or decimals with a point or an exponent.
+// Calls `use` with each; stops where that returns false.
+template <class Use>
+Status for_each_vertex_text(const Solid& solid, const std::optional<geometry::Transform>& transform,
+                            bool are_integers, Use use) {
   if (are_integers || transform) {
     auto integers = geometry::integers_under(solid.lattice(), solid.vertices(),
                                              transform.value_or(geometry::Transform{}));
@@ -47,10 +87,12 @@ Result<std::vector<std::string>> solid_vertex_texts(
       return Error{ErrorCode::unsupported,
                    integers.error().message + ": the coordinates had to be rounded"};
     }
-    for (const auto& [x, y, z] : *integers) {
-      texts.push_back(vertex_text({std::to_string(x), std::to_string(y), std::to_string(z)}));
+    std::string text;
+    for (const std::array<std::int64_t, 3>& axes : *integers) {
+      set_vertex_text(text, axes);
+      if (!use(text)) break;
     }
-    return texts;
+    return Done{};
   }
   for (const Point& p : solid.vertices()) {
     std::array<std::string, 3> axes;
@@ -59,9 +101,9 @@ Result<std::vector<std::string>> solid_vertex_texts(
       text = solid.lattice().world_text(p[axis], axis);
       if (text.find_first_of(".e") == std::string::npos) text += ".0";
     }
-    texts.push_back(vertex_text(axes));
+    if (!use(vertex_text(axes))) break;
   }
-  return texts;
+  return Done{};
 }
 
 // The text of a skeleton's decimal for a document: "0.123" for "123e-3", "5.0" for "5".
@@ -76,12 +118,11 @@ Status place_others(const Json& others, bool are_integers, OpenFeature& open) {
   std::size_t next = 0;
   if (!others.is_array()) return unfit("other vertices");
   for (std::size_t i = 0; i < open.vertices.size(); ++i) {
-    std::string& vertex = open.vertices[i];
-    if (!vertex.empty()) continue;
+    if (open.vertices.has(i)) continue;
     if (next < others.size() && others[next].is_array()) {
       const Json& faulty = others[next++];
       if (faulty.size() != 1) return unfit("other vertices");
-      vertex = json_text(faulty[0]);
+      open.vertices.set(i, json_text(faulty[0]));
       open.faulty.push_back(i);
       continue;
     }
@@ -92,7 +133,7 @@ Status place_others(const Json& others, bool are_integers, OpenFeature& open) {
       if (!is_number_value(value)) return unfit("other vertices");
       axis = are_integers ? json_text(value) : plain_decimal(value);
     }
-    vertex = vertex_text(axes);
+    open.vertices.set(i, vertex_text(axes));
   }
   if (next != others.size()) return unfit("too many other vertices");
   return Done{};
@@ -118,13 +159,13 @@ Status place_vertices(OpenFeature& open, const CityHeader& header) {
     const Solid& solid = open.feature->solids[i].solid;
     auto vertex_of = read_vertex_runs((*solids)[i], *count, solid.vertex_count());
     if (!vertex_of) return vertex_of.error();
-    auto texts = solid_vertex_texts(solid, header.transform, kind == "integers");
-    if (!texts) return texts.error();
-    for (std::size_t vertex = 0; vertex < vertex_of->size(); ++vertex) {
-      std::string& text = open.vertices[(*vertex_of)[vertex]];
-      if (!text.empty() && text != (*texts)[vertex]) return unfit("solids disagree on a vertex");
-      text = std::move((*texts)[vertex]);
-    }
+    bool agree = true;
+    const Index* vertex = vertex_of->data();
+    auto status = for_each_vertex_text(
+        solid, header.transform, kind == "integers",
+        [&](std::string_view text) { return agree = open.vertices.agree(*vertex++, text); });
+    if (!status) return status;
+    if (!agree) return unfit("solids disagree on a vertex");
     open.vertex_of.push_back(std::move(*vertex_of));
   }
   return place_others(*others, kind == "integers", open);
@@ -185,11 +226,12 @@ Result<OpenFeature> open_feature(const CityHeader& header, const Feature& featur
   return open;
 }
 
-// The vertex "[x,y,z]" under another header.
-Status map_vertex(std::string& text, const VertexMap& map) {
+// Puts the vertex "[x,y,z]" under another header.
+Status map_vertex(VertexTexts& vertices, std::size_t vertex, const VertexMap& map) {
   __extension__ using Wide = __int128;
   constexpr std::int64_t kMost = (std::int64_t{1} << 53) - 1;
-  std::array<std::string, 3> axes;
+  const std::string text(vertices[vertex]);
+  std::array<std::int64_t, 3> axes{};
   const char* next = text.data();
   const char* const end = next + text.size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -201,10 +243,12 @@ Status map_vertex(std::string& text, const VertexMap& map) {
       return Error{ErrorCode::limit_exceeded,
                    "vertex " + text + " would be 2^53 or more under the header of the sequence"};
     }
-    axes[axis] = std::to_string(static_cast<std::int64_t>(moved));
+    axes[axis] = static_cast<std::int64_t>(moved);
     next = rest;
   }
-  text = vertex_text(axes);
+  std::string mapped;
+  set_vertex_text(mapped, axes);
+  vertices.set(vertex, mapped);
   return Done{};
 }
 
@@ -213,7 +257,7 @@ void append_ring(std::string& out, std::span<const Index> ring, const std::vecto
   out += '[';
   for (std::size_t i = 0; i < ring.size(); ++i) {
     if (i > 0) out += ',';
-    out += std::to_string(vertex_of[ring[i]] + offset);
+    append_integer(out, vertex_of[ring[i]] + offset);
   }
   out += ']';
 }
@@ -274,7 +318,7 @@ BoundaryPrinter boundary_printer(const OpenFeature& open, std::uint64_t offset) 
   };
 }
 
-void append_vertices(std::string& out, const std::vector<std::string>& vertices) {
+void append_vertices(std::string& out, const VertexTexts& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (i > 0) out += ',';
     out += vertices[i];
@@ -343,7 +387,7 @@ class Merger {
       objects_ += ':';
       append_city_object(objects_, object, boundary_printer(open, vertex_count_));
     }
-    if (!vertices_.empty() && !open.vertices.empty()) vertices_ += ',';
+    if (!vertices_.empty() && open.vertices.size() > 0) vertices_ += ',';
     append_vertices(vertices_, open.vertices);
     vertex_count_ += open.vertices.size();
     return Done{};
@@ -428,7 +472,7 @@ Result<std::string> write_city_json_feature(const CityHeader& header, const Feat
   if (!open) return std::move(open).error();
   for (std::size_t i = 0; i < open->vertices.size(); ++i) {
     if (std::binary_search(open->faulty.begin(), open->faulty.end(), i)) continue;
-    if (auto status = map_vertex(open->vertices[i], map); !status) return status.error();
+    if (auto status = map_vertex(open->vertices, i, map); !status) return status.error();
   }
   return print_whole(*open);
 }

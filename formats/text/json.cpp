@@ -15,12 +15,6 @@ void append_double(std::string& out, double value) {
   if (out.find_first_of(".e", begin) == std::string::npos) out += ".0";
 }
 
-template <class Integer>
-void append_integer(std::string& out, Integer value) {
-  std::array<char, 24> digits{};
-  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-}
-
 void append_object(std::string& out, const Json& value) {
   out += '{';
   bool is_first = true;
@@ -134,7 +128,7 @@ std::string string_member(const Json& object, std::string_view key) {
   return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
 }
 
-Json make_object(std::vector<std::string>&& keys, std::vector<Json>&& values) {
+Json make_object(std::span<std::string> keys, std::span<Json> values) {
   // The vector of an ordered_map copies its elements, whose keys are const, when it grows; reserved
   // room avoids that.
   Json object = Json::object();

@@ -5,15 +5,25 @@
 // numbers. Internal to formats/.
 #pragma once
 
+#include <array>
+#include <charconv>
+#include <concepts>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/limits.h"
 #include "base/result.h"
 
 namespace watertight::formats {
+
+/// Appends the digits of a whole number.
+template <std::integral Integer>
+void append_integer(std::string& out, Integer value) {
+  std::array<char, 24> digits;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
 
 /// A JSON value. A value of kind `binary` (which JSON text cannot hold) is the text of a number.
 using Json = nlohmann::ordered_json;
@@ -39,8 +49,9 @@ Json* find_member(Json& object, std::string_view key);
 /// The member's text if it is a string, else "".
 std::string string_member(const Json& object, std::string_view key);
 
-/// An object of the members `keys` and `values`, in this order. The keys must differ. Cost: linear.
-Json make_object(std::vector<std::string>&& keys, std::vector<Json>&& values);
+/// An object of the members `keys` and `values`, which are moved, in this order. The keys must
+/// differ. Cost: linear.
+Json make_object(std::span<std::string> keys, std::span<Json> values);
 
 /// Appends a member whose key the object does not have yet.
 void append_member(Json& object, std::string key, Json value);

@@ -20,7 +20,16 @@ constexpr std::string_view kBlanks = " \t\r\n\xEF\xBB\xBF\x1E";
 constexpr std::string_view kMarks = "{}[]:,";
 constexpr std::string_view kLineFeed = "\n";
 
-bool is_one_of(char c, std::string_view set) { return set.find(c) != std::string_view::npos; }
+constexpr std::array<bool, 256> table_of(std::string_view set) {
+  std::array<bool, 256> table{};
+  for (const char c : set) table[static_cast<unsigned char>(c)] = true;
+  return table;
+}
+constexpr auto kIsBlank = table_of(kBlanks);
+constexpr auto kIsMark = table_of(kMarks);
+constexpr auto kEndsWord = table_of(" \t\r\n{}[]:,\"");
+
+bool is_in(const std::array<bool, 256>& set, char c) { return set[static_cast<unsigned char>(c)]; }
 
 /// One token and the bytes before it; the token is empty at the end of the text.
 struct Token {
@@ -34,7 +43,8 @@ class Tokens {
   explicit Tokens(std::string_view text) : rest_(text) {}
 
   Token next() {
-    const std::size_t start = std::min(rest_.find_first_not_of(kBlanks), rest_.size());
+    std::size_t start = 0;
+    while (start < rest_.size() && is_in(kIsBlank, rest_[start])) ++start;
     Token token{rest_.substr(0, start), {}};
     rest_.remove_prefix(start);
     token.text = rest_.substr(0, length());
@@ -45,10 +55,10 @@ class Tokens {
  private:
   std::size_t length() const {
     if (rest_.empty()) return 0;
-    if (is_one_of(rest_[0], kMarks)) return 1;
+    if (is_in(kIsMark, rest_[0])) return 1;
     std::size_t end = 1;
     if (rest_[0] != '"') {
-      while (end < rest_.size() && !is_one_of(rest_[end], " \t\r\n{}[]:,\"")) ++end;
+      while (end < rest_.size() && !is_in(kEndsWord, rest_[end])) ++end;
       return end;
     }
     while (end < rest_.size() && rest_[end] != '"') end += rest_[end] == '\\' ? 2 : 1;
@@ -67,12 +77,13 @@ std::size_t decimals_of(std::string_view number) {
   return point == std::string_view::npos ? 0 : number.size() - point - 1;
 }
 
-std::string with_decimals(std::string_view number, std::size_t decimals) {
-  std::string text(number);
+void append_with_decimals(std::string& out, std::string_view number, std::size_t decimals) {
+  out += number;
+  if (decimals == 0) return;
   const std::size_t present = decimals_of(number);
-  if (present >= decimals || number.find_first_of("eE") != std::string_view::npos) return text;
-  if (present == 0) text += '.';
-  return text.append(decimals - present, '0');
+  if (present >= decimals || number.find_first_of("eE") != std::string_view::npos) return;
+  if (present == 0) out += '.';
+  out.append(decimals - present, '0');
 }
 
 /// The characters that a writer escapes though JSON does not ask for it.
@@ -99,9 +110,7 @@ std::uint32_t code_point(std::string_view text, std::size_t& at) {
   return value;
 }
 
-std::string with_escapes(std::string_view token, Escapes escapes) {
-  std::string out;
-  out.reserve(token.size());
+void append_with_escapes(std::string& out, std::string_view token, Escapes escapes) {
   for (std::size_t i = 0; i < token.size(); ++i) {
     const auto byte = static_cast<unsigned char>(token[i]);
     if (escapes.slashes && byte == '/') {
@@ -114,7 +123,6 @@ std::string with_escapes(std::string_view token, Escapes escapes) {
       out += token[i];
     }
   }
-  return out;
 }
 
 /// Predicts the next gap and the next spelling. describe_layout() and apply_layout() teach it in
@@ -141,12 +149,19 @@ class Predictor {
     gaps_[at_depth_] = gaps_[at_any_depth_] = Place{true, gap};
   }
 
-  std::string spelling(std::string_view token) const {
-    if (is_number(token)) return with_decimals(token, decimals_[place()]);
-    if (token.starts_with('"') && (escapes_.non_ascii || escapes_.slashes)) {
-      return with_escapes(token, escapes_);
+  /// True if the likely spelling of a token is certainly the token itself.
+  bool keeps(std::string_view token) const {
+    if (is_number(token)) return decimals_[place()] == 0;
+    return !token.starts_with('"') || (!escapes_.non_ascii && !escapes_.slashes);
+  }
+  void append_spelling(std::string& out, std::string_view token) const {
+    if (is_number(token)) {
+      append_with_decimals(out, token, decimals_[place()]);
+    } else if (token.starts_with('"') && (escapes_.non_ascii || escapes_.slashes)) {
+      append_with_escapes(out, token, escapes_);
+    } else {
+      out += token;
     }
-    return std::string(token);
   }
   /// Learns that `text`, which was not predicted, stands for `token` of the plain text.
   void learn_spelling(std::string_view token, std::string_view text) {
@@ -156,7 +171,9 @@ class Predictor {
     }
     for (const Escapes escapes :
          {Escapes{false, false}, Escapes{true, false}, Escapes{false, true}, Escapes{true, true}}) {
-      if (with_escapes(token, escapes) == text) {
+      std::string spelling;
+      append_with_escapes(spelling, token, escapes);
+      if (spelling == text) {
         escapes_ = escapes;
         return;
       }
@@ -171,10 +188,17 @@ class Predictor {
     std::string_view text;
   };
 
+  static constexpr std::array<std::uint8_t, 256> kKindOfByte = [] {
+    std::array<std::uint8_t, 256> kinds{};
+    kinds.fill(static_cast<std::uint8_t>(kMarks.size()));
+    for (std::size_t i = 0; i < kMarks.size(); ++i) {
+      kinds[static_cast<unsigned char>(kMarks[i])] = static_cast<std::uint8_t>(i);
+    }
+    return kinds;
+  }();
   static std::size_t kind_of(std::string_view token) {
     if (token.empty()) return kMarks.size() + 1;
-    const std::size_t mark = kMarks.find(token[0]);
-    return mark == std::string_view::npos ? kMarks.size() : mark;
+    return kKindOfByte[static_cast<unsigned char>(token[0])];
   }
   std::size_t place() const { return std::min(depth_, kDepths - 1); }
 
@@ -187,7 +211,7 @@ class Predictor {
   std::size_t at_any_depth_ = 0;
 };
 
-bool is_mark(std::string_view token) { return !token.empty() && is_one_of(token[0], kMarks); }
+bool is_mark(std::string_view token) { return !token.empty() && is_in(kIsMark, token[0]); }
 
 /// Writes the exceptions in gaps and spellings; false when the texts have other tokens.
 bool describe_tokens(std::string_view plain, std::string_view text, ExceptionWriter& gaps,
@@ -195,6 +219,7 @@ bool describe_tokens(std::string_view plain, std::string_view text, ExceptionWri
   Tokens plain_tokens(plain);
   Tokens text_tokens(text);
   Predictor predictor;
+  std::string spelling;
   for (;;) {
     const std::string_view ours = plain_tokens.next().text;
     const Token token = text_tokens.next();
@@ -211,7 +236,9 @@ bool describe_tokens(std::string_view plain, std::string_view text, ExceptionWri
     }
     if (ours.empty()) return true;
     if (is_mark(ours)) continue;
-    if (predictor.spelling(ours) == token.text) {
+    spelling.clear();
+    predictor.append_spelling(spelling, ours);
+    if (spelling == token.text) {
       spellings.expected();
     } else {
       spellings.exception(token.text);
@@ -232,25 +259,39 @@ Result<std::string> apply_to_tokens(std::string_view plain, ByteReader& reader, 
   Tokens tokens(plain);
   Predictor predictor;
   std::string text;
+  text.reserve(std::min<std::uint64_t>(size, 2 * plain.size()));
+  // Tokens that stand in `plain` one after the other as they are to be written, which is so for
+  // nearly all of a compact text; they are copied together.
+  std::string_view run;
+  const auto end_run = [&] { text += std::exchange(run, {}); };
   for (;;) {
     const std::string_view token = tokens.next().text;
     predictor.move_to(token);
     std::string_view other;
     if (gaps.next(other)) predictor.learn_gap(other);
     const std::string_view gap = predictor.gap();
-    if (gap.size() > size - text.size()) return too_long;
-    text += gap;
-    if (token.empty()) break;
-    if (is_mark(token)) {
-      text += token;
-    } else if (spellings.next(other)) {
-      predictor.learn_spelling(token, other);
-      text += other;
-    } else {
-      text += predictor.spelling(token);
+    if (gap.size() > size - text.size() - run.size()) return too_long;
+    if (!gap.empty()) {
+      end_run();
+      text += gap;
     }
-    if (text.size() > size) return too_long;
+    if (token.empty()) break;
+    if (!is_mark(token) && spellings.next(other)) {
+      predictor.learn_spelling(token, other);
+      end_run();
+      text += other;
+    } else if (!is_mark(token) && !predictor.keeps(token)) {
+      end_run();
+      predictor.append_spelling(text, token);
+    } else if (!run.empty() && run.data() + run.size() == token.data()) {
+      run = {run.data(), run.size() + token.size()};
+    } else {
+      end_run();
+      run = token;
+    }
+    if (text.size() + run.size() > size) return too_long;
   }
+  end_run();
   if (!gaps.is_finished() || !spellings.is_finished()) return does_not_fit();
   return text;
 }

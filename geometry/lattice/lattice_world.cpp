@@ -141,6 +141,11 @@ class AxisIntegers {
         scale_(transform.scale[axis]),
         translate_(transform.translate[axis]) {
     if (lattice.kind != LatticeKind::decimal) return;
+    const GridNumber& step = lattice.step[axis];
+    const GridNumber& start = lattice.origin[axis];
+    at_origin_ = quick_integer_under({start.mantissa, start.exponent}, scale_, translate_);
+    per_step_ = quick_integer_under({step.mantissa, step.exponent}, scale_, GridNumber{});
+    if (at_origin_) return;  // then the origin is on the transform's grid: it was not rounded
     const auto integer = nearest_integer_under(lattice.origin[axis], scale_, translate_);
     const auto origin = integer ? grid_origin(scale_, *integer, translate_) : std::nullopt;
     if (origin && origin->is_rounded && origin->number == lattice.origin[axis]) first_ = integer;
@@ -151,6 +156,13 @@ class AxisIntegers {
     if (!std::isfinite(coordinate)) return std::nullopt;
     if (lattice_.kind != LatticeKind::decimal) return of_shortest(coordinate);
     if (first_) return from_first(coordinate);
+    if (at_origin_ && per_step_ && is_small_integer(coordinate)) {
+      std::int64_t integer = 0;
+      if (!__builtin_mul_overflow(*per_step_, static_cast<std::int64_t>(coordinate), &integer) &&
+          !__builtin_add_overflow(integer, *at_origin_, &integer)) {
+        return integer;
+      }
+    }
     if (const auto wide = wide_world(lattice_, coordinate, axis_)) {
       if (const auto quick = quick_integer_under(*wide, scale_, translate_)) return quick;
     }
@@ -181,6 +193,9 @@ class AxisIntegers {
   std::size_t axis_;
   GridNumber scale_;
   GridNumber translate_;
+  std::optional<std::int64_t> at_origin_;  // the integer at the lattice's origin, if it is one
+  std::optional<std::int64_t>
+      per_step_;                       // the integers in a step of the lattice, if a whole number
   std::optional<std::int64_t> first_;  // the integer that a rounded origin stands for
 };
 

@@ -90,7 +90,7 @@ void ObjectBuilder::add(std::string key, Json value, std::string_view prefix) {
 
 Json ObjectBuilder::take() {
   numbers_.clear();
-  return make_object(std::move(keys_), std::move(values_));
+  return make_object(keys_, values_);
 }
 
 Json ValueReader::number_of(std::string_view text) {

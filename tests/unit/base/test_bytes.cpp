@@ -56,3 +56,19 @@ TEST_CASE("checksums match their published check values") {
   CHECK(content_hash(as_bytes("")) == 0xCBF29CE484222325ULL);
   CHECK(content_hash(as_bytes("a")) == 0xAF63DC4C8601EC8CULL);
 }
+
+TEST_CASE("a checksum of any length is the remainder bit by bit, also in parts") {
+  std::string text;
+  std::uint32_t remainder = 0xFFFFFFFFU;
+  for (unsigned i = 0; i < 100; ++i) {
+    INFO(i);
+    REQUIRE(crc32c(as_bytes(text)) == ~remainder);
+    const std::uint32_t head = crc32c(as_bytes(text).first(text.size() / 3));
+    REQUIRE(crc32c(as_bytes(text).subspan(text.size() / 3), head) == ~remainder);
+    text += static_cast<char>(37 * i + 11);
+    remainder ^= static_cast<unsigned char>(text.back());
+    for (int bit = 0; bit < 8; ++bit) {
+      remainder = (remainder >> 1) ^ ((remainder & 1) != 0 ? 0x82F63B78U : 0U);
+    }
+  }
+}

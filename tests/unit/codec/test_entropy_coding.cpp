@@ -205,6 +205,35 @@ TEST_CASE("after a trial, and trials within it, a bank goes on as if there had b
   }
 }
 
+TEST_CASE("a kept trial and its recorded decisions are as if the bank had coded them at once") {
+  for (const std::size_t vertices : {std::size_t{0}, std::size_t{1'000'000}}) {
+    codec::ModelBank models(kLayout);
+    codec::ModelBank plain(kLayout);
+    std::vector<Sample> tried = samples(14, 700);
+    std::vector<Sample> next = samples(15, 300);
+    codec::EntropyStream stream = codec::EntropyStream::writer();
+    codec::EntropyStream recorder = codec::EntropyStream::recorder();
+    {
+      codec::BankTrial trial(models, vertices);
+      code(recorder, models, tried);
+      trial.keep();
+    }
+    stream.append(recorder);
+    code(stream, models, next);
+    codec::EntropyStream expected = codec::EntropyStream::writer();
+    code(expected, plain, tried);
+    code(expected, plain, next);
+    CHECK(stream.costs() == expected.costs());
+    CHECK(std::move(stream).finish() == std::move(expected).finish());
+    {
+      const codec::BankTrial trial(models, 0);  // undoes only what it learned itself
+      code(recorder, models, tried);
+    }
+    const codec::PriorShape whole{.max_count = 250};
+    CHECK(models.save(whole) == plain.save(whole));
+  }
+}
+
 TEST_CASE("a prior of another layout is refused") {
   constexpr codec::FamilyShape families[] = {{0, 1, {3}}};
   codec::ModelBank other(codec::ModelLayout{families, {}});

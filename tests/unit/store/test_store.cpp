@@ -143,7 +143,7 @@ TEST_CASE("put stores all features or none") {
   CHECK(!store->get("buildings", "good"));
   CHECK(!store->collection("buildings"));
   CHECK(database.ask("SELECT count(*)::text FROM watertight.feature") == "0");
-  CHECK(database.ask("SELECT count(*)::text FROM watertight.document_header") == "0");
+  CHECK(database.ask("SELECT count(*)::text FROM watertight.document") == "0");
 }
 
 TEST_CASE("text that the database cannot hold is an error, never another text") {
@@ -351,9 +351,9 @@ TEST_CASE("an index serves the box filter") {
       store->list({"c", 10, "", store::StoredBox{{500.5, 500.5, 0}, {501.5, 501.5, 1}}});
   REQUIRE(page);
   CHECK(page->features.size() == 2);
-  database.ask("ANALYZE watertight.feature");
+  database.ask("ANALYZE watertight.feature_row");
   const std::string plan = database.ask(
-      "EXPLAIN (FORMAT JSON) SELECT count(*) FROM watertight.feature WHERE collection = 'c'"
+      "EXPLAIN (FORMAT JSON) SELECT count(*) FROM watertight.feature_row WHERE collection = 1"
       " AND min_x IS NOT NULL AND watertight.index_box(min_x, min_y, max_x, max_y)"
       "   && watertight.index_box(500.5, 500.5, 501.5, 501.5)");
   CHECK(plan.find("feature_box") != std::string::npos);
@@ -449,10 +449,10 @@ TEST_CASE("headers and receipts that nothing needs are swept") {
     feature.header = "{\"x\":1}";
     put_one(*store, feature);
     database.ask("UPDATE watertight.write_receipt SET written = now() - interval '2 days'");
-    CHECK(database.ask("SELECT count(*)::text FROM watertight.document_header") == "3");
+    CHECK(database.ask("SELECT count(*)::text FROM watertight.document") == "3");
   }
   put_one(*database.store(), feature);  // a store sweeps after its first write
-  CHECK(database.ask("SELECT count(*)::text FROM watertight.document_header") == "2");
+  CHECK(database.ask("SELECT count(*)::text FROM watertight.document") == "2");
   CHECK(database.ask("SELECT count(*)::text FROM watertight.write_receipt") == "1");
 }
 

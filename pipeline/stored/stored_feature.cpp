@@ -250,7 +250,8 @@ std::string stored_text(const EncodedFeature& feature) {
 }
 
 Result<StoredFeature> pack(EncodedFeature feature, const packing::DictionaryPointer& dictionary) {
-  return pack(stored_text(feature), std::move(feature), dictionary);
+  const std::string text = stored_text(feature);
+  return pack(text, std::move(feature), dictionary);
 }
 
 Result<StoredFeature> pack(const std::string& text, EncodedFeature feature,

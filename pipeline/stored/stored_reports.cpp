@@ -22,6 +22,7 @@ namespace {
 constexpr std::string_view kMeasuresLine = "measures ";
 constexpr std::string_view kReportLine = "report ";
 constexpr std::string_view kFindingsLine = "findings ";
+constexpr std::size_t kFirstMember = 16;  // longer than the first member's name
 
 /// Measures and report of a solid, as JSON.
 struct ReportTexts {
@@ -82,6 +83,8 @@ std::vector<ReportTexts> expected_texts(const EncodedFeature& feature, Reports r
 std::string line_of(std::string_view start, std::size_t solid, std::string_view expected,
                     std::string_view text) {
   if (text == expected) return {};
+  // PostgreSQL's jsonb, in which older programs kept reports, orders and spaces its members.
+  if (text.find("\": ") < kFirstMember && validate::is_same_json(text, expected)) return {};
   const auto front = static_cast<std::size_t>(
       std::mismatch(text.begin(), text.end(), expected.begin(), expected.end()).first -
       text.begin());

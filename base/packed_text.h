@@ -4,15 +4,23 @@
 // the text itself.
 #pragma once
 
+#include <memory>
+
 #include "base/bytes.h"
 
 namespace watertight {
 
-/// A compressed text, which formats/text/packed_text.h makes and opens; other files only pass it
-/// on.
+namespace packing {
+class TextDictionary;
+}
+
+/// A compressed text; other files than its makers (packing/text_dictionary.h in stores,
+/// formats/text/packed_text.h in Watertight files) only pass it on.
 struct PackedText {
   Bytes bytes;
-  friend bool operator==(const PackedText&, const PackedText&) = default;
+  /// The dictionary with which the bytes were made, null for none.
+  std::shared_ptr<const packing::TextDictionary> dictionary = {};
+  friend bool operator==(const PackedText& a, const PackedText& b) { return a.bytes == b.bytes; }
 };
 
 }  // namespace watertight

@@ -157,6 +157,13 @@ struct ExportCommand {
 };
 Exit run(const ExportCommand& command);
 
+struct CompactCommand {
+  StoreChoice store;
+  std::string collection;
+};
+/// Packs the features of a collection again (pipeline/compact.h).
+Exit run(const CompactCommand& command);
+
 struct CollectionsCommand {
   enum class Action : std::uint8_t { list, info, policy, remove, rename, recount };
   StoreChoice store;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The command collections: lists, shows, deletes, renames and counts the collections of a store.
+// The commands collections (lists, shows, deletes, renames and counts the collections of a store)
+// and compact.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/opened_store.h"
 #include "cli/terminal/printable.h"
+#include "pipeline/compact.h"
 #include "pipeline/pipeline.h"
 
 namespace watertight::cli {
@@ -107,6 +109,31 @@ Exit run(const CollectionsCommand& command) {
   if (status) return Exit::valid;
   complain(command.id.empty() ? "store" : command.id, status.error());
   return Exit::error;
+}
+
+Exit run(const CompactCommand& command) {
+  const auto opened = open_store(command.store);
+  if (!opened) {
+    complain("store", opened.error());
+    return Exit::error;
+  }
+  const server::StopSignals signals;
+  const auto counts = pipeline::compact(
+      *opened->store, command.collection, [&signals] { return signals.is_requested(); },
+      [](std::uint64_t done, std::uint64_t all) {
+        std::fprintf(stderr, "watertight: compact: %llu of %llu features\n",
+                     static_cast<unsigned long long>(done), static_cast<unsigned long long>(all));
+      });
+  if (!counts) {
+    complain(command.collection, counts.error());
+    return Exit::error;
+  }
+  std::printf("%-24s %llu\n%-24s %llu\n%-24s %llu\n%-24s %llu\n", "features",
+              static_cast<unsigned long long>(counts->features), "packed again",
+              static_cast<unsigned long long>(counts->repacked), "bytes of texts before",
+              static_cast<unsigned long long>(counts->bytes_before), "bytes of texts after",
+              static_cast<unsigned long long>(counts->bytes_after));
+  return Exit::valid;
 }
 
 }  // namespace watertight::cli

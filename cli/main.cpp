@@ -394,6 +394,19 @@ void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen)
   });
 }
 
+void add_compact(CLI::App& app, CompactCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand(
+      "compact", "Pack the features of a collection again, with a dictionary made from them");
+  sub->add_option("COLLECTION", command.collection, "collection")
+      ->required()
+      ->check(is_collection_id);
+  add_store(*sub, command.store);
+  sub->callback([&] {
+    require_store(command.store);
+    chosen = [&] { return run(command); };
+  });
+}
+
 int run_command_line(int argc, char** argv) {
   allow_many_files();
   CLI::App app("Validates, stores and compresses 3D solids", "watertight");
@@ -414,6 +427,7 @@ int run_command_line(int argc, char** argv) {
   IngestCommand ingest_command;
   ExportCommand export_command;
   CollectionsCommand collections_command;
+  CompactCommand compact_command;
   Chosen chosen;
   add_validate(app, validate_command, chosen);
   add_advise(app, advise_command, chosen);
@@ -428,6 +442,7 @@ int run_command_line(int argc, char** argv) {
   add_ingest(app, ingest_command, chosen);
   add_export(app, export_command, chosen);
   add_collections(app, collections_command, chosen);
+  add_compact(app, compact_command, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -15,6 +15,10 @@ std::string directory_of(const StoreChoice& choice) {
   return std::filesystem::absolute(choice.data_directory, error).string();
 }
 
+void tell(const std::string& sentence) {
+  server::write_unless_full("watertight: store: " + printable(sentence) + "\n");
+}
+
 }  // namespace
 
 Status give_up_rights(const StoreChoice& choice) {
@@ -35,9 +39,7 @@ Result<OpenedDatabase> open_database(const StoreChoice& choice,
   store::ClusterOptions options;
   options.data_directory = directory_of(choice);
   options.is_cancelled = [&signals] { return signals.is_requested(); };
-  options.tell = [](const std::string& sentence) {
-    server::write_unless_full("watertight: store: " + printable(sentence) + "\n");
-  };
+  options.tell = tell;
   auto cluster = store::PrivateCluster::start(options);
   if (!cluster) return std::move(cluster).error();
   opened.connection = (*cluster)->connection();
@@ -51,7 +53,7 @@ Result<OpenedStore> open_store(const StoreChoice& choice) {
   auto database = open_database(choice, signals);
   if (!database) return std::move(database).error();
   auto store = store::open_postgres_store(database->connection, 4,
-                                          [&signals] { return signals.is_requested(); });
+                                          [&signals] { return signals.is_requested(); }, tell);
   if (signals.is_requested()) return Error{ErrorCode::cancelled, "stopped before the work began"};
   if (!store) return std::move(store).error();
   return OpenedStore{std::move(database->cluster), *std::move(store)};

@@ -103,7 +103,7 @@ Status CollectionExport::add(StoredFeature feature, Bytes& bytes) {
   const std::string id = feature.id;
   ++exported_.features;
   exported_.solids += feature.solids.size();
-  auto encoded = unpack(std::move(feature));
+  auto encoded = unpack(std::move(feature), {}, Reports::of_unproven);
   if (!encoded) return about(id, encoded.error());
   if (Status status = container_->add(*std::move(encoded)); !status) return status;
   append(bytes, container_->take());

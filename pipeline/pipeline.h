@@ -202,10 +202,21 @@ Result<Document> decode_feature(const EncodedFeature& feature, std::vector<Solid
 /// and no proof is about them. For city models. Cost: linear in the skeleton.
 std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feature);
 
-/// The feature as the store keeps it, with a compressed skeleton. Errors: those of pack_text().
-Result<StoredFeature> pack(EncodedFeature feature);
-/// The feature that pack() was given. Errors: those of unpack_text().
-Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {});
+/// The text of a feature as the store keeps it: the skeleton, and what of measures, reports and
+/// findings does not follow from the solids. Cost: that of decoding the solids.
+std::string stored_text(const EncodedFeature& feature);
+/// The feature as the store keeps it, its text packed with a dictionary (null: none). Errors: those
+/// of packing::pack().
+Result<StoredFeature> pack(EncodedFeature feature, const packing::DictionaryPointer& dictionary);
+/// The same when the text, which is stored_text(feature), was made before.
+Result<StoredFeature> pack(const std::string& text, EncodedFeature feature,
+                           const packing::DictionaryPointer& dictionary);
+
+/// The solids whose measures and reports unpack() makes, at the cost of decoding them.
+enum class Reports : std::uint8_t { none, of_unproven, all };
+/// The feature that pack() was given. Errors: those of packing::unpack(); malformed.
+Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {},
+                              Reports reports = Reports::all);
 /// The document of a stored feature: unpack(), then decode_feature().
 Result<Document> from_stored(StoredFeature stored, const Limits& limits = {});
 

@@ -164,7 +164,10 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   for (const int signal : {SIGPIPE, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
   const auto is_stopping = [&signals] { return signals.is_requested(); };
   auto store =
-      store::open_postgres_store(options.connection, options.database_connections, is_stopping);
+      store::open_postgres_store(options.connection, options.database_connections, is_stopping,
+                                 [](const std::string& sentence) {
+                                   write_unless_full("watertight: store: " + sentence + "\n");
+                                 });
   if (is_stopping()) return Error{ErrorCode::cancelled, "stopped before the service listened"};
   if (!store) return std::move(store).error();
   delaunay::EngineWorkers workers;

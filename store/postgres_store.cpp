@@ -33,7 +33,7 @@ constexpr std::chrono::seconds kPinging{2};
 constexpr std::chrono::seconds kReading{10};
 constexpr std::chrono::seconds kWriting{120};
 constexpr std::chrono::seconds kCounting{600};
-constexpr std::chrono::seconds kMigrating{3600};
+constexpr std::chrono::hours kMigrating{48};
 // A ping that failed speaks for all calls of the next moments.
 constexpr std::chrono::seconds kAway{2};
 // Calls that put at most so many features share a transaction with others (store/group_commit.h).
@@ -67,9 +67,9 @@ class Backoff {
 };
 
 /// Whether concurrent transactions got into each other's way, so that the same transaction can
-/// succeed now. A foreign key fails (23503) only when a header was removed as unused while a writer
-/// was about to use it, and a value is missing (23502) only when a collection was removed or
-/// renamed so that it has no key.
+/// succeed now. A foreign key fails (23503) only when a document or kind was removed as unused while a
+/// writer was about to use it, and a value is missing (23502) only when that was removed whose key
+/// it is: a collection, a kind, a dictionary.
 bool is_collision(const std::string& state) {
   return state == "40001" || state == "40P01" || state == "55P03" || state == "23503" ||
          state == "23502";
@@ -94,9 +94,9 @@ class PostgresStore final : public SolidStore {
         group_({[this](FeatureRefs features) { return write_group(features); },
                 [this](FeatureRefs features) { return write_all(features, {}); }}) {}
 
-  Status open() {
-    return with_session<Done>([](DatabaseSession& session) { return migrate(session); },
-                              kMigrating);
+  Status open(const Tell& tell) {
+    return with_session<Done>(
+        [&tell](DatabaseSession& session) { return migrate(session, tell); }, kMigrating);
   }
 
   Status ping() override {
@@ -200,7 +200,24 @@ class PostgresStore final : public SolidStore {
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     if (!check_collection_id(collection) || !is_possible_id(id)) return no_such_feature(collection);
     return read<StoredFeature>(
-        [&](DatabaseSession& session) { return read_feature(session, collection, id); });
+        [&](DatabaseSession& session) { return read_feature(session, collection, id, shared_); });
+  }
+
+  Result<packing::DictionaryPointer> dictionary(const std::string& collection) override {
+    if (!check_collection_id(collection)) return packing::DictionaryPointer();
+    if (auto known = shared_.newest(collection)) return *std::move(known);
+    return read<packing::DictionaryPointer>([&](DatabaseSession& session) {
+      return read_dictionary(session, collection, shared_);
+    });
+  }
+
+  Result<std::uint64_t> repack(std::span<const StoredFeature> features) override {
+    if (features.empty()) return std::uint64_t{0};
+    if (Status checked = check_features(features); !checked) return std::move(checked).error();
+    std::vector<const StoredFeature*> all;
+    for (const StoredFeature& feature : features) all.push_back(&feature);
+    return write<std::uint64_t>(
+        [&](DatabaseSession& session) { return repack_features(session, all, shared_); });
   }
 
   Result<FeaturePage> list(const FeatureQuery& query) override {
@@ -218,7 +235,7 @@ class PostgresStore final : public SolidStore {
                             const std::string& after) override {
     if (!check_collection_id(collection)) return no_such_collection();
     return read_at_once<FeatureBatch>(
-        [&](DatabaseSession& session) { return read_batch(session, collection, limit, after); });
+        [&](DatabaseSession& session) { return read_batch(session, collection, limit, after, shared_); });
   }
 
   Result<std::vector<StoredHeader>> documents(const std::string& collection,
@@ -250,7 +267,7 @@ class PostgresStore final : public SolidStore {
   Result<std::vector<std::uint64_t>> write_all(FeatureRefs features,
                                                const WriteCondition& condition) {
     return write<std::vector<std::uint64_t>>([&](DatabaseSession& session) {
-      return write_features(session, features, condition, digests_);
+      return write_features(session, features, condition, shared_);
     });
   }
 
@@ -259,7 +276,7 @@ class PostgresStore final : public SolidStore {
     bool has_collided = false;
     const Work<std::vector<std::uint64_t>> work = [&](DatabaseSession& session) {
       session.send(kImpatient);
-      auto versions = write_features(session, features, {}, digests_);
+      auto versions = write_features(session, features, {}, shared_);
       has_collided = !versions && is_collision(session.state());
       return versions;
     };
@@ -284,7 +301,7 @@ class PostgresStore final : public SolidStore {
       session.limit(limit_of(kWriting));
       std::vector<const StoredFeature*> features;
       for (const StoredFeature& feature : *batch) features.push_back(&feature);
-      const auto written = write_features(session, features, condition, digests_);
+      const auto written = write_features(session, features, condition, shared_);
       if (!written) return written.error();
       versions.insert(versions.end(), written->begin(), written->end());
     }
@@ -433,14 +450,16 @@ class PostgresStore final : public SolidStore {
     if (key && !key->empty()) static_cast<void>(purge(*key, ""));
   }
 
-  /// Removes old receipts, and headers that no feature uses any more.
+  /// Removes old receipts, and kinds and documents that no feature uses any more.
   void sweep() {
     const Work<Done> work = [](DatabaseSession& session) -> Status {
       for (const char* statement :
            {"DELETE FROM watertight.write_receipt WHERE written < now() - interval '1 day'",
-            "DELETE FROM watertight.document_header h WHERE NOT EXISTS"
-            " (SELECT FROM watertight.feature f WHERE f.header = h.digest) AND NOT EXISTS"
-            " (SELECT FROM watertight.collection c WHERE c.header = h.digest)"}) {
+            "DELETE FROM watertight.kind k WHERE NOT EXISTS"
+            " (SELECT FROM watertight.feature_row f WHERE f.kind = k.key)",
+            "DELETE FROM watertight.document d WHERE NOT EXISTS"
+            " (SELECT FROM watertight.kind k WHERE k.document = d.key) AND NOT EXISTS"
+            " (SELECT FROM watertight.collection c WHERE c.document = d.key)"}) {
         if (const Result<Rows> gone = session.run(statement); !gone) return gone.error();
       }
       return Done{};
@@ -451,7 +470,7 @@ class PostgresStore final : public SolidStore {
 
   ConnectionPool pool_;
   ConnectionPool pings_;  // apart, so that no other call delays a ping
-  HeaderDigests digests_;
+  SharedRows shared_;
   GroupCommit group_;
   std::atomic<Clock::time_point> away_until_ = Clock::time_point::min();
   std::atomic<std::uint64_t> writes_{0};
@@ -461,7 +480,8 @@ class PostgresStore final : public SolidStore {
 
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
                                                         std::size_t connections,
-                                                        const CancelPoll& is_cancelled) {
+                                                        const CancelPoll& is_cancelled,
+                                                        const Tell& tell) {
   auto store = std::make_unique<PostgresStore>(connection, connections);
   const std::jthread watch([&is_cancelled, opening = store.get()](const std::stop_token& stop) {
     while (is_cancelled && !stop.stop_requested()) {
@@ -469,7 +489,7 @@ Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& conne
       std::this_thread::sleep_for(kCancelPoll);
     }
   });
-  if (Status opened = store->open(); !opened) return std::move(opened).error();
+  if (Status opened = store->open(tell); !opened) return std::move(opened).error();
   return std::unique_ptr<SolidStore>(std::move(store));
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include "base/packed_text.h"
 #include "base/result.h"
 #include "base/shared_text.h"
+#include "packing/text_dictionary.h"
 
 namespace watertight::store {
 
@@ -63,8 +65,8 @@ struct StoredSolid {
   std::string lod;
   Bytes blob;             // empty unless the solid is proven
   bool is_proven = true;  // false: the skeleton of the feature has the solid as it came
-  std::string measures;   // JSON
-  std::string report;     // JSON
+  std::string measures;   // JSON; "" in a StoredFeature, whose text has it
+  std::string report;     // JSON; the same
 };
 
 /// A stored feature without its skeleton.
@@ -77,8 +79,10 @@ struct FeatureRecord {
   SharedText header;       // header of the feature's document (may differ from the collection's)
   std::optional<StoredBox> box;  // world coordinates of the box around its solids
   std::vector<StoredSolid> solids;
-  /// JSON array of the groups of solids in which a defect was found; "" when there is none.
+  /// JSON array of the groups of solids in which a defect was found; "" when there is none, and in
+  /// a StoredFeature, whose text has it.
   std::string findings;
+  bool has_findings = false;  // whether a defect was found in a group of solids
   std::uint64_t version = 0;  // set by the store, never used twice; serves as ETag
 
   /// The number of solids that are not proven.
@@ -88,9 +92,10 @@ struct FeatureRecord {
     return count;
   }
   /// Whether all solids are proven, and no defect was found in a group of them.
-  bool is_proven() const { return findings.empty() && unproven() == 0; }
+  bool is_proven() const { return !has_findings && findings.empty() && unproven() == 0; }
 };
 
+/// A feature as the store keeps it: measures, reports and findings are part of the packed text.
 struct StoredFeature : FeatureRecord {
   PackedText skeleton;
 };
@@ -115,7 +120,7 @@ struct WriteCondition {
 struct FeatureQuery {
   std::string collection;
   std::uint64_t limit = 10;
-  std::string after;  // id after which the page starts; "" = from the start
+  std::string after;  // id, of any feature, after which the page starts; "" = from the start
   /// Selects the features whose closed boxes have a point in common with this box.
   std::optional<StoredBox> box;
   /// How much of the collection's extent in x and y the box covers, 0 to 1, so that the search can
@@ -138,7 +143,7 @@ struct FeatureSummary {
 };
 
 struct FeaturePage {
-  std::vector<FeatureSummary> features;  // ordered by id, bytewise
+  std::vector<FeatureSummary> features;  // in an order of their ids that never changes
   std::string next;                      // `after` of the next page; "" = this page is the last
 };
 
@@ -194,11 +199,12 @@ class SolidStore {
   /// Sets the policy of a collection for later writes. Errors: not_found.
   virtual Status set_policy(const std::string& id, Policy policy) = 0;
   /// Stores all features or none, durably. Creates the collection when it does not exist; replaces
-  /// a feature whose id exists, under a higher version. Sends the rows of a table together. Returns
+  /// a feature whose id exists, under a higher version. A dictionary that the collection does not
+  /// have becomes its newest. Sends the rows of a table together. Returns
   /// the new version of each feature. Errors: invalid_argument for a feature that the database
   /// cannot keep as it is (ids with NUL, not UTF-8 or above 1024 bytes, boxes that are not finite,
   /// a solid twice); conflict when a feature is there twice or its CRS is not that of its
-  /// collection; precondition_failed, which names a feature for which `condition` does not hold,
+  /// collection, or two ids have one hash of 64 bits; precondition_failed, which names a feature for which `condition` does not hold,
   /// and its version; unavailable.
   virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
                                                  const WriteCondition& condition = {}) = 0;
@@ -209,6 +215,13 @@ class SolidStore {
   /// The current version of a feature, by one short question to the database. Errors: not_found.
   virtual Result<std::uint64_t> version(const std::string& collection, const std::string& id) = 0;
   virtual Result<StoredFeature> get(const std::string& collection, const std::string& id) = 0;
+  /// The dictionary with which texts of the collection are packed now; null: none. May be some
+  /// seconds old.
+  virtual Result<packing::DictionaryPointer> dictionary(const std::string& collection) = 0;
+  /// Gives features other packed texts that mean the same, all or none of a batch but for those
+  /// that changed since they were read: these stay as they are. Versions stay. Returns the number
+  /// of features whose text was replaced. Errors: those of put().
+  virtual Result<std::uint64_t> repack(std::span<const StoredFeature> features) = 0;
   /// A page has at most 10,000 features. Errors: not_found when there is no such collection.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
   /// The next batch of the features of a collection, in order of their place numbers
@@ -228,13 +241,18 @@ class SolidStore {
                         const WriteCondition& condition = {}) = 0;
 };
 
+/// Takes a sentence about the progress of a migration.
+using Tell = std::function<void(const std::string&)>;
+
 /// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
 /// Reconnects after a lost connection; an interrupted operation is tried again only when it is
 /// idempotent or known not to have been committed. `is_cancelled` ends the opening; a thread asks
-/// it. Errors: unavailable with the server's message.
+/// it. `tell` takes sentences about the progress of a migration. Errors: unavailable with the server's
+/// message.
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
                                                         std::size_t connections = 4,
-                                                        const CancelPoll& is_cancelled = {});
+                                                        const CancelPoll& is_cancelled = {},
+                                                        const Tell& tell = {});
 
 }  // namespace watertight::store
 

@@ -165,6 +165,12 @@ std::string report_measures_json(const geometry::Measures& measures) {
   return dump(measures_json(measures));
 }
 
+bool is_same_json(std::string_view a, std::string_view b) {
+  const auto left = nlohmann::json::parse(a, nullptr, false);
+  const auto right = nlohmann::json::parse(b, nullptr, false);
+  return !left.is_discarded() && !right.is_discarded() && left == right;
+}
+
 std::string place_pointer(const Place& place, const Solid& submitted,
                           const ReportJsonOptions& options) {
   std::string pointer = options.pointer_prefix;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/solid.h"
@@ -57,6 +58,10 @@ std::string finding_json(const Finding& finding, const PlacedSolid& here, const 
 /// The measures as JSON with the members volume, area, bbox, genus, vertices, facets, rings and
 /// shells.
 std::string report_measures_json(const geometry::Measures& measures);
+
+/// Whether two JSON texts have the same values, in whatever order and spacing; false for text that
+/// is no JSON.
+bool is_same_json(std::string_view a, std::string_view b);
 
 /// The JSON Pointer of a place: prefix, then shell, facet within the shell, ring, vertex within the
 /// ring, as far as the place has them. "" if the prefix is empty.

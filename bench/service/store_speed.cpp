@@ -59,9 +59,6 @@ StoredFeature box(const std::string& collection, int number) {
   solid.object_id = feature.id;
   solid.lod = "2.2";
   solid.blob.assign(60, static_cast<std::uint8_t>(number));
-  solid.measures = R"({"volume":500.0,"area":400.0,"vertices":8,"facets":6,"triangles":12})";
-  solid.report =
-      R"({"verdict":"valid","findings":[],"statistics":{"vertices":8,"facets":6,"triangles":12,"shells":1,"seconds":0.0004}})";
   feature.solids.push_back(std::move(solid));
   return feature;
 }

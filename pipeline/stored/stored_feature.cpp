@@ -11,19 +11,18 @@
 #include <utility>
 
 #include "formats/city_json/city_json.h"
-#include "formats/text/packed_text.h"
+#include "packing/text_dictionary.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/stored/feature_facts.h"
 #include "pipeline/stored/merged_vertices.h"
+#include "pipeline/stored/solid_lines.h"
+#include "pipeline/stored/stored_reports.h"
 #include "pipeline/stored/unproven_solid.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {
 namespace {
-
-constexpr std::string_view kMergedLine = "merged ";
-constexpr std::string_view kUnprovenLine = "unproven ";
 
 void include(std::optional<store::StoredBox>& box, const Solid& solid) {
   const Box lattice_box = solid.box();
@@ -73,43 +72,6 @@ std::string line_of(std::string_view start, std::size_t solid, const std::string
   return line;
 }
 
-/// The lines in front of a stored skeleton: for each solid one of the two texts, or none.
-struct SolidLines {
-  std::string_view unproven;
-  std::string_view merged;
-};
-
-/// Takes a line that starts with `start` off the front of a skeleton. Returns the number of its
-/// solid and its text. Errors: malformed when it has no number below `solids`.
-Result<std::pair<std::size_t, std::string_view>> take_line(std::string_view& skeleton,
-                                                           std::string_view start,
-                                                           std::size_t solids) {
-  const std::size_t end = skeleton.find('\n');
-  const std::string_view line = skeleton.substr(start.size(), end - start.size());
-  std::size_t solid = 0;
-  const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), solid);
-  if (end == std::string_view::npos || error != std::errc{} || solid >= solids ||
-      rest == line.data() + line.size()) {
-    return Error{ErrorCode::malformed, "a stored solid: the line has no number of a solid"};
-  }
-  skeleton.remove_prefix(end + 1);
-  return std::pair(solid, line.substr(static_cast<std::size_t>(rest - line.data()) + 1));
-}
-
-/// Takes the lines of solids off the front of a stored skeleton.
-Result<std::vector<SolidLines>> take_solid_lines(std::string_view& skeleton, std::size_t solids) {
-  std::vector<SolidLines> lines(solids);
-  for (;;) {
-    const bool is_unproven = skeleton.starts_with(kUnprovenLine);
-    if (!is_unproven && !skeleton.starts_with(kMergedLine)) return lines;
-    const auto line = take_line(skeleton, is_unproven ? kUnprovenLine : kMergedLine, solids);
-    if (!line) return line.error();
-    SolidLines& of_solid = lines[line->first];
-    (is_unproven ? of_solid.unproven : of_solid.merged) = line->second;
-  }
-}
-
-/// The solid as it came, of the merged one.
 Result<Solid> source_of(Solid merged, std::string_view line, const Limits& limits) {
   if (line.empty()) return merged;
   return unmerge(merged, line, limits);
@@ -139,6 +101,7 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
   encoded.format = std::string(formats::to_string(document.format));
   encoded.header = document.header;
   encoded.findings = feature_findings_json(feature);
+  encoded.has_findings = !encoded.findings.empty();
   EncodeOptions encode_options = options.encode;
   if (!is_exact) encode_options.keep_order = false;
   for (std::size_t i = 0; i < feature.own; ++i) {
@@ -273,22 +236,88 @@ Result<std::optional<store::StoredBox>> box_of(const EncodedFeature& feature,
   return box;
 }
 
-Result<StoredFeature> pack(EncodedFeature feature) {
-  auto skeleton = formats::pack_text(feature.skeleton);
-  if (!skeleton) return std::move(skeleton).error();
-  store::FeatureRecord& record = feature;
-  return StoredFeature{std::move(record), *std::move(skeleton)};
+namespace {
+
+// Where a text is short because it names the feature's id often, these bytes stand for the id.
+constexpr char kHasMarks = '\x02';
+constexpr char kIdMark = '\x01';
+constexpr std::size_t kShortestId = 3;
+
+/// The text with a mark for each id, and a byte at its front that says so; the text itself when the
+/// id is short or the text has bytes like marks.
+std::string with_marks(const std::string& text, const std::string& id) {
+  std::string marked(1, kHasMarks);
+  if (text.starts_with(kHasMarks)) return marked += text;  // the byte twice: without marks
+  if (id.size() < kShortestId || text.find(kIdMark) != std::string::npos) return text;
+  std::size_t place = 0;
+  for (std::size_t found = 0; (found = text.find(id, place)) != std::string::npos;) {
+    marked.append(text, place, found - place);
+    marked += kIdMark;
+    place = found + id.size();
+  }
+  return marked.append(text, place);
 }
 
-Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits) {
-  auto skeleton = formats::unpack_text(stored.skeleton.bytes, limits.bytes);
-  if (!skeleton) return std::move(skeleton).error();
+/// The text that with_marks() was given. Errors: limit_exceeded.
+Result<std::string> without_marks(const std::string& marked, const std::string& id,
+                                  std::uint64_t most_bytes) {
+  if (!marked.starts_with(kHasMarks)) return marked;
+  std::string text;
+  if (marked.find(kHasMarks, 1) == 1) return text.append(marked, 1);
+  for (std::size_t place = 1; place < marked.size();) {
+    const std::size_t found = std::min(marked.find(kIdMark, place), marked.size());
+    text.append(marked, place, found - place);
+    if (found < marked.size()) text += id;
+    if (text.size() > most_bytes) {
+      return Error{ErrorCode::limit_exceeded,
+                   "a packed text of more than " + std::to_string(most_bytes) + " bytes"};
+    }
+    place = found + 1;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string stored_text(const EncodedFeature& feature) {
+  return with_marks(report_lines(feature) + feature.skeleton, feature.id);
+}
+
+Result<StoredFeature> pack(EncodedFeature feature, const packing::DictionaryPointer& dictionary) {
+  const std::string text = stored_text(feature);
+  return pack(text, std::move(feature), dictionary);
+}
+
+Result<StoredFeature> pack(const std::string& text, EncodedFeature feature,
+                           const packing::DictionaryPointer& dictionary) {
+  auto packed = packing::pack(text, dictionary.get());
+  if (!packed) return std::move(packed).error();
+  feature.has_findings = !feature.findings.empty();
+  feature.findings.clear();
+  for (StoredSolid& solid : feature.solids) {
+    solid.measures.clear();
+    solid.report.clear();
+  }
+  store::FeatureRecord& record = feature;
+  return StoredFeature{std::move(record), {*std::move(packed), dictionary}};
+}
+
+Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits, Reports reports) {
+  auto text =
+      packing::unpack(stored.skeleton.bytes, stored.skeleton.dictionary.get(), limits.bytes);
+  if (!text) return std::move(text).error();
+  auto whole = without_marks(*text, stored.id, limits.bytes);
+  if (!whole) return std::move(whole).error();
   store::FeatureRecord& record = stored;
-  return EncodedFeature{std::move(record), *std::move(skeleton)};
+  EncodedFeature feature{std::move(record), *std::move(whole)};
+  if (Status taken = take_report_lines(feature, reports, limits); !taken) {
+    return std::move(taken).error();
+  }
+  return feature;
 }
 
 Result<Document> from_stored(StoredFeature stored, const Limits& limits) {
-  const auto feature = unpack(std::move(stored), limits);
+  const auto feature = unpack(std::move(stored), limits, Reports::none);
   if (!feature) return feature.error();
   return decode_feature(*feature, limits);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/streaming/feature_spool.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,11 +17,9 @@ constexpr std::size_t kFeatureOverhead = sizeof(StoredFeature);
 Error damaged() { return {ErrorCode::unavailable, "the temporary file has been changed"}; }
 
 std::size_t bytes_of(const StoredFeature& feature) {
-  std::size_t bytes = kFeatureOverhead + feature.id.size() + feature.findings.size() +
-                      feature.skeleton.bytes.size();
+  std::size_t bytes = kFeatureOverhead + feature.id.size() + feature.skeleton.bytes.size();
   for (const StoredSolid& solid : feature.solids) {
-    bytes += kSolidOverhead + solid.object_id.size() + solid.blob.size() + solid.measures.size() +
-             solid.report.size();
+    bytes += kSolidOverhead + solid.object_id.size() + solid.blob.size();
   }
   return bytes;
 }
@@ -43,7 +42,8 @@ Bytes read_copy(ByteReader& reader) {
   return {bytes.begin(), bytes.end()};
 }
 
-void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64_t header) {
+void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64_t header,
+                   std::uint64_t dictionary) {
   write(writer, feature.collection);
   write(writer, feature.id);
   write(writer, feature.type);
@@ -55,7 +55,8 @@ void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64
     writer.f64(feature.box->min[axis]);
     writer.f64(feature.box->max[axis]);
   }
-  write(writer, feature.findings);
+  writer.u8(feature.has_findings ? 1 : 0);
+  writer.varint(dictionary);
   write(writer, feature.skeleton.bytes);
   writer.varint(feature.solids.size());
   for (const StoredSolid& solid : feature.solids) {
@@ -65,13 +66,12 @@ void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64
     write(writer, solid.lod);
     write(writer, solid.blob);
     writer.u8(solid.is_proven ? 1 : 0);
-    write(writer, solid.measures);
-    write(writer, solid.report);
   }
 }
 
 /// Reads what write_feature() wrote; the caller checks reader.failed().
-StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& headers) {
+StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& headers,
+                           const std::vector<packing::DictionaryPointer>& dictionaries) {
   StoredFeature feature;
   feature.collection = read_text(reader);
   feature.id = read_text(reader);
@@ -85,7 +85,9 @@ StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& he
     feature.box->min[axis] = reader.f64();
     feature.box->max[axis] = reader.f64();
   }
-  feature.findings = read_text(reader);
+  feature.has_findings = reader.u8() != 0;
+  const std::uint64_t dictionary = reader.varint();
+  if (dictionary < dictionaries.size()) feature.skeleton.dictionary = dictionaries[dictionary];
   feature.skeleton.bytes = read_copy(reader);
   const std::uint64_t solids = reader.varint();
   for (std::uint64_t i = 0; i < solids && !reader.failed(); ++i) {
@@ -96,8 +98,6 @@ StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& he
     solid.lod = read_text(reader);
     solid.blob = read_copy(reader);
     solid.is_proven = reader.u8() != 0;
-    solid.measures = read_text(reader);
-    solid.report = read_text(reader);
   }
   return feature;
 }
@@ -124,6 +124,15 @@ std::uint64_t FeatureSpool::number_of(const SharedText& header) {
   return number->second;
 }
 
+std::uint64_t FeatureSpool::number_of(const packing::DictionaryPointer& dictionary) {
+  const auto found = std::find(dictionaries_.begin(), dictionaries_.end(), dictionary);
+  if (found == dictionaries_.end()) {
+    dictionaries_.push_back(dictionary);
+    return dictionaries_.size() - 1;
+  }
+  return static_cast<std::uint64_t>(found - dictionaries_.begin());
+}
+
 Status FeatureSpool::write_batch() {
   if (!file_) {
     auto made = TemporaryFile::make();
@@ -132,7 +141,8 @@ Status FeatureSpool::write_batch() {
   }
   ByteWriter writer;
   for (const StoredFeature& feature : open_) {
-    write_feature(writer, feature, number_of(feature.header));
+    write_feature(writer, feature, number_of(feature.header),
+                  number_of(feature.skeleton.dictionary));
   }
   batches_.push_back({open_.size(), file_->size(), writer.size()});
   if (Status written = file_->append(writer.bytes()); !written) return written;
@@ -160,7 +170,7 @@ Status FeatureSpool::read_batch(const Batch& batch) {
   if (!bytes) return bytes.error();
   ByteReader reader(*bytes);
   for (std::uint64_t i = 0; i < batch.features; ++i) {
-    read_.push_back(read_feature(reader, headers_));
+    read_.push_back(read_feature(reader, headers_, dictionaries_));
   }
   if (reader.failed() || reader.remaining() > 0) return damaged();
   return Done{};

@@ -41,6 +41,7 @@ class FeatureSpool final : public store::FeatureBatches {
   Status write_batch();
   Status read_batch(const Batch& batch);
   std::uint64_t number_of(const SharedText& header);
+  std::uint64_t number_of(const packing::DictionaryPointer& dictionary);
 
   std::size_t batch_bytes_;
   std::vector<StoredFeature> open_;  // the last batch, which is not in the file
@@ -49,6 +50,7 @@ class FeatureSpool final : public store::FeatureBatches {
   std::vector<Batch> batches_;       // the batches in the file
   std::vector<SharedText> headers_;  // the headers of the features in the file
   std::map<SharedText, std::uint64_t> header_numbers_;
+  std::vector<packing::DictionaryPointer> dictionaries_;  // those of the features in the file
   std::vector<StoredFeature> read_;  // the batch that next() returned
   std::size_t given_ = 0;            // the number of batches that next() has returned
   std::uint64_t size_ = 0;

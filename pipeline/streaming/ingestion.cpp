@@ -12,12 +12,12 @@
 
 namespace watertight::pipeline {
 
-/// A feature after validation; `packed` if it is valid.
+/// A feature after validation; `prepared` if it is to be stored.
 struct Ingestion::Processed {
   FeatureOutcome outcome;
   formats::FeaturePlace place;
   std::uint32_t srid = 0;
-  std::optional<StoredFeature> packed;
+  std::optional<PreparedFeature> prepared;
 };
 
 Ingestion::Ingestion(SolidStore& store, delaunay::EngineWorkers* workers, IngestOptions options,
@@ -32,6 +32,9 @@ Ingestion::Ingestion(SolidStore& store, delaunay::EngineWorkers* workers, Ingest
 /// Reads CRS and policy of the collection if there is one.
 Status Ingestion::look_up_collection() {
   if (std::exchange(has_looked_up_, true)) return Done{};
+  auto dictionary = store_.dictionary(options_.collection);
+  if (!dictionary) return std::move(dictionary).error();
+  packer_.emplace(*std::move(dictionary), options_.threads);
   const auto existing = store_.collection(options_.collection);
   if (existing) {
     srid_ = existing->srid;
@@ -60,9 +63,9 @@ Status Ingestion::add(formats::FeatureReader& reader) {
     const auto taken =
         std::make_shared<Processed>(Processed{std::move(processed->outcome), place, srid, {}});
     if (processed->encoded) {
-      auto packed = pack(*std::move(processed->encoded));
-      if (!packed) return [error = std::move(packed).error()]() -> Status { return error; };
-      taken->packed = *std::move(packed);
+      auto prepared = packer_->prepare(*std::move(processed->encoded));
+      if (!prepared) return [error = std::move(prepared).error()]() -> Status { return error; };
+      taken->prepared = *std::move(prepared);
     }
     return [this, taken] { return take(std::move(*taken)); };
   };
@@ -120,17 +123,24 @@ Status Ingestion::take(Processed processed) {
   counts_.add(outcome.verdict);
   if (is_refused()) {
     spool_.clear();
-  } else if (processed.packed) {
-    processed.packed->id = outcome.id;
-    counts_.unproven += processed.packed->unproven();
-    counts_.unproven_features += processed.packed->is_proven() ? 0 : 1;
-    if (Status added = spool_.add(*std::move(processed.packed)); !added) return added;
+    packer_->clear();
+  } else if (processed.prepared) {
+    const bool is_packed = processed.prepared->packed.has_value();
+    store::FeatureRecord& record = is_packed
+                                       ? static_cast<store::FeatureRecord&>(*processed.prepared->packed)
+                                       : processed.prepared->encoded;
+    record.id = outcome.id;
+    counts_.unproven += record.unproven();
+    counts_.unproven_features += record.is_proven() ? 0 : 1;
+    if (Status added = packer_->add(*std::move(processed.prepared), spool_); !added) return added;
   }
   return on_feature_(std::move(outcome));
 }
 
 Result<IngestCounts> Ingestion::finish() {
-  if (is_refused() || spool_.size() == 0) return counts_;
+  if (is_refused() || !packer_) return counts_;
+  if (Status added = packer_->finish(spool_); !added) return std::move(added).error();
+  if (spool_.size() == 0) return counts_;
   if (options_.is_cancelled && options_.is_cancelled()) {
     return Error{ErrorCode::cancelled, "stopped before the features were stored"};
   }

@@ -14,6 +14,7 @@
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/streaming/container_parts.h"
+#include "pipeline/streaming/feature_packer.h"
 #include "pipeline/streaming/feature_spool.h"
 
 namespace watertight::pipeline {
@@ -68,6 +69,7 @@ class Ingestion {
   OutcomeSink on_feature_;
   IngestProgress progress_;
   FeatureSpool spool_;
+  std::optional<FeaturePacker> packer_;  // present after look_up_collection()
   std::unordered_set<std::string> ids_;
   bool has_looked_up_ = false;
   std::optional<Policy> new_policy_;   // of the collection that this write makes

@@ -102,7 +102,7 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
     return bytes_of(pipeline::proof_json(*encoded) + "\n");
   }
   if (format == "wt") {
-    auto encoded = pipeline::unpack(std::move(feature));
+    auto encoded = pipeline::unpack(std::move(feature), {}, pipeline::Reports::of_unproven);
     if (!encoded) return std::move(encoded).error();
     pipeline::EncodedDocument document{encoded->format, encoded->header, {}, {}};
     document.features.push_back(*std::move(encoded));

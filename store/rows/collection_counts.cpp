@@ -40,10 +40,10 @@ std::string collections_from(const char* collections) {
          " c.unproven_features + coalesce(d.unproven_features, 0), c.policy::int8"
          " FROM " +
          std::string(collections) +
-         " c JOIN watertight.document_header h ON h.digest = c.header"
+         " c JOIN watertight.document h ON h.key = c.document"
          " LEFT JOIN LATERAL (" +
          summed("watertight.collection_change") +
-         " WHERE collection = c.id GROUP BY collection) d ON true ORDER BY c.name";
+         " WHERE collection = c.key GROUP BY collection) d ON true ORDER BY c.name";
 }
 
 StoredCollection collection_of(const Rows& rows, int row) {
@@ -119,7 +119,7 @@ Result<Done> fold_changes(DatabaseSession& connection) {
       " max_x = CASE WHEN c.features + d.features > 0 THEN greatest(c.max_x, d.max_x) END,"
       " max_y = CASE WHEN c.features + d.features > 0 THEN greatest(c.max_y, d.max_y) END,"
       " max_z = CASE WHEN c.features + d.features > 0 THEN greatest(c.max_z, d.max_z) END"
-      " FROM d WHERE c.id = d.collection");
+      " FROM d WHERE c.key = d.collection");
   if (!folded) return folded.error();
   return Done{};
 }
@@ -129,8 +129,8 @@ Result<StoredCollection> recount_collection(DatabaseSession& connection, const s
   // One statement, so that the features that it counts are those whose changes it removes.
   const Result<Rows> counted = connection.ask(
       std::string(
-          "WITH k AS (SELECT id FROM watertight.collection WHERE name = $1), gone AS"
-          " (DELETE FROM watertight.collection_change WHERE collection = (SELECT id FROM k)"
+          "WITH k AS (SELECT key FROM watertight.collection WHERE name = $1), gone AS"
+          " (DELETE FROM watertight.collection_change WHERE collection = (SELECT key FROM k)"
           " RETURNING 1),"
           " d AS (SELECT count(*) AS features, coalesce(sum(solids), 0)::int8 AS solids,"
           " coalesce(sum(blob_bytes), 0)::int8 AS blob_bytes,"
@@ -139,11 +139,11 @@ Result<StoredCollection> recount_collection(DatabaseSession& connection, const s
           " min(min_x) AS min_x,"
           " min(min_y) AS min_y, min(min_z) AS min_z, max(max_x) AS max_x,"
           " max(max_y) AS max_y, max(max_z) AS max_z"
-          " FROM watertight.feature WHERE collection = (SELECT id FROM k))"
+          " FROM watertight.feature_row WHERE collection = (SELECT key FROM k))"
           " UPDATE watertight.collection c SET (features, solids, blob_bytes, unproven,"
           " unproven_features, min_x, min_y, min_z, max_x, max_y, max_z) = (SELECT * FROM d),"
           " changes = c.changes + (SELECT count(*) FROM gone)"
-          " FROM watertight.document_header h WHERE c.name = $1 AND h.digest = c.header"
+          " FROM watertight.document h WHERE c.name = $1 AND h.key = c.document"
           " RETURNING c.name, c.srid, h.content, ") +
           kCounts,
       Parameters().text(id));

@@ -17,7 +17,7 @@ void send_gate(DatabaseSession& connection, std::string_view collection, Gate ga
 Result<std::string> hide_collection(DatabaseSession& connection, const std::string& id) {
   send_gate(connection, id, Gate::alone);
   const Result<Rows> rows =
-      connection.ask("UPDATE watertight.collection SET name = NULL WHERE name = $1 RETURNING id",
+      connection.ask("UPDATE watertight.collection SET name = NULL WHERE name = $1 RETURNING key::text",
                      Parameters().text(id));
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_collection(id);
@@ -28,7 +28,7 @@ Result<Done> rename_collection(DatabaseSession& connection, const std::string& i
                                const std::string& new_id) {
   send_gate(connection, id, Gate::alone);
   const Result<Rows> rows =
-      connection.ask("UPDATE watertight.collection SET name = $2 WHERE name = $1 RETURNING id",
+      connection.ask("UPDATE watertight.collection SET name = $2 WHERE name = $1 RETURNING 1::int8",
                      Parameters().text(id).text(new_id));
   if (!rows && connection.state() == "23505") {
     return Error{ErrorCode::conflict, "there is a collection '" + new_id + "' already"};
@@ -52,23 +52,30 @@ Result<Done> set_policy(DatabaseSession& connection, const std::string& id, Poli
 
 Result<std::string> read_hidden_collection(DatabaseSession& connection) {
   const Result<Rows> rows =
-      connection.ask("SELECT id FROM watertight.collection WHERE name IS NULL LIMIT 1");
+      connection.ask("SELECT key::text FROM watertight.collection WHERE name IS NULL LIMIT 1");
   if (!rows) return rows.error();
   return rows->size() == 0 ? std::string() : std::string(rows->text(0, 0));
 }
 
 Result<std::string> purge_step(DatabaseSession& connection, const std::string& key,
                                const std::string& after) {
+  // In order of the hashes of ids, the order of an index.
   const Result<Rows> last = connection.ask(
-      "WITH gone AS (DELETE FROM watertight.feature WHERE collection = $1 AND id IN (SELECT id"
-      " FROM watertight.feature WHERE collection = $1 AND id > $2 ORDER BY id LIMIT 1000)"
-      " RETURNING id) SELECT max(id) FROM gone HAVING count(*) > 0",
+      "WITH gone AS (DELETE FROM watertight.feature_row WHERE collection = $1::int4"
+      " AND hashtextextended(id, 0) IN (SELECT hashtextextended(id, 0)"
+      " FROM watertight.feature_row WHERE collection = $1::int4"
+      " AND ($2 = '' OR hashtextextended(id, 0) > nullif($2, '')::int8)"
+      " ORDER BY hashtextextended(id, 0) LIMIT 1000)"
+      " RETURNING hashtextextended(id, 0) AS hash)"
+      " SELECT max(hash)::text FROM gone HAVING count(*) > 0",
       Parameters().text(key).text(after));
   if (!last) return last.error();
   if (last->size() > 0) return std::string(last->text(0, 0));
   for (const char* statement :
-       {"DELETE FROM watertight.collection_change WHERE collection = $1",
-        "DELETE FROM watertight.collection WHERE id = $1 AND name IS NULL"}) {
+       {"DELETE FROM watertight.collection_change WHERE collection = $1::int4",
+        "DELETE FROM watertight.kind WHERE collection = $1::int4",
+        "DELETE FROM watertight.dictionary WHERE collection = $1::int4",
+        "DELETE FROM watertight.collection WHERE key = $1::int4 AND name IS NULL"}) {
     if (const Result<Rows> gone = connection.ask(statement, Parameters().text(key)); !gone) {
       return gone.error();
     }

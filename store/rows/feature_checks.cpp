@@ -60,8 +60,8 @@ Status check_solids(const StoredFeature& feature) {
   for (const StoredSolid& solid : feature.solids) {
     if (Status checked = check_id(solid.object_id, "an object id"); !checked) return checked;
     if (!is_plain_utf8(solid.lod)) return bad("a level of detail is not UTF-8 text without NUL");
-    if (!is_plain_utf8(solid.measures) || !is_plain_utf8(solid.report)) {
-      return bad("measures or report are not UTF-8 text without NUL");
+    if (!solid.measures.empty() || !solid.report.empty()) {
+      return bad("measures and reports of feature '" + feature.id + "' are not part of its text");
     }
     if (!keys.emplace(solid.object_id, solid.geometry, solid.ordinal).second) {
       return bad("feature '" + feature.id + "' has one solid twice (object '" + solid.object_id +
@@ -77,6 +77,9 @@ Status check_feature(const StoredFeature& feature) {
   if (Status checked = check_feature_id(feature.id); !checked) return checked;
   if (!is_plain_utf8(feature.type) || !is_plain_utf8(feature.format)) {
     return bad("the type or format of feature '" + feature.id + "' is not UTF-8 text without NUL");
+  }
+  if (!feature.findings.empty()) {
+    return bad("the findings of feature '" + feature.id + "' are not part of its text");
   }
   if (feature.box) {
     if (Status checked = check_box(*feature.box); !checked) return checked;

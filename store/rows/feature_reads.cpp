@@ -2,11 +2,10 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
-#include <map>
-#include <set>
 #include <utility>
 
 #include "store/rows/feature_rows.h"
+#include "store/rows/packed_solids.h"
 
 namespace watertight::store {
 namespace {
@@ -16,12 +15,13 @@ constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and s
 /// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
 /// are its smallest and largest coordinates. The index of boxes finds candidates in x and y;
 /// PostgreSQL's box operator is generous by 1e-6, so none is missed. The comparison of the six
-/// numbers decides. For a small box the appended '' keeps PostgreSQL from narrowing the candidates
+/// numbers decides. For a small box the added 0 keeps PostgreSQL from narrowing the candidates
 /// down by an index that holds all features of the collection; for a larger one PostgreSQL chooses
 /// between place and id; for a box around everything a search by place would save nothing.
 std::string matching(const FeatureQuery& query) {
-  constexpr const char* kFeatures = " FROM watertight.feature WHERE ";
-  constexpr const char* kOfCollection = "= (SELECT id FROM watertight.collection WHERE name = $1)";
+  constexpr const char* kFeatures =
+      " FROM watertight.feature_row f JOIN watertight.kind k ON k.key = f.kind WHERE ";
+  constexpr const char* kOfCollection = "= (SELECT key FROM watertight.collection WHERE name = $1)";
   constexpr const char* kCandidates =
       " AND watertight.index_box(min_x, min_y, max_x, max_y)"
       " && watertight.index_box($2, $3, $5, $6)";
@@ -31,99 +31,68 @@ std::string matching(const FeatureQuery& query) {
   constexpr double kSmall = 1.0 / 16;
   const bool is_small = query.box && query.share < kSmall;
   std::string clauses = kFeatures;
-  clauses.append(is_small ? "collection || '' " : "collection ").append(kOfCollection);
+  clauses.append(is_small ? "f.collection + 0 " : "f.collection ").append(kOfCollection);
   if (query.box && query.share < 1) clauses.append(kCandidates);
   if (query.box) clauses.append(kInBox);
   if (query.is_proven) clauses.append(*query.is_proven ? " AND is_proven" : " AND NOT is_proven");
   return clauses;
 }
 
-constexpr const char* kSolidColumns =
-    "s.object_id, s.geometry, s.ordinal, s.lod, s.blob, s.measures::text, s.report::text";
-
 const char* const kFeatureColumns =
-    "SELECT id, version, type, format, srid, header, skeleton,"
-    " min_x, min_y, min_z, max_x, max_y, max_z, findings::text";
+    "SELECT f.id, f.version, f.kind::int8, f.dictionary::int8, f.solids::int8, f.packed_solids,"
+    " f.packed_text, f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z,"
+    " (f.is_proven OR f.unproven > 0)::int::int8, c.srid";
+constexpr int kColumns = 15;
 
-/// The feature in a row, whose columns are kFeatureColumns, without solids. Its header is what is
-/// in the header's column.
-StoredFeature feature_of(const Rows& rows, int row, const std::string& collection) {
+Error damaged(const std::string& id) {
+  return {ErrorCode::unavailable, "the rows of the stored feature '" + id + "' do not fit"};
+}
+
+/// The feature in a row, whose columns are kFeatureColumns.
+Result<StoredFeature> feature_of(const Rows& rows, int row, const std::string& collection,
+                                 const SharedRows::Found& shared) {
   StoredFeature feature;
   feature.collection = collection;
   feature.id = rows.text(row, 0);
   feature.version = static_cast<std::uint64_t>(rows.int8(row, 1));
-  feature.type = rows.text(row, 2);
-  feature.format = rows.text(row, 3);
-  feature.srid = static_cast<std::uint32_t>(rows.int8(row, 4));
-  feature.header = std::string(rows.text(row, 5));
-  const ByteView skeleton = as_bytes(rows.text(row, 6));
-  feature.skeleton.bytes.assign(skeleton.begin(), skeleton.end());
+  const auto kind = shared.kinds.find(rows.int8(row, 2));
+  const auto dictionary = shared.dictionaries.find(rows.int8(row, 3));
+  auto solids = unpack_solids(feature.id, static_cast<std::uint64_t>(rows.int8(row, 4)),
+                              as_bytes(rows.text(row, 5)));
+  if (kind == shared.kinds.end() || dictionary == shared.dictionaries.end() || !solids) {
+    return damaged(feature.id);
+  }
+  feature.type = kind->second.type;
+  feature.format = kind->second.format;
+  feature.header = kind->second.header;
+  feature.solids = *std::move(solids);
+  const ByteView text = as_bytes(rows.text(row, 6));
+  feature.skeleton = {{text.begin(), text.end()}, dictionary->second};
   feature.box = box_of(rows, row, 7);
-  feature.findings = rows.text(row, 13);
+  feature.has_findings = rows.int8(row, 13) == 0;
+  feature.srid = static_cast<std::uint32_t>(rows.int8(row, 14));
   return feature;
 }
 
-/// Replaces the digest in the header of each feature by the text of the header. The query asks for
-/// each digest once, and the features with equal headers share one copy of the text. No header is
-/// missing: all queries of a read see one state of the database, in which features refer to headers
-/// that exist.
-void set_headers(const Rows& rows, std::vector<StoredFeature>& features) {
-  std::map<std::string, SharedText> contents;
+/// The features in the rows, with what they share. No kind or dictionary is missing: rows refer to
+/// those that exist, and a read that sees several states of the database reads one feature.
+Result<std::vector<StoredFeature>> features_of(DatabaseSession& connection, const Rows& rows,
+                                               const std::string& collection, SharedRows& shared) {
+  std::vector<std::int64_t> kinds;
+  std::vector<std::int64_t> dictionaries;
   for (int row = 0; row < rows.size(); ++row) {
-    contents[std::string(rows.text(row, 0))] = std::string(rows.text(row, 1));
+    kinds.push_back(rows.int8(row, 2));
+    dictionaries.push_back(rows.int8(row, 3));
   }
-  for (StoredFeature& feature : features) feature.header = contents[feature.header.str()];
-}
-
-/// The solid in a row, whose columns from `column` on are kSolidColumns.
-StoredSolid solid_of(const Rows& rows, int row, int column) {
-  StoredSolid solid;
-  solid.object_id = rows.text(row, column);
-  solid.geometry = static_cast<std::uint32_t>(rows.int8(row, column + 1));
-  solid.ordinal = static_cast<std::uint32_t>(rows.int8(row, column + 2));
-  solid.lod = rows.text(row, column + 3);
-  solid.is_proven = !rows.is_null(row, column + 4);
-  const ByteView blob = as_bytes(rows.text(row, column + 4));
-  solid.blob.assign(blob.begin(), blob.end());
-  solid.measures = rows.text(row, column + 5);
-  solid.report = rows.text(row, column + 6);
-  return solid;
-}
-
-void add_solids(const Rows& rows, std::vector<StoredFeature>& features) {
-  std::map<std::string_view, StoredFeature*> by_id;
-  for (StoredFeature& feature : features) by_id[feature.id] = &feature;
+  const auto found = shared.find(connection, kinds, dictionaries);
+  if (!found) return found.error();
+  std::vector<StoredFeature> features;
   for (int row = 0; row < rows.size(); ++row) {
-    const auto owner = by_id.find(rows.text(row, 0));
-    if (owner != by_id.end()) owner->second->solids.push_back(solid_of(rows, row, 1));
+    auto feature = feature_of(rows, row, collection, *found);
+    if (!feature) return std::move(feature).error();
+    features.push_back(*std::move(feature));
   }
-}
-
-/// Completes features that feature_of() has made with the digests of their headers.
-Status fill(DatabaseSession& connection, const std::string& collection,
-            std::vector<StoredFeature>& features) {
-  std::set<std::string_view> distinct;
-  std::vector<std::string_view> ids;
-  for (const StoredFeature& feature : features) {
-    distinct.insert(feature.header.str());
-    ids.push_back(feature.id);
-  }
-  std::vector<ByteView> digests;
-  for (const std::string_view digest : distinct) digests.push_back(as_bytes(digest));
-  const std::size_t headers = connection.send(
-      "SELECT digest, content FROM watertight.document_header WHERE digest = ANY($1)",
-      Parameters().bytea_array(digests));
-  const std::size_t solids = connection.send(
-      std::string("SELECT feature, ") + kSolidColumns +
-          " FROM watertight.solid s WHERE collection ="
-          " (SELECT id FROM watertight.collection WHERE name = $1) AND feature = ANY($2)"
-          " ORDER BY feature, position",
-      Parameters().text(collection).text_array(ids));
-  const Result<std::vector<Rows>> results = connection.results();
-  if (!results) return results.error();
-  set_headers((*results)[headers], features);
-  add_solids((*results)[solids], features);
-  return Done{};
+  return features;
 }
 
 /// The parameters of matching(): $1 is the collection and, if there is a box, $2 ... $7 are its
@@ -141,12 +110,19 @@ Parameters filter_parameters(const FeatureQuery& query) {
 Result<Rows> summary_rows(DatabaseSession& connection, const FeatureQuery& query,
                           std::int64_t limit) {
   Parameters parameters = filter_parameters(query);
-  parameters.text(query.after).int8(limit);
-  const char* const rest =
-      query.box ? " AND id > $8 ORDER BY id LIMIT $9" : " AND id > $2 ORDER BY id LIMIT $3";
+  // In order of the hashes of ids, which are unique in a collection and in an index.
+  const int next = query.box ? 8 : 2;
+  std::string rest;
+  if (!query.after.empty()) {
+    rest = " AND hashtextextended(f.id, 0) > hashtextextended($" + std::to_string(next) + ", 0)";
+    parameters.text(query.after);
+  }
+  rest += " ORDER BY hashtextextended(f.id, 0) LIMIT $";
+  rest += std::to_string(query.after.empty() ? next : next + 1);
+  parameters.int8(limit);
   return connection.ask(
-      "SELECT id, type, version, solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z,"
-      " unproven, is_proven::int::int8" +
+      "SELECT f.id, k.type, f.version, f.solids::int8, f.blob_bytes::int8,"
+      " min_x, min_y, min_z, max_x, max_y, max_z, f.unproven::int8, f.is_proven::int::int8" +
           matching(query) + rest,
       parameters);
 }
@@ -192,9 +168,9 @@ Result<WalkPlace> walk_place(const std::string& text) {
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit) {
   return connection.ask(columns +
-                            ", place FROM watertight.feature WHERE collection ="
-                            "(SELECT id FROM watertight.collection WHERE name = $1)"
-                            " AND (place, id) > ($2, $3) ORDER BY place, id LIMIT $4",
+                            ", f.place FROM watertight.collection c JOIN watertight.feature_row f"
+                            " ON f.collection = c.key WHERE c.name = $1 AND f.place >= $2"
+                            " AND (f.place, f.id) > ($2, $3) ORDER BY f.place, f.id LIMIT $4",
                         Parameters().text(collection).int8(after.place).text(after.id).int8(limit));
 }
 
@@ -207,7 +183,7 @@ struct BatchSize {
 Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& collection,
                              const WalkPlace& after, std::int64_t limit) {
   const Result<Rows> rows =
-      walk_rows(connection, "SELECT (blob_bytes + octet_length(skeleton))::int8", collection, after,
+      walk_rows(connection, "SELECT (octet_length(packed_solids) + octet_length(packed_text))::int8", collection, after,
                 limit + 1);
   if (!rows) return rows.error();
   BatchSize size;
@@ -223,7 +199,7 @@ Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& col
 /// The key of a collection. Errors: not_found.
 Result<std::string> key_of_collection(DatabaseSession& connection, const std::string& id) {
   const Result<Rows> exists = connection.ask(
-      "SELECT id::text FROM watertight.collection WHERE name = $1", Parameters().text(id));
+      "SELECT key::text FROM watertight.collection WHERE name = $1", Parameters().text(id));
   if (!exists) return exists.error();
   if (exists->size() == 0) return no_collection(id);
   return std::string(exists->text(0, 0));
@@ -246,34 +222,45 @@ std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
 }
 
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
-                                   const std::string& id) {
-  // A row for each solid, the first of which has what is large in the feature.
+                                   const std::string& id, SharedRows& shared) {
   static const std::string statement =
-      std::string(
-          "SELECT f.id, f.version, f.type, f.format, f.srid,"
-          " CASE WHEN coalesce(s.position, 0) = 0 THEN h.content END,"
-          " CASE WHEN coalesce(s.position, 0) = 0 THEN f.skeleton END,"
-          " f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z, f.findings::text, s.position, ") +
-      kSolidColumns +
-      " FROM watertight.feature f JOIN watertight.document_header h ON h.digest = f.header"
-      " LEFT JOIN watertight.solid s ON s.collection = f.collection AND s.feature = f.id"
-      " WHERE f.collection = (SELECT id FROM watertight.collection WHERE name = $1)"
-      " AND f.id = $2 ORDER BY s.position";
+      std::string(kFeatureColumns) +
+      " FROM watertight.collection c JOIN watertight.feature_row f ON f.collection = c.key"
+      " WHERE c.name = $1 AND hashtextextended(f.id, 0) = hashtextextended($2, 0) AND f.id = $2";
   const Result<Rows> rows = connection.ask(statement, Parameters().text(collection).text(id));
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_feature(collection, id);
-  StoredFeature feature = feature_of(*rows, 0, collection);
-  for (int row = 0; row < rows->size(); ++row) {
-    if (!rows->is_null(row, 14)) feature.solids.push_back(solid_of(*rows, row, 15));
-  }
-  return feature;
+  auto features = features_of(connection, *rows, collection, shared);
+  if (!features) return std::move(features).error();
+  return std::move(features->front());
+}
+
+Result<packing::DictionaryPointer> read_dictionary(DatabaseSession& connection,
+                                                   const std::string& collection,
+                                                   SharedRows& shared) {
+  const Result<Rows> rows = connection.ask(
+      "SELECT max(key)::int8 FROM watertight.dictionary WHERE collection ="
+      " (SELECT key FROM watertight.collection WHERE name = $1)",
+      Parameters().text(collection));
+  if (!rows) return rows.error();
+  const std::int64_t keys[] = {rows->int8(0, 0)};
+  const auto found = shared.find(connection, {}, keys);
+  if (!found) return found.error();
+  const auto newest = found->dictionaries.find(keys[0]);
+  // One that was removed since is no matter: nothing is packed with it.
+  const packing::DictionaryPointer dictionary =
+      newest == found->dictionaries.end() ? nullptr : newest->second;
+  shared.set_newest(collection, dictionary);
+  if (dictionary) shared.add_key(collection, dictionary, keys[0]);
+  return dictionary;
 }
 
 Result<std::uint64_t> read_version(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id) {
   const Result<Rows> rows = connection.ask(
-      "SELECT version FROM watertight.feature WHERE collection ="
-      " (SELECT id FROM watertight.collection WHERE name = $1) AND id = $2",
+      "SELECT version FROM watertight.feature_row WHERE collection ="
+      " (SELECT key FROM watertight.collection WHERE name = $1)"
+      " AND hashtextextended(id, 0) = hashtextextended($2, 0) AND id = $2",
       Parameters().text(collection).text(id));
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_feature(collection, id);
@@ -298,7 +285,8 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
 }
 
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
-                                std::uint64_t limit, const std::string& after) {
+                                std::uint64_t limit, const std::string& after,
+                                SharedRows& shared) {
   const Result<WalkPlace> start = walk_place(after);
   if (!start) return start.error();
   const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));
@@ -312,14 +300,11 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
   const Result<Rows> rows =
       walk_rows(connection, kFeatureColumns, collection, *start, size->features);
   if (!rows) return rows.error();
-  for (int row = 0; row < rows->size(); ++row) {
-    batch.features.push_back(feature_of(*rows, row, collection));
-  }
+  auto features = features_of(connection, *rows, collection, shared);
+  if (!features) return std::move(features).error();
+  batch.features = *std::move(features);
   if (!size->is_last) {
-    batch.next = to_string({rows->int8(rows->size() - 1, 14), batch.features.back().id});
-  }
-  if (Status done = fill(connection, collection, batch.features); !done) {
-    return std::move(done).error();
+    batch.next = to_string({rows->int8(rows->size() - 1, kColumns), batch.features.back().id});
   }
   return batch;
 }
@@ -328,16 +313,11 @@ Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit) {
   const Result<Rows> rows = connection.ask(
-      "WITH RECURSIVE document AS ((SELECT format, header FROM watertight.feature"
-      " WHERE collection ="
-      "(SELECT id FROM watertight.collection WHERE name = $1) ORDER BY format, header LIMIT 1)"
-      " UNION ALL SELECT next.* FROM document d, LATERAL (SELECT format, header"
-      " FROM watertight.feature WHERE collection ="
-      "(SELECT id FROM watertight.collection WHERE name = $1) AND (format, header) > (d.format, "
-      "d.header)"
-      " ORDER BY format, header LIMIT 1) next)"
-      " SELECT d.format, h.content FROM (SELECT * FROM document LIMIT $2) d"
-      " JOIN watertight.document_header h ON h.digest = d.header ORDER BY d.format, d.header",
+      "SELECT DISTINCT k.format, d.content, d.digest FROM watertight.collection c"
+      " JOIN watertight.kind k ON k.collection = c.key"
+      " JOIN watertight.document d ON d.key = k.document"
+      " WHERE c.name = $1 AND EXISTS (SELECT FROM watertight.feature_row f WHERE f.kind = k.key)"
+      " ORDER BY k.format, d.digest LIMIT $2",
       Parameters().text(collection).int8(static_cast<std::int64_t>(std::min(limit, kLargestPage))));
   if (!rows) return rows.error();
   std::vector<StoredHeader> found;

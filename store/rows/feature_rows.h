@@ -16,6 +16,7 @@
 #include "base/result.h"
 #include "base/shared_text.h"
 #include "store/connection.h"
+#include "store/rows/shared_rows.h"
 #include "store/solid_store.h"
 
 namespace watertight::store {
@@ -30,25 +31,19 @@ bool is_possible_id(const std::string& id);
 
 using FeatureRefs = std::span<const StoredFeature* const>;
 
-/// The SHA-256 of headers that were stored lately: so a write need not ask for them. Holds some
-/// 8 MiB. Thread-safe.
-class HeaderDigests {
- public:
-  /// Empty for an unknown header.
-  Bytes find(const SharedText& header) const;
-  void add(const SharedText& header, const Bytes& digest);
+/// Whether a feature gets a new version or that of FeatureRecord::version.
+enum class Versions : std::uint8_t { drawn, kept };
 
- private:
-  mutable std::mutex mutex_;
-  std::map<SharedText, Bytes> digests_;
-  std::size_t bytes_ = 0;
-};
-
-/// Writes headers, collections, features and solids. Returns the version of each feature. Requires
+/// Writes documents, collections, kinds, dictionaries and features. Returns the version of each feature. Requires
 /// check_features(). Errors: conflict when the CRS of a feature is not that of its collection.
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, FeatureRefs features,
                                                   const WriteCondition& condition,
-                                                  HeaderDigests& known);
+                                                  SharedRows& shared,
+                                                  Versions versions = Versions::drawn);
+/// Replaces the packed texts and solids of features whose versions are those of the rows, and
+/// returns how many that were. Requires check_features().
+Result<std::uint64_t> repack_features(DatabaseSession& connection, FeatureRefs features,
+                                      SharedRows& shared);
 
 /// Errors: not_found, precondition_failed.
 Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
@@ -70,8 +65,8 @@ Result<Done> rename_collection(DatabaseSession& connection, const std::string& i
                                const std::string& new_id);
 /// The key of a collection without a name; "" when there is none.
 Result<std::string> read_hidden_collection(DatabaseSession& connection);
-/// Deletes up to 1,000 features of a collection without a name, those after `after` in order of id.
-/// Returns the last of them; or "" when there was none left, and then deletes the collection.
+/// Deletes up to 1,000 features of a collection without a name, those after `after`. Returns the
+/// place of the last of them; or "" when there was none left, and then deletes the collection.
 Result<std::string> purge_step(DatabaseSession& connection, const std::string& key,
                                const std::string& after);
 
@@ -94,12 +89,16 @@ Result<Done> fold_changes(DatabaseSession& connection);
 Result<StoredCollection> recount_collection(DatabaseSession& connection, const std::string& id);
 
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
-                                   const std::string& id);
+                                   const std::string& id, SharedRows& shared);
+/// The newest dictionary of a collection; null: none.
+Result<packing::DictionaryPointer> read_dictionary(DatabaseSession& connection,
+                                                   const std::string& collection,
+                                                   SharedRows& shared);
 Result<std::uint64_t> read_version(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id);
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query);
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
-                                std::uint64_t limit, const std::string& after);
+                                std::uint64_t limit, const std::string& after, SharedRows& shared);
 Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit);

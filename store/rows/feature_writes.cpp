@@ -10,7 +10,9 @@
 #include <tuple>
 
 #include "store/rows/feature_rows.h"
+#include "store/rows/packed_solids.h"
 #include "store/rows/place.h"
+#include "store/rows/sent_rows.h"
 
 namespace watertight::store {
 namespace {
@@ -50,62 +52,17 @@ std::vector<Part> parts_of(FeatureRefs features) {
   return parts;
 }
 
-using Digests = std::map<SharedText, Bytes>;
-
-/// Sends each distinct header once. Returns the SHA-256 of each; waits for those that are new.
-Result<Digests> send_headers(DatabaseSession& connection, FeatureRefs features,
-                             HeaderDigests& known) {
-  Digests digests;
-  for (const StoredFeature* feature : features) digests.try_emplace(feature->header);
-  std::vector<ByteView> unknown;
-  for (auto& [header, digest] : digests) {
-    digest = known.find(header);
-    if (digest.empty()) unknown.push_back(as_bytes(header.str()));
-  }
-  if (!unknown.empty()) {
-    const Result<Rows> rows = connection.ask(
-        "SELECT sha256(c) FROM unnest($1::bytea[]) WITH ORDINALITY AS u (c, n) ORDER BY n",
-        Parameters().bytea_array(unknown));
-    if (!rows) return rows.error();
-    int row = 0;
-    for (auto& [header, digest] : digests) {
-      if (!digest.empty()) continue;
-      const ByteView found = as_bytes(rows->text(row++, 0));
-      digest.assign(found.begin(), found.end());
-      known.add(header, digest);
-    }
-  }
-  for (const auto& [header, digest] : digests) {
-    connection.send(
-        "INSERT INTO watertight.document_header (digest, content) VALUES ($1, $2)"
-        " ON CONFLICT DO NOTHING",
-        Parameters().bytea(digest).bytea(as_bytes(header.str())));
-  }
-  return digests;
-}
-
-// A key is never used for two collections, also while rows of a removed one are being deleted.
-constexpr const char* kAddCollection = R"(
-  INSERT INTO watertight.collection (id, name, srid, header)
-  SELECT CASE WHEN EXISTS (SELECT FROM watertight.collection WHERE id = $1)
-           THEN '#' || nextval('watertight.collection_key') ELSE $1 END, $1, $2, $3
-  WHERE NOT EXISTS (SELECT FROM watertight.collection WHERE name = $1)
-  ON CONFLICT DO NOTHING)";
-
 // While this lock is held, no other transaction can rename or remove the collection.
 constexpr const char* kLockCollection =
     "SELECT srid FROM watertight.collection WHERE name = $1 FOR KEY SHARE";
 
-/// Creates the collections that do not exist, and locks all.
-void send_collections(DatabaseSession& connection, FeatureRefs features, std::vector<Part>& parts,
+/// Creates the collections that do not exist.
+void send_collections(DatabaseSession& connection, FeatureRefs features, const std::vector<Part>& parts,
                       const Digests& digests) {
-  for (Part& part : parts) {
+  for (const Part& part : parts) {
     const StoredFeature& first = *features[part.places.front()];
     send_gate(connection, part.collection, Gate::shared);
-    connection.send(
-        kAddCollection,
-        Parameters().text(part.collection).int8(first.srid).bytea(digests.at(first.header)));
-    part.lock = connection.send(kLockCollection, Parameters().text(part.collection));
+    send_collection(connection, first, digests);
   }
 }
 
@@ -155,9 +112,10 @@ bool holds(const WriteCondition& condition, std::uint64_t version) {
 }
 
 constexpr const char* kLockFeatures = R"(
-  SELECT id, version FROM watertight.feature
-  WHERE collection = (SELECT id FROM watertight.collection WHERE name = $1) AND id = ANY($2)
-  ORDER BY id FOR UPDATE)";
+  SELECT f.id, f.version FROM unnest($2::text[]) AS w (id) JOIN watertight.feature_row f
+    ON hashtextextended(f.id, 0) = hashtextextended(w.id, 0) AND f.id = w.id
+  WHERE f.collection = (SELECT key FROM watertight.collection WHERE name = $1)
+  ORDER BY f.id FOR UPDATE OF f)";
 
 /// Locks the features that exist, waits, and checks the version of each. After that no other
 /// transaction can change a feature that exists, but one can still add a feature that does not.
@@ -185,21 +143,25 @@ Status check_condition(DatabaseSession& connection, FeatureRefs features,
   return Done{};
 }
 
-/// The columns of the table `feature` for one statement.
+/// The columns of the table `feature_row` for one statement.
 struct FeatureColumns {
-  std::vector<std::string_view> id, type, format, findings;
-  std::vector<ByteView> header, skeleton;
-  std::vector<std::int64_t> srid, solids, blob_bytes, place, unproven, is_proven;
+  std::vector<std::string_view> id, type, format;
+  std::vector<ByteView> header, text;
+  std::vector<Bytes> packed_solids;
+  std::vector<std::int64_t> dictionary, solids, blob_bytes, place, unproven, is_proven, version;
   std::array<std::vector<std::optional<double>>, 6> box;
   std::size_t bytes = 0;
 
-  void add(const StoredFeature& feature, const Bytes& digest) {
+  void add(const StoredFeature& feature, const Bytes& digest, std::int64_t dictionary_key,
+           Versions versions) {
+    version.push_back(versions == Versions::kept ? static_cast<std::int64_t>(feature.version) : 0);
     id.push_back(feature.id);
     type.push_back(feature.type);
     format.push_back(feature.format);
     header.push_back(digest);
-    skeleton.push_back(feature.skeleton.bytes);
-    srid.push_back(feature.srid);
+    text.push_back(feature.skeleton.bytes);
+    dictionary.push_back(dictionary_key);
+    packed_solids.push_back(pack_solids(feature));
     solids.push_back(static_cast<std::int64_t>(feature.solids.size()));
     std::size_t blobs = 0;
     for (const StoredSolid& solid : feature.solids) blobs += solid.blob.size();
@@ -207,60 +169,65 @@ struct FeatureColumns {
     place.push_back(place_number(feature.box));
     unproven.push_back(static_cast<std::int64_t>(feature.unproven()));
     is_proven.push_back(feature.is_proven() ? 1 : 0);
-    findings.push_back(feature.findings);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box[axis].push_back(feature.box ? std::optional(feature.box->min[axis]) : std::nullopt);
       box[axis + 3].push_back(feature.box ? std::optional(feature.box->max[axis]) : std::nullopt);
     }
-    bytes += feature.id.size() + feature.skeleton.bytes.size() + feature.findings.size() + 512;
+    bytes += feature.id.size() + feature.skeleton.bytes.size() + packed_solids.back().size() + 512;
   }
   Parameters parameters(std::string_view collection, const WriteCondition& condition) const {
+    const std::vector<ByteView> solid_bytes(packed_solids.begin(), packed_solids.end());
     Parameters p;
     p.text(collection).text_array(id).text_array(type).text_array(format);
-    p.int8_array(srid).bytea_array(header).bytea_array(skeleton);
+    p.bytea_array(header).int8_array(dictionary).bytea_array(solid_bytes).bytea_array(text);
     p.int8_array(solids).int8_array(blob_bytes);
     for (const auto& side : box) p.float8_array(side);
-    p.int8_array(place).int8_array(unproven).int8_array(is_proven).text_array(findings);
-    p.int8(condition.kind == WriteCondition::Kind::absent ? 0 : 1);
+    p.int8_array(place).int8_array(unproven).int8_array(is_proven);
+    p.int8(condition.kind == WriteCondition::Kind::absent ? 0 : 1).int8_array(version);
     return p;
   }
 };
 
 // PostgreSQL draws the new version after it locked the row, so the version is above every earlier
-// version of the row. Where $20 is 0, a feature that exists is left as it is and not returned.
+// version of the row. Where $20 is 0, a feature that exists is left as it is and not returned; nor
+// is one whose hash another id has.
 constexpr const char* kPutFeatures = R"(
-  INSERT INTO watertight.feature AS f (collection, id, type, format, srid, header, skeleton,
-    solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place,
-    unproven, is_proven, findings)
-  SELECT (SELECT id FROM watertight.collection WHERE name = $1), i, t, m, s, h, k, n, b,
-    x0, y0, z0, x1, y1, z1, p, w, v = 1, nullif(r, '')::jsonb
-  FROM unnest($2::text[], $3::text[], $4::text[], $5::int8[], $6::bytea[],
-    $7::bytea[], $8::int8[], $9::int8[], $10::float8[], $11::float8[], $12::float8[],
-    $13::float8[], $14::float8[], $15::float8[], $16::int8[], $17::int8[], $18::int8[], $19::text[])
-    AS u (i, t, m, s, h, k, n, b, x0, y0, z0, x1, y1, z1, p, w, v, r)
-  ON CONFLICT (collection, id) DO UPDATE SET
-    version = nextval('watertight.feature_version'), type = excluded.type,
-    format = excluded.format, srid = excluded.srid, header = excluded.header,
-    skeleton = excluded.skeleton, solids = excluded.solids, blob_bytes = excluded.blob_bytes,
+  INSERT INTO watertight.feature_row AS f (version, collection, id, kind, dictionary, packed_solids,
+    packed_text, solids, blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place,
+    unproven, is_proven)
+  SELECT CASE WHEN r = 0 THEN nextval('watertight.feature_version') ELSE r END, c.key, i, k.key,
+    CASE WHEN d = 0 THEN 0
+         ELSE (SELECT key FROM watertight.dictionary WHERE key = d AND collection = c.key) END,
+    s, x, n, b, x0, y0, z0, x1, y1, z1, p, w, v = 1
+  FROM unnest($2::text[], $3::text[], $4::text[], $5::bytea[], $6::int8[], $7::bytea[],
+    $8::bytea[], $9::int8[], $10::int8[], $11::float8[], $12::float8[], $13::float8[],
+    $14::float8[], $15::float8[], $16::float8[], $17::int8[], $18::int8[], $19::int8[],
+    $21::int8[]) WITH ORDINALITY AS u (i, t, m, h, d, s, x, n, b, x0, y0, z0, x1, y1, z1, p, w, v, r, number)
+  LEFT JOIN watertight.collection c ON c.name = $1
+  LEFT JOIN watertight.document o ON o.digest = h
+  LEFT JOIN watertight.kind k
+    ON k.collection = c.key AND k.document = o.key AND k.format = m AND k.type = t
+  ORDER BY number
+  ON CONFLICT (collection, hashtextextended(id, 0)) DO UPDATE SET
+    version = nextval('watertight.feature_version'), kind = excluded.kind,
+    dictionary = excluded.dictionary, packed_solids = excluded.packed_solids,
+    packed_text = excluded.packed_text, solids = excluded.solids,
+    blob_bytes = excluded.blob_bytes,
     min_x = excluded.min_x, min_y = excluded.min_y, min_z = excluded.min_z,
     max_x = excluded.max_x, max_y = excluded.max_y, max_z = excluded.max_z, place = excluded.place,
-    unproven = excluded.unproven, is_proven = excluded.is_proven, findings = excluded.findings
-    WHERE $20 = 1
+    unproven = excluded.unproven, is_proven = excluded.is_proven
+    WHERE $20 = 1 AND f.id = excluded.id
   RETURNING f.version, f.id)";
 
-constexpr const char* kDropSolids = R"(
-  DELETE FROM watertight.solid
-  WHERE collection = (SELECT id FROM watertight.collection WHERE name = $1) AND feature = ANY($2))";
-
-/// Sends the features of a part, and the deletion of the solids that they had.
+/// Sends the features of a part.
 void send_features(DatabaseSession& connection, FeatureRefs features, Part& part,
-                   const Digests& digests, const WriteCondition& condition) {
-  std::vector<std::string_view> ids;
+                   const Digests& digests, const WriteCondition& condition,
+                   const DictionaryKeys& dictionaries, Versions versions) {
   FeatureColumns columns;
   for (const std::size_t i : part.places) {
-    ids.push_back(features[i]->id);
-    columns.add(*features[i], digests.at(features[i]->header));
-    const bool is_last = ids.size() == part.places.size();
+    columns.add(*features[i], digests.at(features[i]->header),
+                dictionaries.of(*features[i]), versions);
+    const bool is_last = i == part.places.back();
     if (columns.bytes < kStatementBytes && !is_last) continue;
     const std::size_t sent =
         connection.send(kPutFeatures, columns.parameters(part.collection, condition));
@@ -268,7 +235,6 @@ void send_features(DatabaseSession& connection, FeatureRefs features, Part& part
     part.end = sent + 1;
     columns = {};
   }
-  connection.send(kDropSolids, Parameters().text(part.collection).text_array(ids));
 }
 
 /// Puts the new version of each feature of a part at its index of `versions`. False when the rows
@@ -286,57 +252,45 @@ bool read_versions(FeatureRefs features, const Part& part, const std::vector<Row
   return place == part.places.end();
 }
 
-/// The columns of the table `solid` for one statement.
-struct SolidColumns {
-  std::vector<std::string_view> feature, object, lod, measures, report;
-  std::vector<std::int64_t> geometry, ordinal, position;
-  std::vector<ByteView> blob;
-  std::size_t bytes = 0;
+/// The columns of repack_features() for one statement.
+struct RepackColumns {
+  std::vector<std::string_view> id;
+  std::vector<ByteView> text;
+  std::vector<Bytes> packed_solids;
+  std::vector<std::int64_t> version, dictionary;
 
-  void add(const std::string& owner, const StoredSolid& solid, std::size_t place) {
-    feature.push_back(owner);
-    object.push_back(solid.object_id);
-    geometry.push_back(solid.geometry);
-    ordinal.push_back(solid.ordinal);
-    position.push_back(static_cast<std::int64_t>(place));
-    lod.push_back(solid.lod);
-    blob.push_back(solid.blob);
-    measures.push_back(solid.measures);
-    report.push_back(solid.report);
-    bytes += solid.blob.size() + solid.measures.size() + solid.report.size() + 256;
+  void add(const StoredFeature& feature, std::int64_t dictionary_key) {
+    id.push_back(feature.id);
+    version.push_back(static_cast<std::int64_t>(feature.version));
+    dictionary.push_back(dictionary_key);
+    packed_solids.push_back(pack_solids(feature));
+    text.push_back(feature.skeleton.bytes);
   }
   Parameters parameters(std::string_view collection) const {
+    const std::vector<ByteView> solid_bytes(packed_solids.begin(), packed_solids.end());
     Parameters p;
-    p.text(collection).text_array(feature).text_array(object).int8_array(geometry);
-    p.int8_array(ordinal).int8_array(position).text_array(lod).bytea_array(blob);
-    p.text_array(measures).text_array(report);
+    p.text(collection).text_array(id).int8_array(version).int8_array(dictionary);
+    p.bytea_array(solid_bytes).bytea_array(text);
     return p;
   }
 };
 
-constexpr const char* kPutSolids = R"(
-  INSERT INTO watertight.solid (collection, feature, object_id, geometry, ordinal, position, lod,
-    blob, measures, report)
-  SELECT (SELECT id FROM watertight.collection WHERE name = $1),
-    f, o, g, n, p, l, nullif(b, ''::bytea), nullif(m, '')::jsonb, nullif(r, '')::jsonb
-  FROM unnest($2::text[], $3::text[], $4::int8[], $5::int8[], $6::int8[], $7::text[],
-    $8::bytea[], $9::text[], $10::text[]) AS u (f, o, g, n, p, l, b, m, r))";
-
-void send_solids(DatabaseSession& connection, FeatureRefs features, const Part& part) {
-  SolidColumns columns;
-  const auto flush = [&] {
-    if (columns.blob.empty()) return;
-    connection.send(kPutSolids, columns.parameters(part.collection));
-    columns = {};
-  };
-  for (const std::size_t i : part.places) {
-    for (std::size_t place = 0; place < features[i]->solids.size(); ++place) {
-      columns.add(features[i]->id, features[i]->solids[place], place);
-      if (columns.bytes >= kStatementBytes) flush();
-    }
-  }
-  flush();
-}
+// A row that is locked is being changed: it is left alone.
+constexpr const char* kRepackFeatures = R"(
+  WITH w AS MATERIALIZED (
+    SELECT f.collection, f.id, u.d, u.s, u.x
+    FROM unnest($2::text[], $3::int8[], $4::int8[], $5::bytea[], $6::bytea[])
+      AS u (i, v, d, s, x)
+    JOIN watertight.feature_row f
+      ON hashtextextended(f.id, 0) = hashtextextended(u.i, 0) AND f.id = u.i AND f.version = u.v
+    WHERE f.collection = (SELECT key FROM watertight.collection WHERE name = $1)
+    FOR UPDATE OF f SKIP LOCKED)
+  UPDATE watertight.feature_row f SET packed_solids = w.s, packed_text = w.x,
+    dictionary = CASE WHEN w.d = 0 THEN 0 ELSE (SELECT key FROM watertight.dictionary
+                        WHERE key = w.d AND collection = w.collection) END
+  FROM w WHERE f.collection = w.collection
+    AND hashtextextended(f.id, 0) = hashtextextended(w.id, 0) AND f.id = w.id
+  RETURNING 1::int8)";
 
 /// The failure of a put whose rows were not all written.
 Error not_all_written(DatabaseSession& connection, FeatureRefs features,
@@ -345,48 +299,46 @@ Error not_all_written(DatabaseSession& connection, FeatureRefs features,
     Status found = check_condition(connection, features, parts, condition);
     if (!found) return std::move(found).error();
   }
+  for (const StoredFeature* feature : features) {
+    const Result<Rows> other = connection.ask(
+        "SELECT id FROM watertight.feature_row WHERE collection ="
+        " (SELECT key FROM watertight.collection WHERE name = $1)"
+        " AND hashtextextended(id, 0) = hashtextextended($2, 0) AND id <> $2",
+        Parameters().text(feature->collection).text(feature->id));
+    if (!other) return other.error();
+    if (other->size() == 0) continue;
+    return {ErrorCode::conflict, "feature '" + feature->id + "' cannot be stored beside '" +
+                                     std::string(other->text(0, 0)) +
+                                     "': their ids have the same hash"};
+  }
   return {ErrorCode::unavailable, "the database answered with other rows than were sent"};
 }
 
 }  // namespace
 
-Bytes HeaderDigests::find(const SharedText& header) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = digests_.find(header);
-  return found == digests_.end() ? Bytes() : found->second;
-}
-
-void HeaderDigests::add(const SharedText& header, const Bytes& digest) {
-  constexpr std::size_t kMostBytes = 8 << 20;
-  const std::lock_guard lock(mutex_);
-  if (bytes_ + header.str().size() > kMostBytes) {
-    digests_.clear();
-    bytes_ = 0;
-  }
-  if (header.str().size() > kMostBytes) return;
-  if (digests_.try_emplace(header, digest).second) bytes_ += header.str().size() + digest.size();
-}
-
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, FeatureRefs features,
                                                   const WriteCondition& condition,
-                                                  HeaderDigests& known) {
-  const Result<Digests> digests = send_headers(connection, features, known);
+                                                  SharedRows& shared, Versions kept) {
+  const Result<Digests> digests = send_documents(connection, features, shared);
   if (!digests) return digests.error();
   std::vector<Part> parts = parts_of(features);
   send_collections(connection, features, parts, *digests);
+  send_kinds(connection, features, *digests);
+  const Result<DictionaryKeys> dictionaries = DictionaryKeys::add(connection, features, shared);
+  if (!dictionaries) return dictionaries.error();
   if (condition.kind != WriteCondition::Kind::none) {
     Status checked = check_condition(connection, features, parts, condition);
     if (!checked) return std::move(checked).error();
-    for (Part& part : parts) {
-      part.lock = connection.send(kLockCollection, Parameters().text(part.collection));
-    }
   }
   for (Part& part : parts) {
-    send_features(connection, features, part, *digests, condition);
-    send_solids(connection, features, part);
+    part.lock = connection.send(kLockCollection, Parameters().text(part.collection));
+    send_features(connection, features, part, *digests, condition, *dictionaries, kept);
   }
   const Result<std::vector<Rows>> results = connection.results();
-  if (!results) return results.error();
+  if (!results) {
+    shared.forget_keys();
+    return results.error();
+  }
   if (Status same = check_collections(connection, features, parts, *results); !same) {
     return std::move(same).error();
   }
@@ -397,6 +349,26 @@ Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, F
     }
   }
   return versions;
+}
+
+Result<std::uint64_t> repack_features(DatabaseSession& connection, FeatureRefs features,
+                                      SharedRows& shared) {
+  const Result<DictionaryKeys> dictionaries = DictionaryKeys::add(connection, features, shared);
+  if (!dictionaries) return dictionaries.error();
+  std::uint64_t repacked = 0;
+  for (const Part& part : parts_of(features)) {
+    RepackColumns columns;
+    for (const std::size_t i : part.places) {
+      columns.add(*features[i], dictionaries->of(*features[i]));
+    }
+    const Result<Rows> rows = connection.ask(kRepackFeatures, columns.parameters(part.collection));
+    if (!rows) {
+      shared.forget_keys();
+      return rows.error();
+    }
+    repacked += static_cast<std::uint64_t>(rows->size());
+  }
+  return repacked;
 }
 
 Result<Done> delete_feature(DatabaseSession& connection, const std::string& collection,
@@ -411,8 +383,9 @@ Result<Done> delete_feature(DatabaseSession& connection, const std::string& coll
   const auto version = static_cast<std::uint64_t>(rows->int8(0, 1));
   if (!holds(condition, version)) return failed_precondition(id, version);
   const Result<Rows> gone = connection.ask(
-      "DELETE FROM watertight.feature WHERE id = $2 AND collection ="
-      " (SELECT id FROM watertight.collection WHERE name = $1)",
+      "DELETE FROM watertight.feature_row WHERE id = $2"
+      " AND hashtextextended(id, 0) = hashtextextended($2, 0) AND collection ="
+      " (SELECT key FROM watertight.collection WHERE name = $1)",
       Parameters().text(collection).text(id));
   if (!gone) return gone.error();
   return Done{};

@@ -35,7 +35,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "archives", "formats", "store", "pipeline", "report", "server", "cli", "sql"]
+           "archives", "formats", "packing", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
 MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
@@ -54,7 +54,7 @@ HOMES = [
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),
     (r"CLI/", "CLI11", [r"cli/", r"bench/"]),
     (r"(zstd|zstd_errors|zdict)\.h", "zstd",
-     [r"archives/", r"formats/", r"tests/unit/(archives|cli|server)/", r"bench/"]),
+     [r"archives/", r"formats/", r"packing/", r"tests/unit/(archives|cli|server)/", r"bench/"]),
     (r"zlib\.h", "zlib", [r"archives/", r"tests/unit/(archives|cli|server)/"]),
     (r"minizip/", "minizip", [r"archives/"]),
     (r"expat\.h", "expat", [r"formats/"]),

@@ -148,7 +148,7 @@ def event(service, situation):
         os.kill(service.postmaster(), signal.SIGKILL)
         yield
     elif situation == "locked":
-        lock = service.psql("BEGIN; LOCK TABLE watertight.feature IN ACCESS EXCLUSIVE MODE; SELECT pg_sleep(3600);")
+        lock = service.psql("BEGIN; LOCK TABLE watertight.feature_row IN ACCESS EXCLUSIVE MODE; SELECT pg_sleep(3600);")
         yield
         lock.kill()
         service.psql("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE query LIKE '%pg_sleep(3600)%'"

@@ -81,12 +81,14 @@ std::string Database::ask(const std::string& statement) const {
 }
 
 void Database::add_many_features() const {
-  ask("INSERT INTO watertight.document_header VALUES ('h', 'h')");
-  ask("INSERT INTO watertight.collection (id, name, srid, header) VALUES ('c', 'c', 0, 'h')");
-  ask("INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, "
-      "solids,"
-      " blob_bytes, min_x, min_y, min_z, max_x, max_y, max_z, place)"
-      " SELECT 'c', i::text, '', '', 0, 'h', '', 0, 0, i, i, 0, i + 1, i + 1, 9, i * 1000"
+  ask("INSERT INTO watertight.document (key, digest, content) VALUES (1, 'h', 'h')");
+  ask("INSERT INTO watertight.collection (key, name, srid, document) VALUES (1, 'c', 0, 1)");
+  ask("INSERT INTO watertight.kind (key, collection, document, format, type)"
+      " VALUES (1, 1, 1, '', '')");
+  ask("INSERT INTO watertight.feature_row (collection, id, kind, dictionary, packed_solids,"
+      " packed_text, solids, blob_bytes, unproven, is_proven,"
+      " min_x, min_y, min_z, max_x, max_y, max_z, place)"
+      " SELECT 1, i::text, 1, 0, '', '', 0, 0, 0, true, i, i, 0, i + 1, i + 1, 9, i * 1000"
       " FROM generate_series(1, 20000) i");
 }
 
@@ -117,8 +119,6 @@ StoredFeature sample_feature(const std::string& id) {
     solid.ordinal = 1 - ordinal;  // not sorted, so that a test sees whether the order survives
     solid.lod = "2.2";
     solid.blob = {0, 1, 0xFF, static_cast<std::uint8_t>(ordinal)};
-    solid.measures = "{\"volume\": 12.25}";
-    solid.report = "{\"verdict\": \"valid\"}";
     feature.solids.push_back(std::move(solid));
   }
   return feature;

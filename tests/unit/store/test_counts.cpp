@@ -111,38 +111,6 @@ TEST_CASE("the box of a collection holds all features, and fits them after a rec
   CHECK(store->recount("nothing").error().code == ErrorCode::not_found);
 }
 
-TEST_CASE("a database of before the counts gets them when it is opened") {
-  const Database database;
-  {
-    const auto store = database.store();
-    for (int i = 0; i < 5; ++i) {
-      const StoredFeature feature = feature_at("f" + std::to_string(i), i);
-      REQUIRE(store->put(std::span(&feature, 1)));
-    }
-  }
-  // Takes the migration back.
-  for (const char* statement :
-       {"DELETE FROM watertight.migration WHERE number >= 4",
-        "DROP TRIGGER feature_added ON watertight.feature",
-        "DROP TRIGGER feature_replaced_by ON watertight.feature",
-        "DROP TRIGGER feature_replaced ON watertight.feature",
-        "DROP TRIGGER feature_removed ON watertight.feature",
-        "DROP FUNCTION watertight.note_added()", "DROP FUNCTION watertight.note_removed()",
-        "DROP TABLE watertight.collection_change", "DROP INDEX watertight.feature_document",
-        "ALTER TABLE watertight.collection DROP features, DROP solids, DROP blob_bytes,"
-        " DROP min_x, DROP min_y, DROP min_z, DROP max_x, DROP max_y, DROP max_z, DROP name,"
-        " DROP generation, DROP changes, DROP unproven, DROP unproven_features, DROP policy,"
-        " ADD CONSTRAINT collection_id_check CHECK (id <> '')",
-        "DROP SEQUENCE watertight.collection_key",
-        "ALTER TABLE watertight.feature DROP unproven, DROP is_proven, DROP findings",
-        "ALTER TABLE watertight.solid ALTER COLUMN blob SET NOT NULL"}) {
-    database.ask(statement);
-  }
-  const auto store = database.store();
-  CHECK(kept(*store) == counted(database));
-  CHECK(store->collection("buildings")->box->max[0] == 5);
-}
-
 TEST_CASE("the documents of a collection are found without reading its features") {
   const Database database;
   const auto store = database.store();

@@ -65,7 +65,7 @@ void watch_features(const Database& database) {
       "CREATE FUNCTION note() RETURNS trigger LANGUAGE plpgsql AS"
       " 'BEGIN INSERT INTO audit VALUES (new.id); RETURN new; END'");
   database.ask(
-      "CREATE TRIGGER note AFTER INSERT OR UPDATE ON watertight.feature"
+      "CREATE TRIGGER note AFTER INSERT OR UPDATE ON watertight.feature_row"
       " FOR EACH ROW EXECUTE FUNCTION note()");
 }
 

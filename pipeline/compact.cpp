@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/compact.h"
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "packing/text_dictionary.h"
+#include "pipeline/pipeline.h"
+
+namespace watertight::pipeline {
+namespace {
+
+constexpr std::uint64_t kSamples = 1000;
+constexpr std::uint64_t kBatch = 200;
+
+bool is_same(const packing::DictionaryPointer& a, const packing::DictionaryPointer& b) {
+  return a == b || (a && b && a->content() == b->content());
+}
+
+/// The dictionary for all features: the newest, or a better one. Features that an older program
+/// wrote have longer texts than this one writes: then it is always a new one.
+Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::string& collection,
+                                                  std::uint64_t features) {
+  auto newest = store.dictionary(collection);
+  if (!newest) return newest;
+  const auto samples = store.walk(collection, kSamples, "");
+  if (!samples) return samples.error();
+  std::vector<std::string> texts;
+  bool is_outdated = false;
+  for (const StoredFeature& feature : samples->features) {
+    const auto stored =
+        packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
+                        std::numeric_limits<std::uint64_t>::max());
+    if (!stored) return stored.error();
+    const auto encoded = unpack(feature);
+    if (!encoded) return encoded.error();
+    texts.push_back(stored_text(*encoded));
+    is_outdated = is_outdated || *stored != texts.back();
+  }
+  return packing::train(texts, features, is_outdated ? nullptr : *newest);
+}
+
+}  // namespace
+
+Result<CompactCounts> compact(
+    SolidStore& store, const std::string& collection, const CancelPoll& is_cancelled,
+    const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+  const auto found = store.collection(collection);
+  if (!found) return found.error();
+  const auto dictionary = dictionary_for(store, collection, found->features);
+  if (!dictionary) return dictionary.error();
+  CompactCounts counts;
+  for (std::string after;;) {
+    if (is_cancelled && is_cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped; what was packed stays packed"};
+    }
+    auto batch = store.walk(collection, kBatch, after);
+    if (!batch) return std::move(batch).error();
+    std::vector<StoredFeature> repacked;
+    for (StoredFeature& feature : batch->features) {
+      const std::uint64_t bytes = feature.skeleton.bytes.size();
+      ++counts.features;
+      counts.bytes_before += bytes;
+      if (is_same(feature.skeleton.dictionary, *dictionary)) {
+        counts.bytes_after += bytes;
+        continue;
+      }
+      auto encoded = unpack(std::move(feature));
+      if (!encoded) return std::move(encoded).error();
+      auto packed = pack(*std::move(encoded), *dictionary);
+      if (!packed) return std::move(packed).error();
+      counts.bytes_after += packed->skeleton.bytes.size();
+      repacked.push_back(*std::move(packed));
+    }
+    const auto written = store.repack(repacked);
+    if (!written) return written.error();
+    counts.repacked += *written;
+    if (progress) progress(counts.features, found->features);
+    if (batch->next.empty()) return counts;
+    after = std::move(batch->next);
+  }
+}
+
+}  // namespace watertight::pipeline

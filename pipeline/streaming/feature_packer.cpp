@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/streaming/feature_packer.h"
+
+#include <utility>
+
+#include "geometry/parallel.h"
+
+namespace watertight::pipeline {
+namespace {
+
+constexpr std::size_t kMostWaiting = 2000;
+constexpr std::size_t kMostWaitingBytes = 8 << 20;
+// A document with more features than wait is expected to have so many times as many.
+constexpr std::uint64_t kLonger = 4;
+
+}  // namespace
+
+Result<PreparedFeature> FeaturePacker::prepare(EncodedFeature encoded) {
+  PreparedFeature feature{std::move(encoded), {}, {}};
+  feature.text = stored_text(feature.encoded);
+  packing::DictionaryPointer dictionary;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!is_chosen_) return feature;
+    dictionary = dictionary_;
+  }
+  auto packed = pack(feature.text, std::move(feature.encoded), dictionary);
+  if (!packed) return std::move(packed).error();
+  feature.packed = *std::move(packed);
+  return feature;
+}
+
+Status FeaturePacker::add(PreparedFeature feature, FeatureSpool& spool) {
+  if (feature.packed) return spool.add(*std::move(feature.packed));
+  waiting_bytes_ += feature.text.size();
+  waiting_.push_back(std::move(feature));
+  const bool is_full = waiting_.size() >= kMostWaiting || waiting_bytes_ >= kMostWaitingBytes;
+  return is_full || is_chosen_ ? choose(waiting_.size() * kLonger, spool) : Done{};
+}
+
+Status FeaturePacker::finish(FeatureSpool& spool) { return choose(waiting_.size(), spool); }
+
+Status FeaturePacker::choose(std::uint64_t expected, FeatureSpool& spool) {
+  std::vector<PreparedFeature> features = std::exchange(waiting_, {});
+  if (!is_chosen_) {
+    std::vector<std::string> texts;
+    for (const PreparedFeature& feature : features) texts.push_back(feature.text);
+    auto dictionary = packing::train(texts, expected, dictionary_);
+    if (!dictionary) return std::move(dictionary).error();
+    const std::lock_guard lock(mutex_);
+    dictionary_ = *std::move(dictionary);
+    is_chosen_ = true;
+  }
+  std::vector<std::optional<Result<StoredFeature>>> packed(features.size());
+  geometry::for_each_piece(features.size(), static_cast<unsigned>(threads_),
+                           [&](std::size_t i, bool) {
+                             packed[i] = pack(features[i].text, std::move(features[i].encoded),
+                                              dictionary_);
+                           });
+  for (std::optional<Result<StoredFeature>>& feature : packed) {
+    if (!*feature) return std::move(*feature).error();
+    if (Status added = spool.add(**std::move(feature)); !added) return added;
+  }
+  return Done{};
+}
+
+}  // namespace watertight::pipeline

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The solids of a feature in one string of bytes: their facts, most of which follow from those of
+// the solid before and cost nothing, then their blobs, one after the other.
+//
+// The facts of a solid are a byte of flags and the numbers (LEB128) that it announces. Bits 0 to 4:
+// the level of detail, an index into a list; 31: its length and its text follow. Bit 6: the object
+// is not that of the solid before (of the first solid: the feature itself); the number of bytes that
+// its id shares with the feature's, then the length of the rest and the rest follow. Bit 7: geometry
+// and ordinal follow; else the geometry is the next one of the object, and the ordinal 0. Bit 5: the
+// solid is proven; the length of its blob follows. watertight.unpacked_solids (store/migrations.cpp)
+// reads the same in SQL.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/result.h"
+#include "store/solid_store.h"
+
+namespace watertight::store {
+
+/// The solids of the feature without measures and reports. Cost: linear.
+Bytes pack_solids(const FeatureRecord& feature);
+
+/// The `number` solids that pack_solids() was given, of the feature `id`. Memory: that of the bytes.
+/// Errors: malformed.
+Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_t number,
+                                               ByteView packed);
+
+}  // namespace watertight::store

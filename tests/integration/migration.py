@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opens a database of schema 8 and compacts it, and kills both at random.
+
+    migration.py WATERTIGHT ROOT [ROUNDS]
+
+tests/data/schema8/store.sql is a dump of a database that a program of schema 8 filled, answers.json
+what that program answered for each feature. Copies of the rows make the migration long enough to be
+killed: each round kills program and database once in a migration and once in a compact, and then
+compares all answers. Prints a line for each step; exit code 1 after a difference.
+"""
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import time
+import urllib.parse
+
+PROGRAM, ROOT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+ROUNDS = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+COPIES = 40
+sys.path.insert(0, str(ROOT / "tests/siege"))
+from service import Service, temporary_folder  # noqa: E402
+
+DATA = ROOT / "tests/data/schema8"
+COPY = f"""
+INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, solids, blob_bytes,
+    min_x, min_y, min_z, max_x, max_y, max_z, place, unproven, is_proven, findings)
+  SELECT collection, id || ' copy ' || n, type, format, srid, header, skeleton, solids, blob_bytes,
+    min_x, min_y, min_z, max_x, max_y, max_z, place, unproven, is_proven, findings
+  FROM watertight.feature, generate_series(1, {COPIES}) n;
+INSERT INTO watertight.solid
+  SELECT collection, feature || ' copy ' || n, object_id, geometry, ordinal, position, lod, blob, measures, report
+  FROM watertight.solid, generate_series(1, {COPIES}) n;"""
+
+
+def psql(service, sql, file=None):
+    lines = (service.folder / "data/postgres/postmaster.pid").read_text().split("\n")
+    words = ["-f", str(file)] if file else ["-c", sql]
+    done = subprocess.run([*service.prefix, "psql", "-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1", "-h", lines[4],
+                           "-p", lines[3], "-d", "watertight", *words], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(f"psql: {done.stderr[-1000:]}")
+    return done.stdout.strip()
+
+
+def end(service):
+    """Kills the program and its database."""
+    pids = service.database_processes()
+    if service.process:
+        service.process.kill()
+        service.process.wait()
+    for pid in pids:
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    while service.database_processes():
+        time.sleep(0.05)
+
+
+def killed(service, words, seconds):
+    """Runs a command with the service's folder and kills it and its database after some seconds. Returns
+    whether it had ended before."""
+    service.process = subprocess.Popen(
+        [*service.prefix, "env", f"HOME={service.folder}", PROGRAM, *words, "--data-dir",
+         str(service.folder / "data")], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=service.folder)
+    time.sleep(seconds)
+    has_ended = service.process.poll() is not None
+    end(service)
+    return has_ended
+
+
+def check(service, versions):
+    answers = json.loads((DATA / "answers.json").read_text())
+    for name, expected in answers.items():
+        collection, feature = name.split("/")
+        path = f"/collections/{collection}/items/{urllib.parse.quote(feature)}"
+        status, body = service.request("GET", path + "?f=cityjsonseq")
+        if status != 200 or body.decode() != expected["cityjsonseq"]:
+            raise SystemExit(f"{name}: {status}, another document")
+        status, body = service.request("GET", path + "?f=proof")
+        if status != 200 or json.loads(body) != json.loads(expected["proof"]):
+            raise SystemExit(f"{name}: {status}, another proof: {body[:2000]!r} for {expected['proof'][:2000]}")
+    if psql(service, "SELECT count(*) || ' ' || sum(version) FROM watertight.feature") != versions:
+        raise SystemExit("features or versions are missing")
+    for collection in ("delft", "boxes"):
+        found = json.loads(service.request("GET", f"/collections/{collection}")[1])
+        count = psql(service, f"SELECT count(*) FROM watertight.feature WHERE collection = '{collection}'")
+        if str(found["features"]) != count:
+            raise SystemExit(f"{collection} says {found['features']} features and has {count}")
+
+
+def one_round(number):
+    with temporary_folder("migration") as folder, Service(PROGRAM, folder) as service:
+        psql(service, "DROP SCHEMA watertight CASCADE")
+        psql(service, "", DATA / "store.sql")
+        psql(service, COPY)
+        versions = psql(service, "SELECT count(*) || ' ' || sum(version) FROM watertight.feature")
+        service.stop()
+        runs = 1
+        while not killed(service, ["collections", "list"], random.uniform(0.3, 1 + runs)) and runs < 12:
+            runs += 1
+        service.start()
+        check(service, versions)
+        service.stop()
+        compacts = 1
+        while not killed(service, ["compact", "delft"], random.uniform(0.3, 1 + compacts)) and compacts < 12:
+            compacts += 1
+        service.start()
+        check(service, versions)
+        bytes_now = psql(service, "SELECT sum(octet_length(packed_text)) / count(*) FROM watertight.feature_row")
+        print(f"round {number}: {versions.split()[0]} features moved in {runs} runs, compacted in {compacts},"
+              f" {bytes_now} bytes of text a feature", flush=True)
+
+
+for at in range(ROUNDS):
+    one_round(at + 1)

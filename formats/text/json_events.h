@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Reads JSON text as events, several times faster than nlohmann-json, which read a third of the
-// time of a document. It calls the functions of nlohmann's SAX interface with the same values. It
-// has no errors: for a text that it does not read to the end, nlohmann's parser is the judge, with
-// its messages and places. Internal to formats/.
+// Reads JSON text as events with a third of the instructions of nlohmann-json, whose lexer took a
+// third of the time of reading. It calls the functions of nlohmann's SAX interface with the same
+// values. It has no errors: for a text that it does not read to the end, nlohmann's parser is the
+// judge, with its messages and places. Internal to formats/.
 #pragma once
 
 #include <array>

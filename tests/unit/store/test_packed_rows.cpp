@@ -58,10 +58,9 @@ TEST_CASE("solids come back from their bytes, and what is expected takes two byt
   other.ordinal = 4;
   StoredSolid unproven = solid_of("h\u00e8", 0, "", 0);  // shares half a character with the id
   unproven.is_proven = false;
-  const auto all = feature_with({solid_of("h\u00e4user-0", 0, "1.2", 1),
-                                 solid_of("h\u00e4user-0", 1, "1.3", 2), other, unproven,
-                                 solid_of("h\u00e8", 4294967295U, "3.3", 0),
-                                 solid_of("h\u00e8", 0, "x", 1)});
+  const auto all = feature_with(
+      {solid_of("h\u00e4user-0", 0, "1.2", 1), solid_of("h\u00e4user-0", 1, "1.3", 2), other,
+       unproven, solid_of("h\u00e8", 4294967295U, "3.3", 0), solid_of("h\u00e8", 0, "x", 1)});
   const Bytes packed = store::pack_solids(all);
   const auto back = store::unpack_solids(all.id, all.solids.size(), packed);
   REQUIRE(back);
@@ -77,8 +76,8 @@ TEST_CASE("SQL sees the same solids as the store") {
   const Database database;
   const auto store = database.store();
   StoredFeature feature = sample_feature("h\u00e4user");
-  feature.solids = {solid_of("h\u00e4user-0", 0, "1.2", 3), solid_of("h\u00e4user-0", 1, "odd", 200),
-                    solid_of("h\u00e8", 5, "", 2)};
+  feature.solids = {solid_of("h\u00e4user-0", 0, "1.2", 3),
+                    solid_of("h\u00e4user-0", 1, "odd", 200), solid_of("h\u00e8", 5, "", 2)};
   feature.solids[2].ordinal = 300;
   feature.solids[0].is_proven = false;
   feature.solids[0].blob = {};

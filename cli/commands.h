@@ -161,7 +161,7 @@ struct CompactCommand {
   StoreChoice store;
   std::string collection;
 };
-/// Packs the features of a collection again (pipeline/compact.h).
+/// Packs the features of a collection again (pipeline/stored/compact.h).
 Exit run(const CompactCommand& command);
 
 struct CollectionsCommand {

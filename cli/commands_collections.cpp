@@ -9,8 +9,8 @@
 #include "cli/commands.h"
 #include "cli/opened_store.h"
 #include "cli/terminal/printable.h"
-#include "pipeline/compact.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/stored/compact.h"
 
 namespace watertight::cli {
 namespace {

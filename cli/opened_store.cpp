@@ -52,8 +52,8 @@ Result<OpenedStore> open_store(const StoreChoice& choice) {
   const server::StopSignals signals;
   auto database = open_database(choice, signals);
   if (!database) return std::move(database).error();
-  auto store = store::open_postgres_store(database->connection, 4,
-                                          [&signals] { return signals.is_requested(); }, tell);
+  auto store = store::open_postgres_store(
+      database->connection, 4, [&signals] { return signals.is_requested(); }, tell);
   if (signals.is_requested()) return Error{ErrorCode::cancelled, "stopped before the work began"};
   if (!store) return std::move(store).error();
   return OpenedStore{std::move(database->cluster), *std::move(store)};

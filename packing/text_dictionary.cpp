@@ -55,8 +55,8 @@ ZSTD_DCtx* decompressor() {
   ZSTD_DCtx_reset(context.get(), ZSTD_reset_session_and_parameters);
   const bool is_ready =
       ZSTD_isError(ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, kWindowLog)) == 0 &&
-      ZSTD_isError(
-          ZSTD_DCtx_setParameter(context.get(), ZSTD_d_format, ZSTD_f_zstd1_magicless)) == 0;
+      ZSTD_isError(ZSTD_DCtx_setParameter(context.get(), ZSTD_d_format, ZSTD_f_zstd1_magicless)) ==
+          0;
   return is_ready ? context.get() : nullptr;
 }
 
@@ -64,9 +64,8 @@ ZSTD_DCtx* decompressor() {
 Bytes dictionary_bytes(const std::string& samples, const std::vector<std::size_t>& sizes,
                        std::size_t size) {
   Bytes content(size);
-  const std::size_t used =
-      ZDICT_trainFromBuffer(content.data(), content.size(), samples.data(), sizes.data(),
-                            static_cast<unsigned>(sizes.size()));
+  const std::size_t used = ZDICT_trainFromBuffer(content.data(), content.size(), samples.data(),
+                                                 sizes.data(), static_cast<unsigned>(sizes.size()));
   content.resize(ZDICT_isError(used) != 0 ? 0 : used);
   return content;
 }
@@ -85,8 +84,7 @@ Result<DictionaryPointer> TextDictionary::of(Bytes content) {
   std::shared_ptr<TextDictionary> made(new TextDictionary(std::move(content)));
   const Bytes& bytes = made->content_;
   auto prepared = std::make_unique<Prepared>();
-  prepared->for_packing.reset(
-      ZSTD_createCDict_byReference(bytes.data(), bytes.size(), kLevel));
+  prepared->for_packing.reset(ZSTD_createCDict_byReference(bytes.data(), bytes.size(), kLevel));
   prepared->for_unpacking.reset(ZSTD_createDDict_byReference(bytes.data(), bytes.size()));
   if (!prepared->for_packing || !prepared->for_unpacking) return no_memory();
   made->prepared_ = std::move(prepared);

@@ -458,8 +458,8 @@ constexpr Migration kMigrations[] = {
 constexpr std::int64_t kMoved = std::size(kMigrations) + 1;
 constexpr std::int64_t kNewest = kMoved;
 
-// The number of the lock is "watertig" in ASCII; any number will do that no other program locks. The
-// session has it until the last step is done.
+// The number of the lock is "watertig" in ASCII; any number will do that no other program locks.
+// The session has it until the last step is done.
 constexpr const char* kLock = "SELECT pg_advisory_lock(x'7761746572746967'::bigint)";
 constexpr const char* kUnlock = "SELECT pg_advisory_unlock(x'7761746572746967'::bigint)";
 
@@ -522,9 +522,8 @@ Status migrate_locked(DatabaseSession& connection, const Tell& tell) {
   const Result<std::int64_t> found = applied(connection);
   if (!found) return found.error();
   if (*found == kNewest) return Done{};  // another instance was first
-  return move_rows(connection, tell, [](DatabaseSession& session) {
-    return record(session, kMoved, "rows moved");
-  });
+  return move_rows(connection, tell,
+                   [](DatabaseSession& session) { return record(session, kMoved, "rows moved"); });
 }
 
 }  // namespace

@@ -93,8 +93,7 @@ Result<std::string> skeleton_of(ByteView frame, const std::string& id) {
 /// The next features of an old collection, with their texts.
 Result<std::vector<OldFeature>> read_old(DatabaseSession& connection, const std::string& key,
                                          const std::string& name, std::int64_t limit) {
-  const Result<Rows> rows =
-      connection.ask(kOldFeatures, Parameters().text(key).int8(limit));
+  const Result<Rows> rows = connection.ask(kOldFeatures, Parameters().text(key).int8(limit));
   if (!rows) return rows.error();
   std::vector<OldFeature> features;
   std::vector<std::string_view> ids;
@@ -102,8 +101,7 @@ Result<std::vector<OldFeature>> read_old(DatabaseSession& connection, const std:
     ids.push_back(rows->text(row, 0));
     features.push_back(feature_of(*rows, row, name));
   }
-  const Result<Rows> solids =
-      connection.ask(kOldSolids, Parameters().text(key).text_array(ids));
+  const Result<Rows> solids = connection.ask(kOldSolids, Parameters().text(key).text_array(ids));
   if (!solids) return solids.error();
   int next = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {

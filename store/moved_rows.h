@@ -11,10 +11,10 @@
 
 namespace watertight::store {
 
-/// Moves all features, in transactions of some hundred; what was moved stays moved when it is broken
-/// off, and the next call goes on. Versions stay. Then drops the old tables and runs `finish`, in one
-/// transaction. Requires that no other session does the same. Errors: those of the session;
-/// malformed, which names a feature whose text cannot be read.
+/// Moves all features, in transactions of some hundred; what was moved stays moved when it is
+/// broken off, and the next call goes on. Versions stay. Then drops the old tables and runs
+/// `finish`, in one transaction. Requires that no other session does the same. Errors: those of the
+/// session; malformed, which names a feature whose text cannot be read.
 Status move_rows(DatabaseSession& connection, const Tell& tell,
                  const std::function<Status(DatabaseSession&)>& finish);
 

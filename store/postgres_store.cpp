@@ -67,9 +67,9 @@ class Backoff {
 };
 
 /// Whether concurrent transactions got into each other's way, so that the same transaction can
-/// succeed now. A foreign key fails (23503) only when a document or kind was removed as unused while a
-/// writer was about to use it, and a value is missing (23502) only when that was removed whose key
-/// it is: a collection, a kind, a dictionary.
+/// succeed now. A foreign key fails (23503) only when a document or kind was removed as unused
+/// while a writer was about to use it, and a value is missing (23502) only when that was removed
+/// whose key it is: a collection, a kind, a dictionary.
 bool is_collision(const std::string& state) {
   return state == "40001" || state == "40P01" || state == "55P03" || state == "23503" ||
          state == "23502";
@@ -95,8 +95,8 @@ class PostgresStore final : public SolidStore {
                 [this](FeatureRefs features) { return write_all(features, {}); }}) {}
 
   Status open(const Tell& tell) {
-    return with_session<Done>(
-        [&tell](DatabaseSession& session) { return migrate(session, tell); }, kMigrating);
+    return with_session<Done>([&tell](DatabaseSession& session) { return migrate(session, tell); },
+                              kMigrating);
   }
 
   Status ping() override {
@@ -206,9 +206,8 @@ class PostgresStore final : public SolidStore {
   Result<packing::DictionaryPointer> dictionary(const std::string& collection) override {
     if (!check_collection_id(collection)) return packing::DictionaryPointer();
     if (auto known = shared_.newest(collection)) return *std::move(known);
-    return read<packing::DictionaryPointer>([&](DatabaseSession& session) {
-      return read_dictionary(session, collection, shared_);
-    });
+    return read<packing::DictionaryPointer>(
+        [&](DatabaseSession& session) { return read_dictionary(session, collection, shared_); });
   }
 
   Result<std::uint64_t> repack(std::span<const StoredFeature> features) override {
@@ -234,8 +233,9 @@ class PostgresStore final : public SolidStore {
   Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                             const std::string& after) override {
     if (!check_collection_id(collection)) return no_such_collection();
-    return read_at_once<FeatureBatch>(
-        [&](DatabaseSession& session) { return read_batch(session, collection, limit, after, shared_); });
+    return read_at_once<FeatureBatch>([&](DatabaseSession& session) {
+      return read_batch(session, collection, limit, after, shared_);
+    });
   }
 
   Result<std::vector<StoredHeader>> documents(const std::string& collection,

@@ -204,8 +204,8 @@ class SolidStore {
   /// the new version of each feature. Errors: invalid_argument for a feature that the database
   /// cannot keep as it is (ids with NUL, not UTF-8 or above 1024 bytes, boxes that are not finite,
   /// a solid twice); conflict when a feature is there twice or its CRS is not that of its
-  /// collection, or two ids have one hash of 64 bits; precondition_failed, which names a feature for which `condition` does not hold,
-  /// and its version; unavailable.
+  /// collection, or two ids have one hash of 64 bits; precondition_failed, which names a feature
+  /// for which `condition` does not hold, and its version; unavailable.
   virtual Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
                                                  const WriteCondition& condition = {}) = 0;
   /// Like put(), for more features than memory holds: all batches in one transaction. The limit of
@@ -247,8 +247,8 @@ using Tell = std::function<void(const std::string&)>;
 /// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
 /// Reconnects after a lost connection; an interrupted operation is tried again only when it is
 /// idempotent or known not to have been committed. `is_cancelled` ends the opening; a thread asks
-/// it. `tell` takes sentences about the progress of a migration. Errors: unavailable with the server's
-/// message.
+/// it. `tell` takes sentences about the progress of a migration. Errors: unavailable with the
+/// server's message.
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
                                                         std::size_t connections = 4,
                                                         const CancelPoll& is_cancelled = {},

@@ -114,7 +114,7 @@ std::string round_trip(const std::string& file, const pipeline::InspectedFeature
   options.collection = file;
   auto encoded = pipeline::encode_feature(feature, document, options);
   if (!encoded) return "encode: " + to_string(encoded.error());
-  auto stored = pipeline::pack(*std::move(encoded));
+  auto stored = pipeline::pack(*std::move(encoded), nullptr);
   if (!stored) return "pack: " + to_string(stored.error());
   StoredFeature returned = *stored;
   if (store != nullptr) {

@@ -52,11 +52,10 @@ Status FeaturePacker::choose(std::uint64_t expected, FeatureSpool& spool) {
     is_chosen_ = true;
   }
   std::vector<std::optional<Result<StoredFeature>>> packed(features.size());
-  geometry::for_each_piece(features.size(), static_cast<unsigned>(threads_),
-                           [&](std::size_t i, bool) {
-                             packed[i] = pack(features[i].text, std::move(features[i].encoded),
-                                              dictionary_);
-                           });
+  geometry::for_each_piece(
+      features.size(), static_cast<unsigned>(threads_), [&](std::size_t i, bool) {
+        packed[i] = pack(features[i].text, std::move(features[i].encoded), dictionary_);
+      });
   for (std::optional<Result<StoredFeature>>& feature : packed) {
     if (!*feature) return std::move(*feature).error();
     if (Status added = spool.add(**std::move(feature)); !added) return added;

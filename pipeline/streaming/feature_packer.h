@@ -16,8 +16,8 @@ namespace watertight::pipeline {
 
 /// A feature on its way into the spool.
 struct PreparedFeature {
-  EncodedFeature encoded;             // not used when `packed` is there
-  std::string text;                   // stored_text(encoded); the same
+  EncodedFeature encoded;  // not used when `packed` is there
+  std::string text;        // stored_text(encoded); the same
   std::optional<StoredFeature> packed;
 };
 

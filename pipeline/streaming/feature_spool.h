@@ -51,8 +51,8 @@ class FeatureSpool final : public store::FeatureBatches {
   std::vector<SharedText> headers_;  // the headers of the features in the file
   std::map<SharedText, std::uint64_t> header_numbers_;
   std::vector<packing::DictionaryPointer> dictionaries_;  // those of the features in the file
-  std::vector<StoredFeature> read_;  // the batch that next() returned
-  std::size_t given_ = 0;            // the number of batches that next() has returned
+  std::vector<StoredFeature> read_;                       // the batch that next() returned
+  std::size_t given_ = 0;  // the number of batches that next() has returned
   std::uint64_t size_ = 0;
 };
 

@@ -126,9 +126,9 @@ Status Ingestion::take(Processed processed) {
     packer_->clear();
   } else if (processed.prepared) {
     const bool is_packed = processed.prepared->packed.has_value();
-    store::FeatureRecord& record = is_packed
-                                       ? static_cast<store::FeatureRecord&>(*processed.prepared->packed)
-                                       : processed.prepared->encoded;
+    store::FeatureRecord& record =
+        is_packed ? static_cast<store::FeatureRecord&>(*processed.prepared->packed)
+                  : processed.prepared->encoded;
     record.id = outcome.id;
     counts_.unproven += record.unproven();
     counts_.unproven_features += record.is_proven() ? 0 : 1;

@@ -16,9 +16,9 @@ void send_gate(DatabaseSession& connection, std::string_view collection, Gate ga
 
 Result<std::string> hide_collection(DatabaseSession& connection, const std::string& id) {
   send_gate(connection, id, Gate::alone);
-  const Result<Rows> rows =
-      connection.ask("UPDATE watertight.collection SET name = NULL WHERE name = $1 RETURNING key::text",
-                     Parameters().text(id));
+  const Result<Rows> rows = connection.ask(
+      "UPDATE watertight.collection SET name = NULL WHERE name = $1 RETURNING key::text",
+      Parameters().text(id));
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_collection(id);
   return std::string(rows->text(0, 0));

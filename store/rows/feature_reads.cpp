@@ -182,9 +182,9 @@ struct BatchSize {
 
 Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& collection,
                              const WalkPlace& after, std::int64_t limit) {
-  const Result<Rows> rows =
-      walk_rows(connection, "SELECT (octet_length(packed_solids) + octet_length(packed_text))::int8", collection, after,
-                limit + 1);
+  const Result<Rows> rows = walk_rows(
+      connection, "SELECT (octet_length(packed_solids) + octet_length(packed_text))::int8",
+      collection, after, limit + 1);
   if (!rows) return rows.error();
   BatchSize size;
   for (std::int64_t bytes = 0; size.features < rows->size() && size.features < limit;) {
@@ -285,8 +285,7 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
 }
 
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
-                                std::uint64_t limit, const std::string& after,
-                                SharedRows& shared) {
+                                std::uint64_t limit, const std::string& after, SharedRows& shared) {
   const Result<WalkPlace> start = walk_place(after);
   if (!start) return start.error();
   const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));

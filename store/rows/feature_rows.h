@@ -34,8 +34,9 @@ using FeatureRefs = std::span<const StoredFeature* const>;
 /// Whether a feature gets a new version or that of FeatureRecord::version.
 enum class Versions : std::uint8_t { drawn, kept };
 
-/// Writes documents, collections, kinds, dictionaries and features. Returns the version of each feature. Requires
-/// check_features(). Errors: conflict when the CRS of a feature is not that of its collection.
+/// Writes documents, collections, kinds, dictionaries and features. Returns the version of each
+/// feature. Requires check_features(). Errors: conflict when the CRS of a feature is not that of
+/// its collection.
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, FeatureRefs features,
                                                   const WriteCondition& condition,
                                                   SharedRows& shared,

@@ -57,8 +57,8 @@ constexpr const char* kLockCollection =
     "SELECT srid FROM watertight.collection WHERE name = $1 FOR KEY SHARE";
 
 /// Creates the collections that do not exist.
-void send_collections(DatabaseSession& connection, FeatureRefs features, const std::vector<Part>& parts,
-                      const Digests& digests) {
+void send_collections(DatabaseSession& connection, FeatureRefs features,
+                      const std::vector<Part>& parts, const Digests& digests) {
   for (const Part& part : parts) {
     const StoredFeature& first = *features[part.places.front()];
     send_gate(connection, part.collection, Gate::shared);
@@ -225,8 +225,8 @@ void send_features(DatabaseSession& connection, FeatureRefs features, Part& part
                    const DictionaryKeys& dictionaries, Versions versions) {
   FeatureColumns columns;
   for (const std::size_t i : part.places) {
-    columns.add(*features[i], digests.at(features[i]->header),
-                dictionaries.of(*features[i]), versions);
+    columns.add(*features[i], digests.at(features[i]->header), dictionaries.of(*features[i]),
+                versions);
     const bool is_last = i == part.places.back();
     if (columns.bytes < kStatementBytes && !is_last) continue;
     const std::size_t sent =

@@ -9,10 +9,9 @@ namespace watertight::store {
 namespace {
 
 // The list never changes: rows refer to it.
-constexpr std::array<std::string_view, 22> kLods{"",    "0",   "1",   "2",   "3",   "4",
-                                                 "0.0", "0.1", "0.2", "0.3", "1.0", "1.1",
-                                                 "1.2", "1.3", "2.0", "2.1", "2.2", "2.3",
-                                                 "3.0", "3.1", "3.2", "3.3"};
+constexpr std::array<std::string_view, 22> kLods{
+    "",    "0",   "1",   "2",   "3",   "4",   "0.0", "0.1", "0.2", "0.3", "1.0",
+    "1.1", "1.2", "1.3", "2.0", "2.1", "2.2", "2.3", "3.0", "3.1", "3.2", "3.3"};
 constexpr std::uint8_t kOtherLod = 31;
 constexpr std::uint8_t kLodBits = 31;
 constexpr std::uint8_t kHasBlob = 32;

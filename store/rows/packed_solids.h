@@ -5,11 +5,11 @@
 //
 // The facts of a solid are a byte of flags and the numbers (LEB128) that it announces. Bits 0 to 4:
 // the level of detail, an index into a list; 31: its length and its text follow. Bit 6: the object
-// is not that of the solid before (of the first solid: the feature itself); the number of bytes that
-// its id shares with the feature's, then the length of the rest and the rest follow. Bit 7: geometry
-// and ordinal follow; else the geometry is the next one of the object, and the ordinal 0. Bit 5: the
-// solid is proven; the length of its blob follows. watertight.unpacked_solids (store/migrations.cpp)
-// reads the same in SQL.
+// is not that of the solid before (of the first solid: the feature itself); the number of bytes
+// that its id shares with the feature's, then the length of the rest and the rest follow. Bit 7:
+// geometry and ordinal follow; else the geometry is the next one of the object, and the ordinal 0.
+// Bit 5: the solid is proven; the length of its blob follows. watertight.unpacked_solids
+// (store/migrations.cpp) reads the same in SQL.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ namespace watertight::store {
 /// The solids of the feature without measures and reports. Cost: linear.
 Bytes pack_solids(const FeatureRecord& feature);
 
-/// The `number` solids that pack_solids() was given, of the feature `id`. Memory: that of the bytes.
-/// Errors: malformed.
+/// The `number` solids that pack_solids() was given, of the feature `id`. Memory: that of the
+/// bytes. Errors: malformed.
 Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_t number,
                                                ByteView packed);
 

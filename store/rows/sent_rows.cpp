@@ -73,10 +73,9 @@ Result<Digests> send_documents(DatabaseSession& connection, FeatureRefs features
 
 void send_collection(DatabaseSession& connection, const StoredFeature& feature,
                      const Digests& digests) {
-  connection.send(kAddCollection, Parameters()
-                                      .text(feature.collection)
-                                      .int8(feature.srid)
-                                      .bytea(digests.at(feature.header)));
+  connection.send(
+      kAddCollection,
+      Parameters().text(feature.collection).int8(feature.srid).bytea(digests.at(feature.header)));
 }
 
 void send_kinds(DatabaseSession& connection, FeatureRefs features, const Digests& digests) {
@@ -93,11 +92,9 @@ void send_kinds(DatabaseSession& connection, FeatureRefs features, const Digests
     format.push_back(of_document);
     type.push_back(of_feature);
   }
-  connection.send(kAddKinds, Parameters()
-                                 .text_array(collection)
-                                 .bytea_array(header)
-                                 .text_array(format)
-                                 .text_array(type));
+  connection.send(
+      kAddKinds,
+      Parameters().text_array(collection).bytea_array(header).text_array(format).text_array(type));
 }
 
 Result<DictionaryKeys> DictionaryKeys::add(DatabaseSession& connection, FeatureRefs features,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The rows that features refer to, written before them: documents, collections, kinds, dictionaries.
-// Each function is a part of a transaction.
+// The rows that features refer to, written before them: documents, collections, kinds,
+// dictionaries. Each function is a part of a transaction.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ using Digests = std::map<SharedText, Bytes>;
 Result<Digests> send_documents(DatabaseSession& connection, FeatureRefs features,
                                SharedRows& shared);
 
-/// Sends the collection of a feature, which is made with the feature's header and CRS if it does not
-/// exist. Requires send_documents().
+/// Sends the collection of a feature, which is made with the feature's header and CRS if it does
+/// not exist. Requires send_documents().
 void send_collection(DatabaseSession& connection, const StoredFeature& feature,
                      const Digests& digests);
 

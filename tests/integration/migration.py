@@ -102,13 +102,13 @@ def one_round(number):
         versions = psql(service, "SELECT count(*) || ' ' || sum(version) FROM watertight.feature")
         service.stop()
         runs = 1
-        while not killed(service, ["collections", "list"], random.uniform(0.3, 1 + runs)) and runs < 12:
+        while not killed(service, ["collections", "list"], random.uniform(0.3, 1 + runs)) and runs < 6:
             runs += 1
         service.start()
         check(service, versions)
         service.stop()
         compacts = 1
-        while not killed(service, ["compact", "delft"], random.uniform(0.3, 1 + compacts)) and compacts < 12:
+        while not killed(service, ["compact", "delft"], random.uniform(0.3, 1 + compacts)) and compacts < 6:
             compacts += 1
         service.start()
         check(service, versions)

@@ -131,6 +131,22 @@ class MemoryStore : public SolidStore {
       all.insert(all.end(), batch->begin(), batch->end());
     }
   }
+  Result<packing::DictionaryPointer> dictionary(const std::string& collection) override {
+    const std::lock_guard lock(mutex_);
+    const auto found = features_.find(collection);
+    if (found == features_.end()) return packing::DictionaryPointer();
+    for (const auto& [id, feature] : found->second) {
+      if (feature.skeleton.dictionary) return feature.skeleton.dictionary;
+    }
+    return packing::DictionaryPointer();
+  }
+  Result<std::uint64_t> repack(std::span<const StoredFeature> changed) override {
+    const std::lock_guard lock(mutex_);
+    for (const StoredFeature& feature : changed) {
+      features_[feature.collection][feature.id].skeleton = feature.skeleton;
+    }
+    return std::uint64_t{changed.size()};
+  }
   Result<StoredFeature> get(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);
     ++gets;

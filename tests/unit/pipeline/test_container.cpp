@@ -65,7 +65,7 @@ void put(samples::MemoryStore& store, const std::string& text) {
   pipeline::EncodedDocument document = encoded(text, options);
   std::vector<StoredFeature> features;
   for (pipeline::EncodedFeature& feature : document.features) {
-    auto packed = pipeline::pack(std::move(feature));
+    auto packed = pipeline::pack(std::move(feature), nullptr);
     REQUIRE(packed);
     features.push_back(*std::move(packed));
   }

@@ -68,7 +68,7 @@ formats::FeatureReader reader_of(const std::string& text) {
 pipeline::IngestOptions into(const std::string& collection) {
   pipeline::IngestOptions options;
   options.collection = collection;
-  options.batch_bytes = 20'000;  // some ten boxes
+  options.batch_bytes = 10'000;  // some ten boxes
   return options;
 }
 

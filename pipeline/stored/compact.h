@@ -25,8 +25,8 @@ struct CompactCounts {
 /// collection meanwhile; a feature that they change is left as it is. Small transactions: what was
 /// done before a failure stays done, and another call goes on. Errors: not_found; cancelled; those
 /// of the store; malformed when a stored feature is damaged.
-Result<CompactCounts> compact(SolidStore& store, const std::string& collection,
-                              const CancelPoll& is_cancelled = {},
-                              const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+Result<CompactCounts> compact(
+    SolidStore& store, const std::string& collection, const CancelPoll& is_cancelled = {},
+    const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
 }  // namespace watertight::pipeline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/compact.h"
+#include "pipeline/stored/compact.h"
 
 #include <limits>
 #include <utility>
@@ -29,9 +29,8 @@ Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::
   std::vector<std::string> texts;
   bool is_outdated = false;
   for (const StoredFeature& feature : samples->features) {
-    const auto stored =
-        packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
-                        std::numeric_limits<std::uint64_t>::max());
+    const auto stored = packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
+                                        std::numeric_limits<std::uint64_t>::max());
     if (!stored) return stored.error();
     const auto encoded = unpack(feature);
     if (!encoded) return encoded.error();
@@ -43,9 +42,9 @@ Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::
 
 }  // namespace
 
-Result<CompactCounts> compact(
-    SolidStore& store, const std::string& collection, const CancelPoll& is_cancelled,
-    const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+Result<CompactCounts> compact(SolidStore& store, const std::string& collection,
+                              const CancelPoll& is_cancelled,
+                              const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
   const auto found = store.collection(collection);
   if (!found) return found.error();
   const auto dictionary = dictionary_for(store, collection, found->features);

@@ -125,7 +125,8 @@ Bytes changed(const Bytes& file, const std::vector<std::string>& lines,
       const auto block = opened->block(number);
       REQUIRE(block);
       for (const pipeline::ReadFeature& feature : block->features) {
-        if (std::find(deleted.begin(), deleted.end(), feature.encoded.id) == deleted.end()) continue;
+        if (std::find(deleted.begin(), deleted.end(), feature.encoded.id) == deleted.end())
+          continue;
         CHECK(writer->remove({number, feature.ordinal}, feature.encoded.solids.size()));
       }
     }
@@ -257,8 +258,8 @@ TEST_CASE("a file without an index gets one when it is added to") {
 }
 
 TEST_CASE("a whole CityJSON gives its features, and what is added to it is another document") {
-  const auto sequence = formats::read_document(
-      as_bytes(samples::sequence({house(1), house(2)})), Format::city_json_seq, {});
+  const auto sequence = formats::read_document(as_bytes(samples::sequence({house(1), house(2)})),
+                                               Format::city_json_seq, {});
   REQUIRE(sequence);
   const auto model = formats::write_document(*sequence, Format::city_json);
   REQUIRE(model);
@@ -307,7 +308,8 @@ TEST_CASE("a torn end loses nothing that was committed, and is refused unless as
 }
 
 TEST_CASE("a changed byte anywhere in a file with an index is noticed") {
-  const Bytes file = changed(*pipeline::write_container(encoded({house(1)})), {house(2)}, {id_of(1)});
+  const Bytes file =
+      changed(*pipeline::write_container(encoded({house(1)})), {house(2)}, {id_of(1)});
   for (std::size_t i = 0; i < file.size(); ++i) {
     Bytes damaged = file;
     damaged[i] ^= 0x10U;
@@ -321,8 +323,8 @@ TEST_CASE("an index that lies gives an error with its place") {
   REQUIRE(opened);
   const pipeline::Commit commit = opened->commit();
   const auto rebuilt = [&](const pipeline::Commit& other, std::vector<Bytes> records = {}) {
-    Bytes lying(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(
-                                                 opened->commit().documents.end()));
+    Bytes lying(file.begin(),
+                file.begin() + static_cast<std::ptrdiff_t>(opened->commit().documents.end()));
     for (const Bytes& record : records) lying.insert(lying.end(), record.begin(), record.end());
     const Bytes end = pipeline::write_record(RecordKind::commit, pipeline::write_commit(other));
     lying.insert(lying.end(), end.begin(), end.end());
@@ -367,7 +369,8 @@ TEST_CASE("an index that lies gives an error with its place") {
 }
 
 TEST_CASE("changed bytes of index and commit under the right checksum are read or refused") {
-  const Bytes file = changed(*pipeline::write_container(encoded({house(1)})), {house(2)}, {id_of(1)});
+  const Bytes file =
+      changed(*pipeline::write_container(encoded({house(1)})), {house(2)}, {id_of(1)});
   const pipeline::Walk walk = pipeline::walk_records(file);
   REQUIRE(walk.records.size() > 5);
   for (std::size_t changed_one = 1; changed_one < walk.records.size(); ++changed_one) {

@@ -11,7 +11,7 @@ namespace watertight::pipeline {
 namespace {
 
 /// The bytes that the first request asks for: commit, roots and headers of most files.
-constexpr std::uint64_t kTailBytes = 16U << 10U;
+constexpr std::uint64_t kTailBytes = 12U << 10U;
 constexpr std::uint64_t kHeadBytes = sizeof(kContainerMagic) + 1;
 /// The most requests for blocks, so that a box takes six with those for the index.
 constexpr std::size_t kBlockRequests = 4;

@@ -233,6 +233,8 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
     return malformed("the index of blocks states another number of features", entry.extent.offset);
   }
   for (const ReadFeature& feature : block.features) {
+    // An index that was made anew has no boxes of deleted features.
+    if (deleted_.contains({number, feature.ordinal})) continue;
     const auto box = box_of(feature.encoded, feature.solids, limits_);
     if (!box) return box.error();
     if (*box && !(entry.box && entry.box->contains(flat(**box)))) {

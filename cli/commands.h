@@ -153,6 +153,7 @@ struct ExportCommand {
   StoreChoice store;
   std::string collection;
   std::string output;
+  std::string purpose = "size";  // of a Watertight file, or "ranges"
   bool is_proven_only = false;
 };
 Exit run(const ExportCommand& command);

@@ -134,8 +134,10 @@ class ExportRun {
   }
 
   Exit write_container(SolidStore& store) {
+    pipeline::ContainerOptions options;
+    options.purpose = *pipeline::file_purpose_named(command_.purpose);
     auto exporting = pipeline::CollectionExport::start(
-        store, command_.collection, pipeline::ExportFormat::container, {}, scope_);
+        store, command_.collection, pipeline::ExportFormat::container, options, scope_);
     if (!exporting) return fail(command_.collection, exporting.error());
     const Exit exit = write(*exporting, 0);
     if (exit == Exit::valid) sentences_.push_back(counts_of(*exporting) + " written");

@@ -158,6 +158,15 @@ void add_contract(CLI::App& sub, std::string& contract) {
       ->capture_default_str();
 }
 
+void add_purpose(CLI::App& sub, std::string& purpose) {
+  sub.add_option(
+         "--for", purpose,
+         "size, a Watertight file that is as small as it can be; ranges, one whose features "
+         "are read one by one, from a web server too")
+      ->check(CLI::IsMember({"size", "ranges"}))
+      ->capture_default_str();
+}
+
 void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("encode", "Validate and compress a document");
   sub->add_option("IN", command.files,
@@ -184,11 +193,7 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
                   "findings to FILE.report.json");
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
-  sub->add_option("--for", command.purpose,
-                  "size, a file that is as small as it can be; ranges, a file whose features are "
-                  "read one by one, from a web server too")
-      ->check(CLI::IsMember({"size", "ranges"}))
-      ->capture_default_str();
+  add_purpose(*sub, command.purpose);
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
   add_contract(*sub, command.contract);
   sub->add_flag("--explain", command.explains,
@@ -335,6 +340,7 @@ void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
          "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl; OUT-2, ... if "
          "the documents have headers that cannot be merged)")
       ->required();
+  add_purpose(*sub, command.purpose);
   sub->add_flag("--proven", command.is_proven_only,
                 "only features whose solids are all proven to be valid");
   add_store(*sub, command.store);

@@ -14,7 +14,7 @@
 namespace watertight::cli {
 namespace {
 
-constexpr std::uint64_t kTailBytes = 16U << 10U;  // what a reader of a Watertight file wants first
+constexpr std::uint64_t kTailBytes = 12U << 10U;  // what a reader of a Watertight file wants first
 constexpr std::uint64_t kMostWhole = 16ULL << 20U;  // of a file without ranges
 constexpr long kMostRedirects = 5;
 constexpr long kConnectSeconds = 15;

@@ -11,7 +11,7 @@ namespace watertight::pipeline {
 namespace {
 
 /// The bytes that the first request asks for: commit, roots and headers of most files.
-constexpr std::uint64_t kTailBytes = 16U << 10U;
+constexpr std::uint64_t kTailBytes = 12U << 10U;
 constexpr std::uint64_t kHeadBytes = sizeof(kContainerMagic) + 1;
 /// The most requests for blocks, so that a box takes six with those for the index.
 constexpr std::size_t kBlockRequests = 4;
@@ -233,6 +233,8 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
     return malformed("the index of blocks states another number of features", entry.extent.offset);
   }
   for (const ReadFeature& feature : block.features) {
+    // An index that was made anew has no boxes of deleted features.
+    if (deleted_.contains({number, feature.ordinal})) continue;
     const auto box = box_of(feature.encoded, feature.solids, limits_);
     if (!box) return box.error();
     if (*box && !(entry.box && entry.box->contains(flat(**box)))) {

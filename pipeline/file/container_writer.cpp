@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kBlockFeatures = 4096;
 constexpr std::size_t kBlockBytes = 16U << 20U;
 // Blocks of a file that is read in ranges, after compression.
-constexpr std::size_t kRangeBytes = 24U << 10U;
+constexpr std::size_t kRangeBytes = 20U << 10U;
 /// An index whose hashes have so many bits fewer than a new one would have is made anew.
 constexpr std::uint8_t kMissingBits = 2;
 
@@ -56,14 +56,14 @@ Result<FilePurpose> file_purpose_named(const std::string& name) {
   return Error{ErrorCode::invalid_argument, "unknown purpose of a file: '" + name + "'"};
 }
 
-ContainerWriter::ContainerWriter(ContainerOptions options) : options_(std::move(options)) {
+ContainerWriter::ContainerWriter(ContainerOptions options) : options_(options) {
   options_.pages.certificate = nullptr;
   written_ = file_head();
   offset_ = written_.size();
 }
 
 Result<ContainerWriter> ContainerWriter::append(ContainerFile& file, ContainerOptions options) {
-  ContainerWriter writer(std::move(options));
+  ContainerWriter writer(options);
   writer.written_.clear();
   writer.offset_ = file.committed();
   writer.is_appending_ = true;
@@ -235,7 +235,7 @@ void ContainerWriter::write_index() {
     const std::size_t count = std::min(kPageBlocks, entries_.size() - first);
     WrittenBlockPage page = write_block_page(std::span(entries_).subspan(first, count));
     page.page.extent = write(RecordKind::index, page.payload);
-    commit_.block_pages.push_back(std::move(page.page));
+    commit_.block_pages.push_back(page.page);
   }
   if (has_new_deleted_) {
     const std::vector<DeletedFeature> all(deleted_.begin(), deleted_.end());

@@ -16,7 +16,7 @@
 
 namespace watertight::pipeline {
 
-/// For what the file is: to be small, or to be read in ranges, by blocks of some 24 KiB.
+/// For what the file is: to be small, or to be read in ranges, by blocks of some 20 KiB.
 enum class FilePurpose : std::uint8_t { size, ranges };
 /// The purpose named "size" or "ranges". Errors: invalid_argument.
 Result<FilePurpose> file_purpose_named(const std::string& name);

@@ -257,6 +257,22 @@ TEST_CASE("a file without an index gets one when it is added to") {
   CHECK(documents->front().features.size() == 37);
 }
 
+TEST_CASE("an index that has grown much is made anew, without what is deleted") {
+  Bytes file =
+      changed(*pipeline::write_container(encoded({house(1), house(2)})), {house(3)}, {id_of(1)});
+  const std::uint8_t first_bits = ContainerFile::open(file, {})->commit().ids.bits;
+  for (int i = 4; i < 80; ++i) file = changed(file, {house(i)});
+  auto opened = ContainerFile::open(file, {});
+  REQUIRE(opened);
+  CHECK(opened->commit().ids.bits > first_bits);
+  CHECK(opened->commit().features == 78);
+  CHECK(pipeline::select_ids(*opened, {id_of(1)})->missing.size() == 1);
+  for (int i = 2; i < 80; ++i) CHECK(pipeline::select_ids(*opened, {id_of(i)})->missing.empty());
+  const auto documents = pipeline::decode_container(file);
+  REQUIRE(documents);
+  CHECK(documents->front().features.size() == 78);
+}
+
 TEST_CASE("a whole CityJSON gives its features, and what is added to it is another document") {
   const auto sequence = formats::read_document(as_bytes(samples::sequence({house(1), house(2)})),
                                                Format::city_json_seq, {});

@@ -197,7 +197,8 @@ std::string names_of(std::span<const Format> formats) {
   return names;
 }
 
-/// What of a file is not proven: numbers, and each solid with its place and findings.
+/// What of a file is not proven: numbers, and each solid with its place and the codes of its
+/// errors.
 Json unproven_json(const pipeline::ContainerInfo& info) {
   Json list = Json::array();
   for (const pipeline::UnprovenSolid& solid : info.unproven) {
@@ -206,7 +207,8 @@ Json unproven_json(const pipeline::ContainerInfo& info) {
     json["geometry"] = solid.geometry;
     json["solid"] = solid.ordinal;
     const Json report = Json::parse(solid.report, nullptr, false);
-    json["report"] = report.is_discarded() ? Json() : report;
+    const bool has_codes = report.is_object() && report.contains("all_errors");
+    json["errors"] = has_codes ? report["all_errors"] : Json::array();
     list.push_back(std::move(json));
   }
   return {{"features", info.unproven_features},
@@ -221,14 +223,8 @@ void print_unproven(const Json& unproven) {
     std::string line = "  " + printable(solid["object"].get<std::string>());
     if (solid.contains("lod")) line += " LoD " + printable(solid["lod"].get<std::string>());
     line += " geometry " + solid["geometry"].dump() + " solid " + solid["solid"].dump() + ":";
-    const Json* codes = solid["report"].is_object() && solid["report"].contains("all_errors")
-                            ? &solid["report"]["all_errors"]
-                            : nullptr;
-    if (codes != nullptr && !codes->empty()) {
-      for (const Json& code : *codes) line += ' ' + code.dump();
-    } else {
-      line += " undecided";
-    }
+    for (const Json& code : solid["errors"]) line += ' ' + code.dump();
+    if (solid["errors"].empty()) line += " undecided";
     std::puts(line.c_str());
   }
 }

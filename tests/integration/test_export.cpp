@@ -147,11 +147,11 @@ TEST_CASE("an export ends with an error when the database goes away, and can be 
   auto exporting =
       pipeline::CollectionExport::start(*store, "delft", pipeline::ExportFormat::sequence);
   REQUIRE(exporting);
-  database.ask("ALTER TABLE watertight.solid RENAME TO hidden");
+  database.ask("ALTER TABLE watertight.feature_row RENAME TO hidden");
   const auto bytes = exporting->next();
   REQUIRE_FALSE(bytes);
   CHECK_FALSE(bytes.error().message.empty());
-  database.ask("ALTER TABLE watertight.hidden RENAME TO solid");
+  database.ask("ALTER TABLE watertight.hidden RENAME TO feature_row");
   REQUIRE(database.end_sessions());
   CHECK_FALSE(export_all(*store, pipeline::ExportFormat::sequence).empty());
 }

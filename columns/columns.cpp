@@ -20,6 +20,11 @@
 #include "columns/value_coder.h"
 
 namespace watertight::columns {
+
+// The files of columns/models/ (watertight_embed).
+extern const ByteView kJsonExample;
+extern const ByteView kXmlExample;
+
 namespace {
 
 constexpr int kKindBits = 2;
@@ -30,16 +35,55 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
   return number_in(NumberForm{NumberForm::Kind::short_trimmed, 0}, text);
 }
 
+/// Texts with the words of the formats (docs/format-columns.md, "Examples"), from which every coder
+/// learns first: so small texts take few bytes too.
+std::vector<Text> examples() {
+  std::vector<Text> texts;
+  std::string_view lines = as_text(kJsonExample);
+  for (std::size_t end = lines.find('\n'); end != std::string_view::npos; end = lines.find('\n')) {
+    texts.push_back({TextKind::json, lines.substr(0, end)});
+    lines.remove_prefix(end + 1);
+  }
+  texts.push_back({TextKind::xml, as_text(kXmlExample)});
+  texts.push_back({TextKind::table, "documents\n1\t0\ncity-json\ngml\ncity-json-seq\n"});
+  texts.push_back({TextKind::table,
+                   "features\n0\texample-1\tBuilding\t7415\t0\t0\t1\t2\n"
+                   "0\texample-2\tBuilding\t7415\t0\t0\t1\t1\n0\t\tCityJSON\t0\t0\t0\t1\t1\n"});
+  texts.push_back({TextKind::table,
+                   "solids\nexample-1\t1.2\t0\t0\t0\t\nexample-1\t2.2\t1\t0\t0\t\n"
+                   "example-2\t2\t0\t0\t0\t\nexample-2\t2\t0\t0\t1\t302\n"});
+  return texts;
+}
+
 /// Writes texts to a stream, or reads them from it.
 class TextCoder {
  public:
-  explicit TextCoder(EntropyStream& stream, std::uint64_t most_bytes)
-      : stream_(stream), left_(most_bytes) {}
+  /// A coder that has learned from the examples of the format. Cost: a copy of some megabytes.
+  static TextCoder after_examples() {
+    static const TextCoder kCoder = [] {
+      TextCoder coder;
+      auto measured = EntropyStream::meter();
+      for (const Text& example : examples()) coder.code(measured, example);
+      coder.mixer_.soften();
+      return coder;
+    }();
+    return kCoder;
+  }
 
-  /// Codes one text and returns it.
-  std::string code(const Text& text) {
+  /// Codes one text and returns it. The stream fails when all texts that are read have more bytes
+  /// than allow().
+  std::string code(EntropyStream& stream, const Text& text) {
+    stream_ = &stream;
+    return code_text(text);
+  }
+  void allow(std::uint64_t most_bytes) { left_ = most_bytes; }
+  bool is_over_limit() const { return is_over_limit_ || strings_.is_over_limit(); }
+
+ private:
+  TextCoder() = default;
+  std::string code_text(const Text& text) {
     const auto kind = static_cast<TextKind>(mixer_.symbol(
-        stream_, Question::text_kind, {1}, kKindBits, static_cast<std::uint32_t>(text.kind)));
+        *stream_, Question::text_kind, {1}, kKindBits, static_cast<std::uint32_t>(text.kind)));
     switch (kind) {
       case TextKind::bytes:
         return code_bytes(text.text);
@@ -50,22 +94,20 @@ class TextCoder {
       case TextKind::xml:
         return code_tokens<XmlPath, XmlTokens>(xml_path_, text.text);
     }
-    stream_.fail();
+    stream_->fail();
     return {};
   }
-  bool is_over_limit() const { return is_over_limit_ || strings_.is_over_limit(); }
 
- private:
   std::size_t most_bytes() const {
     return static_cast<std::size_t>(
         std::min<std::uint64_t>(left_, std::numeric_limits<std::size_t>::max()));
   }
   /// Appends to a text that is read.
   void append(std::string& out, std::string_view more) {
-    if (!stream_.is_reading() || stream_.failed()) return;
+    if (!stream_->is_reading() || stream_->failed()) return;
     if (more.size() > left_) {
       is_over_limit_ = true;
-      stream_.fail();
+      stream_->fail();
       return;
     }
     left_ -= more.size();
@@ -76,7 +118,7 @@ class TextCoder {
     Place place;
     place.column = kBytesColumn;
     std::string out;
-    append(out, values_.code(stream_, mixer_, strings_, place, text, most_bytes()));
+    append(out, values_.code(*stream_, mixer_, strings_, place, text, most_bytes()));
     return out;
   }
 
@@ -90,9 +132,9 @@ class TextCoder {
     vertices_.restart(0);
     last_value_ = 0;
     std::string out;
-    while (!stream_.failed()) {
-      const bool is_reading = stream_.is_reading();
-      const Mark mark = marks_.code(stream_, mixer_, strings_, path.place(), last_value_,
+    while (!stream_->failed()) {
+      const bool is_reading = stream_->is_reading();
+      const Mark mark = marks_.code(*stream_, mixer_, strings_, path.place(), last_value_,
                                     is_reading ? Mark{} : tokens.next_mark(path), most_bytes());
       append(out, mark.text);
       if (mark.is_last) break;
@@ -107,11 +149,11 @@ class TextCoder {
       if (const auto coded = code_vertex_index(place, text)) return *coded;
     }
     if (place.role == Role::coordinate && vertices_.is_ready()) {
-      if (auto coded = vertices_.code(stream_, mixer_, rings_, text))
+      if (auto coded = vertices_.code(*stream_, mixer_, rings_, text))
         return keep(*std::move(coded));
     }
     const std::string_view value =
-        values_.code(stream_, mixer_, strings_, place, text, most_bytes());
+        values_.code(*stream_, mixer_, strings_, place, text, most_bytes());
     last_value_ = values_.last();
     if (place.role == Role::vertex_count) {
       vertices_.restart(static_cast<std::uint64_t>(whole_number(value).value_or(0)));
@@ -122,11 +164,11 @@ class TextCoder {
 
   /// None for a value that is no index of a vertex.
   std::optional<std::string_view> code_vertex_index(const Place& place, std::string_view text) {
-    auto vertex = stream_.is_reading() ? std::nullopt : whole_number(text);
+    auto vertex = stream_->is_reading() ? std::nullopt : whole_number(text);
     if (vertex && (*vertex < 0 || *vertex >= kMostVertexNumbers)) vertex.reset();
-    if (!mixer_.flag(stream_, Question::text_kind, {place.column}, vertex.has_value()))
+    if (!mixer_.flag(*stream_, Question::text_kind, {place.column}, vertex.has_value()))
       return std::nullopt;
-    const VertexNumber coded = rings_.code(stream_, mixer_, place.index, vertex.value_or(0));
+    const VertexNumber coded = rings_.code(*stream_, mixer_, place.index, vertex.value_or(0));
     values_.pass(coded);
     last_value_ = 0;
     return keep(std::to_string(coded));
@@ -137,8 +179,8 @@ class TextCoder {
     return last_text_;
   }
 
-  EntropyStream& stream_;
-  std::uint64_t left_;
+  EntropyStream* stream_ = nullptr;
+  std::uint64_t left_ = ~std::uint64_t{0};
   bool is_over_limit_ = false;
   ContextMixer mixer_;
   JsonPath json_path_;
@@ -159,8 +201,8 @@ constexpr std::uint64_t kMostTextsForAByte = 4096;
 
 Bytes pack_texts(std::span<const Text> texts) {
   auto stream = EntropyStream::writer();
-  TextCoder coder(stream, ~std::uint64_t{0});
-  for (const Text& text : texts) coder.code(text);
+  TextCoder coder = TextCoder::after_examples();
+  for (const Text& text : texts) coder.code(stream, text);
   ByteWriter writer;
   writer.varint(texts.size());
   writer.append(std::move(stream).finish());
@@ -172,9 +214,11 @@ Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most
   const std::uint64_t count = reader.varint();
   if (reader.failed() || count > kMostTextsForAByte * bytes.size()) return reader.error("texts");
   auto stream = EntropyStream::reader(reader.take(reader.remaining()));
-  TextCoder coder(stream, most_bytes);
+  TextCoder coder = TextCoder::after_examples();
+  coder.allow(most_bytes);
   std::vector<std::string> texts;
-  for (std::uint64_t i = 0; i < count && !stream.failed(); ++i) texts.push_back(coder.code({}));
+  for (std::uint64_t i = 0; i < count && !stream.failed(); ++i)
+    texts.push_back(coder.code(stream, {}));
   if (coder.is_over_limit()) {
     return Error{ErrorCode::limit_exceeded,
                  "packed texts of more than " + std::to_string(most_bytes) + " bytes"};

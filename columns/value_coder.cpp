@@ -108,10 +108,10 @@ std::uint32_t ValueCoder::code_listed(EntropyStream& stream, ContextMixer& mixer
 /// The value that came first after this one in the column where both came first.
 std::optional<std::uint32_t> ValueCoder::next_known(std::uint32_t value) const {
   const Origin& origin = origins_[value];
-  if (origin.column == nullptr || origin.index + 1 >= origin.column->values.size()) {
-    return std::nullopt;
-  }
-  return origin.column->values[origin.index + 1];
+  if (!origin.index) return std::nullopt;
+  const std::vector<std::uint32_t>& values = columns_.at(origin.column).values;
+  if (*origin.index + 1 >= values.size()) return std::nullopt;
+  return values[*origin.index + 1];
 }
 
 std::uint32_t ValueCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
@@ -227,7 +227,7 @@ void ValueCoder::learn(EntropyStream& stream, const Context& context, Kind kind,
       index_of_.insert_or_assign(key_of(context.place.column, value),
                                  static_cast<std::uint32_t>(column.values.size()));
     }
-    if (origins_[value].column == nullptr) origins_[value] = {&column, column.values.size()};
+    if (!origins_[value].index) origins_[value] = {context.place.column, column.values.size()};
     column.values.push_back(value);
   }
   if (kind != Kind::number && numbers_[value]) column.numbers.see(*numbers_[value]);

@@ -61,8 +61,8 @@ class ValueCoder {
   };
   /// Where a value came first.
   struct Origin {
-    const Column* column = nullptr;
-    std::size_t index = 0;  // among the values of the column
+    Hash column = 0;
+    std::optional<std::size_t> index = {};  // among the values of the column; none: not listed
   };
   /// What is known before a value.
   struct Context {

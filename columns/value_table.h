@@ -15,6 +15,12 @@ namespace watertight::columns {
 
 class ValueTable {
  public:
+  ValueTable() = default;
+  ValueTable(const ValueTable& other) {
+    for (const std::string& text : other.texts_) add(text);
+  }
+  ValueTable& operator=(const ValueTable&) = delete;
+
   std::optional<std::uint32_t> find(std::string_view text) const {
     const auto found = numbers_.find(text);
     if (found == numbers_.end()) return std::nullopt;

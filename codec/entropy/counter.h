@@ -48,6 +48,7 @@ inline constexpr auto kStretch = [] {
 }();
 
 // A counter has 22 bits for its probability, and below them 10 bits for the number of observations.
+inline constexpr std::uint32_t kCountBits = 1023;
 inline constexpr std::uint32_t kMaxCount = 250;
 inline constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // one half, nothing observed
 

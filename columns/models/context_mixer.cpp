@@ -43,6 +43,15 @@ ContextMixer::ContextMixer()
     : counters_(std::size_t{1} << kTableBits, kUnknown),
       weights_(static_cast<std::size_t>(Question::count) * kSteps) {}
 
+void ContextMixer::soften() {
+  constexpr std::uint32_t kMostAnswers = 1;
+  constexpr std::uint32_t kMostMixed = 8;
+  for (std::uint32_t& counter : counters_) {
+    counter = (counter & ~kCountBits) | std::min(counter & kCountBits, kMostAnswers);
+  }
+  for (Weights& weights : weights_) weights.seen = std::min(weights.seen, kMostMixed);
+}
+
 bool ContextMixer::decide(EntropyStream& stream, Question question, std::size_t step,
                           const Inputs& contexts, std::uint32_t node, bool value) {
   constexpr std::uint32_t kGroup = 1U << kGroupBits;

@@ -84,6 +84,9 @@ class ContextMixer {
 
   ContextMixer();
 
+  /// Makes all that was learned count as little, so that what comes changes it soon.
+  void soften();
+
   /// Codes a yes or no.
   bool flag(EntropyStream& stream, Question question, ContextList contexts, bool value);
   /// Codes the lowest `bits` bits of a number, high ones first.

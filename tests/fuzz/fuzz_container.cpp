@@ -2,13 +2,16 @@
 //
 // libFuzzer harness of the reader of Watertight files. The input is read twice: as a file whose
 // records get the right checksums; and as the only block of a file (the length of the texts in two
-// bytes, the texts, the page file and the blobs). The harness compresses the texts of that block
-// itself, so that the parser of the bytes after them is reached. The reader must return the
+// bytes; the texts, with record separators (0x1E) between them and the letter of its kind before
+// each; the page file and the blobs). The harness packs the texts of that block itself, so that the
+// parser of the tables and of the bytes after the texts is reached. The reader must return the
 // documents or an Error, also when it reads the file in ranges, and a document must be written or
 // refused with an Error. What adds to the file must give a file that can be read, or an Error.
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
-#include "formats/text/packed_text.h"
+#include "columns/columns.h"
 #include "fuzz_formats.h"
 #include "pipeline/container.h"
 #include "pipeline/file/selection.h"
@@ -40,16 +43,31 @@ Bytes with_checksums(ByteView bytes) {
   return std::move(writer).bytes();
 }
 
+/// Texts with separators between them, each after the letter of its kind.
+std::vector<columns::Text> texts_in(std::string_view bytes) {
+  std::vector<columns::Text> texts;
+  while (!bytes.empty()) {
+    const std::string_view text = bytes.substr(0, bytes.find('\x1E'));
+    bytes.remove_prefix(std::min(text.size() + 1, bytes.size()));
+    const char kind = text.empty() ? 'b' : text[0];
+    texts.push_back({kind == 'j'   ? columns::TextKind::json
+                     : kind == 'x' ? columns::TextKind::xml
+                     : kind == 't' ? columns::TextKind::table
+                                   : columns::TextKind::bytes,
+                     text.substr(std::min<std::size_t>(1, text.size()))});
+  }
+  return texts;
+}
+
 /// A whole file of the given texts, pages and blobs.
 Bytes around(ByteView data) {
   ByteReader reader(data);
   const std::size_t size = reader.u16();
   const ByteView texts = reader.take(std::min(size, reader.remaining()));
-  const auto packed = formats::pack_text(as_text(texts));
-  fuzz::require(packed.has_value());
+  const Bytes packed = columns::pack_texts(texts_in(as_text(texts)));
   ByteWriter block;
-  block.varint(packed->bytes.size());
-  block.append(packed->bytes);
+  block.varint(packed.size());
+  block.append(packed);
   block.append(reader.take(reader.remaining()));
   ByteWriter writer;
   writer.append(pipeline::file_head());

@@ -135,7 +135,7 @@ class TextCoder {
     while (!stream_->failed()) {
       const bool is_reading = stream_->is_reading();
       const Mark mark = marks_.code(*stream_, mixer_, strings_, path.place(), last_value_,
-                                    is_reading ? Mark{} : tokens.next_mark(path), most_bytes());
+                                    is_reading ? Mark{} : tokens.next_mark(), most_bytes());
       append(out, mark.text);
       if (mark.is_last) break;
       path.follow(mark.text);

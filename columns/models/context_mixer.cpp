@@ -52,28 +52,24 @@ void ContextMixer::soften() {
   for (Weights& weights : weights_) weights.seen = std::min(weights.seen, kMostMixed);
 }
 
-bool ContextMixer::decide(EntropyStream& stream, Question question, std::size_t step,
-                          const Inputs& contexts, std::uint32_t node, bool value) {
+template <std::size_t count>
+bool ContextMixer::decide_of(EntropyStream& stream, Weights& weights, const Inputs& contexts,
+                             std::uint32_t node, bool value) {
   constexpr std::uint32_t kGroup = 1U << kGroupBits;
-  WATERTIGHT_ASSERT(node < kGroup);
-  Weights& weights =
-      weights_[static_cast<std::size_t>(question) * kSteps + std::min(step, kSteps - 1)];
-  const std::size_t count = contexts.count_;
   if (weights.seen == 0) {
     weights.values.fill(first_weight(static_cast<std::uint32_t>(count)));
     weights.values[count] = 0;
   }
-  std::array<std::int32_t, kMostContexts + 1> inputs{};
-  std::array<std::uint32_t, kMostContexts> at{};
-  std::int64_t sum = 0;
+  std::array<std::int32_t, count + 1> inputs{};
+  std::array<std::uint32_t*, count> counters{};
+  std::int64_t sum = static_cast<std::int64_t>(weights.values[count]) * kBiasInput;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t counter = contexts.hashes_[i] >> (32 - kTableBits);
-    at[i] = node == 0 ? counter : (counter & ~(kGroup - 1)) + node;
-    inputs[i] = input_of(counters_[at[i]]);
+    counters[i] = &counters_[node == 0 ? counter : (counter & ~(kGroup - 1)) + node];
+    inputs[i] = input_of(*counters[i]);
     sum += static_cast<std::int64_t>(weights.values[i]) * inputs[i];
   }
   inputs[count] = kBiasInput;
-  sum += static_cast<std::int64_t>(weights.values[count]) * kBiasInput;
   const std::uint32_t ones = probability_of(sum);
   const bool bit = stream.code(value, ones);
   const std::int64_t error = (bit ? 65536 : 0) - static_cast<std::int64_t>(ones);
@@ -82,8 +78,30 @@ bool ContextMixer::decide(EntropyStream& stream, Question question, std::size_t 
     weights.values[i] = moved_weight(weights.values[i], move, inputs[i]);
   }
   weights.seen = std::min(weights.seen + 1, kMaxMixed);
-  for (std::size_t i = 0; i < count; ++i) counters_[at[i]] = learned(counters_[at[i]], bit);
+  for (std::size_t i = 0; i < count; ++i) *counters[i] = learned(*counters[i], bit);
   return bit;
+}
+
+bool ContextMixer::decide(EntropyStream& stream, Question question, std::size_t step,
+                          const Inputs& inputs, std::uint32_t node, bool value) {
+  WATERTIGHT_ASSERT(node < (1U << kGroupBits));
+  Weights& weights =
+      weights_[static_cast<std::size_t>(question) * kSteps + std::min(step, kSteps - 1)];
+  switch (inputs.count_) {
+    case 1:
+      return decide_of<1>(stream, weights, inputs, node, value);
+    case 2:
+      return decide_of<2>(stream, weights, inputs, node, value);
+    case 3:
+      return decide_of<3>(stream, weights, inputs, node, value);
+    case 4:
+      return decide_of<4>(stream, weights, inputs, node, value);
+    case 7:
+      return decide_of<7>(stream, weights, inputs, node, value);
+    default:
+      WATERTIGHT_ASSERT(false);
+      return false;
+  }
 }
 
 bool ContextMixer::flag(EntropyStream& stream, Question question, ContextList contexts,
@@ -94,7 +112,7 @@ bool ContextMixer::flag(EntropyStream& stream, Question question, ContextList co
 std::uint64_t ContextMixer::code_low_bits(EntropyStream& stream, Question question,
                                           const Inputs& inputs, std::size_t first_step, int bits,
                                           std::uint64_t value) {
-  Inputs group = inputs.at(1);
+  Inputs group = inputs;
   std::uint64_t result = 1;
   std::uint32_t node = 1;
   for (int i = 0; i < bits; ++i) {

@@ -78,8 +78,8 @@ enum class Question : std::uint8_t {
 
 class ContextMixer {
  public:
-  /// At most this many contexts of a decision.
-  static constexpr std::size_t kMostContexts = 8;
+  /// A decision has 1 to 4 contexts, or this many.
+  static constexpr std::size_t kMostContexts = 7;
   using ContextList = std::initializer_list<Hash>;
 
   ContextMixer();
@@ -126,6 +126,9 @@ class ContextMixer {
     std::uint32_t seen = 0;
   };
 
+  template <std::size_t count>
+  bool decide_of(EntropyStream& stream, Weights& weights, const Inputs& contexts,
+                 std::uint32_t node, bool value);
   std::uint64_t code_low_bits(EntropyStream& stream, Question question, const Inputs& inputs,
                               std::size_t first_step, int bits, std::uint64_t value);
 

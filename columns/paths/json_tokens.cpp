@@ -18,30 +18,31 @@ std::size_t end_of_quoted(std::string_view text, std::size_t start) {
 
 }  // namespace
 
-// The mark is followed in a copy of the path, which tells keys that are ids from others.
-Mark JsonTokens::next_mark(const JsonPath& path) {
-  JsonPath ahead = path;
+Mark JsonTokens::next_mark() {
   std::size_t i = is_quoted_ && !rest_.empty() ? 1 : 0;
-  ahead.follow(rest_.substr(0, i));
   is_quoted_ = false;
-  std::size_t followed = i;
+  std::size_t followed = 0;
+  const auto follow = [&] {
+    path_.follow(rest_.substr(followed, i - followed));
+    followed = i;
+  };
   while (i < rest_.size()) {
     if (kStructure.find(rest_[i]) != std::string_view::npos) {
       ++i;
       continue;
     }
     if (rest_[i] != '"') break;
-    ahead.follow(rest_.substr(followed, i - followed));
-    followed = i;
+    follow();
     const std::size_t end = end_of_quoted(rest_, i + 1);
-    const bool is_key = ahead.is_in_object() && end + 1 < rest_.size() && rest_[end + 1] == ':';
-    if (!is_key || ahead.has_ids_for_keys()) {
+    const bool is_key = path_.is_in_object() && end + 1 < rest_.size() && rest_[end + 1] == ':';
+    if (!is_key || path_.has_ids_for_keys()) {
       is_quoted_ = true;
       ++i;
       break;
     }
     i = end + 1;
   }
+  follow();
   const Mark mark{rest_.substr(0, i), i == rest_.size()};
   rest_.remove_prefix(i);
   return mark;

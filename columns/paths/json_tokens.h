@@ -13,13 +13,13 @@ namespace watertight::columns {
 class JsonTokens {
  public:
   explicit JsonTokens(std::string_view text) : rest_(text) {}
-  /// The next mark. `path` is where it begins.
-  Mark next_mark(const JsonPath& path);
+  Mark next_mark();
   /// The value after a mark that is not the last.
   std::string_view next_value();
 
  private:
   std::string_view rest_;
+  JsonPath path_;           // tells keys that are ids from others
   bool is_quoted_ = false;  // the value that comes next, or came last
 };
 

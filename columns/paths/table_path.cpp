@@ -31,7 +31,7 @@ Place TablePath::place() const {
   return place;
 }
 
-Mark TableTokens::next_mark(const TablePath& /*path*/) {
+Mark TableTokens::next_mark() {
   const std::size_t name_end = is_first_ ? rest_.find('\n') : 0;
   const std::size_t size =
       name_end == std::string_view::npos ? rest_.size() : std::min(name_end + 1, rest_.size());

@@ -30,7 +30,7 @@ class TablePath {
 class TableTokens {
  public:
   explicit TableTokens(std::string_view text) : rest_(text) {}
-  Mark next_mark(const TablePath& path);
+  Mark next_mark();
   std::string_view next_value();
 
  private:

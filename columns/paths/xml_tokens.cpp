@@ -38,7 +38,7 @@ std::size_t value_end(std::string_view text) {
 
 }  // namespace
 
-Mark XmlTokens::next_mark(const XmlPath& /*path*/) {
+Mark XmlTokens::next_mark() {
   std::size_t i = 0;
   if (quote_ != '\0' && !rest_.empty()) ++i;
   quote_ = '\0';

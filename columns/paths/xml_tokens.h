@@ -13,8 +13,7 @@ namespace watertight::columns {
 class XmlTokens {
  public:
   explicit XmlTokens(std::string_view text) : rest_(text) {}
-  /// The next mark. `path` is where it begins.
-  Mark next_mark(const XmlPath& path);
+  Mark next_mark();
   /// The value after a mark that is not the last.
   std::string_view next_value();
 

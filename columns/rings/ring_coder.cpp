@@ -10,6 +10,7 @@ namespace watertight::columns {
 namespace {
 
 constexpr std::size_t kMostRecent = 256;
+constexpr std::ptrdiff_t kLatest = 16;
 constexpr std::uint32_t kFarPosition = 5;
 constexpr int kModelledBits = 4;
 
@@ -24,7 +25,8 @@ std::optional<VertexNumber> find(const std::unordered_map<VertexNumber, VertexNu
 void RingCoder::restart() { *this = RingCoder(); }
 
 bool RingCoder::is_in_ring(VertexNumber vertex) const {
-  return std::find(ring_.begin(), ring_.end(), vertex) != ring_.end();
+  const auto looked_at = std::min<std::ptrdiff_t>(ring_.end() - ring_.begin(), kLatest);
+  return std::find(ring_.end() - looked_at, ring_.end(), vertex) != ring_.end();
 }
 
 RingCoder::Guess RingCoder::guess(std::uint32_t position) const {

@@ -35,6 +35,7 @@ class RingCoder {
     bool agree = false;
   };
   Guess guess(std::uint32_t position) const;
+  /// Whether the vertex is one of the last 16 of the ring, and so is not the next one.
   bool is_in_ring(VertexNumber vertex) const;
   std::optional<std::uint64_t> rank_of(const Guess& guess, VertexNumber vertex) const;
   std::optional<VertexNumber> of_rank(const Guess& guess, std::uint64_t rank) const;

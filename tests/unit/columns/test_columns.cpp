@@ -190,6 +190,13 @@ TEST_CASE("floats of 32 bits cost no more than their bits") {
   CHECK(packed_size(text, TextKind::json) < 1000 * 16 / 5);
 }
 
+TEST_CASE("a ring of many vertices comes back, in time that grows with its length") {
+  std::mt19937 random(13);
+  std::string text = R"({"boundaries":[[)";
+  for (int i = 0; i < 20'000; ++i) text += std::to_string(random() % 100'000) + ",";
+  check_round_trip({{TextKind::json, text}});
+}
+
 TEST_CASE("damaged bytes give an error or other texts, in bounds") {
   const std::string text = features(20);
   const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));

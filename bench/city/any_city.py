@@ -23,7 +23,7 @@ def run(*command):
 def codes_of(info):
     codes = collections.Counter()
     for solid in info["unproven"]["solids"]:
-        codes.update((solid["report"] or {}).get("all_errors") or ["undecided"])
+        codes.update(solid["errors"] or ["undecided"])
     return " ".join(f"{code}:{count}" for code, count in sorted(codes.items(), key=str)) or "-"
 
 

@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures the same requests to collections of 1, 120,000 and 1,000,000 features in turn.
 
-    scale.py PROGRAM CITY [--features N ...] [--rounds R] [--largest-ratio X]
+    scale.py PROGRAM [--features N ...] [--rounds R] [--largest-ratio X]
 
-CITY is a CityJSONSeq. Its first feature is stored in each collection and then copied in the database,
-each copy with its box moved along x. The service and its private database run in a temporary folder.
+The features are boxes, each of its own size at a place of its own. The service and its private database run in a temporary folder.
 Prints the median time of each kind of request for each collection, and its ratio to that of the
 smallest one. A POST stores a feature of a new id. Exit code 1 if a ratio is above X (1.5).
 """
@@ -19,20 +18,10 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "siege"))
-from service import Service, temporary_folder  # noqa: E402
+from service import Service, box_feature, sequence, temporary_folder  # noqa: E402
 
 NUMBERS = itertools.count(10_000_000)
-COPY = """
-INSERT INTO watertight.feature (collection, id, type, format, srid, header, skeleton, solids, blob_bytes,
-  min_x, min_y, min_z, max_x, max_y, max_z, place)
-SELECT collection, id || '-' || n, type, format, srid, header, skeleton, solids, blob_bytes,
-  min_x + 20 * n, min_y, min_z, max_x + 20 * n, max_y, max_z, place / 2 + n
-FROM watertight.feature, generate_series(1, {copies}) n WHERE collection = '{name}';
-INSERT INTO watertight.solid
-SELECT s.collection, s.feature || '-' || n, object_id, geometry, ordinal, position, lod, blob, measures, report
-FROM watertight.solid s, generate_series(1, {copies}) n WHERE collection = '{name}';
-VACUUM ANALYZE;
-"""
+BATCH = 2000
 
 
 class Client:
@@ -56,39 +45,32 @@ class Client:
         return elapsed
 
 
-def fill(service, name, size, one):
-    service.post(name, one)
-    for statement in COPY.format(name=name, copies=size - 1).split(";\n") if size > 1 else []:
-        if statement and service.psql(statement).wait() != 0:
-            raise SystemExit("scale: copying failed")
+def fill(service, name, size):
+    for first in range(0, size, BATCH):
+        service.post(name, sequence(box_feature(f"b{n}", n) for n in range(first, min(size, first + BATCH))))
+    if service.psql("VACUUM ANALYZE").wait() != 0:
+        raise SystemExit("scale: VACUUM failed")
     counted = json.loads(service.request("GET", f"/collections/{name}")[1])["features"]
     print(f"{name}: {counted} features", flush=True)
 
 
-def renamed(document):
-    """The document with its feature under an id that was never used."""
-    header, line = document.splitlines()
-    feature = json.loads(line)
-    new = f"{feature['id']}-{next(NUMBERS)}"
-    text = line.decode().replace(json.dumps(feature["id"]), json.dumps(new))
-    return header + b"\n" + text.encode() + b"\n"
+def new_box():
+    number = next(NUMBERS)
+    return sequence([box_feature(f"b{number}", number)])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
-    parser.add_argument("city")
     parser.add_argument("--features", type=int, nargs="+", default=[1, 120_000, 1_000_000])
     parser.add_argument("--rounds", type=int, default=60)
     parser.add_argument("--largest-ratio", type=float, default=1.5)
     options = parser.parse_args()
-    header, feature = pathlib.Path(options.city).read_bytes().splitlines()[:2]
-    one = header + b"\n" + feature + b"\n"
     worst = 0.0
     with temporary_folder("scale") as folder, Service(options.program, folder) as service:
         names = [f"scale-{size}" for size in options.features]
         for name, size in zip(names, options.features):
-            fill(service, name, size, one)
+            fill(service, name, size)
         first = json.loads(service.request("GET", f"/collections/{names[0]}/items")[1])["features"][0]
         crs = json.loads(service.request("GET", f"/collections/{names[0]}")[1])["storageCrs"]
         box = ",".join(str(first["bbox"][i]) for i in (0, 1, 3, 4))
@@ -99,7 +81,7 @@ def main():
             "collection": lambda path: client.ask("GET", path),
             "export, first byte": lambda path: client.ask("GET", f"{path}/export?f=cityjsonseq", None, False),
             "export as .wt, first byte": lambda path: client.ask("GET", f"{path}/export?f=wt", None, False),
-            "POST of one feature": lambda path: client.ask("POST", f"{path}/items", renamed(one))}
+            "POST of one box": lambda path: client.ask("POST", f"{path}/items", new_box())}
         for kind, request in kinds.items():
             times = {name: [] for name in names}
             for _ in range(options.rounds):

@@ -55,10 +55,10 @@ bool StringCoder::code_character(EntropyStream& stream, ContextMixer& mixer, Has
   return is_end;
 }
 
-std::string StringCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column,
-                              std::string_view text, std::size_t most_bytes) {
-  const auto last = last_of_column_.find(column);
-  Match match = last == last_of_column_.end() ? Match{} : Match{last->second, 1};
+std::string_view StringCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column,
+                                   std::string_view text, std::size_t most_bytes) {
+  const std::size_t* const last = last_of_column_.find(column);
+  Match match = last == nullptr ? Match{} : Match{*last, 1};
   const std::size_t begin = history_.size();
   before_ = 0;
   for (std::size_t i = 0;; ++i) {
@@ -77,7 +77,7 @@ std::string StringCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash c
     after = history_.size();
   }
   last_of_column_[column] = begin;
-  return history_.substr(begin, history_.size() - begin - 1);
+  return std::string_view(history_).substr(begin, history_.size() - begin - 1);
 }
 
 }  // namespace watertight::columns

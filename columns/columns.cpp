@@ -213,7 +213,7 @@ Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most
   ByteReader reader(bytes);
   const std::uint64_t count = reader.varint();
   if (reader.failed() || count > kMostTextsForAByte * bytes.size()) return reader.error("texts");
-  auto stream = EntropyStream::reader(reader.take(reader.remaining()));
+  auto stream = EntropyStream::reader_without_costs(reader.take(reader.remaining()));
   TextCoder coder = TextCoder::after_examples();
   coder.allow(most_bytes);
   std::vector<std::string> texts;

@@ -31,8 +31,15 @@ class StringCoder {
   };
   bool code_character(EntropyStream& stream, ContextMixer& mixer, Hash column, std::size_t position,
                       Match& match, unsigned char& character, bool& is_end);
+  /// Copies the characters of the match that come next in the string; returns their number.
+  std::size_t copy(EntropyStream& stream, ContextMixer& mixer, Hash column, Match& match,
+                   std::string_view rest, std::size_t most_bytes);
+  void take(unsigned char character) {
+    history_ += static_cast<char>(character);
+    before_ = (before_ << 8U) | character;
+  }
 
-  std::string history_;  // all strings, a NUL after each
+  std::string history_;                        // all strings, a NUL after each
   FlatMap<Hash, std::size_t> last_of_column_;  // where the last string of a column begins
   FlatMap<Hash, std::size_t> after_three_;     // what followed three characters
   bool is_over_limit_ = false;

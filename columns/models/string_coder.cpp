@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kLongMatch = 31;
 constexpr std::size_t kFarPosition = 40;
-constexpr std::uint32_t kCopied = 16;     // a match of this length goes on as a copy
+constexpr std::uint32_t kCopied = 8;     // a match of this length goes on as a copy
 constexpr std::size_t kMostCopied = 4096;
 constexpr int kModelledBits = 4;
 constexpr Hash kTag = 0x5354'5200;  // tells contexts of characters from those of other questions

@@ -219,7 +219,7 @@ Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most
   const std::uint64_t count = head / 2;
   if (reader.failed() || count > kMostTextsForAByte * bytes.size()) return reader.error("texts");
   if (head % 2 == 1) return unpack_plainly(reader.take(reader.remaining()), count, most_bytes);
-  auto stream = EntropyStream::reader(reader.take(reader.remaining()));
+  auto stream = EntropyStream::reader_without_costs(reader.take(reader.remaining()));
   TextCoder coder = TextCoder::after_examples();
   coder.allow(most_bytes);
   std::vector<std::string> texts;

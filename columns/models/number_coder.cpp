@@ -33,7 +33,7 @@ NumberForm NumberColumn::code_form(EntropyStream& stream, ContextMixer& mixer, H
     return *form_;
   }
   NumberForm coded;
-  const std::uint32_t kind = mixer.symbol(stream, Question::form, {column, known}, 3,
+  const std::uint32_t kind = mixer.symbol(stream, Question::form, {column, known}, 4,
                                           static_cast<std::uint32_t>(form.kind));
   coded.kind = static_cast<NumberForm::Kind>(kind);
   coded.decimals =

@@ -6,9 +6,9 @@
 
 #include <cstdint>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/flat_map.h"
 #include "columns/place.h"
 
 namespace watertight::columns {
@@ -39,7 +39,7 @@ class XmlPath {
   bool is_in_quotes_ = false;
   bool is_element_ = false;  // the tag is of an element, not a comment or an instruction
   Hash attribute_ = 0;
-  std::unordered_map<Hash, std::uint32_t> last_length_;  // of lists in contents, by path
+  FlatMap<Hash, std::uint32_t> last_length_;  // of lists in contents, by path
 };
 
 }  // namespace watertight::columns

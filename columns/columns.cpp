@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "columns/mark_coder.h"
@@ -139,7 +140,10 @@ class TextCoder {
       append(out, mark.text);
       if (mark.is_last) break;
       path.follow(mark.text);
-      append(out, code_value(path.place(), is_reading ? std::string_view() : tokens.next_value()));
+      const std::string_view value =
+          code_value(path.place(), is_reading ? std::string_view() : tokens.next_value());
+      append(out, value);
+      if constexpr (std::is_same_v<Path, XmlPath>) path.follow_value(value);
     }
     return out;
   }

@@ -20,6 +20,10 @@ class XmlPath {
   void restart();
   /// Follows the text of a mark. Takes any bytes; a text that is not XML gives arbitrary places.
   void follow(std::string_view mark);
+  /// Follows a value. That of an attribute `name`, and the content of an element gen:name, tell
+  /// values of different meaning at one path apart: their element's contents have columns of
+  /// their own.
+  void follow_value(std::string_view value);
   /// Where the next value or mark is.
   Place place() const;
   bool is_in_tag() const { return is_in_tag_; }
@@ -27,7 +31,9 @@ class XmlPath {
  private:
   struct Level {
     Hash path = 0;
+    Hash name = 0;            // the name of the element
     Hash child = 0;           // the name of the last element in it
+    Hash title = 0;           // of its attribute `name`, or of gen:name in it
     std::uint32_t index = 0;  // the number of values in its content
   };
   void open(Hash name);

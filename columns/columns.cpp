@@ -16,6 +16,7 @@
 #include "columns/paths/table_path.h"
 #include "columns/paths/xml_path.h"
 #include "columns/paths/xml_tokens.h"
+#include "columns/rings/position_coder.h"
 #include "columns/rings/ring_coder.h"
 #include "columns/rings/vertex_coder.h"
 #include "columns/value_coder.h"
@@ -156,6 +157,13 @@ class TextCoder {
       if (auto coded = vertices_.code(*stream_, mixer_, rings_, text))
         return keep(*std::move(coded));
     }
+    if (place.role == Role::position) {
+      if (auto coded = positions_.code(*stream_, mixer_, place, text)) {
+        values_.pass(std::nullopt);
+        last_value_ = 0;
+        return keep(*std::move(coded));
+      }
+    }
     const std::string_view value =
         values_.code(*stream_, mixer_, strings_, place, text, most_bytes());
     last_value_ = values_.last();
@@ -195,6 +203,7 @@ class TextCoder {
   ValueCoder values_;
   RingCoder rings_;
   VertexCoder vertices_;
+  PositionCoder positions_;
   Hash last_value_ = 0;
   std::string last_text_;
 };

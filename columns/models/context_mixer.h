@@ -72,6 +72,8 @@ enum class Question : std::uint8_t {
   coordinate_y,
   coordinate_z,
   coordinate_sign,
+  is_near_guess,
+  guess_residual,
   text_kind,
   count
 };

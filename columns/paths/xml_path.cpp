@@ -55,7 +55,15 @@ void XmlPath::close() {
   }
   if (levels_.size() == 1) return;
   const Level& level = levels_.back();
-  if (level.index > 0) last_length_[level.path] = level.index;
+  if (level.index > 0) {
+    Lists& lists = lists_[level.path];
+    lists.last_length = level.index;
+    if (level.index > 1) {
+      lists.are_long = true;
+      lists.are_triples = lists.are_triples && level.index % 3 == 0;
+      lists.are_pairs = lists.are_pairs && level.index % 2 == 0;
+    }
+  }
   levels_.pop_back();
 }
 
@@ -105,7 +113,6 @@ void XmlPath::follow_value(std::string_view value) {
 
 Place XmlPath::place() const {
   constexpr std::uint32_t kFew = 4;
-  constexpr std::uint32_t kAxes = 3;
   const Level& level = levels_.back();
   Place place;
   place.path = level.path;
@@ -114,8 +121,9 @@ Place XmlPath::place() const {
     place.column = hash_of(level.path, attribute_);
     return place;
   }
-  const auto known = last_length_.find(level.path);
-  place.last_length = known == last_length_.end() ? 0 : known->second;
+  const auto known = lists_.find(level.path);
+  const Lists lists = known == lists_.end() ? Lists{} : known->second;
+  place.last_length = lists.last_length;
   place.index = level.index;
   place.is_in_array = level.index > 0 || place.last_length > 1;
   place.key = level.child;
@@ -123,8 +131,12 @@ Place XmlPath::place() const {
   if (levels_.size() > 1 && levels_[levels_.size() - 2].title != 0) {
     place.column = hash_of(place.column, levels_[levels_.size() - 2].title);
   }
-  if (place.last_length > kFew) {
-    place.column = hash_of(place.column, level.index % kAxes);
+  if (lists.are_long) place.axes = lists.are_triples ? 3 : lists.are_pairs ? 2 : 0;
+  if (place.axes > 0) {
+    place.role = Role::position;
+    place.column = hash_of(place.column, level.index % place.axes);
+  } else if (place.last_length > kFew) {
+    place.column = hash_of(place.column, kFew);
   } else if (place.last_length > 1) {
     place.column = hash_of(place.column, std::min(level.index, kFew));
   }

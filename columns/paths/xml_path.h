@@ -45,7 +45,15 @@ class XmlPath {
   bool is_in_quotes_ = false;
   bool is_element_ = false;  // the tag is of an element, not a comment or an instruction
   Hash attribute_ = 0;
-  std::unordered_map<Hash, std::uint32_t> last_length_;  // of lists in contents, by path
+  /// What is known about the lists at a path.
+  struct Lists {
+    std::uint32_t last_length = 0;
+    // Of those of more than one value: whether there are some, and what their lengths are.
+    bool are_long = false;
+    bool are_triples = true;
+    bool are_pairs = true;
+  };
+  std::unordered_map<Hash, Lists> lists_;  // by path
 };
 
 }  // namespace watertight::columns

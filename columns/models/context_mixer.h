@@ -74,6 +74,8 @@ enum class Question : std::uint8_t {
   coordinate_sign,
   is_near_guess,
   guess_residual,
+  is_known_coordinate,
+  known_coordinate,
   text_kind,
   count
 };

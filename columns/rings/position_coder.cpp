@@ -9,11 +9,20 @@ namespace {
 
 constexpr int kModelledBits = 4;
 constexpr int kMemory = 4;
+constexpr int kIndexBits = 12;
 constexpr std::uint32_t kFewPositions = 6;
+constexpr std::size_t kMostKnown = 4096;
 constexpr int kMostUnits = 4;  // decimals of x and y of lines
 constexpr std::array<std::int64_t, kMostUnits + 1> kUnits{1, 10, 100, 1000, 10'000};
 
 }  // namespace
+
+void PositionCoder::Known::add(std::int64_t number) {
+  if (numbers.size() == kMostKnown) return;
+  if (index_of.try_emplace(number, static_cast<std::uint32_t>(numbers.size())).second) {
+    numbers.push_back(number);
+  }
+}
 
 void PositionCoder::begin(List& list, const Place& place) {
   // A list of one position goes on with the positions of the element before it.
@@ -30,6 +39,7 @@ void PositionCoder::rescale(List& list, std::uint32_t axis, int decimals) {
   for (Position* position : {&list.first, &list.last[0], &list.last[1], &list.last[2]}) {
     (*position)[axis] = with_decimals((*position)[axis], before, decimals);
   }
+  list.known[axis] = {};
 }
 
 void PositionCoder::guess(const List& list, std::uint32_t axis, std::uint32_t axes,
@@ -57,6 +67,38 @@ std::array<std::int64_t, PositionCoder::kPredictions> PositionCoder::predictions
   const std::int64_t last = list.last[0][axis];
   return {last, list.last[1][axis], sum(last, difference(last, list.last[1][axis])),
           sum(last, difference(list.last[2][axis], list.last[1][axis]))};
+}
+
+/// Codes a number as one that the axis had before; none if it had not, or if that takes more than
+/// its residual.
+std::optional<std::int64_t> PositionCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
+                                                      List& list, Hash column, Hash others,
+                                                      std::int64_t number, std::int64_t residual) {
+  Known& known = list.known[list.next_axis];
+  if (known.numbers.empty()) return std::nullopt;
+  std::optional<std::uint32_t> index;
+  if (!stream.is_reading()) {
+    const auto found = known.index_of.find(number);
+    if (found != known.index_of.end() &&
+        std::bit_width(found->second) < std::bit_width(magnitude(residual))) {
+      index = found->second;
+    }
+  }
+  if (!mixer.flag(stream, Question::is_known_coordinate,
+                  {hash_of(column, others), hash_of(column, known.last_index), column},
+                  index.has_value())) {
+    known.last_index = 0;
+    return std::nullopt;
+  }
+  const std::uint64_t coded = mixer.number(
+      stream, Question::known_coordinate, {column, hash_of(column, others), hash_of(column, known.last_index)},
+      index.value_or(0), kIndexBits);
+  if (coded >= known.numbers.size()) {
+    stream.fail();
+    return 0;
+  }
+  known.last_index = static_cast<std::uint32_t>(coded) + 1;
+  return known.numbers[static_cast<std::size_t>(coded)];
 }
 
 std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mixer, List& list,
@@ -99,6 +141,9 @@ std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mix
   const std::size_t best = best_of(list.misses[axis]);
   const auto which = static_cast<Hash>(best);
   const std::int64_t residual = difference(number, predicted[best]);
+  if (const auto known = code_known(stream, mixer, list, column, others, number, residual)) {
+    return *known;
+  }
   const std::uint64_t size = mixer.number(stream, Question::coordinate_x,
                                           {hash_of(column, which, where),
                                            hash_of(column, list.last_size[axis], others),
@@ -153,6 +198,7 @@ std::optional<std::string> PositionCoder::code(EntropyStream& stream, ContextMix
   const std::int64_t number = code_number(stream, mixer, list, place, given.number);
   if (list.count > 0) judge(list.misses[axis], predictions(list, axis), number, kMemory);
   list.position[axis] = number;
+  list.known[axis].add(number);
   if (axis + 1 == place.axes) take(list, place.axes);
   std::string printed = print(form, number);
   if (printed.empty()) stream.fail();

@@ -30,8 +30,16 @@ class PositionCoder {
   static constexpr std::size_t kMostAxes = 3;
   static constexpr std::size_t kPredictions = 4;
   using Position = std::array<std::int64_t, kMostAxes>;
+  /// The different coordinates of an axis, while they are few.
+  struct Known {
+    std::vector<std::int64_t> numbers;
+    std::unordered_map<std::int64_t, std::uint32_t> index_of;
+    std::uint32_t last_index = 0;
+    void add(std::int64_t number);
+  };
   /// The lists at a path.
   struct List {
+    std::array<Known, kMostAxes> known;
     std::array<NumberColumn, kMostAxes> forms;
     std::array<int, kMostAxes> decimals{};
     Position first{};
@@ -50,6 +58,9 @@ class PositionCoder {
   static void guess(const List& list, std::uint32_t axis, std::uint32_t axes,
                     std::vector<Guess>& guesses);
   static std::array<std::int64_t, kPredictions> predictions(const List& list, std::uint32_t axis);
+  static std::optional<std::int64_t> code_known(EntropyStream& stream, ContextMixer& mixer,
+                                                List& list, Hash column, Hash others,
+                                                std::int64_t number, std::int64_t residual);
   std::int64_t code_number(EntropyStream& stream, ContextMixer& mixer, List& list,
                            const Place& place, std::int64_t number);
   static void take(List& list, std::uint32_t axes);

@@ -76,6 +76,7 @@ enum class Question : std::uint8_t {
   guess_residual,
   is_known_coordinate,
   known_coordinate,
+  is_equal_coordinate,
   text_kind,
   count
 };

@@ -50,6 +50,9 @@ class VertexCoder {
     std::array<VertexNumber, 3> parallelogram{-1, -1, -1};  // its place is first + second - third
   };
   void look_around();
+  /// Codes whether a coordinate is that of a neighbour; none if it is not.
+  std::optional<std::int64_t> code_equal(EntropyStream& stream, ContextMixer& mixer,
+                                         std::int64_t number, int decimals);
   void find_parallelogram(const std::vector<VertexNumber>& ring, Corner corner);
   bool is_known(VertexNumber vertex) const { return vertices_.contains(vertex); }
   std::int64_t value(VertexNumber vertex, std::size_t axis, int decimals) const;
@@ -68,6 +71,8 @@ class VertexCoder {
   Vertex vertex_;
   Vertex last_vertex_;
   Surroundings around_;
+  std::vector<VertexNumber> equal_;                // the neighbours that had the coordinates so far
+  std::array<std::uint32_t, 3> last_equal_{};      // for each axis the neighbour that had the last one
   std::array<std::array<std::int32_t, kPredictions>, 3> misses_{};
   std::array<std::uint32_t, 3> last_residual_{};
   std::array<NumberColumn, 3> forms_;

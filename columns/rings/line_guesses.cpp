@@ -99,8 +99,9 @@ void LineGuesses::add_for_x(std::vector<Guess>& guesses) const {
   add(Guess::Kind::round_x, x, dx);
   add(Guess::Kind::round_y, y, dy);
   add(Guess::Kind::diagonal, x - y, dx - dy);
-  std::sort(crossings.begin(), crossings.end(),
-            [](const Crossing& a, const Crossing& b) { return a.part * b.whole < b.part * a.whole; });
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return a.part * b.whole < b.part * a.whole;
+  });
   for (const Crossing& crossing : crossings) guesses.push_back(crossing.guess);
 }
 
@@ -130,8 +131,8 @@ void LineGuesses::add_for_y(std::vector<Guess>& guesses, std::int64_t x,
 void LineGuesses::take(const Place& place, Guess::Kind kind) {
   learn_grid(place);
   const bool is_in_range = std::abs(place[0]) < kLimit / 4 && std::abs(place[1]) < kLimit / 4;
-  const bool is_crossing = kind == Guess::Kind::round_x || kind == Guess::Kind::round_y ||
-                           kind == Guess::Kind::diagonal;
+  const bool is_crossing =
+      kind == Guess::Kind::round_x || kind == Guess::Kind::round_y || kind == Guess::Kind::diagonal;
   if (!is_crossing || !has_last_ || !is_in_range) {
     start_ = place;
     has_direction_ = false;

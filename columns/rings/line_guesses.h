@@ -55,7 +55,7 @@ class LineGuesses {
   std::int64_t grid() const;
   void learn_grid(const Place& place);
 
-  std::int64_t unit_ = 0;  // 0: there is no grid
+  std::int64_t unit_ = 0;                           // 0: there is no grid
   std::array<std::int32_t, kSizes.size()> hits_{};  // how often positions were on grids, in 1/4096
   bool has_last_ = false;
   bool has_direction_ = false;

@@ -90,9 +90,10 @@ std::optional<std::int64_t> PositionCoder::code_known(EntropyStream& stream, Con
     known.last_index = 0;
     return std::nullopt;
   }
-  const std::uint64_t coded = mixer.number(
-      stream, Question::known_coordinate, {column, hash_of(column, others), hash_of(column, known.last_index)},
-      index.value_or(0), kIndexBits);
+  const std::uint64_t coded =
+      mixer.number(stream, Question::known_coordinate,
+                   {column, hash_of(column, others), hash_of(column, known.last_index)},
+                   index.value_or(0), kIndexBits);
   if (coded >= known.numbers.size()) {
     stream.fail();
     return 0;
@@ -106,8 +107,8 @@ std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mix
   const std::uint32_t axis = list.next_axis;
   const Hash column = hash_of(place.column, axis);
   guess(list, axis, place.axes, guesses_);
-  const Hash others = axis == 0 ? static_cast<Hash>(list.last_kind) + 16
-                                : static_cast<Hash>(list.kinds[axis - 1]);
+  const Hash others =
+      axis == 0 ? static_cast<Hash>(list.last_kind) + 16 : static_cast<Hash>(list.kinds[axis - 1]);
   const Hash where = std::min(list.count, kFewPositions);
   const bool is_last = place.index + place.axes >= place.last_length + axis;
   Hash denied = 0;
@@ -120,11 +121,11 @@ std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mix
     const auto kind = static_cast<Hash>(made.kind);
     const std::int64_t off = difference(number, made.number);
     const std::int64_t most = made.is_exact ? 0 : Guess::kMostOff;
-    const bool is_near = mixer.flag(stream, Question::is_near_guess,
-                                    {hash_of(column, kind, denied, others),
-                                     hash_of(column, kind, where, is_last ? 1 : 0),
-                                     hash_of(kind, others, axis), hash_of(kind, denied, where)},
-                                    off >= -most && off <= most);
+    const bool is_near = mixer.flag(
+        stream, Question::is_near_guess,
+        {hash_of(column, kind, denied, others), hash_of(column, kind, where, is_last ? 1 : 0),
+         hash_of(kind, others, axis), hash_of(kind, denied, where)},
+        off >= -most && off <= most);
     if (!is_near) {
       denied = denied * 8 + kind + 1;
       continue;
@@ -144,12 +145,12 @@ std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mix
   if (const auto known = code_known(stream, mixer, list, column, others, number, residual)) {
     return *known;
   }
-  const std::uint64_t size = mixer.number(stream, Question::coordinate_x,
-                                          {hash_of(column, which, where),
-                                           hash_of(column, list.last_size[axis], others),
-                                           hash_of(which, list.last_size[axis], axis),
-                                           hash_of(column, denied, axis > 0 ? list.last_size[0] : 0)},
-                                          magnitude(residual), kModelledBits);
+  const std::uint64_t size =
+      mixer.number(stream, Question::coordinate_x,
+                   {hash_of(column, which, where), hash_of(column, list.last_size[axis], others),
+                    hash_of(which, list.last_size[axis], axis),
+                    hash_of(column, denied, axis > 0 ? list.last_size[0] : 0)},
+                   magnitude(residual), kModelledBits);
   const auto length = static_cast<std::uint32_t>(std::bit_width(size));
   const bool is_negative =
       size > 0 && mixer.flag(stream, Question::coordinate_sign,

@@ -8,8 +8,8 @@ namespace watertight::columns {
 namespace {
 
 constexpr int kModelledBits = 4;
-constexpr int kMemory = 4;  // a length of a residual counts for 1/16 in the usual length
-constexpr std::size_t kMostEqual = 4;     // coordinates of neighbours that are asked about
+constexpr int kMemory = 4;             // a length of a residual counts for 1/16 in the usual length
+constexpr std::size_t kMostEqual = 4;  // coordinates of neighbours that are asked about
 constexpr std::size_t kMostCorners = 64;  // of a vertex that are looked at
 constexpr std::array<Question, 3> kAxes{Question::coordinate_x, Question::coordinate_y,
                                         Question::coordinate_z};
@@ -153,9 +153,8 @@ std::optional<std::int64_t> VertexCoder::code_equal(EntropyStream& stream, Conte
     if (axis_ < 2) equal_.clear();
     return std::nullopt;
   }
-  std::erase_if(equal_, [&](VertexNumber neighbour) {
-    return value(neighbour, axis_, decimals) != *coded;
-  });
+  std::erase_if(
+      equal_, [&](VertexNumber neighbour) { return value(neighbour, axis_, decimals) != *coded; });
   return coded;
 }
 

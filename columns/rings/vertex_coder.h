@@ -71,8 +71,8 @@ class VertexCoder {
   Vertex vertex_;
   Vertex last_vertex_;
   Surroundings around_;
-  std::vector<VertexNumber> equal_;                // the neighbours that had the coordinates so far
-  std::array<std::uint32_t, 3> last_equal_{};      // for each axis the neighbour that had the last one
+  std::vector<VertexNumber> equal_;            // the neighbours that had the coordinates so far
+  std::array<std::uint32_t, 3> last_equal_{};  // for each axis the neighbour that had the last one
   std::array<std::array<std::int32_t, kPredictions>, 3> misses_{};
   std::array<std::uint32_t, 3> last_residual_{};
   std::array<NumberColumn, 3> forms_;

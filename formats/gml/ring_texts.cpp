@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-/// The numbers of a ring as they are written, one blank after each; in the order of its positions or
-/// in the opposite order. Empty where the numbers are not three for each position.
+/// The numbers of a ring as they are written, one blank after each; in the order of its positions
+/// or in the opposite order. Empty where the numbers are not three for each position.
 std::string positions_of(std::string_view text, bool is_reversed) {
   std::vector<std::string_view> numbers;
   for (std::size_t at = 0; (at = text.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
@@ -26,7 +26,8 @@ std::string positions_of(std::string_view text, bool is_reversed) {
   const std::size_t count = numbers.size() / 3;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t first = 3 * (is_reversed ? count - 1 - i : i);
-    for (std::size_t axis = 0; axis < 3; ++axis) positions.append(numbers[first + axis]).append(" ");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      positions.append(numbers[first + axis]).append(" ");
   }
   return positions;
 }

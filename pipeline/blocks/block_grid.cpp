@@ -14,8 +14,8 @@ namespace {
 constexpr int kDoubleBits = 53;
 constexpr double kEnd = 9007199254740992.0;  // 2^53
 
-/// The exponent of the largest power of two of which a double is a multiple. Requires a finite value
-/// that is not 0.
+/// The exponent of the largest power of two of which a double is a multiple. Requires a finite
+/// value that is not 0.
 int exponent_of(double value) {
   int exponent = 0;
   auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), kDoubleBits));

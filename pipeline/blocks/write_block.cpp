@@ -142,11 +142,11 @@ Result<Paged> smallest_pages(const BlockContents& contents, const EncodeOptions&
   const auto solids = solids_for_pages(contents);
   if (!solids) return solids.error();
   auto pages = on_own_grids(*solids, blobs, options);
-  const auto reader =
-      pages ? codec::PageFileReader::open(pages->file) : Result<codec::PageFileReader>(pages.error());
+  const auto reader = pages ? codec::PageFileReader::open(pages->file)
+                            : Result<codec::PageFileReader>(pages.error());
   const bool have_one_grid =
-      reader && reader->page_count() <=
-                    (solids->size() + codec::kMaxPageSolids - 1) / codec::kMaxPageSolids;
+      reader &&
+      reader->page_count() <= (solids->size() + codec::kMaxPageSolids - 1) / codec::kMaxPageSolids;
   Paged best = blobs;
   if (Status taken = take_smaller(std::move(pages), best); !taken) return std::move(taken).error();
   if (have_one_grid) return best;
@@ -161,8 +161,8 @@ Result<Paged> smallest_pages(const BlockContents& contents, const EncodeOptions&
 Result<Bytes> write_block(const BlockContents& contents,
                           std::span<const BlockDocument> /*documents*/, const EncodeOptions& pages,
                           SolidLayout layout) {
-  const auto paged = layout == SolidLayout::blobs ? without_pages(contents)
-                                                  : smallest_pages(contents, pages);
+  const auto paged =
+      layout == SolidLayout::blobs ? without_pages(contents) : smallest_pages(contents, pages);
   if (!paged) return paged.error();
   ByteWriter block;
   write_part(block, pack_block_texts(contents, paged->forms));

@@ -7,11 +7,12 @@
 //    "boundaries":[shells],"vertices":{"count":8,"solids":[],"others":[x,y,z,x,...]}}
 //
 // Coordinates are those on the lattice, divided by the largest whole number that divides all of an
-// axis; these three stand as "units":[1,1,1000] before the boundaries if one of them is not 1. Lines that were stored before this form are a list of
-// numbers with single spaces between them: the kind of the lattice; mantissa and exponent of its
-// three steps and its origin's three coordinates; the EPSG code; the vertices; the vertices of the
-// rings; the sizes of rings, facets and shells. Each list begins with its length; integer
-// coordinates are differences to the vertex before.
+// axis; these three stand as "units":[1,1,1000] before the boundaries if one of them is not 1.
+// Lines that were stored before this form are a list of numbers with single spaces between them:
+// the kind of the lattice; mantissa and exponent of its three steps and its origin's three
+// coordinates; the EPSG code; the vertices; the vertices of the rings; the sizes of rings, facets
+// and shells. Each list begins with its length; integer coordinates are differences to the vertex
+// before.
 #include "pipeline/stored/unproven_solid.h"
 
 #include <array>

@@ -29,6 +29,9 @@ class PageFileWriter {
   /// vertices. For stores, which keep blobs of valid solids only. Errors: not_encodable; those of
   /// decode().
   Status add_blob(ByteView blob, const Limits& limits = {});
+  /// Adds a solid that its container makes again from this one, with the acceptance of that solid.
+  /// For containers of blocks. Errors: not_encodable.
+  Status add(const OrientedBoundary& boundary, const Acceptance& acceptance);
   /// Returns the bytes written since the last call; the caller appends them to the file.
   Bytes take();
   /// Returns the last bytes: the pages that are still open, and the index. Errors: not_encodable.
@@ -40,7 +43,6 @@ class PageFileWriter {
     std::uint64_t bytes = 0;
     std::vector<std::uint64_t> numbers;
   };
-  Status add(const OrientedBoundary& boundary, const Acceptance& acceptance);
   Status close(OpenPage& page);
 
   std::size_t page_solids_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "columns/mark_coder.h"
@@ -16,6 +17,7 @@
 #include "columns/paths/xml_path.h"
 #include "columns/paths/xml_tokens.h"
 #include "columns/plain_texts.h"
+#include "columns/rings/position_coder.h"
 #include "columns/rings/ring_coder.h"
 #include "columns/rings/vertex_coder.h"
 #include "columns/value_coder.h"
@@ -140,7 +142,10 @@ class TextCoder {
       append(out, mark.text);
       if (mark.is_last) break;
       path.follow(mark.text);
-      append(out, code_value(path.place(), is_reading ? std::string_view() : tokens.next_value()));
+      const std::string_view value =
+          code_value(path.place(), is_reading ? std::string_view() : tokens.next_value());
+      append(out, value);
+      if constexpr (std::is_same_v<Path, XmlPath>) path.follow_value(value);
     }
     return out;
   }
@@ -152,6 +157,13 @@ class TextCoder {
     if (place.role == Role::coordinate && vertices_.is_ready()) {
       if (auto coded = vertices_.code(*stream_, mixer_, rings_, text))
         return keep(*std::move(coded));
+    }
+    if (place.role == Role::position) {
+      if (auto coded = positions_.code(*stream_, mixer_, place, text)) {
+        values_.pass(std::nullopt);
+        last_value_ = 0;
+        return keep(*std::move(coded));
+      }
     }
     const std::string_view value =
         values_.code(*stream_, mixer_, strings_, place, text, most_bytes());
@@ -192,6 +204,7 @@ class TextCoder {
   ValueCoder values_;
   RingCoder rings_;
   VertexCoder vertices_;
+  PositionCoder positions_;
   Hash last_value_ = 0;
   std::string last_text_;
 };

@@ -15,6 +15,7 @@ enum class Role : std::uint8_t {
   vertex_index,  // an index of a vertex, in a ring of a surface
   vertex_count,  // the number of vertices of a feature
   vertex_run,    // the vertices that a solid has: first, length, first, length, ...
+  position,      // a coordinate in a list of positions, x y z x y z ... or x y x y ...
   coordinate     // a coordinate of a vertex that no solid has, x y z x y z ...
 };
 
@@ -24,6 +25,7 @@ struct Place {
   Hash key = 0;                   // in an object: its last key; in an array: 0
   std::uint32_t index = 0;        // the number of values and structures before it in its array
   std::uint32_t last_length = 0;  // the length of the last array at this path
+  std::uint32_t axes = 0;         // of the positions of a list: 2 or 3
   bool is_in_array = false;
   Role role = Role::none;
 };

@@ -73,6 +73,11 @@ enum class Question : std::uint8_t {
   coordinate_y,
   coordinate_z,
   coordinate_sign,
+  is_near_guess,
+  guess_residual,
+  is_known_coordinate,
+  known_coordinate,
+  is_equal_coordinate,
   text_kind,
   count
 };

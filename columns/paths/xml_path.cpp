@@ -15,13 +15,17 @@ bool ends_name(char c) {
          c == '"' || c == '\'' || c == '<';
 }
 
+Hash hash_of_text(std::string_view text) {
+  Hash hash = 0;
+  for (const char c : text) hash = hash_of(hash, static_cast<unsigned char>(c));
+  return hash;
+}
+
 /// Takes a name off a text from `at` on, which moves to the end of the name.
 Hash take_name(std::string_view text, std::size_t& at) {
-  Hash hash = 0;
-  while (at < text.size() && !ends_name(text[at])) {
-    hash = hash_of(hash, static_cast<unsigned char>(text[at++]));
-  }
-  return hash;
+  const std::size_t begin = at;
+  while (at < text.size() && !ends_name(text[at])) ++at;
+  return hash_of_text(text.substr(begin, at - begin));
 }
 
 }  // namespace
@@ -41,7 +45,7 @@ void XmlPath::open(Hash name) {
     return;
   }
   levels_.back().child = name;
-  levels_.push_back({hash_of(levels_.back().path, name)});
+  levels_.push_back({hash_of(levels_.back().path, name), name});
 }
 
 void XmlPath::close() {
@@ -51,7 +55,15 @@ void XmlPath::close() {
   }
   if (levels_.size() == 1) return;
   const Level& level = levels_.back();
-  if (level.index > 0) last_length_[level.path] = level.index;
+  if (level.index > 0) {
+    Lists& lists = lists_[level.path];
+    lists.last_length = level.index;
+    if (level.index > 1) {
+      lists.are_long = true;
+      lists.are_triples = lists.are_triples && level.index % 3 == 0;
+      lists.are_pairs = lists.are_pairs && level.index % 2 == 0;
+    }
+  }
   levels_.pop_back();
 }
 
@@ -89,9 +101,18 @@ void XmlPath::follow(std::string_view mark) {
   }
 }
 
+void XmlPath::follow_value(std::string_view value) {
+  static const Hash kAttribute = hash_of_text("name");
+  static const Hash kElement = hash_of_text("gen:name");
+  if (is_in_tag_) {
+    if (attribute_ == kAttribute) levels_.back().title = hash_of_text(value);
+  } else if (levels_.size() > 1 && levels_.back().name == kElement) {
+    levels_[levels_.size() - 2].title = hash_of_text(value);
+  }
+}
+
 Place XmlPath::place() const {
   constexpr std::uint32_t kFew = 4;
-  constexpr std::uint32_t kAxes = 3;
   const Level& level = levels_.back();
   Place place;
   place.path = level.path;
@@ -100,14 +121,22 @@ Place XmlPath::place() const {
     place.column = hash_of(level.path, attribute_);
     return place;
   }
-  const std::uint32_t* const known = last_length_.find(level.path);
-  place.last_length = known == nullptr ? 0 : *known;
+  const Lists* const known = lists_.find(level.path);
+  const Lists lists = known == nullptr ? Lists{} : *known;
+  place.last_length = lists.last_length;
   place.index = level.index;
   place.is_in_array = level.index > 0 || place.last_length > 1;
   place.key = level.child;
   place.column = hash_of(level.path, kContent);
-  if (place.last_length > kFew) {
-    place.column = hash_of(place.column, level.index % kAxes);
+  if (levels_.size() > 1 && levels_[levels_.size() - 2].title != 0) {
+    place.column = hash_of(place.column, levels_[levels_.size() - 2].title);
+  }
+  if (lists.are_long) place.axes = lists.are_triples ? 3 : lists.are_pairs ? 2 : 0;
+  if (place.axes > 0) {
+    place.role = Role::position;
+    place.column = hash_of(place.column, level.index % place.axes);
+  } else if (place.last_length > kFew) {
+    place.column = hash_of(place.column, kFew);
   } else if (place.last_length > 1) {
     place.column = hash_of(place.column, std::min(level.index, kFew));
   }

@@ -20,6 +20,10 @@ class XmlPath {
   void restart();
   /// Follows the text of a mark. Takes any bytes; a text that is not XML gives arbitrary places.
   void follow(std::string_view mark);
+  /// Follows a value. That of an attribute `name`, and the content of an element gen:name, tell
+  /// values of different meaning at one path apart: their element's contents have columns of
+  /// their own.
+  void follow_value(std::string_view value);
   /// Where the next value or mark is.
   Place place() const;
   bool is_in_tag() const { return is_in_tag_; }
@@ -27,7 +31,9 @@ class XmlPath {
  private:
   struct Level {
     Hash path = 0;
+    Hash name = 0;            // the name of the element
     Hash child = 0;           // the name of the last element in it
+    Hash title = 0;           // of its attribute `name`, or of gen:name in it
     std::uint32_t index = 0;  // the number of values in its content
   };
   void open(Hash name);
@@ -39,7 +45,15 @@ class XmlPath {
   bool is_in_quotes_ = false;
   bool is_element_ = false;  // the tag is of an element, not a comment or an instruction
   Hash attribute_ = 0;
-  FlatMap<Hash, std::uint32_t> last_length_;  // of lists in contents, by path
+  /// What is known about the lists at a path.
+  struct Lists {
+    std::uint32_t last_length = 0;
+    // Of those of more than one value: whether there are some, and what their lengths are.
+    bool are_long = false;
+    bool are_triples = true;
+    bool are_pairs = true;
+  };
+  FlatMap<Hash, Lists> lists_;  // by path
 };
 
 }  // namespace watertight::columns

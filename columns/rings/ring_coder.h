@@ -61,7 +61,8 @@ class RingCoder {
   Guess guess(std::uint32_t position) const;
   /// Whether the vertex is one of the last 16 of the ring, and so is not the next one.
   bool is_in_ring(VertexNumber vertex) const;
-  /// The end of the vertices in `recent_` that may be named by a rank. Those of the ring come later.
+  /// The end of the vertices in `recent_` that may be named by a rank. Those of the ring come
+  /// later.
   std::size_t end_of_ranked() const;
   std::optional<std::uint64_t> rank_of(const Guess& guess, VertexNumber vertex) const;
   std::optional<VertexNumber> of_rank(const Guess& guess, std::uint64_t rank) const;

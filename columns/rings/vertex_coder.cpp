@@ -8,7 +8,8 @@ namespace watertight::columns {
 namespace {
 
 constexpr int kModelledBits = 4;
-constexpr int kMemory = 4;  // a length of a residual counts for 1/16 in the usual length
+constexpr int kMemory = 4;             // a length of a residual counts for 1/16 in the usual length
+constexpr std::size_t kMostEqual = 4;  // coordinates of neighbours that are asked about
 constexpr std::size_t kMostCorners = 64;  // of a vertex that are looked at
 constexpr std::array<Question, 3> kAxes{Question::coordinate_x, Question::coordinate_y,
                                         Question::coordinate_z};
@@ -124,7 +125,8 @@ std::array<std::int64_t, VertexCoder::kPredictions> VertexCoder::predictions(std
                                                                              int decimals) const {
   const std::int64_t last =
       with_decimals(last_vertex_[axis].number, last_vertex_[axis].decimals, decimals);
-  const std::int64_t nearest = around_.nearest == kNone ? last : value(around_.nearest, axis, decimals);
+  const std::int64_t nearest =
+      around_.nearest == kNone ? last : value(around_.nearest, axis, decimals);
   std::int64_t middle = nearest;
   if (!around_.neighbours.empty()) {
     std::int64_t total = 0;
@@ -139,6 +141,46 @@ std::array<std::int64_t, VertexCoder::kPredictions> VertexCoder::predictions(std
       sum(value(first, axis, decimals),
           difference(value(second, axis, decimals), value(third, axis, decimals)));
   return {last, nearest, middle, corner, sum(middle, difference(corner, middle) / 2)};
+}
+
+std::optional<std::int64_t> VertexCoder::code_equal(EntropyStream& stream, ContextMixer& mixer,
+                                                    std::int64_t number, int decimals) {
+  if (axis_ == 0) equal_ = around_.neighbours;
+  // Those that had the coordinates before come first.
+  std::vector<std::uint32_t> candidates = equal_;
+  const std::size_t preferred = axis_ == 0 ? 0 : candidates.size();
+  for (const std::uint32_t neighbour : around_.neighbours) {
+    if (axis_ > 0 && std::find(equal_.begin(), equal_.end(), neighbour) == equal_.end()) {
+      candidates.push_back(neighbour);
+    }
+  }
+  const auto axis = static_cast<Hash>(axis_);
+  const auto before = hash_of(axis, axis_ > 0 ? last_equal_[0] : 0, axis_ > 1 ? last_equal_[1] : 0);
+  std::vector<std::int64_t> denied;
+  std::optional<std::int64_t> coded;
+  for (std::size_t i = 0; i < candidates.size() && denied.size() < kMostEqual && !coded; ++i) {
+    const std::int64_t guess = value(candidates[i], axis_, decimals);
+    if (std::find(denied.begin(), denied.end(), guess) != denied.end()) continue;
+    const Hash is_preferred = i < preferred ? 1 : 0;
+    const auto tried = static_cast<Hash>(denied.size());
+    if (mixer.flag(stream, Question::is_equal_coordinate,
+                   {hash_of(before, tried, is_preferred), hash_of(axis, tried, last_equal_[axis_]),
+                    hash_of(axis, is_preferred, around_.parallelogram[0] != kNone ? 1 : 0),
+                    hash_of(before, static_cast<Hash>(candidates.size()))},
+                   number == guess)) {
+      coded = guess;
+    } else {
+      denied.push_back(guess);
+    }
+  }
+  last_equal_[axis_] = coded ? 1 + static_cast<std::uint32_t>(denied.size()) : 0;
+  if (!coded) {
+    if (axis_ < 2) equal_.clear();
+    return std::nullopt;
+  }
+  std::erase_if(
+      equal_, [&](std::uint32_t neighbour) { return value(neighbour, axis_, decimals) != *coded; });
+  return coded;
 }
 
 std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer& mixer,
@@ -171,22 +213,26 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   const auto predicted = predictions(axis_, form.decimals);
   const std::size_t best = best_of(misses_[axis_]);
   const auto which = static_cast<Hash>(best);
-  const Hash known = (around_.nearest != kNone ? 1U : 0U) + (around_.parallelogram[0] != kNone ? 2U : 0U);
+  const Hash known =
+      (around_.nearest != kNone ? 1U : 0U) + (around_.parallelogram[0] != kNone ? 2U : 0U);
   const Hash others = hash_of(axis_ > 0 ? last_residual_[0] : 0, axis_ > 1 ? last_residual_[1] : 0);
-  const std::int64_t residual = difference(given.number, predicted[best]);
-  const std::uint64_t size =
-      mixer.number(stream, kAxes[axis_],
-                   {hash_of(which, known), hash_of(others, known), last_residual_[axis_], 0},
-                   magnitude(residual), kModelledBits);
-  const auto length = static_cast<std::uint32_t>(std::bit_width(size));
-  const bool is_negative =
-      size > 0 && mixer.flag(stream, Question::coordinate_sign,
-                             {hash_of(axis, others), hash_of(axis, which), hash_of(axis, length)},
-                             residual < 0);
-  const std::int64_t number =
-      sum(predicted[best], static_cast<std::int64_t>(is_negative ? 0 - size : size));
-  judge(misses_[axis_], predicted, number, kMemory);
-  last_residual_[axis_] = length * 2 + (is_negative ? 1 : 0);
+  const auto equal = code_equal(stream, mixer, given.number, form.decimals);
+  std::int64_t number = equal.value_or(0);
+  if (!equal) {
+    const std::int64_t residual = difference(given.number, predicted[best]);
+    const std::uint64_t size =
+        mixer.number(stream, kAxes[axis_],
+                     {hash_of(which, known), hash_of(others, known), last_residual_[axis_], 0},
+                     magnitude(residual), kModelledBits);
+    const auto length = static_cast<std::uint32_t>(std::bit_width(size));
+    const bool is_negative =
+        size > 0 && mixer.flag(stream, Question::coordinate_sign,
+                               {hash_of(axis, others), hash_of(axis, which), hash_of(axis, length)},
+                               residual < 0);
+    number = sum(predicted[best], static_cast<std::int64_t>(is_negative ? 0 - size : size));
+    judge(misses_[axis_], predicted, number, kMemory);
+    last_residual_[axis_] = length * 2 + (is_negative ? 1 : 0);
+  }
   vertex_[axis_] = {number, form.decimals};
   if (++axis_ == 3) {
     axis_ = 0;

@@ -59,6 +59,9 @@ class VertexCoder {
   };
   void list_corners();
   void look_around();
+  /// Codes whether a coordinate is that of a neighbour; none if it is not.
+  std::optional<std::int64_t> code_equal(EntropyStream& stream, ContextMixer& mixer,
+                                         std::int64_t number, int decimals);
   void find_parallelogram(std::span<const VertexNumber> ring, const Corner& corner);
   /// The place of a vertex in `vertices_`, or kNone.
   std::uint32_t place_of(VertexNumber vertex) const;
@@ -68,8 +71,8 @@ class VertexCoder {
   const RingList* rings_ = nullptr;
   std::vector<Corner> corners_;
   FlatMap<VertexNumber, CornerList> corners_of_;
-  std::vector<Vertex> vertices_;                  // those that are known
-  FlatMap<VertexNumber, std::uint32_t> place_of_; // of vertices in `vertices_`
+  std::vector<Vertex> vertices_;                                    // those that are known
+  FlatMap<VertexNumber, std::uint32_t> place_of_;                   // of vertices in `vertices_`
   std::vector<std::pair<std::uint64_t, std::uint64_t>> of_solids_;  // first and end; sorted later
   std::optional<std::int64_t> run_;                                 // the first vertex of a run
   std::uint64_t count_ = 0;
@@ -80,6 +83,8 @@ class VertexCoder {
   Vertex vertex_;
   Vertex last_vertex_;
   Surroundings around_;
+  std::vector<std::uint32_t> equal_;           // the neighbours that had the coordinates so far
+  std::array<std::uint32_t, 3> last_equal_{};  // for each axis the neighbour that had the last one
   std::array<std::array<std::int32_t, kPredictions>, 3> misses_{};
   std::array<std::uint32_t, 3> last_residual_{};
   std::array<NumberColumn, 3> forms_;

@@ -98,7 +98,7 @@ class GmlReader {
   }
 
   /// After read(): the use of each node that is a ring.
-  std::span<const GmlRingUse> ring_uses() const { return ring_uses_; }
+  std::span<GmlRingUse> ring_uses() { return ring_uses_; }
 
  private:
   static Error in_object(Error error, const std::string& id) {
@@ -591,6 +591,7 @@ Result<Document> read_gml(ByteView bytes, const ReadOptions& options) {
   GmlReader reader(*model, bytes.size(), options);
   auto document = reader.read();
   if (!document || !options.keep_text || options.split_features) return document;
+  find_copies(*model, reader.ring_uses());
   const auto texts = ring_texts(*model, reader.ring_uses(), bytes);
   document->framing = keep_with_rings(bytes, texts, solids_of(*document));
   return document;

@@ -20,6 +20,11 @@ struct GmlRingUse {
   bool is_y_first = false;
 };
 
+/// Gives rings that no solid uses, but that have the positions of one that a solid uses, in its
+/// order or in the opposite one (the footprint of a building), the use of that ring. `uses` has an
+/// entry for each node of the model. Cost: linear.
+void find_copies(const GmlModel& model, std::span<GmlRingUse> uses);
+
 /// The coordinates of rings that solids use, in document order. `uses` has an entry for each node
 /// of the model, which is that of `bytes`. Cost: linear.
 std::vector<RingText> ring_texts(const GmlModel& model, std::span<const GmlRingUse> uses,

@@ -16,9 +16,12 @@ namespace watertight::pipeline {
 
 /// In place of the bytes of a blob, of which there are more: the solid is not proven.
 inline constexpr std::uint64_t kNoBlob = 1;
+/// In place of the bytes of a blob: the solid is in the page file, on a grid that the block chose.
+/// Its lattice is that of the decimals of all such solids of the feature.
+inline constexpr std::uint64_t kOnBlockGrid = 2;
 
 /// Packs the texts of a block. `blob_bytes` has, for each solid of the features, the bytes of its
-/// blob: 0 for one in the page file, kNoBlob for one that is not proven. Of a report the codes of
+/// blob: 0 for one in the page file, or one of the constants above. Of a report the codes of
 /// the errors are kept. Cost: pack_texts().
 Bytes pack_block_texts(const BlockContents& contents, std::span<const std::uint64_t> blob_bytes);
 

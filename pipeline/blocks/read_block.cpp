@@ -4,6 +4,7 @@
 
 #include "codec/page_file.h"
 #include "pipeline/blocks/block.h"
+#include "pipeline/blocks/block_grid.h"
 #include "pipeline/blocks/block_texts.h"
 
 namespace watertight::pipeline {
@@ -58,10 +59,15 @@ class SolidReader {
     }
     std::size_t number = 0;
     for (ReadFeature& feature : block.features) {
+      std::vector<std::size_t> on_block_grid;
       for (const StoredSolid& solid : feature.encoded.solids) {
         const std::uint64_t size = sizes[number++];
         if (!solid.is_proven) continue;
+        if (size == kOnBlockGrid) on_block_grid.push_back(feature.solids.size());
         if (Status added = add(feature, size); !added) return added;
+      }
+      if (!place(feature, on_block_grid)) {
+        return malformed("the solids of a feature have no lattice in common");
       }
     }
     if (next_paged_ != paged_.size()) {
@@ -76,8 +82,23 @@ class SolidReader {
     return {ErrorCode::malformed, std::move(message), block_.position(), {}};
   }
 
+  /// Gives solids that are on the grid of the block their lattice. False if there is none.
+  static bool place(ReadFeature& feature, const std::vector<std::size_t>& numbers) {
+    if (numbers.empty()) return true;
+    std::vector<const Solid*> solids;
+    for (const std::size_t number : numbers) solids.push_back(&feature.solids[number].solid);
+    auto placed = on_lattice_of_decimals(solids);
+    if (!placed) return false;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      Decoded& decoded = feature.solids[numbers[i]];
+      decoded.solid = std::move((*placed)[i]);
+      decoded.info.lattice = decoded.solid.lattice();
+    }
+    return true;
+  }
+
   Status add(ReadFeature& feature, std::uint64_t blob_bytes) {
-    if (blob_bytes == 0) {
+    if (blob_bytes == 0 || blob_bytes == kOnBlockGrid) {
       if (next_paged_ == paged_.size()) {
         return malformed("the pages hold fewer solids than the features");
       }

@@ -6,11 +6,13 @@
 //   {"lattice":[kind,step and origin as mantissa and exponent...],"srid":7415,
 //    "boundaries":[shells],"vertices":{"count":8,"solids":[],"others":[x,y,z,x,...]}}
 //
-// Coordinates are those on the lattice. Lines that were stored before this form are a list of
-// numbers with single spaces between them: the kind of the lattice; mantissa and exponent of its
-// three steps and its origin's three coordinates; the EPSG code; the vertices; the vertices of the
-// rings; the sizes of rings, facets and shells. Each list begins with its length; integer
-// coordinates are differences to the vertex before.
+// Coordinates are those on the lattice, divided by the largest whole number that divides all of an
+// axis; these three stand as "units":[1,1,1000] before the boundaries if one of them is not 1.
+// Lines that were stored before this form are a list of numbers with single spaces between them:
+// the kind of the lattice; mantissa and exponent of its three steps and its origin's three
+// coordinates; the EPSG code; the vertices; the vertices of the rings; the sizes of rings, facets
+// and shells. Each list begins with its length; integer coordinates are differences to the vertex
+// before.
 #include "pipeline/stored/unproven_solid.h"
 
 #include <array>
@@ -18,6 +20,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -190,6 +193,27 @@ SolidArrays read_boundaries(JsonCursor& cursor) {
   return arrays;
 }
 
+/// For each axis the largest whole number that divides all coordinates; 1 if all are 0 or one is
+/// no integer.
+using Units = std::array<std::int64_t, 3>;
+constexpr Units kNoUnits{1, 1, 1};
+constexpr double kIntegersEnd = 0x1p53;
+
+Units units_of(const Solid& solid) {
+  Units units{};
+  for (const Point& point : solid.vertices()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double value = point[axis];
+      const bool is_integer = std::abs(value) < kIntegersEnd && value == std::floor(value);
+      std::int64_t& unit = units[static_cast<std::size_t>(axis)];
+      if (!is_integer) return kNoUnits;
+      unit = std::gcd(unit, static_cast<std::int64_t>(value));
+    }
+  }
+  for (std::int64_t& unit : units) unit = std::max<std::int64_t>(unit, 1);
+  return units;
+}
+
 Error malformed_line() {
   return Error{ErrorCode::malformed, "truncated or malformed numbers of an unproven solid"};
 }
@@ -218,6 +242,14 @@ Result<Solid> read_json(std::string_view line, const Limits& limits) {
   }
   cursor.expect(R"(],"srid":)");
   const auto srid = cursor.number<std::uint32_t>();
+  Units units = kNoUnits;
+  if (cursor.take(R"(,"units":[)")) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (axis > 0) cursor.expect(",");
+      units[axis] = cursor.number<std::int64_t>();
+    }
+    cursor.expect("]");
+  }
   cursor.expect(R"(,"boundaries":)");
   SolidArrays arrays = read_boundaries(cursor);
   cursor.expect(R"(,"vertices":{"count":)");
@@ -231,7 +263,9 @@ Result<Solid> read_json(std::string_view line, const Limits& limits) {
   }
   arrays.vertices.reserve(count);
   for (std::size_t i = 0; i < coordinates.size(); i += 3) {
-    arrays.vertices.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+    arrays.vertices.push_back({coordinates[i] * static_cast<double>(units[0]),
+                               coordinates[i + 1] * static_cast<double>(units[1]),
+                               coordinates[i + 2] * static_cast<double>(units[2])});
   }
   return Solid::make(std::move(arrays), lattice, srid, limits);
 }
@@ -239,6 +273,7 @@ Result<Solid> read_json(std::string_view line, const Limits& limits) {
 }  // namespace
 
 std::string write_unproven(const Solid& solid) {
+  const Units units = units_of(solid);
   std::string out = R"({"lattice":[)";
   const geometry::Lattice& lattice = solid.lattice();
   out += std::to_string(static_cast<int>(lattice.kind));
@@ -248,13 +283,19 @@ std::string write_unproven(const Solid& solid) {
       out.append(",").append(std::to_string(number.exponent));
     }
   }
-  out.append(R"(],"srid":)").append(std::to_string(solid.srid())).append(R"(,"boundaries":)");
+  out.append(R"(],"srid":)").append(std::to_string(solid.srid()));
+  if (units != kNoUnits) {
+    out += R"(,"units":)";
+    append_list(out, {0, 3}, [&](Index axis) { out += std::to_string(units[axis]); });
+  }
+  out += R"(,"boundaries":)";
   append_boundaries(out, solid);
   out.append(R"(,"vertices":{"count":)").append(std::to_string(solid.vertex_count()));
   out += R"(,"solids":[],"others":)";
   const std::span<const Point> points = solid.vertices();
-  append_list(out, {0, static_cast<Index>(3 * points.size())},
-              [&](Index i) { append_number(out, points[i / 3][static_cast<int>(i % 3)]); });
+  append_list(out, {0, static_cast<Index>(3 * points.size())}, [&](Index i) {
+    append_number(out, points[i / 3][static_cast<int>(i % 3)] / static_cast<double>(units[i % 3]));
+  });
   return out + "}}";
 }
 

@@ -21,6 +21,7 @@ encode 3dbag_b2 "$tests/data/cityjson/3dbag_b2.city.jsonl"
 encode cube5 "$tests/data/cityjson/cube10.json"
 encode twocubes "$tests/golden/solids/bodies-share-face.city.json" --for ranges
 encode houses "$tests/data/cityjson/denhaag_random_5.city.jsonl" --for ranges
+encode own_lattices "$tests/fuzz/seeds/gml/own_lattices.gml"
 
 cp "$seeds/houses.watertight" "$folder/appended.wt"
 "$watertight" append "$folder/appended.wt" "$tests/data/cityjson/3dbag_b2.city.jsonl" --invalid keep >/dev/null 2>&1 || [ $? -eq 1 ]

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -188,6 +190,82 @@ TEST_CASE("floats of 32 bits cost no more than their bits") {
     text += std::string(digits.data()) + ",";
   }
   CHECK(packed_size(text, TextKind::json) < 1000 * 16 / 5);
+}
+
+/// The line of a straight wall over a grid of one unit, as AdV models have it: a position wherever
+/// x, y or x - y is whole.
+std::string terrain_line(std::mt19937& random) {
+  const double x = 280'000 + static_cast<double>(random() % 100'000) / 1000;
+  const double y = 5'650'000 + static_cast<double>(random() % 100'000) / 1000;
+  const double slope = 0.1 + static_cast<double>(random() % 3000) / 1000;
+  std::vector<double> crossings{0};
+  for (int i = 1; i <= 60; ++i) {
+    crossings.push_back(std::floor(x) + i - x);
+    crossings.push_back((std::floor(y) + i - y) / slope);
+    crossings.push_back((std::floor(x - y) + i - (x - y)) / (1 - slope));
+    crossings.push_back((std::floor(x - y) + 1 - i - (x - y)) / (1 - slope));
+  }
+  std::sort(crossings.begin(), crossings.end());
+  std::string text = "<line><posList>";
+  for (const double at : crossings) {
+    if (at < 0 || at > 20) continue;
+    std::array<char, 80> position{};
+    std::snprintf(position.data(), position.size(), "%.3f %.3f %.3f ", x + at, y + slope * at,
+                  40 + at / 8);
+    text += position.data();
+  }
+  text.back() = '<';
+  return text + "/posList></line>\n";
+}
+
+TEST_CASE("a line over a grid of terrain takes little for each position") {
+  std::mt19937 random(5);
+  std::string text = "<lines>";
+  for (int i = 0; i < 40; ++i) text += terrain_line(random);
+  text += "</lines>";
+  check_round_trip({{TextKind::xml, text}});
+  const auto positions = static_cast<std::size_t>(std::count(text.begin(), text.end(), ' ')) / 3;
+  REQUIRE(positions > 1500);
+  CHECK(packed_size(text, TextKind::xml) < 2 * positions);
+}
+
+TEST_CASE("lists of positions come back, whatever is in them") {
+  check_round_trip({{TextKind::xml,
+                     "<a><p>1 2 3 4 5 6</p><p>1.5 2 x</p><p>1 2 3</p><p>9e9 -0 1 2 3 4</p>"
+                     "<p>999999999999999999 -999999999999999999 1 -999999999999999999 "
+                     "999999999999999999 1 999999999999999999 0.000000000001 1</p>"
+                     "<p>1 2</p><p>1 2 3 4 5</p><p>0 0 0 1 0 0 2 0 0 3 0 0</p><p></p></a>"}});
+  std::mt19937 random(3);
+  for (int i = 0; i < 40; ++i) {
+    std::string text = "<a>";
+    for (int list = 0; list < 20; ++list) {
+      text += "<p>";
+      for (auto n = random() % 14; n > 0; --n) {
+        const auto digits = static_cast<int>(random() % 4);
+        std::array<char, 80> number{};
+        std::snprintf(number.data(), number.size(), "%.*f ", digits,
+                      static_cast<double>(random() % 20'000) / 100 - 100);
+        text += number.data();
+      }
+      text += "</p>";
+    }
+    check_round_trip({{TextKind::xml, text + "</a>"}});
+  }
+}
+
+TEST_CASE("values under different names are of different columns") {
+  std::mt19937 random(9);
+  std::array<std::string, 2> texts;
+  for (int i = 0; i < 400; ++i) {
+    for (int name = 0; name < 4; ++name) {
+      const std::string value = std::to_string(name * 100'000 + static_cast<int>(random() % 30));
+      const std::string is = std::string("v").append(std::to_string(name));
+      texts[0] += "<s name=\"" + is + "\"><value>" + value + "</value></s>\n";
+      texts[1] += "<s>" + is + "<value>" + value + "</value></s>\n";
+    }
+  }
+  check_round_trip({{TextKind::xml, texts[0]}, {TextKind::xml, texts[1]}});
+  CHECK(packed_size(texts[0], TextKind::xml) * 10 < packed_size(texts[1], TextKind::xml) * 9);
 }
 
 TEST_CASE("a ring of many vertices comes back, in time that grows with its length") {

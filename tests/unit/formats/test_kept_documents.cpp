@@ -165,6 +165,25 @@ TEST_CASE("kept GML: documents without solids, and geometry that no solid uses")
   CHECK(framing_has(kept(text, Format::gml), "5 5 5 6 6 6"));
 }
 
+TEST_CASE("kept GML: a footprint is referred to as the ring of the solid that it is") {
+  const std::string same = "0 0 0 0 7.5 0 2.5 0 0 0 0 0";
+  const std::string opposite = "0 0 0 2.5 0 0 0 7.5 0 0 0 0";
+  const std::string solid =
+      replaced(replaced(kTetrahedron, "1 0 0", "2.5 0 0"), "0 1 0", "0 7.5 0");
+  const auto with_footprint = [&](const std::string& positions) {
+    const std::string footprint = "<lod0FootPrint><g:MultiSurface>" + member(polygon(positions)) +
+                                  "</g:MultiSurface></lod0FootPrint>";
+    return model(replaced(building(solid), "<lod2Solid>", footprint + "<lod2Solid>"));
+  };
+  for (const std::string& positions : {same, opposite}) {
+    CHECK(comes_back(with_footprint(positions)));
+    CHECK_FALSE(framing_has(kept(with_footprint(positions), Format::gml), "7.5"));
+  }
+  const std::string other = with_footprint("0 0 0 2.5 0 1 0 7.5 0 0 0 0");
+  CHECK(comes_back(other));
+  CHECK(framing_has(kept(other, Format::gml), "7.5"));
+}
+
 TEST_CASE("kept documents: a GML that was not kept cannot be written") {
   const Document document = gml_of(tetrahedron("1"));
   CHECK(document.framing.empty());

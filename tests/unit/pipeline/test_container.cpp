@@ -313,12 +313,14 @@ TEST_CASE("texts, pages and blobs that do not fit each other are malformed") {
   REQUIRE(pages);
   REQUIRE(pipeline::decode_container(file_of_one(0, blob.size(), {}, blob)));
   REQUIRE(pipeline::decode_container(file_of_one(0, 0, *pages, {})));
+  REQUIRE(pipeline::decode_container(file_of_one(0, 2, *pages, {})));
   const Bytes wrong[] = {
       file_of_one(1, blob.size(), {}, blob),      // a feature of no document
       file_of_one(0, blob.size() + 1, {}, blob),  // a blob beyond the file
       file_of_one(0, blob.size() - 1, {}, blob),  // a cut blob
       file_of_one(0, ~std::uint64_t{0}, {}, blob),
       file_of_one(0, 0, {}, {}),  // a solid in a page that is not there
+      file_of_one(0, 2, {}, {}),
       // A solid of the page file in no feature.
       file_of_one(0, blob.size(), *pages, blob),
       file_of_one(0, 0, blob, {}),  // a blob in the place of the page file
@@ -467,6 +469,67 @@ TEST_CASE("an export ends with the first error, of the store or of a blob") {
   store.is_away = true;
   CHECK(export_all(store, pipeline::ExportFormat::container).error().code ==
         ErrorCode::unavailable);
+}
+
+/// A document of GML with the boxes from the origins to the corners given.
+std::string boxes_of(const std::vector<std::array<std::string, 6>>& boxes) {
+  std::string text = "<CityModel xmlns:g='http://www.opengis.net/gml'>";
+  for (const auto& [x, y, z, u, v, w] : boxes) {
+    text += "<cityObjectMember><Building><lod1Solid><g:Solid><g:exterior><g:CompositeSurface>";
+    const std::array<std::array<std::string, 3>, 8> corners{
+        {{x, y, z}, {u, y, z}, {u, v, z}, {x, v, z}, {x, y, w}, {u, y, w}, {u, v, w}, {x, v, w}}};
+    constexpr std::array<std::array<std::size_t, 4>, 6> kFacets{
+        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+    for (const auto& facet : kFacets) {
+      text += "<g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>";
+      for (const std::size_t i : {facet[0], facet[1], facet[2], facet[3], facet[0]}) {
+        for (const std::string& number : corners[i]) text.append(number).append(" ");
+      }
+      text += "</g:posList></g:LinearRing></g:exterior></g:Polygon></g:surfaceMember>";
+    }
+    text +=
+        "</g:CompositeSurface></g:exterior></g:Solid></lod1Solid></Building></cityObjectMember>";
+  }
+  return text + "</CityModel>\n";
+}
+
+TEST_CASE("solids with a lattice of their own each share a page, and come back on their lattices") {
+  // Decimals of as many digits as their doubles need, and decimals of metres and centimetres.
+  const std::vector<std::array<std::string, 6>> boxes[] = {
+      {{"35.75599827822895", "139.55416272190755", "55.03099822998047", "35.75609736082363",
+        "139.55424111138112", "58.659998178482056"},
+       {"35.756001110627984", "139.55076174985976", "53.80099868774414", "35.756077221991816",
+        "139.55081508339526", "59.839998722076416"},
+       {"35.7583164615552", "139.5529939890944", "52.25", "35.758330697791", "139.55303528672877",
+        "55.5"}},
+      {{"1000", "2000", "0", "1010", "2010", "10"},
+       {"1020.5", "2000.25", "0.5", "1030", "2010", "10"},
+       {"1040.125", "2000.001", "0", "1050", "2010", "10.5"}}};
+  for (const auto& given : boxes) {
+    const std::string text = boxes_of(given);
+    formats::ReadOptions read;
+    read.keep_text = true;
+    read.split_features = false;
+    const auto document = formats::read_document(as_bytes(text), Format::gml, read);
+    REQUIRE(document);
+    const auto result = pipeline::encode_document(*document, nullptr, {});
+    REQUIRE(result);
+    REQUIRE(result->outcome.verdict == Verdict::valid);
+    const auto container = pipeline::write_container(result->document);
+    REQUIRE(container);
+    const auto info = pipeline::describe_container(*container);
+    REQUIRE(info);
+    CHECK(info->pages == 1);
+    const auto documents = pipeline::decode_container(*container);
+    REQUIRE(documents);
+    CHECK(text_of(documents->front()) == text);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      const Solid& before = document->features[i].solids[0].solid;
+      const Solid& after = documents->front().features[i].solids[0].solid;
+      CHECK(after.lattice() == before.lattice());
+      CHECK(after.arrays() == before.arrays());
+    }
+  }
 }
 
 TEST_CASE("a GML document of several features comes back from its file byte for byte") {

@@ -71,6 +71,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a factor that all coordinates of an axis have is left out of a line") {
+  SolidArrays arrays = defective(geometry::LatticeKind::decimal).arrays();
+  arrays.vertices = {{0, 0, 0}, {4, 0, 7}, {4, 3, 0}, {0, 5, 1}, {9, 0, 0}, {3, 2, 2}};
+  const auto plain = Solid::make(arrays, Lattice{}, 7415);
+  REQUIRE(plain);
+  const std::string before = pipeline::write_unproven(*plain);
+  for (Point& point : arrays.vertices) point[1] *= 1000;
+  const auto solid = Solid::make(arrays, Lattice{}, 7415);
+  REQUIRE(solid);
+  const std::string line = pipeline::write_unproven(*solid);
+  CHECK(before.find("units") == std::string::npos);
+  CHECK(line.find(R"("units":[1,1000,1],"boundaries")") != std::string::npos);
+  const auto back = pipeline::read_unproven(line);
+  REQUIRE(back);
+  CHECK(*back == *solid);
+}
+
 TEST_CASE("a line of numbers, the older form of an unproven solid, is read") {
   const auto solid = pipeline::read_unproven(
       "0 1 -3 1 -3 1 -3 85 -1 0 0 0 0 7415 3 1 5 6 7 1 0 0 0 -2 1 3 0 1 2 1 3 1 1 1 1");

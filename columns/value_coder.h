@@ -90,7 +90,8 @@ class ValueCoder {
                           const Context& context, std::string_view text);
   std::uint32_t code_of_kind(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                              const Context& context, Kind kind, std::string_view text);
-  std::uint32_t add(std::string_view text, const std::optional<FormedNumber>& number = std::nullopt);
+  std::uint32_t add(std::string_view text,
+                    const std::optional<FormedNumber>& number = std::nullopt);
   void learn(EntropyStream& stream, const Context& context, Kind kind, std::uint32_t value);
 
   ValueTable values_;

@@ -74,7 +74,8 @@ class EntropyStream {
   /// Codes the `count` low bits of a number, high ones first, all equally likely. Requires count <=
   /// 64.
   std::uint64_t code_bits(std::uint64_t value, int count);
-  /// As code_bits(), several bits at a time where the interval is wide enough; the bytes are others.
+  /// As code_bits(), several bits at a time where the interval is wide enough; the bytes are
+  /// others.
   std::uint64_t code_plain_bits(std::uint64_t value, int count);
 
   /// Codes the decisions of a recorder again, which costs far less than to find their
@@ -111,8 +112,8 @@ class EntropyStream {
   EntropyStream(Direction direction, ByteView source);
   /// The end of the part of the interval that stands for a yes.
   std::uint32_t split(std::uint32_t ones_of_65536) const {
-    return low_ +
-           static_cast<std::uint32_t>((static_cast<std::uint64_t>(high_ - low_) * ones_of_65536) >> 16);
+    return low_ + static_cast<std::uint32_t>(
+                      (static_cast<std::uint64_t>(high_ - low_) * ones_of_65536) >> 16);
   }
   bool code_known(bool value, std::uint32_t ones_of_65536);
   void add_cost(bool value, std::uint32_t ones_of_65536);

@@ -112,15 +112,15 @@ std::uint32_t ContextMixer::symbol(EntropyStream& stream, Question question, Con
 }
 
 template <std::size_t count>
-int ContextMixer::code_length(EntropyStream& stream, Question question,
-                              const Hashes<count>& hashes, int length) {
+int ContextMixer::code_length(EntropyStream& stream, Question question, const Hashes<count>& hashes,
+                              int length) {
   const auto coded = static_cast<int>(
       code_low_bits<count>(stream, question, hashes, 0, kShortLengthBits,
                            static_cast<std::uint64_t>(std::min(length, kLongest))));
   if (coded < kLongest) return coded;
-  return static_cast<int>(code_low_bits<count>(
-      stream, question, hashes_at<count>(hashes, kLongLength), kStepOfLongLength, kLongLengthBits,
-      static_cast<std::uint64_t>(length)));
+  return static_cast<int>(
+      code_low_bits<count>(stream, question, hashes_at<count>(hashes, kLongLength),
+                           kStepOfLongLength, kLongLengthBits, static_cast<std::uint64_t>(length)));
 }
 
 template <std::size_t count>

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kLongMatch = 31;
 constexpr std::size_t kFarPosition = 40;
-constexpr std::uint32_t kCopied = 8;     // a match of this length goes on as a copy
+constexpr std::uint32_t kCopied = 8;  // a match of this length goes on as a copy
 constexpr std::size_t kMostCopied = 4096;
 constexpr int kModelledBits = 4;
 constexpr Hash kTag = 0x5354'5200;  // tells contexts of characters from those of other questions
@@ -25,10 +25,12 @@ bool StringCoder::code_character(EntropyStream& stream, ContextMixer& mixer, Has
       static_cast<unsigned>(is_matched ? static_cast<unsigned char>(history_[match.at]) : 0);
   const auto far = static_cast<Hash>(std::min(position, kFarPosition));
   const Hash place = hash_of(column, kTag);
-  const std::array<Hash, 6> contexts{
-      hash_of(kTag + 1, before_ & 0xFFU),      hash_of(kTag + 2, before_ & 0xFFFFU),
-      hash_of(kTag + 3, before_ & 0xFF'FFFFU), hash_of(place, before_),
-      hash_of(place + 1, far),                 hash_of(place + 2, before_ & 0xFFU)};
+  const std::array<Hash, 6> contexts{hash_of(kTag + 1, before_ & 0xFFU),
+                                     hash_of(kTag + 2, before_ & 0xFFFFU),
+                                     hash_of(kTag + 3, before_ & 0xFF'FFFFU),
+                                     hash_of(place, before_),
+                                     hash_of(place + 1, far),
+                                     hash_of(place + 2, before_ & 0xFFU)};
   const Hash length = is_matched ? std::min(match.length, kLongMatch) : 0;
   std::uint32_t node = 1;
   std::array<std::uint32_t*, contexts.size()> groups{};
@@ -64,8 +66,8 @@ bool StringCoder::code_character(EntropyStream& stream, ContextMixer& mixer, Has
   return is_end;
 }
 
-std::size_t StringCoder::copy(EntropyStream& stream, ContextMixer& mixer, Hash column,
-                              Match& match, std::string_view rest, std::size_t most_bytes) {
+std::size_t StringCoder::copy(EntropyStream& stream, ContextMixer& mixer, Hash column, Match& match,
+                              std::string_view rest, std::size_t most_bytes) {
   std::size_t size = 0;
   const std::size_t at = match.at;
   const std::size_t known = history_.size() - at;
@@ -79,7 +81,10 @@ std::size_t StringCoder::copy(EntropyStream& stream, ContextMixer& mixer, Hash c
   if (size > kMostCopied) stream.fail();
   if (size > most_bytes) is_over_limit_ = true;
   if (is_over_limit_) stream.fail();
-  if (stream.failed()) return 0;
+  if (stream.failed()) {
+    match = {};
+    return 0;
+  }
   for (std::size_t i = 0; i < size; ++i) take(static_cast<unsigned char>(history_[at + i]));
   match = {at + size, kCopied};
   if (size == kMostCopied) return size;

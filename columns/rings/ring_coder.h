@@ -44,10 +44,10 @@ class RingCoder {
  public:
   /// Starts another feature.
   void restart();
-  /// Codes the vertex at this position of a ring; position 0 begins a ring. Requires 0 <= vertex <
-  /// kMostVertexNumbers; a reader fails beyond that.
-  VertexNumber code(EntropyStream& stream, ContextMixer& mixer, std::uint32_t position,
-                    VertexNumber vertex);
+  /// Codes the vertex at this position of a ring, or that no vertex is there; position 0 begins a
+  /// ring. Requires 0 <= vertex < kMostVertexNumbers; a reader fails beyond that.
+  std::optional<VertexNumber> code(EntropyStream& stream, ContextMixer& mixer,
+                                   std::uint32_t position, std::optional<VertexNumber> vertex);
   /// All rings so far, of which the last one is complete then.
   const RingList& finish();
 
@@ -61,7 +61,8 @@ class RingCoder {
   Guess guess(std::uint32_t position) const;
   /// Whether the vertex is one of the last 16 of the ring, and so is not the next one.
   bool is_in_ring(VertexNumber vertex) const;
-  /// The end of the vertices in `recent_` that may be named by a rank. Those of the ring come later.
+  /// The end of the vertices in `recent_` that may be named by a rank. Those of the ring come
+  /// later.
   std::size_t end_of_ranked() const;
   std::optional<std::uint64_t> rank_of(const Guess& guess, VertexNumber vertex) const;
   std::optional<VertexNumber> of_rank(const Guess& guess, std::uint64_t rank) const;

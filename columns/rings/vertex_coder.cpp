@@ -124,7 +124,8 @@ std::array<std::int64_t, VertexCoder::kPredictions> VertexCoder::predictions(std
                                                                              int decimals) const {
   const std::int64_t last =
       with_decimals(last_vertex_[axis].number, last_vertex_[axis].decimals, decimals);
-  const std::int64_t nearest = around_.nearest == kNone ? last : value(around_.nearest, axis, decimals);
+  const std::int64_t nearest =
+      around_.nearest == kNone ? last : value(around_.nearest, axis, decimals);
   std::int64_t middle = nearest;
   if (!around_.neighbours.empty()) {
     std::int64_t total = 0;
@@ -152,15 +153,17 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   NumberColumn& column = forms_[axis_];
   const auto axis = static_cast<Hash>(axis_);
   const auto chosen = stream.is_reading() ? std::nullopt : choose_form(text, column.form());
-  if (!mixer.flag(stream, Question::text_kind, {axis}, chosen.has_value())) return std::nullopt;
   if (axis_ == 0) {
     while (next_run_ < of_solids_.size() && of_solids_[next_run_].first <= next_) {
       next_ = std::max(next_, of_solids_[next_run_++].second);
     }
     look_around();
   }
+  const auto coded_form = column.code_form(stream, mixer, hash_of(20, axis),
+                                           chosen ? std::optional(chosen->form) : std::nullopt);
+  if (!coded_form) return std::nullopt;
   const FormedNumber given = chosen.value_or(FormedNumber{});
-  const NumberForm form = column.code_form(stream, mixer, hash_of(20, axis), given.form);
+  const NumberForm form = *coded_form;
   if (!form.is_decimal()) {
     const std::int64_t number =
         column.code_number(stream, mixer, hash_of(21, axis), 0, std::nullopt, given.number);
@@ -171,7 +174,8 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   const auto predicted = predictions(axis_, form.decimals);
   const std::size_t best = best_of(misses_[axis_]);
   const auto which = static_cast<Hash>(best);
-  const Hash known = (around_.nearest != kNone ? 1U : 0U) + (around_.parallelogram[0] != kNone ? 2U : 0U);
+  const Hash known =
+      (around_.nearest != kNone ? 1U : 0U) + (around_.parallelogram[0] != kNone ? 2U : 0U);
   const Hash others = hash_of(axis_ > 0 ? last_residual_[0] : 0, axis_ > 1 ? last_residual_[1] : 0);
   const std::int64_t residual = difference(given.number, predicted[best]);
   const std::uint64_t size =

@@ -68,8 +68,8 @@ class VertexCoder {
   const RingList* rings_ = nullptr;
   std::vector<Corner> corners_;
   FlatMap<VertexNumber, CornerList> corners_of_;
-  std::vector<Vertex> vertices_;                  // those that are known
-  FlatMap<VertexNumber, std::uint32_t> place_of_; // of vertices in `vertices_`
+  std::vector<Vertex> vertices_;                                    // those that are known
+  FlatMap<VertexNumber, std::uint32_t> place_of_;                   // of vertices in `vertices_`
   std::vector<std::pair<std::uint64_t, std::uint64_t>> of_solids_;  // first and end; sorted later
   std::optional<std::int64_t> run_;                                 // the first vertex of a run
   std::uint64_t count_ = 0;

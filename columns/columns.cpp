@@ -179,12 +179,11 @@ class TextCoder {
   std::optional<std::string_view> code_vertex_index(const Place& place, std::string_view text) {
     auto vertex = stream_->is_reading() ? std::nullopt : whole_number(text);
     if (vertex && (*vertex < 0 || *vertex >= kMostVertexNumbers)) vertex.reset();
-    if (!mixer_.flag(*stream_, Question::text_kind, {place.column}, vertex.has_value()))
-      return std::nullopt;
-    const VertexNumber coded = rings_.code(*stream_, mixer_, place.index, vertex.value_or(0));
-    values_.pass(coded);
+    const auto coded = rings_.code(*stream_, mixer_, place.index, vertex);
+    if (!coded) return std::nullopt;
+    values_.pass(*coded);
     last_value_ = 0;
-    return keep(std::to_string(coded));
+    return keep(std::to_string(*coded));
   }
 
   std::string_view keep(std::string text) {

@@ -154,7 +154,9 @@ std::uint32_t ValueCoder::code_number(EntropyStream& stream, ContextMixer& mixer
   FormedNumber chosen;
   if (!stream.is_reading()) chosen = choose_form(text, numbers.form()).value_or(FormedNumber{});
   const Hash column = context.place.column;
-  const NumberForm form = numbers.code_form(stream, mixer, column, chosen.form);
+  const auto coded_form = numbers.code_form(stream, mixer, column, chosen.form);
+  if (!coded_form) stream.fail();
+  const NumberForm form = coded_form.value_or(NumberForm{});
   const auto neighbour =
       context.place.is_in_array && form.is_decimal() ? last_number_ : std::nullopt;
   const std::int64_t number =

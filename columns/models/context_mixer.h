@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
 #include <vector>
 
@@ -67,6 +68,7 @@ enum class Question : std::uint8_t {
   is_after_neighbour,
   is_recent,
   recent_rank,
+  is_vertex,
   vertex_distance,
   vertex_sign,
   coordinate_x,
@@ -121,7 +123,8 @@ class ContextMixer {
  private:
   static constexpr int kTableBits = 18;
   static constexpr std::size_t kMostContexts = 7;
-  static constexpr std::size_t kSteps = 8;  // later decisions of an answer share weights
+  static constexpr std::int64_t kSmallError = 512;  // in 1/65536: weights do not learn from less
+  static constexpr std::size_t kSteps = 8;          // later decisions of an answer share weights
   struct Weights {
     std::array<std::int32_t, kMostContexts + 1> values{};
     std::uint32_t seen = 0;
@@ -168,9 +171,11 @@ bool ContextMixer::decide(EntropyStream& stream, Question question, std::size_t 
   const std::uint32_t ones = probability_of(sum);
   const bool bit = stream.code(value, ones);
   const std::int64_t error = (bit ? 65536 : 0) - static_cast<std::int64_t>(ones);
-  const std::int64_t move = error * mixing_rate(weights.seen);
-  for (std::size_t i = 0; i <= count; ++i) {
-    weights.values[i] = moved_weight(weights.values[i], move, inputs[i]);
+  if (std::abs(error) > kSmallError) {
+    const std::int64_t move = error * mixing_rate(weights.seen);
+    for (std::size_t i = 0; i <= count; ++i) {
+      weights.values[i] = moved_weight(weights.values[i], move, inputs[i]);
+    }
   }
   weights.seen = std::min(weights.seen + 1, kMaxMixed);
   for (std::size_t i = 0; i < count; ++i) *counters[i] = learned(*counters[i], bit);

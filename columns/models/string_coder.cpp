@@ -81,7 +81,10 @@ std::size_t StringCoder::copy(EntropyStream& stream, ContextMixer& mixer, Hash c
   if (size > kMostCopied) stream.fail();
   if (size > most_bytes) is_over_limit_ = true;
   if (is_over_limit_) stream.fail();
-  if (stream.failed()) return 0;
+  if (stream.failed()) {
+    match = {};
+    return 0;
+  }
   for (std::size_t i = 0; i < size; ++i) take(static_cast<unsigned char>(history_[at + i]));
   match = {at + size, kCopied};
   if (size == kMostCopied) return size;

@@ -95,8 +95,9 @@ void RingCoder::take(VertexNumber vertex, Kind kind) {
   }
 }
 
-VertexNumber RingCoder::code(EntropyStream& stream, ContextMixer& mixer, std::uint32_t position,
-                             VertexNumber vertex) {
+std::optional<VertexNumber> RingCoder::code(EntropyStream& stream, ContextMixer& mixer,
+                                            std::uint32_t position,
+                                            std::optional<VertexNumber> vertex) {
   if (position == 0) end_ring();
   const Guess guessed = guess(position);
   const VertexNumber fresh = largest_ + 1;
@@ -123,7 +124,7 @@ VertexNumber RingCoder::code(EntropyStream& stream, ContextMixer& mixer, std::ui
                                   {all, hash_of(where, known, last)}, vertex == *guessed.after)) {
     return finish_with(*guessed.after, Kind::after);
   }
-  const auto rank = stream.is_reading() ? std::nullopt : rank_of(guessed, vertex);
+  const auto rank = vertex ? rank_of(guessed, *vertex) : std::nullopt;
   if (mixer.flag(stream, Question::is_recent, {all, hash_of(where, last)}, rank.has_value())) {
     const std::uint64_t coded =
         mixer.number(stream, Question::recent_rank,
@@ -134,7 +135,8 @@ VertexNumber RingCoder::code(EntropyStream& stream, ContextMixer& mixer, std::ui
     if (!found) stream.fail();
     return finish_with(found.value_or(0), Kind::recent);
   }
-  const std::int64_t residual = vertex - last_found_;
+  if (!mixer.flag(stream, Question::is_vertex, {where}, vertex.has_value())) return std::nullopt;
+  const std::int64_t residual = vertex.value_or(0) - last_found_;
   const std::uint64_t size = mixer.number(stream, Question::vertex_distance,
                                           {where, hash_of(where, last)}, magnitude(residual), 3);
   const bool is_negative = size > 0 && mixer.flag(stream, Question::vertex_sign,

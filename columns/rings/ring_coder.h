@@ -44,10 +44,10 @@ class RingCoder {
  public:
   /// Starts another feature.
   void restart();
-  /// Codes the vertex at this position of a ring; position 0 begins a ring. Requires 0 <= vertex <
-  /// kMostVertexNumbers; a reader fails beyond that.
-  VertexNumber code(EntropyStream& stream, ContextMixer& mixer, std::uint32_t position,
-                    VertexNumber vertex);
+  /// Codes the vertex at this position of a ring, or that no vertex is there; position 0 begins a
+  /// ring. Requires 0 <= vertex < kMostVertexNumbers; a reader fails beyond that.
+  std::optional<VertexNumber> code(EntropyStream& stream, ContextMixer& mixer,
+                                   std::uint32_t position, std::optional<VertexNumber> vertex);
   /// All rings so far, of which the last one is complete then.
   const RingList& finish();
 

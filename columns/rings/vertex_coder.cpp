@@ -194,15 +194,17 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   NumberColumn& column = forms_[axis_];
   const auto axis = static_cast<Hash>(axis_);
   const auto chosen = stream.is_reading() ? std::nullopt : choose_form(text, column.form());
-  if (!mixer.flag(stream, Question::text_kind, {axis}, chosen.has_value())) return std::nullopt;
   if (axis_ == 0) {
     while (next_run_ < of_solids_.size() && of_solids_[next_run_].first <= next_) {
       next_ = std::max(next_, of_solids_[next_run_++].second);
     }
     look_around();
   }
+  const auto coded_form = column.code_form(stream, mixer, hash_of(20, axis),
+                                           chosen ? std::optional(chosen->form) : std::nullopt);
+  if (!coded_form) return std::nullopt;
   const FormedNumber given = chosen.value_or(FormedNumber{});
-  const NumberForm form = column.code_form(stream, mixer, hash_of(20, axis), given.form);
+  const NumberForm form = *coded_form;
   if (!form.is_decimal()) {
     const std::int64_t number =
         column.code_number(stream, mixer, hash_of(21, axis), 0, std::nullopt, given.number);

@@ -351,5 +351,37 @@ TEST_CASE("texts beyond the limit are refused") {
   CHECK(columns::unpack_texts(packed, text.size()));
 }
 
+TEST_CASE("repetitions in strings take a number, whatever their length") {
+  const std::string part = "The quick brown fox jumps over the lazy dog, and 4711 others. ";
+  for (const std::size_t size :
+       {std::size_t{4095}, std::size_t{4104}, std::size_t{4105}, std::size_t{100'000}}) {
+    CAPTURE(size);
+    std::string text;
+    while (text.size() < size) text += part;
+    text.resize(size);
+    check_round_trip({{TextKind::bytes, text}, {TextKind::bytes, text + '!'}});
+    CHECK(packed_size(text, TextKind::bytes) < 100 + size / 1000);
+  }
+  std::string zeros = part + part;
+  zeros[part.size() + 20] = '\0';
+  check_round_trip({{TextKind::bytes, zeros}, {TextKind::bytes, zeros + zeros}});
+}
+
+TEST_CASE("coordinates with an exponent are predicted as others are") {
+  std::string plain = R"({"vertices":{"count":400,"others":[)";
+  std::string scaled = plain;
+  for (int i = 0; i < 1200; ++i) {
+    const std::string number = std::to_string(28'155'563 + 10 * (i * i % 977) + 1);
+    plain += number + ',';
+    scaled += number + "e-2,";
+  }
+  plain.back() = ']';
+  scaled.back() = ']';
+  plain += "}}";
+  scaled += "}}";
+  check_round_trip({{TextKind::json, scaled}});
+  CHECK(packed_size(scaled, TextKind::json) < packed_size(plain, TextKind::json) + 50);
+}
+
 }  // namespace
 }  // namespace watertight

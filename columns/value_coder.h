@@ -47,7 +47,8 @@ class ValueCoder {
     known,         // a value that another column had before
     number,
     uuid,
-    string
+    string,
+    counter  // the last value of the column with another number in it
   };
   struct Column {
     std::uint32_t last = 0;
@@ -57,6 +58,7 @@ class ValueCoder {
     std::vector<std::uint32_t> values;  // those that it lists
     std::uint32_t last_distance = 0;    // of `known`: its length in bits
     std::uint32_t affixes = 0;          // of the last uuid
+    std::uint32_t last_step = 0;        // of `counter`: its size and sign
     NumberColumn numbers;
   };
   /// Where a value came first.
@@ -85,6 +87,8 @@ class ValueCoder {
                             std::string_view text);
   std::uint32_t code_uuid(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                           const Context& context, std::string_view text);
+  std::uint32_t code_counter(EntropyStream& stream, ContextMixer& mixer, const Context& context,
+                             std::string_view text);
   std::uint32_t code_of_kind(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                              const Context& context, Kind kind, std::string_view text);
   std::uint32_t add(std::string text, std::optional<FormedNumber> number = std::nullopt);

@@ -173,6 +173,21 @@ TEST_CASE("digits of a UUID cost four bits each, and nothing the second time") {
   CHECK(packed_size(text, TextKind::json) < 500 * 33 / 2);
 }
 
+TEST_CASE("a counter in an id costs a step, whatever stands around it") {
+  std::mt19937 random(4);
+  std::string ids = "[";
+  int number = 500;
+  for (int i = 0; i < 1000; ++i) {
+    number += static_cast<int>(random() % 16);
+    ids += "\"roof_STAD0158_p1955_" + std::to_string(number) + "-a\",";
+  }
+  ids.back() = ']';
+  check_round_trip({{TextKind::json, ids}});
+  CHECK(packed_size(ids, TextKind::json) < 1000 * 6 / 8);
+  check_round_trip({{TextKind::json, R"(["a00","a01","a1","a001","a","1a","2a","a9","a10","a00009",)"
+                                     R"("x999999999999999","x1000000000000000","x0","x9999","x0"])"}});
+}
+
 TEST_CASE("floats of 32 bits cost no more than their bits") {
   std::mt19937 random(9);
   std::string text = "[";

@@ -198,13 +198,13 @@ std::uint32_t ValueCoder::code_counter(EntropyStream& stream, ContextMixer& mixe
   const Hash known = hash_of(place, column.last_step);
   const bool is_negative =
       mixer.flag(stream, Question::counter_sign, {place, known, column.last_step}, step < 0);
-  const std::uint64_t size = mixer.number(
-      stream, Question::counter_step,
-      {hash_of(place, is_negative ? 1 : 0), hash_of(known, is_negative ? 1 : 0),
-       hash_of(column.last_step, is_negative ? 1 : 0)},
-      magnitude(step), kModelledBits);
-  column.last_step =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(size, kMostSize)) * 2 + (is_negative ? 1 : 0);
+  const std::uint64_t size =
+      mixer.number(stream, Question::counter_step,
+                   {hash_of(place, is_negative ? 1 : 0), hash_of(known, is_negative ? 1 : 0),
+                    hash_of(column.last_step, is_negative ? 1 : 0)},
+                   magnitude(step), kModelledBits);
+  column.last_step = static_cast<std::uint32_t>(std::min<std::uint64_t>(size, kMostSize)) * 2 +
+                     (is_negative ? 1 : 0);
   const auto counter = find_counter(last);
   const auto steps = static_cast<std::int64_t>(size & kMostStep);
   const std::int64_t number = counter ? counter->number + (is_negative ? -steps : steps) : -1;

@@ -76,7 +76,8 @@ void LineGuesses::learn_grid(const Place& place) {
 void LineGuesses::add_for_x(std::vector<Guess>& guesses) const {
   const std::int64_t grid = this->grid();
   if (!has_last_ || grid == 0) return;
-  const auto [x, y] = last_;
+  const std::int64_t x = last_[0];
+  const std::int64_t y = last_[1];
   if (!has_direction_) {
     const std::int64_t low = floor_to(x, grid);
     guesses.push_back({Guess::Kind::round_x, low == x ? low - grid : low});

@@ -5,17 +5,19 @@
 #include <array>
 #include <bit>
 
+#include "columns/models/counter_text.h"
 #include "columns/models/uuid.h"
 
 namespace watertight::columns {
 namespace {
 
 constexpr std::uint32_t kMostListed = 4096;  // values that a column lists
-constexpr int kKindBits = 3;
+constexpr int kKindBits = 4;
 constexpr int kListedBits = 12;
 constexpr int kDistanceBits = 4;
 constexpr std::size_t kShortNumber = 6;
 constexpr std::uint32_t kTrusts = 17;
+constexpr std::uint64_t kMostStep = 0xFFFF;  // of a counter
 
 std::uint64_t key_of(std::uint32_t column, std::uint32_t number) {
   return (std::uint64_t{column} << 32U) | number;
@@ -71,6 +73,7 @@ ValueCoder::Kind ValueCoder::choose_kind(const Context& context, std::string_vie
   const auto number = choose_form(text, context.column.numbers.form());
   if (known && !(number && text.size() < kShortNumber)) return Kind::known;
   if (number) return Kind::number;
+  if (counted_from(values_.text(context.column.last), text)) return Kind::counter;
   const auto uuid = find_uuid(text);
   if (!uuid) return Kind::string;
   const bool is_alike = resembles(*uuid, find_uuid(values_.text(context.column.last)));
@@ -94,10 +97,13 @@ ValueCoder::Kind ValueCoder::code_kind(EntropyStream& stream, ContextMixer& mixe
                  kind == column.last_kind)) {
     return column.last_kind;
   }
-  return static_cast<Kind>(
+  const std::uint32_t coded =
       mixer.symbol(stream, Question::kind,
                    {hash_of(place, last), hash_of(place, trust), hash_of(present, trust)},
-                   kKindBits, static_cast<std::uint32_t>(kind)));
+                   kKindBits, static_cast<std::uint32_t>(kind));
+  if (coded <= static_cast<std::uint32_t>(Kind::counter)) return static_cast<Kind>(coded);
+  stream.fail();
+  return Kind::string;
 }
 
 std::uint32_t ValueCoder::code_listed(EntropyStream& stream, ContextMixer& mixer,
@@ -193,6 +199,34 @@ std::uint32_t ValueCoder::code_uuid(EntropyStream& stream, ContextMixer& mixer,
   return add(*std::move(coded));
 }
 
+std::uint32_t ValueCoder::code_counter(EntropyStream& stream, ContextMixer& mixer,
+                                       const Context& context, std::string_view text) {
+  constexpr int kModelledBits = 4;
+  constexpr std::uint32_t kMostSize = 15;
+  Column& column = context.column;
+  const Hash place = context.place.column;
+  const std::string_view last = values_.text(column.last);
+  const std::int64_t step = stream.is_reading() ? 0 : counted_from(last, text).value_or(0);
+  const Hash known = hash_of(place, column.last_step);
+  const bool is_negative =
+      mixer.flag(stream, Question::counter_sign, {place, known, column.last_step}, step < 0);
+  const std::uint64_t size =
+      mixer.number(stream, Question::counter_step,
+                   {hash_of(place, is_negative ? 1 : 0), hash_of(known, is_negative ? 1 : 0),
+                    hash_of(column.last_step, is_negative ? 1 : 0)},
+                   magnitude(step), kModelledBits);
+  column.last_step = static_cast<std::uint32_t>(std::min<std::uint64_t>(size, kMostSize)) * 2 +
+                     (is_negative ? 1 : 0);
+  const auto counter = find_counter(last);
+  const auto steps = static_cast<std::int64_t>(size & kMostStep);
+  const std::int64_t number = counter ? counter->number + (is_negative ? -steps : steps) : -1;
+  if (number < 0 || size > kMostStep) {
+    stream.fail();
+    return 0;
+  }
+  return add(with_number(*counter, number));
+}
+
 std::uint32_t ValueCoder::code_of_kind(EntropyStream& stream, ContextMixer& mixer,
                                        StringCoder& strings, const Context& context, Kind kind,
                                        std::string_view text) {
@@ -215,6 +249,8 @@ std::uint32_t ValueCoder::code_of_kind(EntropyStream& stream, ContextMixer& mixe
       return code_number(stream, mixer, context, text);
     case Kind::uuid:
       return code_uuid(stream, mixer, strings, context, text);
+    case Kind::counter:
+      return code_counter(stream, mixer, context, text);
     case Kind::string:
       break;
   }

@@ -46,7 +46,8 @@ class ValueCoder {
     known,         // a value that another column had before
     number,
     uuid,
-    string
+    string,
+    counter  // the last value of the column with another number in it
   };
   struct Column {
     std::uint32_t last = 0;
@@ -56,6 +57,7 @@ class ValueCoder {
     std::vector<std::uint32_t> values;  // those that it lists
     std::uint32_t last_distance = 0;    // of `known`: its length in bits
     std::uint32_t affixes = 0;          // of the last uuid
+    std::uint32_t last_step = 0;        // of `counter`: its size and sign
     NumberColumn numbers;
   };
   static constexpr std::uint32_t kNotListed = ~std::uint32_t{0};
@@ -88,6 +90,8 @@ class ValueCoder {
                             std::string_view text);
   std::uint32_t code_uuid(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                           const Context& context, std::string_view text);
+  std::uint32_t code_counter(EntropyStream& stream, ContextMixer& mixer, const Context& context,
+                             std::string_view text);
   std::uint32_t code_of_kind(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                              const Context& context, Kind kind, std::string_view text);
   std::uint32_t add(std::string_view text,

@@ -80,6 +80,8 @@ enum class Question : std::uint8_t {
   is_known_coordinate,
   known_coordinate,
   is_equal_coordinate,
+  counter_step,
+  counter_sign,
   text_kind,
   count
 };

@@ -27,6 +27,10 @@ std::int64_t next_round(std::int64_t number, std::int64_t step, std::int64_t gri
   return low == number ? low - grid : low;
 }
 
+bool is_on_grid(const LineGuesses::Place& place, std::int64_t grid) {
+  return place[0] % grid == 0 || place[1] % grid == 0 || (place[0] - place[1]) % grid == 0;
+}
+
 /// number + step * part / whole, rounded.
 std::int64_t along(std::int64_t number, std::int64_t step, std::int64_t part, std::int64_t whole) {
   const Wide moved = Wide{step} * part;
@@ -64,17 +68,16 @@ std::int64_t LineGuesses::grid() const {
 void LineGuesses::learn_grid(const Place& place) {
   if (unit_ == 0) return;
   for (std::size_t i = 0; i < kSizes.size(); ++i) {
-    const std::int64_t grid = kSizes[i] * unit_;
-    const bool is_on_grid =
-        place[0] % grid == 0 || place[1] % grid == 0 || (place[0] - place[1]) % grid == 0;
-    hits_[i] += ((is_on_grid ? kAlways : 0) - hits_[i]) / (1 << kMemory);
+    const bool is_hit = is_on_grid(place, kSizes[i] * unit_);
+    hits_[i] += ((is_hit ? kAlways : 0) - hits_[i]) / (1 << kMemory);
   }
 }
 
 void LineGuesses::add_for_x(std::vector<Guess>& guesses) const {
   const std::int64_t grid = this->grid();
   if (!has_last_ || grid == 0) return;
-  const auto [x, y] = last_;
+  const std::int64_t x = last_[0];
+  const std::int64_t y = last_[1];
   if (!has_direction_) {
     const std::int64_t low = floor_to(x, grid);
     guesses.push_back({Guess::Kind::round_x, low == x ? low - grid : low});
@@ -129,10 +132,13 @@ void LineGuesses::add_for_y(std::vector<Guess>& guesses, std::int64_t x,
 }
 
 void LineGuesses::take(const Place& place, Guess::Kind kind) {
-  learn_grid(place);
   const bool is_in_range = std::abs(place[0]) < kLimit / 4 && std::abs(place[1]) < kLimit / 4;
+  if (is_in_range) learn_grid(place);
+  const std::int64_t grid = this->grid();
   const bool is_crossing =
-      kind == Guess::Kind::round_x || kind == Guess::Kind::round_y || kind == Guess::Kind::diagonal;
+      kind == Guess::Kind::round_x || kind == Guess::Kind::round_y ||
+      kind == Guess::Kind::diagonal ||
+      (kind == Guess::Kind::again && is_in_range && grid > 0 && is_on_grid(place, grid));
   if (!is_crossing || !has_last_ || !is_in_range) {
     start_ = place;
     has_direction_ = false;

@@ -19,6 +19,7 @@ namespace watertight::columns {
 struct Guess {
   enum class Kind : std::uint8_t {
     first,          // that of the first position
+    again,          // that of a neighbour which the last position had before
     parallelogram,  // it completes a parallelogram with the last three
     last,           // that of the last position
     round_x,        // x is round

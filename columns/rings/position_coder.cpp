@@ -12,6 +12,7 @@ constexpr int kMemory = 4;
 constexpr int kIndexBits = 12;
 constexpr std::uint32_t kFewPositions = 6;
 constexpr std::size_t kMostKnown = 4096;
+constexpr std::size_t kMostSeen = 65'536;
 constexpr int kMostUnits = 4;  // decimals of x and y of lines
 constexpr std::array<std::int64_t, kMostUnits + 1> kUnits{1, 10, 100, 1000, 10'000};
 
@@ -22,6 +23,52 @@ void PositionCoder::Known::add(std::int64_t number) {
   if (index_of.try_emplace(number, static_cast<std::uint32_t>(numbers.size())).second) {
     numbers.push_back(number);
   }
+}
+
+Hash PositionCoder::place_of(const Position& position) {
+  Hash hash = 0;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto bits = static_cast<std::uint64_t>(position[axis]);
+    hash = hash_of(hash, static_cast<Hash>(bits), static_cast<Hash>(bits >> 32U));
+  }
+  return hash;
+}
+
+/// What is known of a place with x and y of a position; null if it is new.
+const PositionCoder::Seen* PositionCoder::find_seen(const List& list, const Position& position) {
+  const auto found = list.seen.find(place_of(position));
+  const bool is_there = found != list.seen.end() && found->second.position[0] == position[0] &&
+                        found->second.position[1] == position[1];
+  return is_there ? &found->second : nullptr;
+}
+
+/// Walls that two buildings share have two lines with the same positions.
+void PositionCoder::guess_again(const List& list, std::uint32_t axis, std::vector<Guess>& guesses) {
+  if (axis == 2) {
+    const Seen* seen = find_seen(list, list.position);
+    if (seen != nullptr) guesses.push_back({Guess::Kind::again, seen->position[2]});
+    return;
+  }
+  if (axis == 1 && list.kinds[0] != Guess::Kind::again) return;
+  const Seen* last = find_seen(list, list.last[0]);
+  if (last == nullptr) return;
+  for (const auto& neighbour : last->neighbours) {
+    if (!neighbour || (list.count > 1 && *neighbour == list.last[1])) continue;
+    if (axis == 1 && (*neighbour)[0] != list.position[0]) continue;
+    guesses.push_back({Guess::Kind::again, (*neighbour)[axis]});
+  }
+}
+
+/// Takes the position, and the one before it as its neighbour.
+void PositionCoder::remember(List& list) {
+  if (list.seen.size() >= kMostSeen) return;
+  const auto add = [&](const Position& position, std::size_t side, const Position& neighbour) {
+    Seen& seen = list.seen.try_emplace(place_of(position), Seen{position, {}}).first->second;
+    if (seen.position == position && !seen.neighbours[side]) seen.neighbours[side] = neighbour;
+  };
+  if (list.count == 0) return;
+  add(list.last[0], 1, list.position);
+  add(list.position, 0, list.last[0]);
 }
 
 void PositionCoder::begin(List& list, const Place& place) {
@@ -40,6 +87,7 @@ void PositionCoder::rescale(List& list, std::uint32_t axis, int decimals) {
     (*position)[axis] = with_decimals((*position)[axis], before, decimals);
   }
   list.known[axis] = {};
+  list.seen.clear();
 }
 
 void PositionCoder::guess(const List& list, std::uint32_t axis, std::uint32_t axes,
@@ -50,8 +98,9 @@ void PositionCoder::guess(const List& list, std::uint32_t axis, std::uint32_t ax
   if (list.count > 2 && (axis == 0 || is_first)) {
     guesses.push_back({Guess::Kind::first, list.first[axis]});
   }
+  if (axes == 3) guess_again(list, axis, guesses);
   if (axes == 3 && axis == 0) list.line.add_for_x(guesses);
-  if (axes == 3 && axis == 1 && !is_first) {
+  if (axes == 3 && axis == 1 && !is_first && list.kinds[0] != Guess::Kind::again) {
     list.line.add_for_y(guesses, list.position[0], list.kinds[0]);
   }
   guesses.push_back({Guess::Kind::last, list.last[0][axis]});
@@ -164,6 +213,7 @@ std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mix
 void PositionCoder::take(List& list, std::uint32_t axes) {
   if (list.count == 0) list.first = list.position;
   if (axes == 3) {
+    remember(list);
     const bool is_planar = list.decimals[0] == list.decimals[1] && list.decimals[0] <= kMostUnits;
     list.line.set_unit(is_planar ? kUnits[static_cast<std::size_t>(list.decimals[0])] : 0);
     const Guess::Kind kind = list.kinds[0] == Guess::Kind::none ? list.kinds[1] : list.kinds[0];

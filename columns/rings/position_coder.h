@@ -37,8 +37,14 @@ class PositionCoder {
     std::uint32_t last_index = 0;
     void add(std::int64_t number);
   };
+  /// A position of three axes with those around it where it came first.
+  struct Seen {
+    Position position{};
+    std::array<std::optional<Position>, 2> neighbours;  // the one before and the one after
+  };
   /// The lists at a path.
   struct List {
+    std::unordered_map<Hash, Seen> seen;  // by a hash of x and y
     std::array<Known, kMostAxes> known;
     std::array<NumberColumn, kMostAxes> forms;
     std::array<int, kMostAxes> decimals{};
@@ -63,6 +69,10 @@ class PositionCoder {
                                                 std::int64_t number, std::int64_t residual);
   std::int64_t code_number(EntropyStream& stream, ContextMixer& mixer, List& list,
                            const Place& place, std::int64_t number);
+  static Hash place_of(const Position& position);
+  static const Seen* find_seen(const List& list, const Position& position);
+  static void guess_again(const List& list, std::uint32_t axis, std::vector<Guess>& guesses);
+  static void remember(List& list);
   static void take(List& list, std::uint32_t axes);
 
   std::unordered_map<Hash, List> lists_;  // by path

@@ -173,6 +173,22 @@ TEST_CASE("digits of a UUID cost four bits each, and nothing the second time") {
   CHECK(packed_size(text, TextKind::json) < 500 * 33 / 2);
 }
 
+TEST_CASE("a counter in an id costs a step, whatever stands around it") {
+  std::mt19937 random(4);
+  std::string ids = "[";
+  int number = 500;
+  for (int i = 0; i < 1000; ++i) {
+    number += static_cast<int>(random() % 16);
+    ids += "\"roof_STAD0158_p1955_" + std::to_string(number) + "-a\",";
+  }
+  ids.back() = ']';
+  check_round_trip({{TextKind::json, ids}});
+  CHECK(packed_size(ids, TextKind::json) < 1000 * 6 / 8);
+  check_round_trip(
+      {{TextKind::json, R"(["a00","a01","a1","a001","a","1a","2a","a9","a10","a00009",)"
+                        R"("x999999999999999","x1000000000000000","x0","x9999","x0"])"}});
+}
+
 TEST_CASE("floats of 32 bits cost no more than their bits") {
   std::mt19937 random(9);
   std::string text = "[";
@@ -227,6 +243,30 @@ TEST_CASE("a line over a grid of terrain takes little for each position") {
   const auto positions = static_cast<std::size_t>(std::count(text.begin(), text.end(), ' ')) / 3;
   REQUIRE(positions > 1500);
   CHECK(packed_size(text, TextKind::xml) < 2 * positions);
+}
+
+TEST_CASE("a line along a wall that another line had takes next to nothing") {
+  std::mt19937 random(6);
+  std::vector<std::string> wall;
+  for (int i = 0; i < 500; ++i) {
+    std::array<char, 80> position{};
+    std::snprintf(position.data(), position.size(), "%.3f %.3f %.3f ",
+                  static_cast<double>(random() % 1'000'000) / 1000,
+                  static_cast<double>(random() % 1'000'000) / 1000,
+                  static_cast<double>(random() % 50'000) / 1000);
+    wall.emplace_back(position.data());
+  }
+  const auto line = [&] {
+    std::string text = "<line>";
+    for (const std::string& position : wall) text += position;
+    return text + "</line>\n";
+  };
+  const std::string once = "<lines><line>0.125 0 0 1 0 0</line>" + line();
+  std::reverse(wall.begin(), wall.end());
+  const std::string twice = once + line() + "</lines>";
+  check_round_trip({{TextKind::xml, twice}});
+  const std::size_t first = packed_size(once, TextKind::xml);
+  CHECK(packed_size(twice, TextKind::xml) - first < first / 10);
 }
 
 TEST_CASE("lists of positions come back, whatever is in them") {

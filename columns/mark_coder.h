@@ -23,9 +23,13 @@ struct Mark {
 
 class MarkCoder {
  public:
-  MarkCoder() { marks_.add(std::string(1, kBeforeValue)); }
+  explicit MarkCoder(int slot_bits) : candidates_(slot_bits) {
+    marks_.add(std::string(1, kBeforeValue));
+  }
   /// Starts another text.
   void restart();
+  /// Makes a copy cost little.
+  void share() { marks_.share(); }
   /// Codes a mark; its text stays where it is. `last_value` stands for the value before it. The
   /// stream fails when a text that is read is longer than `most_bytes`.
   Mark code(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings, const Place& place,

@@ -29,6 +29,14 @@ void ValueCoder::restart() {
   last_number_.reset();
 }
 
+void ValueCoder::share() {
+  values_.share();
+  affixes_.share();
+  columns_.share();
+  uuids_.share();
+  index_of_.share();
+}
+
 void ValueCoder::pass(std::optional<std::int64_t> number) {
   before_last_ = last_;
   last_ = 0;
@@ -58,7 +66,7 @@ ValueCoder::Kind ValueCoder::choose_kind(const Context& context, std::string_vie
       const auto& candidate = context.candidates[i];
       if (candidate && candidate->value == *known) return static_cast<Kind>(i);
     }
-    if (index_of_.contains(key_of(context.place.column, *known))) return Kind::listed;
+    if (index_of_.find(key_of(context.place.column, *known)) != nullptr) return Kind::listed;
   }
   const auto number = choose_form(text, context.column.numbers.form());
   if (known && !(number && text.size() < kShortNumber)) return Kind::known;
@@ -96,7 +104,7 @@ std::uint32_t ValueCoder::code_listed(EntropyStream& stream, ContextMixer& mixer
                                       const Context& context, std::string_view text) {
   const Hash column = context.place.column;
   std::uint64_t index = 0;
-  if (!stream.is_reading()) index = index_of_.at(key_of(column, values_.find(text).value_or(0)));
+  if (!stream.is_reading()) index = *index_of_.find(key_of(column, values_.find(text).value_or(0)));
   index = mixer.number(stream, Question::list_index,
                        {column, hash_of(column, context.column.last), hash_of(column, last_, 1)},
                        index, kListedBits);
@@ -109,7 +117,7 @@ std::uint32_t ValueCoder::code_listed(EntropyStream& stream, ContextMixer& mixer
 std::optional<std::uint32_t> ValueCoder::next_known(std::uint32_t value) const {
   const Origin& origin = origins_[value];
   if (!origin.index) return std::nullopt;
-  const std::vector<std::uint32_t>& values = columns_.at(origin.column).values;
+  const std::vector<std::uint32_t>& values = columns_.find(origin.column)->values;
   if (*origin.index + 1 >= values.size()) return std::nullopt;
   return values[*origin.index + 1];
 }
@@ -224,8 +232,8 @@ void ValueCoder::learn(EntropyStream& stream, const Context& context, Kind kind,
   const bool is_new = kind > Kind::listed;
   if (is_new && column.values.size() < kMostListed) {
     if (!stream.is_reading()) {
-      index_of_.insert_or_assign(key_of(context.place.column, value),
-                                 static_cast<std::uint32_t>(column.values.size()));
+      index_of_[key_of(context.place.column, value)] =
+          static_cast<std::uint32_t>(column.values.size());
     }
     if (!origins_[value].index) origins_[value] = {context.place.column, column.values.size()};
     column.values.push_back(value);

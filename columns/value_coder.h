@@ -7,13 +7,12 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/layered_map.h"
 #include "columns/models/candidates.h"
 #include "columns/models/context_mixer.h"
 #include "columns/models/number_coder.h"
@@ -26,9 +25,11 @@ namespace watertight::columns {
 
 class ValueCoder {
  public:
-  ValueCoder() { add({}); }
+  explicit ValueCoder(int slot_bits) : candidates_(slot_bits) { add({}); }
   /// Starts another text.
   void restart();
+  /// Makes a copy cost little.
+  void share();
   /// Codes a value; returns its text, which stays where it is. The stream fails when the text that
   /// is read is longer than `most_bytes`.
   std::string_view code(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
@@ -93,12 +94,12 @@ class ValueCoder {
   ValueTable values_;
   ValueTable affixes_;
   Candidates candidates_;
-  std::unordered_map<Hash, Column> columns_;
-  std::deque<std::optional<FormedNumber>> numbers_;  // of values that are numbers
-  std::deque<Origin> origins_;                       // of values
+  LayeredMap<Hash, Column> columns_;
+  std::vector<std::optional<FormedNumber>> numbers_;  // of values that are numbers
+  std::vector<Origin> origins_;                       // of values
   UuidCoder uuids_;
-  /// Where a column lists a value, by column and value. Empty for a reader.
-  std::unordered_map<std::uint64_t, std::uint32_t> index_of_;
+  /// Where a column lists a value, by column and value. For writers.
+  LayeredMap<std::uint64_t, std::uint32_t> index_of_;
   std::uint32_t last_ = 0;         // the last value at all
   std::uint32_t before_last_ = 0;  // the one before it
   std::uint32_t last_known_ = 0;   // the last value of kind `known`

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,15 +17,19 @@ namespace watertight::columns {
 class ValueTable {
  public:
   ValueTable() = default;
-  ValueTable(const ValueTable& other) {
+  ValueTable(const ValueTable& other) { *this = other; }
+  ValueTable& operator=(const ValueTable& other) {
+    if (this == &other) return *this;
+    shared_ = other.shared_;
+    numbers_.clear();
+    texts_.clear();
     for (const std::string& text : other.texts_) add(text);
+    return *this;
   }
-  ValueTable& operator=(const ValueTable&) = delete;
 
   std::optional<std::uint32_t> find(std::string_view text) const {
-    const auto found = numbers_.find(text);
-    if (found == numbers_.end()) return std::nullopt;
-    return found->second;
+    if (const auto found = numbers_.find(text); found != numbers_.end()) return found->second;
+    return shared_ == nullptr ? std::nullopt : shared_->find(text);
   }
   /// The number of a text, which is added if it is new.
   std::uint32_t add(std::string text) {
@@ -33,10 +38,26 @@ class ValueTable {
     numbers_.emplace(texts_.emplace_back(std::move(text)), number);
     return number;
   }
-  const std::string& text(std::uint32_t number) const { return texts_[number]; }
-  std::uint32_t size() const { return static_cast<std::uint32_t>(texts_.size()); }
+  const std::string& text(std::uint32_t number) const {
+    const std::uint32_t shared = shared_size();
+    return number < shared ? shared_->texts_[number] : texts_[number - shared];
+  }
+  std::uint32_t size() const { return shared_size() + static_cast<std::uint32_t>(texts_.size()); }
+
+  /// Makes all texts ones that copies share: a copy costs little until texts are added.
+  void share() {
+    auto all = std::make_shared<ValueTable>();
+    for (std::uint32_t number = 0; number < size(); ++number) all->add(text(number));
+    *this = ValueTable();
+    shared_ = std::move(all);
+  }
 
  private:
+  std::uint32_t shared_size() const {
+    return shared_ == nullptr ? 0 : static_cast<std::uint32_t>(shared_->texts_.size());
+  }
+
+  std::shared_ptr<const ValueTable> shared_;  // has no shared texts itself
   std::deque<std::string> texts_;  // a deque, so that the keys of `numbers_` stay where they are
   std::unordered_map<std::string_view, std::uint32_t> numbers_;
 };

@@ -39,17 +39,16 @@ ContextMixer::Inputs ContextMixer::Inputs::with(Hash context) const {
   return more;
 }
 
-ContextMixer::ContextMixer()
-    : counters_(std::size_t{1} << kTableBits, kUnknown),
+ContextMixer::ContextMixer(int table_bits)
+    : shift_(32 - table_bits),
+      counters_(std::size_t{1} << static_cast<unsigned>(table_bits), kUnknown),
       weights_(static_cast<std::size_t>(Question::count) * kSteps) {}
 
-void ContextMixer::soften() {
-  constexpr std::uint32_t kMostAnswers = 1;
-  constexpr std::uint32_t kMostMixed = 8;
+void ContextMixer::soften(std::uint32_t most_answers, std::uint32_t most_mixed) {
   for (std::uint32_t& counter : counters_) {
-    counter = (counter & ~kCountBits) | std::min(counter & kCountBits, kMostAnswers);
+    counter = (counter & ~kCountBits) | std::min(counter & kCountBits, most_answers);
   }
-  for (Weights& weights : weights_) weights.seen = std::min(weights.seen, kMostMixed);
+  for (Weights& weights : weights_) weights.seen = std::min(weights.seen, most_mixed);
 }
 
 template <std::size_t count>
@@ -64,7 +63,7 @@ bool ContextMixer::decide_of(EntropyStream& stream, Weights& weights, const Inpu
   std::array<std::uint32_t*, count> counters{};
   std::int64_t sum = static_cast<std::int64_t>(weights.values[count]) * kBiasInput;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t counter = contexts.hashes_[i] >> (32 - kTableBits);
+    const std::uint32_t counter = contexts.hashes_[i] >> static_cast<unsigned>(shift_);
     counters[i] = &counters_[node == 0 ? counter : (counter & ~(kGroup - 1)) + node];
     inputs[i] = input_of(*counters[i]);
     sum += static_cast<std::int64_t>(weights.values[i]) * inputs[i];

@@ -82,10 +82,12 @@ class ContextMixer {
   static constexpr std::size_t kMostContexts = 7;
   using ContextList = std::initializer_list<Hash>;
 
-  ContextMixer();
+  /// The mixer has 2^table_bits counters.
+  explicit ContextMixer(int table_bits);
 
-  /// Makes all that was learned count as little, so that what comes changes it soon.
-  void soften();
+  /// Makes all that was learned count as so few answers and decisions at most, so that what comes
+  /// changes it soon.
+  void soften(std::uint32_t most_answers = 1, std::uint32_t most_mixed = 8);
 
   /// Codes a yes or no.
   bool flag(EntropyStream& stream, Question question, ContextList contexts, bool value);
@@ -119,7 +121,6 @@ class ContextMixer {
               std::uint32_t node, bool value);
 
  private:
-  static constexpr int kTableBits = 18;
   static constexpr std::size_t kSteps = 8;  // later decisions of an answer share weights
   struct Weights {
     std::array<std::int32_t, kMostContexts + 1> values{};
@@ -132,6 +133,7 @@ class ContextMixer {
   std::uint64_t code_low_bits(EntropyStream& stream, Question question, const Inputs& inputs,
                               std::size_t first_step, int bits, std::uint64_t value);
 
+  int shift_;
   std::vector<std::uint32_t> counters_;
   std::vector<Weights> weights_;
 };

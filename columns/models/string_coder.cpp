@@ -57,8 +57,8 @@ bool StringCoder::code_character(EntropyStream& stream, ContextMixer& mixer, Has
 
 std::string StringCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column,
                               std::string_view text, std::size_t most_bytes) {
-  const auto last = last_of_column_.find(column);
-  Match match = last == last_of_column_.end() ? Match{} : Match{last->second, 1};
+  const std::size_t* const last = last_of_column_.find(column);
+  Match match = last == nullptr ? Match{} : Match{*last, 1};
   const std::size_t begin = history_.size();
   before_ = 0;
   for (std::size_t i = 0;; ++i) {

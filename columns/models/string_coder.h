@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 
+#include "columns/layered_map.h"
 #include "columns/models/context_mixer.h"
 
 namespace watertight::columns {
@@ -19,6 +19,12 @@ class StringCoder {
   /// `most_bytes`.
   std::string code(EntropyStream& stream, ContextMixer& mixer, Hash column, std::string_view text,
                    std::size_t most_bytes);
+
+  /// Makes a copy cost little.
+  void share() {
+    last_of_column_.share();
+    after_three_.share();
+  }
 
   /// Whether a string was longer than it may be.
   bool is_over_limit() const { return is_over_limit_; }
@@ -32,10 +38,9 @@ class StringCoder {
   bool code_character(EntropyStream& stream, ContextMixer& mixer, Hash column, std::size_t position,
                       Match& match, unsigned char& character, bool& is_end);
 
-  std::string history_;  // all strings, a NUL after each
-  std::unordered_map<Hash, std::size_t>
-      last_of_column_;                                 // where the last string of a column begins
-  std::unordered_map<Hash, std::size_t> after_three_;  // what followed three characters
+  std::string history_;                           // all strings, a NUL after each
+  LayeredMap<Hash, std::size_t> last_of_column_;  // where the last string of a column begins
+  LayeredMap<Hash, std::size_t> after_three_;     // what followed three characters
   bool is_over_limit_ = false;
   std::uint32_t before_ = 0;  // the last four characters, the last one lowest
 };

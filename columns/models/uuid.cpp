@@ -126,8 +126,7 @@ std::optional<std::size_t> UuidCoder::code_known(EntropyStream& stream, ContextM
 Uuid UuidCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid) {
   std::optional<std::size_t> known;
   if (!stream.is_reading()) {
-    const auto found = number_of_.find(uuid.digits);
-    if (found != number_of_.end()) known = found->second;
+    if (const std::size_t* found = number_of_.find(uuid.digits)) known = *found;
   }
   known = code_known(stream, mixer, column, known);
   Uuid coded;
@@ -138,7 +137,7 @@ Uuid UuidCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column, co
     coded.digits = code_digits(stream, mixer, column, uuid.digits);
     last_ = known_.size();
     known_.push_back(coded.digits);
-    if (!stream.is_reading()) number_of_.emplace(coded.digits, last_);
+    if (!stream.is_reading()) number_of_[coded.digits] = last_;
   }
   coded.is_upper_case = mixer.flag(stream, Question::is_upper_case, {column}, uuid.is_upper_case);
   return coded;

@@ -6,12 +6,12 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "columns/layered_map.h"
 #include "columns/models/context_mixer.h"
 
 namespace watertight::columns {
@@ -37,19 +37,27 @@ class UuidCoder {
   /// Codes the digits of a UUID and the case of its letters.
   Uuid code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid);
 
+  /// Makes a copy cost little.
+  void share() { number_of_.share(); }
   /// Whether a UUID was coded before. For writers.
-  bool knows(const Uuid& uuid) const { return number_of_.contains(uuid.digits); }
+  bool knows(const Uuid& uuid) const { return number_of_.find(uuid.digits) != nullptr; }
 
  private:
   using Digits = std::array<std::uint8_t, 32>;
+  struct DigitsHash {
+    std::size_t operator()(const Digits& digits) const {
+      return std::hash<std::string_view>()(
+          std::string_view(reinterpret_cast<const char*>(digits.data()), digits.size()));
+    }
+  };
   std::optional<std::size_t> code_known(EntropyStream& stream, ContextMixer& mixer, Hash column,
                                         std::optional<std::size_t> known);
   static Digits code_digits(EntropyStream& stream, ContextMixer& mixer, Hash column,
                             const Digits& digits);
 
   std::vector<Digits> known_;
-  std::map<Digits, std::size_t> number_of_;  // empty for a reader
-  std::size_t last_ = 0;                     // the number of the last UUID
+  LayeredMap<Digits, std::size_t, DigitsHash> number_of_;  // for writers
+  std::size_t last_ = 0;                                   // the number of the last UUID
 };
 
 }  // namespace watertight::columns

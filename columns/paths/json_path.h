@@ -6,9 +6,9 @@
 
 #include <cstdint>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/layered_map.h"
 #include "columns/place.h"
 
 namespace watertight::columns {
@@ -18,6 +18,8 @@ class JsonPath {
   JsonPath() { restart(); }
   /// Goes to the start of another text. What is known about lengths of arrays stays.
   void restart();
+  /// Makes a copy cost little.
+  void share() { last_length_.share(); }
   /// Follows the text of a mark. Takes any bytes; a text that is not JSON gives arbitrary places.
   void follow(std::string_view mark);
   /// Where the next value or mark is.
@@ -46,7 +48,7 @@ class JsonPath {
   std::vector<Level> levels_;
   std::size_t beyond_ = 0;  // levels that are deeper than kMostLevels
   bool is_in_string_ = false;
-  std::unordered_map<Hash, std::uint32_t> last_length_;  // of arrays, by path
+  LayeredMap<Hash, std::uint32_t> last_length_;  // of arrays, by path
 };
 
 }  // namespace watertight::columns

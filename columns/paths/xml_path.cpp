@@ -100,8 +100,8 @@ Place XmlPath::place() const {
     place.column = hash_of(level.path, attribute_);
     return place;
   }
-  const auto known = last_length_.find(level.path);
-  place.last_length = known == last_length_.end() ? 0 : known->second;
+  const std::uint32_t* const known = last_length_.find(level.path);
+  place.last_length = known == nullptr ? 0 : *known;
   place.index = level.index;
   place.is_in_array = level.index > 0 || place.last_length > 1;
   place.key = level.child;

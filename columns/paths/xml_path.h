@@ -6,9 +6,9 @@
 
 #include <cstdint>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/layered_map.h"
 #include "columns/place.h"
 
 namespace watertight::columns {
@@ -18,6 +18,8 @@ class XmlPath {
   XmlPath() { restart(); }
   /// Goes to the start of another text. What is known about lengths of lists stays.
   void restart();
+  /// Makes a copy cost little.
+  void share() { last_length_.share(); }
   /// Follows the text of a mark. Takes any bytes; a text that is not XML gives arbitrary places.
   void follow(std::string_view mark);
   /// Where the next value or mark is.
@@ -39,7 +41,7 @@ class XmlPath {
   bool is_in_quotes_ = false;
   bool is_element_ = false;  // the tag is of an element, not a comment or an instruction
   Hash attribute_ = 0;
-  std::unordered_map<Hash, std::uint32_t> last_length_;  // of lists in contents, by path
+  LayeredMap<Hash, std::uint32_t> last_length_;  // of lists in contents, by path
 };
 
 }  // namespace watertight::columns

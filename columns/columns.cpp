@@ -247,6 +247,7 @@ Error damaged(const EntropyStream& stream) {
 }  // namespace
 
 struct Examples::Learned {
+  explicit Learned(TextCoder learned) : coder(std::move(learned)) {}
   TextCoder coder;
   /// A coder to be changed, which is used again: that is cheaper than a new one.
   TextCoder& copy() const {

@@ -31,6 +31,7 @@ extern const ByteView kXmlExample;
 namespace {
 
 constexpr int kKindBits = 2;
+constexpr std::size_t kJsonExamples = 4;  // the first of examples()
 constexpr Hash kBytesColumn = 0x42595445;
 
 /// A whole number as it is written: without point, sign or zeros in front.
@@ -64,13 +65,23 @@ class TextCoder {
   /// A coder that has learned from the examples of the format. Cost: a copy of some megabytes.
   static TextCoder after_examples() {
     static const TextCoder kCoder = [] {
-      TextCoder coder;
-      auto measured = EntropyStream::meter();
-      for (const Text& example : examples()) coder.code(measured, example);
-      coder.mixer_.soften();
+      TextCoder coder(kLarge);
+      coder.learn(examples(), 1, 8);
       return coder;
     }();
     return kCoder;
+  }
+  /// A coder for single texts like the examples. Cost: that of packing them.
+  static TextCoder of_examples(std::span<const Text> texts) {
+    static const TextCoder kCoder = [] {
+      TextCoder coder(kSmall);
+      const std::vector<Text> all = examples();
+      coder.learn(std::span(all).first(kJsonExamples), 1, 8);
+      return coder;
+    }();
+    TextCoder coder = kCoder;
+    coder.learn(texts, 8, 64);
+    return coder;
   }
 
   /// Codes one text and returns it. The stream fails when all texts that are read have more bytes
@@ -83,7 +94,33 @@ class TextCoder {
   bool is_over_limit() const { return is_over_limit_ || strings_.is_over_limit(); }
 
  private:
-  TextCoder() = default;
+  /// The sizes of its tables.
+  struct Sizes {
+    int counter_bits;
+    int slot_bits;
+  };
+  static constexpr Sizes kLarge{18, 16};
+  static constexpr Sizes kSmall{17, 14};  // so that it is copied in a moment
+  explicit TextCoder(const Sizes& sizes)
+      : mixer_(sizes.counter_bits), marks_(sizes.slot_bits), values_(sizes.slot_bits) {}
+
+  /// Learns from texts; what was learned counts as so few answers and decisions then.
+  void learn(std::span<const Text> texts, std::uint32_t most_answers, std::uint32_t most_mixed) {
+    auto measured = EntropyStream::meter();
+    for (const Text& text : texts) code(measured, text);
+    mixer_.soften(most_answers, most_mixed);
+    restart();
+    json_path_.restart();
+    xml_path_.restart();
+  }
+  void restart() {
+    marks_.restart();
+    values_.restart();
+    rings_.restart();
+    vertices_.restart(0);
+    last_value_ = 0;
+  }
+
   std::string code_text(const Text& text) {
     const auto kind = static_cast<TextKind>(mixer_.symbol(
         *stream_, Question::text_kind, {1}, kKindBits, static_cast<std::uint32_t>(text.kind)));
@@ -129,11 +166,7 @@ class TextCoder {
   std::string code_tokens(Path& path, std::string_view text) {
     Tokens tokens(text);
     path.restart();
-    marks_.restart();
-    values_.restart();
-    rings_.restart();
-    vertices_.restart(0);
-    last_value_ = 0;
+    restart();
     std::string out;
     while (!stream_->failed()) {
       const bool is_reading = stream_->is_reading();
@@ -210,7 +243,50 @@ class TextCoder {
 
 constexpr std::uint64_t kMostTextsForAByte = 4096;
 
+Error over_limit(std::uint64_t most_bytes) {
+  return {ErrorCode::limit_exceeded,
+          "packed texts of more than " + std::to_string(most_bytes) + " bytes"};
+}
+
+Error damaged(const EntropyStream& stream) {
+  return {ErrorCode::malformed, "packed texts that are damaged", stream.position(), {}};
+}
+
 }  // namespace
+
+struct Examples::Learned {
+  explicit Learned(TextCoder learned) : coder(std::move(learned)) {}
+  TextCoder coder;
+  /// A coder to be changed, which is used again: that is cheaper than a new one.
+  TextCoder& copy() const {
+    thread_local TextCoder own = coder;
+    return own = coder;
+  }
+};
+
+Examples::Examples(std::unique_ptr<const Learned> learned) : learned_(std::move(learned)) {}
+Examples::~Examples() = default;
+
+std::shared_ptr<const Examples> Examples::of(std::span<const Text> texts) {
+  return std::shared_ptr<const Examples>(
+      new Examples(std::make_unique<const Learned>(TextCoder::of_examples(texts))));
+}
+
+Bytes Examples::pack(const Text& text) const {
+  auto stream = EntropyStream::writer();
+  learned_->copy().code(stream, text);
+  return std::move(stream).finish();
+}
+
+Result<std::string> Examples::unpack(ByteView bytes, std::uint64_t most_bytes) const {
+  auto stream = EntropyStream::reader(bytes);
+  TextCoder& coder = learned_->copy();
+  coder.allow(most_bytes);
+  std::string text = coder.code(stream, {});
+  if (coder.is_over_limit()) return over_limit(most_bytes);
+  if (!stream.is_finished()) return damaged(stream);
+  return text;
+}
 
 Bytes pack_texts(std::span<const Text> texts) {
   auto stream = EntropyStream::writer();
@@ -237,13 +313,8 @@ Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most
   std::vector<std::string> texts;
   for (std::uint64_t i = 0; i < count && !stream.failed(); ++i)
     texts.push_back(coder.code(stream, {}));
-  if (coder.is_over_limit()) {
-    return Error{ErrorCode::limit_exceeded,
-                 "packed texts of more than " + std::to_string(most_bytes) + " bytes"};
-  }
-  if (!stream.is_finished()) {
-    return Error{ErrorCode::malformed, "packed texts that are damaged", stream.position(), {}};
-  }
+  if (coder.is_over_limit()) return over_limit(most_bytes);
+  if (!stream.is_finished()) return damaged(stream);
   return texts;
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,28 @@ enum class TextKind : std::uint8_t {
 struct Text {
   TextKind kind = TextKind::bytes;
   std::string_view text;
+};
+
+/// Texts from which a coder has learned, so that a text like them takes few bytes by itself. Never
+/// changes. Thread-safe. Memory: some 2 MB.
+class Examples {
+ public:
+  /// Cost: that of packing the texts.
+  static std::shared_ptr<const Examples> of(std::span<const Text> texts);
+  ~Examples();
+  Examples(const Examples&) = delete;
+  Examples& operator=(const Examples&) = delete;
+
+  /// Packs one text. Each is packed and unpacked as if it were the only one. Cost: a copy of 1 MB,
+  /// and 10 MB a second.
+  Bytes pack(const Text& text) const;
+  /// The text that was packed. `bytes` may be hostile. Errors: those of unpack_texts().
+  Result<std::string> unpack(ByteView bytes, std::uint64_t most_bytes) const;
+
+ private:
+  struct Learned;
+  explicit Examples(std::unique_ptr<const Learned> learned);
+  std::unique_ptr<const Learned> learned_;
 };
 
 /// Packs texts. Later ones cost less where they resemble earlier ones. Cost: linear, about 10 MB a

@@ -23,7 +23,9 @@ struct Mark {
 
 class MarkCoder {
  public:
-  MarkCoder() { marks_.add(std::string(1, kBeforeValue)); }
+  explicit MarkCoder(int slot_bits) : candidates_(slot_bits) {
+    marks_.add(std::string(1, kBeforeValue));
+  }
   /// Starts another text.
   void restart();
   /// Codes a mark; its text stays where it is until the next one. `last_value` stands for the value

@@ -25,7 +25,7 @@ namespace watertight::columns {
 
 class ValueCoder {
  public:
-  ValueCoder() { add({}); }
+  explicit ValueCoder(int slot_bits) : candidates_(slot_bits) { add({}); }
   /// Starts another text.
   void restart();
   /// Codes a value; returns its text, which stays where it is until the next one. The stream fails

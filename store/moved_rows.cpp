@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "packing/text_dictionary.h"
+#include "packing/zstandard_frame.h"
 #include "store/rows/feature_rows.h"
 
 namespace watertight::store {
@@ -17,7 +18,6 @@ namespace {
 constexpr std::int64_t kBatch = 200;
 constexpr std::int64_t kSamples = 1000;
 constexpr std::chrono::seconds kBetweenSentences{5};
-constexpr std::uint64_t kMagicBytes = 4;  // of the old texts, which were whole Zstandard frames
 
 /// A feature of the old tables: all but its packed text.
 struct OldFeature {
@@ -81,11 +81,8 @@ void add_solid(const Rows& rows, int row, OldFeature& old, std::string& reports)
 
 /// The text of an old skeleton.
 Result<std::string> skeleton_of(ByteView frame, const std::string& id) {
-  if (frame.size() >= kMagicBytes) {
-    auto text = packing::unpack(frame.subspan(kMagicBytes), nullptr,
-                                std::numeric_limits<std::uint64_t>::max());
-    if (text) return text;
-  }
+  auto text = packing::unpack_frame(frame, std::numeric_limits<std::uint64_t>::max());
+  if (text) return text;
   return Error{ErrorCode::malformed,
                "the skeleton of feature '" + id + "' in the old tables cannot be read"};
 }
@@ -127,7 +124,7 @@ Result<packing::DictionaryPointer> dictionary_for(DatabaseSession& connection,
   if (!samples) return std::move(samples).error();
   std::vector<std::string> texts;
   for (OldFeature& sample : *samples) texts.push_back(std::move(sample.text));
-  return packing::train(texts, expected);
+  return packing::best_dictionary(texts, expected);
 }
 
 /// Moves some features. Returns how many.

@@ -20,15 +20,16 @@ struct Candidate {
 
 class Candidates {
  public:
-  Candidates() : slots_(std::size_t{1} << kSlotBits) {}
+  explicit Candidates(int slot_bits)
+      : shift_(32 - slot_bits), slots_(std::size_t{1} << static_cast<unsigned>(slot_bits)) {}
 
   std::optional<Candidate> find(Hash facts) const {
-    const Slot& slot = slots_[facts >> (32 - kSlotBits)];
+    const Slot& slot = slots_[facts >> static_cast<unsigned>(shift_)];
     if (!slot.is_used || slot.check != check_of(facts)) return std::nullopt;
     return Candidate{slot.value, slot.trust};
   }
   void learn(Hash facts, std::uint32_t value) {
-    Slot& slot = slots_[facts >> (32 - kSlotBits)];
+    Slot& slot = slots_[facts >> static_cast<unsigned>(shift_)];
     const bool is_known = slot.is_used && slot.check == check_of(facts);
     if (is_known && slot.value == value) {
       if (slot.trust < kMostTrust) ++slot.trust;
@@ -40,7 +41,6 @@ class Candidates {
   }
 
  private:
-  static constexpr int kSlotBits = 16;
   static constexpr std::uint8_t kMostTrust = 15;
   static std::uint16_t check_of(Hash facts) { return static_cast<std::uint16_t>(facts); }
   struct Slot {
@@ -49,6 +49,7 @@ class Candidates {
     std::uint8_t trust = 0;
     bool is_used = false;
   };
+  int shift_;
   std::vector<Slot> slots_;
 };
 

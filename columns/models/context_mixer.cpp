@@ -39,17 +39,16 @@ auto with_count(std::size_t count, const Function& function) {
 
 }  // namespace
 
-ContextMixer::ContextMixer()
-    : counters_(std::size_t{1} << kTableBits, kUnknown),
+ContextMixer::ContextMixer(int table_bits)
+    : shift_(static_cast<unsigned>(32 - table_bits)),
+      counters_(std::size_t{1} << static_cast<unsigned>(table_bits), kUnknown),
       weights_(static_cast<std::size_t>(Question::count) * kSteps) {}
 
-void ContextMixer::soften() {
-  constexpr std::uint32_t kMostAnswers = 1;
-  constexpr std::uint32_t kMostMixed = 8;
+void ContextMixer::soften(std::uint32_t most_answers, std::uint32_t most_mixed) {
   for (std::uint32_t& counter : counters_) {
-    counter = (counter & ~kCountBits) | std::min(counter & kCountBits, kMostAnswers);
+    counter = (counter & ~kCountBits) | std::min(counter & kCountBits, most_answers);
   }
-  for (Weights& weights : weights_) weights.seen = std::min(weights.seen, kMostMixed);
+  for (Weights& weights : weights_) weights.seen = std::min(weights.seen, most_mixed);
 }
 
 template <std::size_t count>

@@ -94,10 +94,12 @@ class ContextMixer {
   template <std::size_t count>
   using Counters = std::array<std::uint32_t*, count>;
 
-  ContextMixer();
+  /// The mixer has 2^table_bits counters.
+  explicit ContextMixer(int table_bits);
 
-  /// Makes all that was learned count as little, so that what comes changes it soon.
-  void soften();
+  /// Makes all that was learned count as so few answers and decisions at most, so that what comes
+  /// changes it soon.
+  void soften(std::uint32_t most_answers, std::uint32_t most_mixed);
 
   /// Codes a yes or no.
   bool flag(EntropyStream& stream, Question question, ContextList contexts, bool value);
@@ -110,11 +112,11 @@ class ContextMixer {
                        std::uint64_t value, int modelled);
 
   /// The counter of a context.
-  std::uint32_t* counter(Hash context) { return &counters_[context >> (32 - kTableBits)]; }
+  std::uint32_t* counter(Hash context) { return &counters_[context >> shift_]; }
   /// The counters of four decisions in a row, each of which knows the answers before it: that of a
   /// decision is the one at 1 and the answers before it.
   std::uint32_t* group(Hash context) {
-    return &counters_[(context >> (32 - kTableBits)) & ~((1U << kGroupBits) - 1)];
+    return &counters_[(context >> shift_) & ~((1U << kGroupBits) - 1)];
   }
   static constexpr int kGroupBits = 4;
   /// Codes one decision, the `step`-th of an answer.
@@ -123,7 +125,6 @@ class ContextMixer {
               const Counters<count>& counters, bool value);
 
  private:
-  static constexpr int kTableBits = 18;
   static constexpr std::size_t kMostContexts = 7;
   static constexpr std::int64_t kSmallError = 512;  // in 1/65536: weights do not learn from less
   static constexpr std::size_t kSteps = 8;          // later decisions of an answer share weights
@@ -148,6 +149,7 @@ class ContextMixer {
   std::uint64_t code_number(EntropyStream& stream, Question question, ContextList contexts,
                             std::uint64_t value, int modelled);
 
+  unsigned shift_;
   std::vector<std::uint32_t> counters_;
   std::vector<Weights> weights_;
 };

@@ -37,7 +37,7 @@ Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::
     texts.push_back(stored_text(*encoded));
     is_outdated = is_outdated || *stored != texts.back();
   }
-  return packing::train(texts, features, is_outdated ? nullptr : *newest);
+  return packing::best_dictionary(texts, features, is_outdated ? nullptr : *newest);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/streaming/feature_packer.h"
 
+#include <bit>
 #include <utility>
 
 #include "geometry/parallel.h"
@@ -40,12 +41,32 @@ Status FeaturePacker::add(PreparedFeature feature, FeatureSpool& spool) {
 
 Status FeaturePacker::finish(FeatureSpool& spool) { return choose(waiting_.size(), spool); }
 
+/// The collection's dictionary, or a new one: when it has none or one that no longer fits, and
+/// whenever its number of features reaches a power of two, so that it gets one however it grows.
+Result<packing::DictionaryPointer> FeaturePacker::dictionary_for(
+    const std::vector<PreparedFeature>& features, std::uint64_t expected) const {
+  std::vector<std::string> texts;
+  for (const PreparedFeature& feature : features) texts.push_back(feature.text);
+  const bool has_grown = std::bit_width(stored_) < std::bit_width(stored_ + texts.size()) &&
+                         stored_ + texts.size() >= packing::kFewestSamples;
+  if (texts.size() < packing::kFewestSamples) {
+    if (!has_grown) return dictionary_;
+    auto samples = samples_();
+    if (!samples) return std::move(samples).error();
+    texts.insert(texts.end(), samples->begin(), samples->end());
+  }
+  if (!has_grown) {
+    const auto fits = packing::still_fits(dictionary_.get(), texts);
+    if (!fits) return fits.error();
+    if (*fits) return dictionary_;
+  }
+  return packing::best_dictionary(texts, stored_ + expected, dictionary_);
+}
+
 Status FeaturePacker::choose(std::uint64_t expected, FeatureSpool& spool) {
   std::vector<PreparedFeature> features = std::exchange(waiting_, {});
   if (!is_chosen_) {
-    std::vector<std::string> texts;
-    for (const PreparedFeature& feature : features) texts.push_back(feature.text);
-    auto dictionary = packing::train(texts, expected, dictionary_);
+    auto dictionary = dictionary_for(features, expected);
     if (!dictionary) return std::move(dictionary).error();
     const std::lock_guard lock(mutex_);
     dictionary_ = *std::move(dictionary);

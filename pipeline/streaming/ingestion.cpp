@@ -6,11 +6,31 @@
 #include <utility>
 
 #include "formats/city_json/city_json.h"
+#include "packing/text_dictionary.h"
 #include "pipeline/instances.h"
 #include "pipeline/streaming/feature_stream.h"
 #include "pipeline/streaming/process.h"
 
 namespace watertight::pipeline {
+namespace {
+
+constexpr std::uint64_t kSamples = 200;
+
+/// Texts of some features of a collection.
+Result<std::vector<std::string>> stored_texts(SolidStore& store, const std::string& collection) {
+  const auto samples = store.walk(collection, kSamples, "");
+  if (!samples) return samples.error();
+  std::vector<std::string> texts;
+  for (const StoredFeature& feature : samples->features) {
+    auto text = packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
+                                std::numeric_limits<std::uint64_t>::max());
+    if (!text) return std::move(text).error();
+    texts.push_back(*std::move(text));
+  }
+  return texts;
+}
+
+}  // namespace
 
 /// A feature after validation; `prepared` if it is to be stored.
 struct Ingestion::Processed {
@@ -34,8 +54,10 @@ Status Ingestion::look_up_collection() {
   if (std::exchange(has_looked_up_, true)) return Done{};
   auto dictionary = store_.dictionary(options_.collection);
   if (!dictionary) return std::move(dictionary).error();
-  packer_.emplace(*std::move(dictionary), options_.threads);
   const auto existing = store_.collection(options_.collection);
+  packer_.emplace(
+      *std::move(dictionary), existing ? existing->features : 0,
+      [this] { return stored_texts(store_, options_.collection); }, options_.threads);
   if (existing) {
     srid_ = existing->srid;
     if (!options_.policy) options_.policy = existing->policy;

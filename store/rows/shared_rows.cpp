@@ -6,10 +6,8 @@
 namespace watertight::store {
 namespace {
 
-constexpr std::size_t kMostBytes = 64 << 20;
+constexpr std::size_t kMostBytes = 128 << 20;
 constexpr std::size_t kRowBytes = 256;
-// A dictionary is prepared with tables that are larger than itself.
-constexpr std::size_t kPrepared = 16;
 constexpr std::chrono::seconds kFresh{5};
 
 }  // namespace
@@ -79,7 +77,7 @@ Status SharedRows::read_dictionaries(DatabaseSession& connection,
     if (!made) return std::move(made).error();
     found.dictionaries[rows->int8(row, 0)] = *made;
     const std::lock_guard lock(mutex_);
-    make_room(kRowBytes + content.size() * kPrepared);
+    make_room(packing::kDictionaryMemory);
     dictionaries_.try_emplace(rows->int8(row, 0), *std::move(made));
   }
   return Done{};
@@ -122,7 +120,7 @@ std::int64_t SharedRows::key_of(const std::string& collection,
 void SharedRows::add_key(const std::string& collection,
                          const packing::DictionaryPointer& dictionary, std::int64_t key) {
   const std::lock_guard lock(mutex_);
-  make_room(kRowBytes + dictionary->content().size() * kPrepared);
+  make_room(packing::kDictionaryMemory);
   keys_[{collection, dictionary}] = key;
   dictionaries_.try_emplace(key, dictionary);
 }

@@ -29,7 +29,7 @@ struct Kind {
   SharedText header;
 };
 
-/// Holds some 64 MiB: forgets everything when there is more. Keys are never used twice, so nothing
+/// Holds some 128 MiB: forgets everything when there is more. Keys are never used twice, so nothing
 /// that it holds can become wrong. Thread-safe.
 class SharedRows {
  public:

@@ -424,4 +424,33 @@ TEST_CASE("coordinates with an exponent are predicted as others are") {
 }
 
 }  // namespace
+TEST_CASE(
+    "a text like the examples takes few bytes, and each is packed as if it were the only one") {
+  const auto text_of = [](int number) {
+    std::string text = R"({"type":"Building","attributes":{"roof_material":"slate","height":)";
+    return text.append(std::to_string(number)).append(R"(,"ids":["a","b"]}})");
+  };
+  std::vector<std::string> texts;
+  for (int i = 0; i < 12; ++i) texts.push_back(text_of(i * 37));
+  std::vector<columns::Text> views;
+  for (const std::string& text : texts) views.push_back({columns::TextKind::json, text});
+  const auto examples = columns::Examples::of(views);
+  const auto none = columns::Examples::of({});
+  const std::string text = text_of(1234);
+  const Bytes packed = examples->pack({columns::TextKind::json, text});
+  CHECK(packed.size() < 6);
+  CHECK(none->pack({columns::TextKind::json, text}).size() > 4 * packed.size());
+  CHECK(*examples->unpack(packed, 1000) == text);
+  const std::string other = R"({"another":["text",1.5,"0f8fad5b-d9cb-469f-a165-70867728950e"]})";
+  const Bytes other_packed = examples->pack({columns::TextKind::json, other});
+  CHECK(*examples->unpack(other_packed, 1000) == other);
+  CHECK(examples->pack({columns::TextKind::json, text}) == packed);
+  CHECK(*examples->unpack(packed, 1000) == text);
+  CHECK(examples->unpack(packed, 20).error().code == ErrorCode::limit_exceeded);
+  for (std::size_t size = 0; size < packed.size(); ++size) {
+    const auto cut = examples->unpack(ByteView(packed).first(size), 1000);
+    CHECK((!cut || *cut != text));
+  }
+}
+
 }  // namespace watertight

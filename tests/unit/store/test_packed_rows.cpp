@@ -91,7 +91,7 @@ TEST_CASE("SQL sees the same solids as the store") {
 }
 
 TEST_CASE("a dictionary makes texts smaller, and they come back with it alone") {
-  const auto dictionary = packing::train(texts(200, 0), 1000);
+  const auto dictionary = packing::best_dictionary(texts(200, 0), 1000);
   REQUIRE(dictionary);
   REQUIRE(*dictionary);
   const std::string text = texts(1, 500).front();
@@ -106,15 +106,15 @@ TEST_CASE("a dictionary makes texts smaller, and they come back with it alone") 
     CHECK_FALSE(packing::unpack(ByteView(*packed).first(size), dictionary->get(), 1000));
   }
   // It is kept when a new one would not be better, or cannot be made.
-  CHECK(*packing::train(texts(200, 300), 1000, *dictionary) == *dictionary);
-  CHECK(*packing::train(texts(5, 0), 1000, *dictionary) == *dictionary);
-  CHECK(*packing::train(texts(5, 0), 1000) == nullptr);
+  CHECK(*packing::best_dictionary(texts(200, 300), 1000, *dictionary) == *dictionary);
+  CHECK(*packing::best_dictionary(texts(5, 0), 1000, *dictionary) == *dictionary);
+  CHECK(*packing::best_dictionary(texts(5, 0), 1000) == nullptr);
 }
 
 TEST_CASE("a collection keeps the dictionaries of its features, also when it is made anew") {
   const Database database;
   const auto store = database.store();
-  const auto dictionary = packing::train(texts(200, 0), 1000);
+  const auto dictionary = packing::best_dictionary(texts(200, 0), 1000);
   REQUIRE((dictionary && *dictionary));
   StoredFeature feature = sample_feature("a");
   feature.skeleton = {*packing::pack("text", dictionary->get()), *dictionary};

@@ -258,12 +258,15 @@ std::optional<std::string> PositionCoder::code(EntropyStream& stream, ContextMix
   }
   rescale(list, axis, form.decimals);
   const std::int64_t number = code_number(stream, mixer, list, place, given.number);
+  std::string printed = print(form, number);
+  if (printed.empty()) {
+    stream.fail();
+    return printed;
+  }
   if (list.count > 0) judge(list.misses[axis], predictions(list, axis), number, kMemory);
   list.position[axis] = number;
   list.known[axis].add(number);
   if (axis + 1 == place.axes) take(list, place.axes);
-  std::string printed = print(form, number);
-  if (printed.empty()) stream.fail();
   return printed;
 }
 

@@ -16,6 +16,7 @@
 #include "columns/paths/table_path.h"
 #include "columns/paths/xml_path.h"
 #include "columns/paths/xml_tokens.h"
+#include "columns/plain_texts.h"
 #include "columns/rings/position_coder.h"
 #include "columns/rings/ring_coder.h"
 #include "columns/rings/vertex_coder.h"
@@ -178,12 +179,11 @@ class TextCoder {
   std::optional<std::string_view> code_vertex_index(const Place& place, std::string_view text) {
     auto vertex = stream_->is_reading() ? std::nullopt : whole_number(text);
     if (vertex && (*vertex < 0 || *vertex >= kMostVertexNumbers)) vertex.reset();
-    if (!mixer_.flag(*stream_, Question::text_kind, {place.column}, vertex.has_value()))
-      return std::nullopt;
-    const VertexNumber coded = rings_.code(*stream_, mixer_, place.index, vertex.value_or(0));
-    values_.pass(coded);
+    const auto coded = rings_.code(*stream_, mixer_, place.index, vertex);
+    if (!coded) return std::nullopt;
+    values_.pass(*coded);
     last_value_ = 0;
-    return keep(std::to_string(coded));
+    return keep(std::to_string(*coded));
   }
 
   std::string_view keep(std::string text) {
@@ -216,17 +216,22 @@ Bytes pack_texts(std::span<const Text> texts) {
   auto stream = EntropyStream::writer();
   TextCoder coder = TextCoder::after_examples();
   for (const Text& text : texts) coder.code(stream, text);
+  Bytes packed = std::move(stream).finish();
+  auto plain = pack_plainly(texts, packed.size());
+  const bool is_plain = plain && plain->size() < packed.size();
   ByteWriter writer;
-  writer.varint(texts.size());
-  writer.append(std::move(stream).finish());
+  writer.varint(2 * texts.size() + (is_plain ? 1 : 0));
+  writer.append(is_plain ? *plain : packed);
   return std::move(writer).bytes();
 }
 
 Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most_bytes) {
   ByteReader reader(bytes);
-  const std::uint64_t count = reader.varint();
+  const std::uint64_t head = reader.varint();
+  const std::uint64_t count = head / 2;
   if (reader.failed() || count > kMostTextsForAByte * bytes.size()) return reader.error("texts");
-  auto stream = EntropyStream::reader(reader.take(reader.remaining()));
+  if (head % 2 == 1) return unpack_plainly(reader.take(reader.remaining()), count, most_bytes);
+  auto stream = EntropyStream::reader_without_costs(reader.take(reader.remaining()));
   TextCoder coder = TextCoder::after_examples();
   coder.allow(most_bytes);
   std::vector<std::string> texts;

@@ -79,8 +79,8 @@ Mark MarkCoder::code(EntropyStream& stream, ContextMixer& mixer, StringCoder& st
   for (const Hash fact : facts) candidates_.learn(fact, *coded);
   before_last_ = last_;
   last_ = *coded;
-  const std::string& text = marks_.text(*coded);
-  return {std::string_view(text).substr(1), text[0] == kLast};
+  const std::string_view text = marks_.text(*coded);
+  return {text.substr(1), text[0] == kLast};
 }
 
 }  // namespace watertight::columns

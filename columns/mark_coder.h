@@ -26,8 +26,8 @@ class MarkCoder {
   MarkCoder() { marks_.add(std::string(1, kBeforeValue)); }
   /// Starts another text.
   void restart();
-  /// Codes a mark; its text stays where it is. `last_value` stands for the value before it. The
-  /// stream fails when a text that is read is longer than `most_bytes`.
+  /// Codes a mark; its text stays where it is until the next one. `last_value` stands for the value
+  /// before it. The stream fails when a text that is read is longer than `most_bytes`.
   Mark code(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings, const Place& place,
             Hash last_value, const Mark& mark, std::size_t most_bytes);
 

@@ -19,7 +19,7 @@ constexpr std::size_t kShortNumber = 6;
 constexpr std::uint32_t kTrusts = 17;
 constexpr std::uint64_t kMostStep = 0xFFFF;  // of a counter
 
-std::uint64_t key_of(Hash column, std::uint32_t number) {
+std::uint64_t key_of(std::uint32_t column, std::uint32_t number) {
   return (std::uint64_t{column} << 32U) | number;
 }
 
@@ -37,8 +37,16 @@ void ValueCoder::pass(std::optional<std::int64_t> number) {
   last_number_ = number;
 }
 
-ValueCoder::Context ValueCoder::context_of(const Place& place, Column& column) const {
-  Context context{place, column};
+std::uint32_t ValueCoder::column_at(const Place& place) {
+  const std::uint32_t* const known = column_of_.find(place.column);
+  if (known != nullptr) return *known;
+  columns_.emplace_back();
+  return column_of_[place.column] = static_cast<std::uint32_t>(columns_.size() - 1);
+}
+
+ValueCoder::Context ValueCoder::context_of(const Place& place, std::uint32_t number) {
+  Column& column = columns_[number];
+  Context context{place, number, column};
   context.facts = {hash_of(1, place.column, column.last, last_),
                    hash_of(2, place.column, last_, before_last_),
                    hash_of(3, place.column, column.last, column.before_last)};
@@ -60,7 +68,7 @@ ValueCoder::Kind ValueCoder::choose_kind(const Context& context, std::string_vie
       const auto& candidate = context.candidates[i];
       if (candidate && candidate->value == *known) return static_cast<Kind>(i);
     }
-    if (index_of_.contains(key_of(context.place.column, *known))) return Kind::listed;
+    if (index_of_.find(key_of(context.number, *known)) != nullptr) return Kind::listed;
   }
   const auto number = choose_form(text, context.column.numbers.form());
   if (known && !(number && text.size() < kShortNumber)) return Kind::known;
@@ -102,7 +110,9 @@ std::uint32_t ValueCoder::code_listed(EntropyStream& stream, ContextMixer& mixer
                                       const Context& context, std::string_view text) {
   const Hash column = context.place.column;
   std::uint64_t index = 0;
-  if (!stream.is_reading()) index = index_of_.at(key_of(column, values_.find(text).value_or(0)));
+  if (!stream.is_reading()) {
+    index = *index_of_.find(key_of(context.number, values_.find(text).value_or(0)));
+  }
   index = mixer.number(stream, Question::list_index,
                        {column, hash_of(column, context.column.last), hash_of(column, last_, 1)},
                        index, kListedBits);
@@ -114,10 +124,10 @@ std::uint32_t ValueCoder::code_listed(EntropyStream& stream, ContextMixer& mixer
 /// The value that came first after this one in the column where both came first.
 std::optional<std::uint32_t> ValueCoder::next_known(std::uint32_t value) const {
   const Origin& origin = origins_[value];
-  if (!origin.index) return std::nullopt;
-  const std::vector<std::uint32_t>& values = columns_.at(origin.column).values;
-  if (*origin.index + 1 >= values.size()) return std::nullopt;
-  return values[*origin.index + 1];
+  if (origin.index == kNotListed) return std::nullopt;
+  const std::vector<std::uint32_t>& values = columns_[origin.column].values;
+  if (origin.index + 1 >= values.size()) return std::nullopt;
+  return values[origin.index + 1];
 }
 
 std::uint32_t ValueCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
@@ -150,17 +160,19 @@ std::uint32_t ValueCoder::code_number(EntropyStream& stream, ContextMixer& mixer
   FormedNumber chosen;
   if (!stream.is_reading()) chosen = choose_form(text, numbers.form()).value_or(FormedNumber{});
   const Hash column = context.place.column;
-  const NumberForm form = numbers.code_form(stream, mixer, column, chosen.form);
+  const auto coded_form = numbers.code_form(stream, mixer, column, chosen.form);
+  if (!coded_form) stream.fail();
+  const NumberForm form = coded_form.value_or(NumberForm{});
   const auto neighbour =
       context.place.is_in_array && form.is_decimal() ? last_number_ : std::nullopt;
   const std::int64_t number =
       numbers.code_number(stream, mixer, column, last_, neighbour, chosen.number);
-  std::string printed = print(form, number);
+  const std::string printed = print(form, number);
   if (printed.empty()) {
     stream.fail();
     return 0;
   }
-  return add(std::move(printed), FormedNumber{form, number});
+  return add(printed, FormedNumber{form, number});
 }
 
 std::uint32_t ValueCoder::code_uuid(EntropyStream& stream, ContextMixer& mixer,
@@ -245,8 +257,8 @@ std::uint32_t ValueCoder::code_of_kind(EntropyStream& stream, ContextMixer& mixe
   return add(strings.code(stream, mixer, context.place.column, text, context.most_bytes));
 }
 
-std::uint32_t ValueCoder::add(std::string text, std::optional<FormedNumber> number) {
-  const std::uint32_t value = values_.add(std::move(text));
+std::uint32_t ValueCoder::add(std::string_view text, const std::optional<FormedNumber>& number) {
+  const std::uint32_t value = values_.add(text);
   if (value == numbers_.size()) {
     numbers_.push_back(number);
     origins_.emplace_back();
@@ -260,10 +272,11 @@ void ValueCoder::learn(EntropyStream& stream, const Context& context, Kind kind,
   const bool is_new = kind > Kind::listed;
   if (is_new && column.values.size() < kMostListed) {
     if (!stream.is_reading()) {
-      index_of_.insert_or_assign(key_of(context.place.column, value),
-                                 static_cast<std::uint32_t>(column.values.size()));
+      index_of_[key_of(context.number, value)] = static_cast<std::uint32_t>(column.values.size());
     }
-    if (!origins_[value].index) origins_[value] = {context.place.column, column.values.size()};
+    if (origins_[value].index == kNotListed) {
+      origins_[value] = {context.number, static_cast<std::uint32_t>(column.values.size())};
+    }
     column.values.push_back(value);
   }
   if (kind != Kind::number && numbers_[value]) column.numbers.see(*numbers_[value]);
@@ -281,7 +294,7 @@ void ValueCoder::learn(EntropyStream& stream, const Context& context, Kind kind,
 std::string_view ValueCoder::code(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                                   const Place& place, std::string_view text,
                                   std::size_t most_bytes) {
-  Context context = context_of(place, columns_[place.column]);
+  Context context = context_of(place, column_at(place));
   context.most_bytes = most_bytes;
   const Kind kind = code_kind(stream, mixer, context,
                               stream.is_reading() ? Kind::string : choose_kind(context, text));

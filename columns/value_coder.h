@@ -7,13 +7,12 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/flat_map.h"
 #include "columns/models/candidates.h"
 #include "columns/models/context_mixer.h"
 #include "columns/models/number_coder.h"
@@ -29,8 +28,8 @@ class ValueCoder {
   ValueCoder() { add({}); }
   /// Starts another text.
   void restart();
-  /// Codes a value; returns its text, which stays where it is. The stream fails when the text that
-  /// is read is longer than `most_bytes`.
+  /// Codes a value; returns its text, which stays where it is until the next one. The stream fails
+  /// when the text that is read is longer than `most_bytes`.
   std::string_view code(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                         const Place& place, std::string_view text, std::size_t most_bytes);
   /// Takes note of a value that was coded elsewhere.
@@ -61,21 +60,25 @@ class ValueCoder {
     std::uint32_t last_step = 0;        // of `counter`: its size and sign
     NumberColumn numbers;
   };
+  static constexpr std::uint32_t kNotListed = ~std::uint32_t{0};
   /// Where a value came first.
   struct Origin {
-    Hash column = 0;
-    std::optional<std::size_t> index = {};  // among the values of the column; none: not listed
+    std::uint32_t column = 0;
+    std::uint32_t index = kNotListed;  // among the values of the column
   };
   /// What is known before a value.
   struct Context {
     const Place& place;
+    std::uint32_t number;  // of the column
     Column& column;
     std::array<Hash, 3> facts{};
     std::array<std::optional<Candidate>, 3> candidates{};
     std::size_t most_bytes = 0;
   };
 
-  Context context_of(const Place& place, Column& column) const;
+  /// The number of the column at a place.
+  std::uint32_t column_at(const Place& place);
+  Context context_of(const Place& place, std::uint32_t column);
   Kind choose_kind(const Context& context, std::string_view text) const;
   Kind code_kind(EntropyStream& stream, ContextMixer& mixer, const Context& context, Kind kind);
   std::uint32_t code_listed(EntropyStream& stream, ContextMixer& mixer, const Context& context,
@@ -91,18 +94,20 @@ class ValueCoder {
                              std::string_view text);
   std::uint32_t code_of_kind(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                              const Context& context, Kind kind, std::string_view text);
-  std::uint32_t add(std::string text, std::optional<FormedNumber> number = std::nullopt);
+  std::uint32_t add(std::string_view text,
+                    const std::optional<FormedNumber>& number = std::nullopt);
   void learn(EntropyStream& stream, const Context& context, Kind kind, std::uint32_t value);
 
   ValueTable values_;
   ValueTable affixes_;
   Candidates candidates_;
-  std::unordered_map<Hash, Column> columns_;
-  std::deque<std::optional<FormedNumber>> numbers_;  // of values that are numbers
-  std::deque<Origin> origins_;                       // of values
+  FlatMap<Hash, std::uint32_t> column_of_;            // the number of a column
+  std::vector<Column> columns_;                       // by number
+  std::vector<std::optional<FormedNumber>> numbers_;  // of values that are numbers
+  std::vector<Origin> origins_;                       // of values
   UuidCoder uuids_;
   /// Where a column lists a value, by column and value. Empty for a reader.
-  std::unordered_map<std::uint64_t, std::uint32_t> index_of_;
+  FlatMap<std::uint64_t, std::uint32_t> index_of_;
   std::uint32_t last_ = 0;         // the last value at all
   std::uint32_t before_last_ = 0;  // the one before it
   std::uint32_t last_known_ = 0;   // the last value of kind `known`

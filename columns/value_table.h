@@ -3,42 +3,86 @@
 // The different texts of a list, numbered in order of their first appearance. Internal to columns/.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace watertight::columns {
 
+/// All texts lie in one string, so that a copy is one of plain bytes.
 class ValueTable {
  public:
-  ValueTable() = default;
-  ValueTable(const ValueTable& other) {
-    for (const std::string& text : other.texts_) add(text);
-  }
-  ValueTable& operator=(const ValueTable&) = delete;
-
   std::optional<std::uint32_t> find(std::string_view text) const {
-    const auto found = numbers_.find(text);
-    if (found == numbers_.end()) return std::nullopt;
-    return found->second;
+    if (slots_.empty()) return std::nullopt;
+    const std::uint32_t slot = slots_[slot_of(text, hash_of_text(text))];
+    return slot == 0 ? std::nullopt : std::optional(slot - 1);
   }
   /// The number of a text, which is added if it is new.
-  std::uint32_t add(std::string text) {
-    if (const auto known = find(text)) return *known;
-    const std::uint32_t number = size();
-    numbers_.emplace(texts_.emplace_back(std::move(text)), number);
-    return number;
+  std::uint32_t add(std::string_view text) {
+    if (2 * entries_.size() >= slots_.size()) grow();
+    const std::uint32_t hash = hash_of_text(text);
+    std::uint32_t& slot = slots_[slot_of(text, hash)];
+    if (slot == 0) {
+      entries_.push_back({characters_.size(), text.size(), hash});
+      characters_ += text;
+      slot = size();
+    }
+    return slot - 1;
   }
-  const std::string& text(std::uint32_t number) const { return texts_[number]; }
-  std::uint32_t size() const { return static_cast<std::uint32_t>(texts_.size()); }
+  /// Stays where it is until a text is added.
+  std::string_view text(std::uint32_t number) const {
+    const Entry& entry = entries_[number];
+    return std::string_view(characters_).substr(entry.begin, entry.size);
+  }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(entries_.size()); }
 
  private:
-  std::deque<std::string> texts_;  // a deque, so that the keys of `numbers_` stay where they are
-  std::unordered_map<std::string_view, std::uint32_t> numbers_;
+  struct Entry {
+    std::size_t begin = 0;
+    std::size_t size = 0;
+    std::uint32_t hash = 0;
+  };
+  static constexpr std::size_t kFirstSlots = 64;
+
+  /// Eight bytes at a time.
+  static std::uint32_t hash_of_text(std::string_view text) {
+    constexpr std::uint64_t kFactor = 0x9FB2'1C65'1E98'DF25U;
+    std::uint64_t hash = text.size() * kFactor;
+    for (std::size_t at = 0; at < text.size(); at += sizeof hash) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, text.data() + at, std::min(sizeof word, text.size() - at));
+      hash = (hash ^ word) * kFactor;
+      hash ^= hash >> 32U;
+    }
+    return static_cast<std::uint32_t>(hash);
+  }
+  /// The slot of a text, or the one that it would take.
+  std::size_t slot_of(std::string_view wanted, std::uint32_t hash) const {
+    std::size_t at = hash & (slots_.size() - 1);
+    for (; slots_[at] != 0; at = (at + 1) & (slots_.size() - 1)) {
+      const std::uint32_t number = slots_[at] - 1;
+      if (entries_[number].hash == hash && text(number) == wanted) break;
+    }
+    return at;
+  }
+  void grow() {
+    slots_.assign(slots_.empty() ? kFirstSlots : 2 * slots_.size(), 0);
+    for (std::uint32_t number = 0; number < size(); ++number) {
+      std::size_t at = entries_[number].hash & (slots_.size() - 1);
+      while (slots_[at] != 0) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = number + 1;
+    }
+  }
+
+  std::string characters_;
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> slots_;  // 0, or the number of a text and 1; a power of two of them
 };
 
 }  // namespace watertight::columns

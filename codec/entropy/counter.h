@@ -96,8 +96,15 @@ constexpr std::int32_t first_weight(std::uint32_t inputs) {
   return static_cast<std::int32_t>((1U << 18U) / (3 + inputs));
 }
 
-/// The learning rate, in 1/4096, of a set of weights after `mixed` decisions.
-constexpr std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
+/// The learning rates, in 1/4096, of a set of weights after so many decisions.
+inline constexpr auto kMixingRates = [] {
+  std::array<std::uint8_t, kMaxMixed + 1> rates{};
+  for (std::uint32_t mixed = 0; mixed < rates.size(); ++mixed) {
+    rates[mixed] = static_cast<std::uint8_t>(10 + 1600 / (16 + mixed));
+  }
+  return rates;
+}();
+constexpr std::int64_t mixing_rate(std::uint32_t mixed) { return kMixingRates[mixed]; }
 
 /// The probability of a yes, in 1/65536, of a sum of weights times inputs.
 constexpr std::uint32_t probability_of(std::int64_t sum) {

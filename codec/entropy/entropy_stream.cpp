@@ -14,10 +14,6 @@ namespace {
 constexpr std::uint32_t kHalf = 32768;
 constexpr std::size_t kWindow = 4;  // the number of bytes that a reader keeps ahead
 
-constexpr std::uint32_t split(std::uint32_t low, std::uint32_t high, std::uint32_t ones) {
-  return low + static_cast<std::uint32_t>((static_cast<std::uint64_t>(high - low) * ones) >> 16);
-}
-
 /// The last bytes of a stream: the shortest ones that, followed by zeros, lie in [low, high]; of
 /// those the smallest.
 struct Tail {
@@ -96,14 +92,17 @@ void EntropyStream::shift_out() {
   }
 }
 
-bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
-  WATERTIGHT_ASSERT(ones_of_65536 > 0 && ones_of_65536 < 65536);
+void EntropyStream::add_cost(bool value, std::uint32_t ones_of_65536) {
+  const std::uint32_t cost = kCosts[(value ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
+  cost_ += cost;
+  costs_[part_] += cost;
+}
+
+bool EntropyStream::code_known(bool value, std::uint32_t ones_of_65536) {
   if (failed_) return false;
-  bool result = value;
-  if (direction_ != Direction::measure) {
-    const std::uint32_t middle = split(low_, high_, ones_of_65536);
-    if (is_reading()) result = window_ <= middle;
-    if (result) {
+  if (direction_ == Direction::write) {
+    const std::uint32_t middle = split(ones_of_65536);
+    if (value) {
       high_ = middle;
     } else {
       low_ = middle + 1;
@@ -114,10 +113,8 @@ bool EntropyStream::code(bool value, std::uint32_t ones_of_65536) {
     decisions_.push_back(
         {static_cast<std::uint16_t>(ones_of_65536), value, static_cast<std::uint8_t>(part_)});
   }
-  const std::uint32_t cost = kCosts[(result ? ones_of_65536 : 65536 - ones_of_65536) >> 4];
-  cost_ += cost;
-  costs_[part_] += cost;
-  return result;
+  add_cost(value, ones_of_65536);
+  return value;
 }
 
 void EntropyStream::append(const EntropyStream& recorder) {
@@ -132,6 +129,34 @@ std::uint64_t EntropyStream::code_bits(std::uint64_t value, int count) {
   std::uint64_t result = 0;
   for (int i = count - 1; i >= 0; --i) {
     result = (result << 1) | static_cast<std::uint64_t>(code(((value >> i) & 1U) != 0, kHalf));
+  }
+  return result;
+}
+
+/// Codes a number of so few bits that each has a part of the interval of the same width.
+std::uint32_t EntropyStream::code_chunk(std::uint32_t value, int count) {
+  const std::uint32_t width = (high_ - low_) >> static_cast<unsigned>(count);
+  const std::uint32_t last = (std::uint32_t{1} << static_cast<unsigned>(count)) - 1;
+  const std::uint32_t result = is_reading() ? std::min((window_ - low_) / width, last) : value;
+  low_ += result * width;
+  if (result != last) high_ = low_ + width - 1;
+  shift_out();
+  return result;
+}
+
+std::uint64_t EntropyStream::code_plain_bits(std::uint64_t value, int count) {
+  constexpr int kChunk = 8;
+  constexpr std::uint32_t kWide = 1U << 16U;
+  std::uint64_t result = 0;
+  while (count > 0) {
+    const int bits = std::min(count, kChunk);
+    count -= bits;
+    const auto chunk = static_cast<std::uint32_t>((value >> static_cast<unsigned>(count)) &
+                                                  ((1U << static_cast<unsigned>(bits)) - 1));
+    const bool is_wide = direction_ != Direction::measure && !failed_ && high_ - low_ >= kWide;
+    result = (result << static_cast<unsigned>(bits)) |
+             (is_wide ? code_chunk(chunk, bits) : code_bits(chunk, bits));
+    if (is_wide && has_costs_) cost_ += static_cast<std::uint64_t>(bits) << kCostBits;
   }
   return result;
 }

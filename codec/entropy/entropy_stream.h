@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/assert.h"
 #include "base/bytes.h"
 
 namespace watertight::codec {
@@ -41,19 +42,41 @@ class EntropyStream {
   }
   /// `bytes` must outlive the stream.
   static EntropyStream reader(ByteView bytes) { return EntropyStream(Direction::read, bytes); }
+  /// A reader whose costs are all 0, which is faster.
+  static EntropyStream reader_without_costs(ByteView bytes) {
+    EntropyStream stream = reader(bytes);
+    stream.has_costs_ = false;
+    return stream;
+  }
 
   bool is_reading() const { return direction_ == Direction::read; }
   bool is_recorder() const { return is_recording_; }
 
   /// Codes one decision whose probability of being 1 is `ones_of_65536` / 65536, 1 to 65535.
   /// Returns `value` when writing or measuring, else the value that was read.
-  bool code(bool value, std::uint32_t ones_of_65536);
+  bool code(bool value, std::uint32_t ones_of_65536) {
+    WATERTIGHT_ASSERT(ones_of_65536 > 0 && ones_of_65536 < 65536);
+    if (!is_reading() || failed_) return code_known(value, ones_of_65536);
+    const std::uint32_t middle = split(ones_of_65536);
+    const bool result = window_ <= middle;
+    if (result) {
+      high_ = middle;
+    } else {
+      low_ = middle + 1;
+    }
+    if (((low_ ^ high_) >> 24) == 0) shift_out();
+    if (has_costs_) add_cost(result, ones_of_65536);
+    return result;
+  }
   /// Codes a number below `size` with all values equally likely (truncated binary). Requires size >
   /// 0 and, unless reading, value < size.
   std::uint64_t code_uniform(std::uint64_t value, std::uint64_t size);
   /// Codes the `count` low bits of a number, high ones first, all equally likely. Requires count <=
   /// 64.
   std::uint64_t code_bits(std::uint64_t value, int count);
+  /// As code_bits(), several bits at a time where the interval is wide enough; the bytes are
+  /// others.
+  std::uint64_t code_plain_bits(std::uint64_t value, int count);
 
   /// Codes the decisions of a recorder again, which costs far less than to find their
   /// probabilities. Requires that this stream writes or measures.
@@ -87,12 +110,21 @@ class EntropyStream {
     std::uint8_t part = 0;
   };
   EntropyStream(Direction direction, ByteView source);
+  /// The end of the part of the interval that stands for a yes.
+  std::uint32_t split(std::uint32_t ones_of_65536) const {
+    return low_ + static_cast<std::uint32_t>(
+                      (static_cast<std::uint64_t>(high_ - low_) * ones_of_65536) >> 16);
+  }
+  bool code_known(bool value, std::uint32_t ones_of_65536);
+  void add_cost(bool value, std::uint32_t ones_of_65536);
+  std::uint32_t code_chunk(std::uint32_t value, int count);
   void shift_out();
   std::uint32_t next_byte();
 
   Direction direction_;
   bool failed_ = false;
   bool is_recording_ = false;
+  bool has_costs_ = true;
   std::uint32_t low_ = 0;
   std::uint32_t high_ = 0xFFFFFFFFU;
   std::uint32_t window_ = 0;  // reading: the next four bytes of the source

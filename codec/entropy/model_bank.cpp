@@ -5,86 +5,12 @@
 #include <bit>
 
 #include "base/assert.h"
+#include "codec/entropy/counter.h"
 
 namespace watertight::codec {
 namespace {
 
-// In the logistic domain an integer x from -2047 to 2047 stands for the probability p with
-// ln(p / (1 - p)) = x / 256.
-constexpr std::int32_t kDomain = 2047;
-constexpr std::uint32_t kLeastProbability = 32;  // the least probability of an answer, in 1/65536
-
-/// round(65536 / (1 + exp((32 - i) / 4))) for i = 0 to 64: part of the format.
-constexpr std::array<std::int32_t, 65> kSquash{
-    22,    28,    36,    47,    60,    77,    98,    126,   162,   208,   267,   342,   439,
-    562,   720,   922,   1179,  1506,  1921,  2446,  3108,  3938,  4971,  6249,  7812,  9702,
-    11955, 14595, 17625, 21025, 24743, 28693, 32768, 36843, 40793, 44511, 47911, 50941, 53581,
-    55834, 57724, 59287, 60565, 61598, 62428, 63090, 63615, 64030, 64357, 64614, 64816, 64974,
-    65097, 65194, 65269, 65328, 65374, 65410, 65438, 65459, 65476, 65489, 65500, 65508, 65514};
-
-/// The probability, in 1/65536, at `x`; linear between the points of kSquash.
-constexpr std::int32_t squash(std::int32_t x) {
-  const std::int32_t offset = std::clamp(x, -kDomain, kDomain) + 2048;
-  const auto i = static_cast<std::size_t>(offset >> 6);
-  const std::int32_t rest = offset & 63;
-  return (kSquash[i] * (64 - rest) + kSquash[i + 1] * rest) >> 6;
-}
-
-/// The inverse of squash() by the upper 12 bits of a probability: the least x whose squash() is not
-/// below that probability.
-constexpr auto kStretch = [] {
-  std::array<std::int16_t, 4096> table{};
-  std::int32_t x = -kDomain;
-  for (std::int32_t i = 0; i < 4096; ++i) {
-    while (x < kDomain && squash(x) < 16 * i + 8) ++x;
-    table[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(x);
-  }
-  return table;
-}();
-
-// A counter has 22 bits for its probability, and below them 10 bits for the number of observations.
-constexpr std::uint32_t kMaxCount = 250;
-constexpr std::uint32_t kUnknown = (1U << 21) << 10;  // probability one half, nothing observed
-
-/// The share, in 1/65536, by which a counter that observed n decisions moves towards the next
-/// answer: 65536 / (n + 1.5).
-constexpr auto kRates = [] {
-  std::array<std::int32_t, kMaxCount + 1> rates{};
-  for (std::int32_t n = 0; n < static_cast<std::int32_t>(rates.size()); ++n) {
-    rates[static_cast<std::size_t>(n)] = 131072 / (2 * n + 3);
-  }
-  return rates;
-}();
-
-/// The weight, in 1/256, of a counter that observed n decisions: n / (n + 0.4).
-constexpr auto kConfidence = [] {
-  std::array<std::int32_t, kMaxCount + 1> table{};
-  for (std::int32_t n = 0; n < static_cast<std::int32_t>(table.size()); ++n) {
-    table[static_cast<std::size_t>(n)] = 2560 * n / (10 * n + 4);
-  }
-  return table;
-}();
-
-std::uint32_t learned(std::uint32_t counter, bool value) {
-  const std::uint32_t count = counter & 1023U;
-  const auto probability = static_cast<std::int64_t>(counter >> 10);
-  const std::int64_t target = value ? (1 << 22) - 1 : 0;
-  const std::int64_t next = probability + (((target - probability) * kRates[count]) >> 16);
-  return (static_cast<std::uint32_t>(next) << 10) | std::min(count + 1, kMaxCount);
-}
-
-std::int32_t input_of(std::uint32_t counter) {
-  return (kStretch[counter >> 20] * kConfidence[counter & 1023U]) >> 8;
-}
-
-// Weights are fixed-point numbers, 16.16. The weight of a constant input follows those of the
-// inputs.
-constexpr std::int32_t kBiasInput = 64;
-constexpr std::int64_t kWeightLimit = 8 << 16;
-constexpr std::uint32_t kMaxMixed = 1000;
-
-/// The learning rate, in 1/4096, of a set of weights after `mixed` decisions.
-std::int64_t mixing_rate(std::uint32_t mixed) { return 10 + 1600 / (16 + mixed); }
+using namespace counters;  // NOLINT(google-build-using-namespace)
 
 // A number has three families: its length in unary, the bits after the first, the sign.
 constexpr std::uint32_t kLengths = 48;  // greater lengths share the last context
@@ -115,7 +41,8 @@ ModelBank::ModelBank(const ModelLayout& layout) : is_agile_(layout.is_agile) {
 }
 
 std::int32_t ModelBank::first_weight(std::uint32_t inputs) const {
-  return static_cast<std::int32_t>(is_agile_ ? (1U << 16) / inputs : (4U << 16) / (3U + inputs));
+  return is_agile_ ? static_cast<std::int32_t>((1U << 16) / inputs)
+                   : counters::first_weight(inputs);
 }
 
 void ModelBank::add_family(const FamilyShape& shape) {
@@ -168,10 +95,7 @@ ModelBank::Mix ModelBank::mix(const Family& family, std::uint32_t selector,
   }
   result.input[family.inputs] = kBiasInput;
   sum += weighted(weight[family.inputs], kBiasInput);
-
-  const auto x = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum >> 16, -kDomain, kDomain));
-  result.ones = std::clamp(static_cast<std::uint32_t>(squash(x)), kLeastProbability,
-                           65536 - kLeastProbability);
+  result.ones = probability_of(sum);
   return result;
 }
 
@@ -187,9 +111,9 @@ bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32
   const std::int64_t step = ((bit ? 65536 : 0) - static_cast<std::int64_t>(mixed.ones)) *
                             mixing_rate(seen) * (is_agile_ ? 2 : 1);
   for (std::uint32_t i = 0; i <= family.inputs; ++i) {
-    const std::int64_t moved =
-        static_cast<std::int32_t>(weight[i]) + ((step * mixed.input[i]) >> 20);
-    weight[i] = static_cast<std::uint32_t>(std::clamp(moved, -kWeightLimit, kWeightLimit));
+    const std::int32_t moved =
+        moved_weight(static_cast<std::int32_t>(weight[i]), step, mixed.input[i]);
+    weight[i] = static_cast<std::uint32_t>(moved);
   }
   seen = std::min(seen + 1, kMaxMixed);
   for (std::uint32_t i = 0; i < family.inputs; ++i) {

@@ -6,12 +6,15 @@
 // table of counters, as the facts about a text have no bounds. Internal to columns/.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
-#include <span>
 #include <vector>
 
+#include "codec/entropy/counter.h"
 #include "codec/entropy/entropy_stream.h"
 
 namespace watertight::columns {
@@ -23,10 +26,8 @@ using Hash = std::uint32_t;
 
 /// The hash of facts in order. Cost: one multiplication for each.
 constexpr Hash hash_of(Hash first, Hash second) {
-  std::uint64_t mixed = (first ^ 0x9E3779B9U) * 0xD6E8FEB86659FD93U + second * 0xA0761D6478BD642FU;
-  mixed ^= mixed >> 32U;
-  mixed *= 0xE7037ED1A0B428DBU;
-  return static_cast<Hash>(mixed >> 32U);
+  const std::uint64_t both = (std::uint64_t{first} << 32U) | second;
+  return static_cast<Hash>(((both ^ 0x9E37'79B9'7F4A'7C15U) * 0xD6E8'FEB8'6659'FD93U) >> 32U);
 }
 template <class... More>
 constexpr Hash hash_of(Hash first, Hash second, More... more) {
@@ -55,6 +56,7 @@ enum class Question : std::uint8_t {
   uuid_version,
   character,
   character_after_match,
+  copy_length,
   is_end,
   mark_first,
   mark_second,
@@ -66,6 +68,7 @@ enum class Question : std::uint8_t {
   is_after_neighbour,
   is_recent,
   recent_rank,
+  is_vertex,
   vertex_distance,
   vertex_sign,
   coordinate_x,
@@ -85,9 +88,11 @@ enum class Question : std::uint8_t {
 
 class ContextMixer {
  public:
-  /// A decision has 1 to 4 contexts, or this many.
-  static constexpr std::size_t kMostContexts = 7;
+  /// A flag, symbol or number has 1 to 4 contexts.
   using ContextList = std::initializer_list<Hash>;
+  /// The counters of a decision, one for each context.
+  template <std::size_t count>
+  using Counters = std::array<std::uint32_t*, count>;
 
   ContextMixer();
 
@@ -104,43 +109,79 @@ class ContextMixer {
   std::uint64_t number(EntropyStream& stream, Question question, ContextList contexts,
                        std::uint64_t value, int modelled);
 
-  /// The counters of the contexts of a question. Those of four decisions in a row, each of which
-  /// knows the answers before it, lie side by side.
-  class Inputs {
-   public:
-    Inputs(Question question, std::span<const Hash> contexts);
-    /// The same inputs at a place within an answer.
-    Inputs at(Hash place) const;
-    /// These inputs and one more.
-    Inputs with(Hash context) const;
-
-   private:
-    friend class ContextMixer;
-    std::array<Hash, kMostContexts> hashes_{};
-    std::size_t count_ = 0;
-  };
+  /// The counter of a context.
+  std::uint32_t* counter(Hash context) { return &counters_[context >> (32 - kTableBits)]; }
+  /// The counters of four decisions in a row, each of which knows the answers before it: that of a
+  /// decision is the one at 1 and the answers before it.
+  std::uint32_t* group(Hash context) {
+    return &counters_[(context >> (32 - kTableBits)) & ~((1U << kGroupBits) - 1)];
+  }
   static constexpr int kGroupBits = 4;
-  /// Codes one decision, the `step`-th of an answer. `node` is 1 and the answers before it in its
-  /// group, 1 to 15; 0 for a decision that has no group.
-  bool decide(EntropyStream& stream, Question question, std::size_t step, const Inputs& inputs,
-              std::uint32_t node, bool value);
+  /// Codes one decision, the `step`-th of an answer.
+  template <std::size_t count>
+  bool decide(EntropyStream& stream, Question question, std::size_t step,
+              const Counters<count>& counters, bool value);
 
  private:
   static constexpr int kTableBits = 18;
-  static constexpr std::size_t kSteps = 8;  // later decisions of an answer share weights
+  static constexpr std::size_t kMostContexts = 7;
+  static constexpr std::int64_t kSmallError = 512;  // in 1/65536: weights do not learn from less
+  static constexpr std::size_t kSteps = 8;          // later decisions of an answer share weights
   struct Weights {
     std::array<std::int32_t, kMostContexts + 1> values{};
     std::uint32_t seen = 0;
   };
+  template <std::size_t count>
+  using Hashes = std::array<Hash, count>;
 
   template <std::size_t count>
-  bool decide_of(EntropyStream& stream, Weights& weights, const Inputs& contexts,
-                 std::uint32_t node, bool value);
-  std::uint64_t code_low_bits(EntropyStream& stream, Question question, const Inputs& inputs,
+  static Hashes<count> hashes_of(Question question, ContextList contexts);
+  template <std::size_t count>
+  static Hashes<count> hashes_at(const Hashes<count>& hashes, Hash place);
+  template <std::size_t count>
+  std::uint64_t code_low_bits(EntropyStream& stream, Question question, Hashes<count> hashes,
                               std::size_t first_step, int bits, std::uint64_t value);
+  template <std::size_t count>
+  int code_length(EntropyStream& stream, Question question, const Hashes<count>& hashes,
+                  int length);
+  template <std::size_t count>
+  std::uint64_t code_number(EntropyStream& stream, Question question, ContextList contexts,
+                            std::uint64_t value, int modelled);
 
   std::vector<std::uint32_t> counters_;
   std::vector<Weights> weights_;
 };
+
+template <std::size_t count>
+bool ContextMixer::decide(EntropyStream& stream, Question question, std::size_t step,
+                          const Counters<count>& counters, bool value) {
+  using namespace codec::counters;  // NOLINT(google-build-using-namespace)
+  static_assert(count <= kMostContexts);
+  Weights& weights =
+      weights_[static_cast<std::size_t>(question) * kSteps + std::min(step, kSteps - 1)];
+  if (weights.seen == 0) {
+    weights.values.fill(first_weight(static_cast<std::uint32_t>(count)));
+    weights.values[count] = 0;
+  }
+  std::array<std::int32_t, count + 1> inputs{};
+  std::int64_t sum = static_cast<std::int64_t>(weights.values[count]) * kBiasInput;
+  for (std::size_t i = 0; i < count; ++i) {
+    inputs[i] = input_of(*counters[i]);
+    sum += static_cast<std::int64_t>(weights.values[i]) * inputs[i];
+  }
+  inputs[count] = kBiasInput;
+  const std::uint32_t ones = probability_of(sum);
+  const bool bit = stream.code(value, ones);
+  const std::int64_t error = (bit ? 65536 : 0) - static_cast<std::int64_t>(ones);
+  if (std::abs(error) > kSmallError) {
+    const std::int64_t move = error * mixing_rate(weights.seen);
+    for (std::size_t i = 0; i <= count; ++i) {
+      weights.values[i] = moved_weight(weights.values[i], move, inputs[i]);
+    }
+  }
+  weights.seen = std::min(weights.seen + 1, kMaxMixed);
+  for (std::size_t i = 0; i < count; ++i) *counters[i] = learned(*counters[i], bit);
+  return bit;
+}
 
 }  // namespace watertight::columns

@@ -8,6 +8,7 @@ namespace watertight::columns {
 namespace {
 
 constexpr int kModelledBits = 3;
+constexpr NumberForm::Kind kNoNumber = NumberForm::Kind::count;
 constexpr int kMemory = 3;  // a length of a residual counts for 1/8 in the usual length
 
 }  // namespace
@@ -25,20 +26,23 @@ std::uint64_t magnitude(std::int64_t number) {
   return number < 0 ? 0 - bits : bits;
 }
 
-NumberForm NumberColumn::code_form(EntropyStream& stream, ContextMixer& mixer, Hash column,
-                                   const NumberForm& form) {
+std::optional<NumberForm> NumberColumn::code_form(EntropyStream& stream, ContextMixer& mixer,
+                                                  Hash column,
+                                                  const std::optional<NumberForm>& form) {
   const Hash known =
       form_ ? hash_of(static_cast<Hash>(form_->kind) + 1, static_cast<Hash>(form_->decimals)) : 0;
-  if (form_ && mixer.flag(stream, Question::is_same_form, {column, known}, form == *form_)) {
+  if (form_ && mixer.flag(stream, Question::is_same_form, {column, known}, form == form_)) {
     return *form_;
   }
   NumberForm coded;
-  const std::uint32_t kind = mixer.symbol(stream, Question::form, {column, known}, 3,
-                                          static_cast<std::uint32_t>(form.kind));
+  const std::uint32_t kind =
+      mixer.symbol(stream, Question::form, {column, known}, 4,
+                   static_cast<std::uint32_t>(form ? form->kind : kNoNumber));
   coded.kind = static_cast<NumberForm::Kind>(kind);
+  if (coded.kind == kNoNumber) return std::nullopt;
   coded.decimals =
       static_cast<int>(mixer.symbol(stream, Question::decimals, {hash_of(kind, 1), column}, 5,
-                                    static_cast<std::uint32_t>(form.decimals)));
+                                    static_cast<std::uint32_t>(form ? form->decimals : 0)));
   if (kind >= static_cast<std::uint32_t>(NumberForm::Kind::count) ||
       coded.decimals > kMostDecimals) {
     stream.fail();

@@ -21,9 +21,10 @@ class NumberColumn {
   /// The last number, in units of the form.
   std::int64_t last() const { return last_; }
 
-  /// Codes the form of the next number. Fails the stream when the form that is read is none.
-  NumberForm code_form(EntropyStream& stream, ContextMixer& mixer, Hash column,
-                       const NumberForm& form);
+  /// Codes the form of the next number, or that none comes. Fails the stream when the form that is
+  /// read is none.
+  std::optional<NumberForm> code_form(EntropyStream& stream, ContextMixer& mixer, Hash column,
+                                      const std::optional<NumberForm>& form);
   /// Codes a number of the last form. `neighbour` is the value before it, if that is a number.
   std::int64_t code_number(EntropyStream& stream, ContextMixer& mixer, Hash column, Hash sibling,
                            std::optional<std::int64_t> neighbour, std::int64_t number);

@@ -112,6 +112,75 @@ std::optional<double> read_double(std::string_view text) {
   return value;
 }
 
+NumberForm unscaled(const NumberForm& form) {
+  switch (form.kind) {
+    case Kind::scaled:
+      return {Kind::short_trimmed, form.decimals};
+    case Kind::scaled_float32:
+      return {Kind::float32, form.decimals};
+    case Kind::scaled_float_decimal:
+      return {Kind::float_decimal, form.decimals};
+    default:
+      return form;
+  }
+}
+
+NumberForm scaled(const NumberForm& form) {
+  switch (form.kind) {
+    case Kind::float32:
+      return {Kind::scaled_float32, form.decimals};
+    case Kind::float_decimal:
+      return {Kind::scaled_float_decimal, form.decimals};
+    default:
+      return {Kind::scaled, form.decimals};
+  }
+}
+
+/// The text of a decimal as a whole number times a power of ten.
+std::string scaled_text(std::string_view plain) {
+  std::string digits(plain.starts_with('-') ? plain.substr(1) : plain);
+  const std::size_t point = digits.find('.');
+  int exponent = 0;
+  if (point != std::string::npos) {
+    exponent = -static_cast<int>(digits.size() - point - 1);
+    digits.erase(point, 1);
+  }
+  digits.erase(0, std::min(digits.find_first_not_of('0'), digits.size()));
+  if (digits.empty()) return "0";
+  const std::size_t size = digits.find_last_not_of('0') + 1;
+  exponent += static_cast<int>(digits.size() - size);
+  digits.resize(size);
+  if (exponent != 0) digits.append("e").append(std::to_string(exponent));
+  if (plain.starts_with('-')) digits.insert(0, 1, '-');
+  return digits;
+}
+
+/// The text of a whole number times a power of ten as a decimal. None unless scaled_text() gives it
+/// back.
+std::optional<std::string> plain_text(std::string_view text) {
+  constexpr int kMostZeros = 40;
+  const std::size_t mark = std::min(text.find('e'), text.size());
+  const bool is_negative = text.starts_with('-');
+  std::string digits(text.substr(0, mark).substr(is_negative ? 1 : 0));
+  if (digits.empty() || !std::all_of(digits.begin(), digits.end(), is_digit)) return std::nullopt;
+  int exponent = 0;
+  if (mark < text.size()) {
+    const auto [rest, error] =
+        std::from_chars(text.data() + mark + 1, text.data() + text.size(), exponent);
+    if (error != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
+  }
+  if (exponent > kMostZeros || exponent < -kMostZeros) return std::nullopt;
+  if (exponent > 0) digits.append(static_cast<std::size_t>(exponent), '0');
+  if (exponent < 0) {
+    const auto decimals = static_cast<std::size_t>(-exponent);
+    if (digits.size() <= decimals) digits.insert(0, decimals + 1 - digits.size(), '0');
+    digits.insert(digits.size() - decimals, 1, '.');
+  }
+  if (is_negative) digits.insert(0, 1, '-');
+  if (scaled_text(digits) != text) return std::nullopt;
+  return digits;
+}
+
 std::optional<std::int64_t> nearest_number(const NumberForm& form, std::string_view text) {
   if (form.kind == Kind::float32 || form.kind == Kind::float_decimal) {
     const auto value = read_double(text);
@@ -164,6 +233,12 @@ std::string print(const NumberForm& form, std::int64_t number) {
       return float_text(number);
     case Kind::float_decimal:
       return float_decimal_text(number, form.decimals);
+    case Kind::scaled:
+    case Kind::scaled_float32:
+    case Kind::scaled_float_decimal: {
+      const std::string plain = print(unscaled(form), number);
+      return plain.empty() ? plain : scaled_text(plain);
+    }
     case Kind::count:
       break;
   }
@@ -171,6 +246,10 @@ std::string print(const NumberForm& form, std::int64_t number) {
 }
 
 std::optional<std::int64_t> number_in(const NumberForm& form, std::string_view text) {
+  if (form.is_scaled()) {
+    const auto plain = plain_text(text);
+    return plain ? number_in(unscaled(form), *plain) : std::nullopt;
+  }
   const auto number = nearest_number(form, text);
   if (!number || print(form, *number) != text) return std::nullopt;
   return number;
@@ -180,6 +259,15 @@ std::optional<FormedNumber> choose_form(std::string_view text,
                                         const std::optional<NumberForm>& before) {
   const char first = text.empty() ? '\0' : text[0];
   if (first != '-' && !is_digit(first)) return std::nullopt;
+  const bool has_exponent = text.find('e') != std::string_view::npos;
+  if (has_exponent || (before && before->is_scaled())) {
+    if (const auto plain = plain_text(text)) {
+      auto chosen = choose_form(*plain, before ? std::optional(unscaled(*before)) : std::nullopt);
+      if (chosen) chosen->form = scaled(chosen->form);
+      return chosen;
+    }
+    if (has_exponent) return std::nullopt;
+  }
   const auto decimal = read_decimal(text);
   if (decimal ? decimal->decimals > static_cast<int>(kManyDigits) : text.size() > kManyDigits) {
     if (auto chosen = choose_float(text, before)) return chosen;

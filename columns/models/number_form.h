@@ -18,13 +18,19 @@ struct NumberForm {
     fixed,          // a decimal with all its digits after the point
     float32,        // a float of 32 bits, in the digits of the same double
     float_decimal,  // the float of 32 bits nearest to a decimal, in the digits of that double
+    // The digits of short_trimmed, float32 and float_decimal as a whole number without zeros at its
+    // end, times a power of ten: "28155563e-2", "59e1", "594".
+    scaled,
+    scaled_float32,
+    scaled_float_decimal,
     count
   };
   Kind kind = Kind::short_trimmed;
   int decimals = 0;  // digits after the point; 0 for float32
 
   /// Whether the whole number counts units of 10^-decimals.
-  bool is_decimal() const { return kind != Kind::float32; }
+  bool is_decimal() const { return kind != Kind::float32 && kind != Kind::scaled_float32; }
+  bool is_scaled() const { return kind >= Kind::scaled; }
   friend bool operator==(const NumberForm&, const NumberForm&) = default;
 };
 

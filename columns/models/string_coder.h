@@ -7,18 +7,18 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 
+#include "columns/flat_map.h"
 #include "columns/models/context_mixer.h"
 
 namespace watertight::columns {
 
 class StringCoder {
  public:
-  /// Codes a string of a column. The stream fails when a string that is read is longer than
-  /// `most_bytes`.
-  std::string code(EntropyStream& stream, ContextMixer& mixer, Hash column, std::string_view text,
-                   std::size_t most_bytes);
+  /// Codes a string of a column; returns its text, which stays where it is until the next string.
+  /// The stream fails when a string that is read is longer than `most_bytes`.
+  std::string_view code(EntropyStream& stream, ContextMixer& mixer, Hash column,
+                        std::string_view text, std::size_t most_bytes);
 
   /// Whether a string was longer than it may be.
   bool is_over_limit() const { return is_over_limit_; }
@@ -31,11 +31,17 @@ class StringCoder {
   };
   bool code_character(EntropyStream& stream, ContextMixer& mixer, Hash column, std::size_t position,
                       Match& match, unsigned char& character, bool& is_end);
+  /// Copies the characters of the match that come next in the string; returns their number.
+  std::size_t copy(EntropyStream& stream, ContextMixer& mixer, Hash column, Match& match,
+                   std::string_view rest, std::size_t most_bytes);
+  void take(unsigned char character) {
+    history_ += static_cast<char>(character);
+    before_ = (before_ << 8U) | character;
+  }
 
-  std::string history_;  // all strings, a NUL after each
-  std::unordered_map<Hash, std::size_t>
-      last_of_column_;                                 // where the last string of a column begins
-  std::unordered_map<Hash, std::size_t> after_three_;  // what followed three characters
+  std::string history_;                        // all strings, a NUL after each
+  FlatMap<Hash, std::size_t> last_of_column_;  // where the last string of a column begins
+  FlatMap<Hash, std::size_t> after_three_;     // what followed three characters
   bool is_over_limit_ = false;
   std::uint32_t before_ = 0;  // the last four characters, the last one lowest
 };

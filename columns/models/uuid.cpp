@@ -9,6 +9,7 @@ constexpr char kPlaceholder = '\1';
 constexpr std::size_t kVersionDigit = 12;  // the version
 constexpr std::size_t kVariantDigit = 16;  // the variant, in its upper bits
 constexpr int kDistanceBits = 4;
+constexpr int kDigitBits = 4;
 constexpr std::string_view kSmall = "0123456789abcdef";
 constexpr std::string_view kCapital = "0123456789ABCDEF";
 
@@ -89,15 +90,22 @@ std::optional<std::string> with_uuid(std::string_view affixes, const Uuid& uuid)
 UuidCoder::Digits UuidCoder::code_digits(EntropyStream& stream, ContextMixer& mixer, Hash column,
                                          const Digits& digits) {
   Digits coded{};
-  for (std::size_t i = 0; i < coded.size(); ++i) {
-    const bool is_predictable = i == kVersionDigit || i == kVariantDigit;
-    const std::uint64_t digit =
-        is_predictable ? mixer.symbol(stream, Question::uuid_version,
-                                      {hash_of(column, static_cast<Hash>(i)), static_cast<Hash>(i)},
-                                      4, digits[i])
-                       : stream.code_bits(digits[i], 4);
-    coded[i] = static_cast<std::uint8_t>(digit);
-  }
+  const auto code_random = [&](std::size_t begin, std::size_t end) {
+    std::uint64_t value = 0;
+    for (std::size_t i = begin; i < end; ++i) value = value << kDigitBits | digits[i];
+    value = stream.code_plain_bits(value, static_cast<int>(end - begin) * kDigitBits);
+    for (std::size_t i = end; i-- > begin; value >>= kDigitBits) coded[i] = value & 15U;
+  };
+  const auto code_predictable = [&](std::size_t i) {
+    const auto place = static_cast<Hash>(i);
+    coded[i] = static_cast<std::uint8_t>(mixer.symbol(
+        stream, Question::uuid_version, {hash_of(column, place), place}, kDigitBits, digits[i]));
+  };
+  code_random(0, kVersionDigit);
+  code_predictable(kVersionDigit);
+  code_random(kVersionDigit + 1, kVariantDigit);
+  code_predictable(kVariantDigit);
+  code_random(kVariantDigit + 1, coded.size());
   return coded;
 }
 

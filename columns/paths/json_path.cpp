@@ -139,8 +139,8 @@ Place JsonPath::place() const {
     place.role = level.of_member;
     return place;
   }
-  const auto known = last_length_.find(level.path);
-  place.last_length = known == last_length_.end() ? 0 : known->second;
+  const std::uint32_t* const known = last_length_.find(level.path);
+  place.last_length = known == nullptr ? 0 : *known;
   place.role = level.role;
   place.column = hash_of(level.path, kArray);
   if (place.role == Role::coordinate) {

@@ -6,9 +6,9 @@
 
 #include <cstdint>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/flat_map.h"
 #include "columns/place.h"
 
 namespace watertight::columns {
@@ -46,7 +46,7 @@ class JsonPath {
   std::vector<Level> levels_;
   std::size_t beyond_ = 0;  // levels that are deeper than kMostLevels
   bool is_in_string_ = false;
-  std::unordered_map<Hash, std::uint32_t> last_length_;  // of arrays, by path
+  FlatMap<Hash, std::uint32_t> last_length_;  // of arrays, by path
 };
 
 }  // namespace watertight::columns

@@ -121,8 +121,8 @@ Place XmlPath::place() const {
     place.column = hash_of(level.path, attribute_);
     return place;
   }
-  const auto known = lists_.find(level.path);
-  const Lists lists = known == lists_.end() ? Lists{} : known->second;
+  const Lists* const known = lists_.find(level.path);
+  const Lists lists = known == nullptr ? Lists{} : *known;
   place.last_length = lists.last_length;
   place.index = level.index;
   place.is_in_array = level.index > 0 || place.last_length > 1;

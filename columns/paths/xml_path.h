@@ -6,9 +6,9 @@
 
 #include <cstdint>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/flat_map.h"
 #include "columns/place.h"
 
 namespace watertight::columns {
@@ -53,7 +53,7 @@ class XmlPath {
     bool are_triples = true;
     bool are_pairs = true;
   };
-  std::unordered_map<Hash, Lists> lists_;  // by path
+  FlatMap<Hash, Lists> lists_;  // by path
 };
 
 }  // namespace watertight::columns

@@ -251,11 +251,12 @@ std::optional<std::string> PositionCoder::code(EntropyStream& stream, ContextMix
     return std::nullopt;
   }
   const FormedNumber given = chosen.value_or(FormedNumber{});
-  const NumberForm form = column.code_form(stream, mixer, hash_of(place.column, 2), given.form);
-  if (!form.is_decimal()) {
+  const auto coded_form = column.code_form(stream, mixer, hash_of(place.column, 2), given.form);
+  if (!coded_form || !coded_form->is_decimal()) {
     stream.fail();
     return std::nullopt;
   }
+  const NumberForm form = *coded_form;
   rescale(list, axis, form.decimals);
   const std::int64_t number = code_number(stream, mixer, list, place, given.number);
   std::string printed = print(form, number);

@@ -14,12 +14,6 @@ constexpr std::ptrdiff_t kLatest = 16;
 constexpr std::uint32_t kFarPosition = 5;
 constexpr int kModelledBits = 4;
 
-std::optional<VertexNumber> find(const std::unordered_map<VertexNumber, VertexNumber>& map,
-                                 VertexNumber key) {
-  const auto found = map.find(key);
-  return found == map.end() ? std::nullopt : std::optional(found->second);
-}
-
 }  // namespace
 
 void RingCoder::restart() { *this = RingCoder(); }
@@ -32,8 +26,11 @@ bool RingCoder::is_in_ring(VertexNumber vertex) const {
 RingCoder::Guess RingCoder::guess(std::uint32_t position) const {
   Guess guess;
   if (ring_.empty()) return guess;
-  guess.before = find(before_, ring_.back());
-  if (position >= 2) guess.after = find(after_, ring_.front());
+  if (const Neighbours* const last = neighbours_.find(ring_.back())) guess.before = last->before;
+  if (position >= 2) {
+    const Neighbours* const first = neighbours_.find(ring_.front());
+    if (first != nullptr) guess.after = first->after;
+  }
   if (guess.before && is_in_ring(*guess.before)) guess.before.reset();
   if (guess.after && is_in_ring(*guess.after)) guess.after.reset();
   guess.agree = guess.before && guess.after && *guess.before == *guess.after;
@@ -41,21 +38,26 @@ RingCoder::Guess RingCoder::guess(std::uint32_t position) const {
   return guess;
 }
 
+std::size_t RingCoder::end_of_ranked() const {
+  const std::size_t of_ring = std::min(ring_.size(), static_cast<std::size_t>(kLatest));
+  return recent_.size() - std::min(recent_.size(), of_ring);
+}
+
 // A rank counts the vertices used since, without those that are denied already.
 std::optional<std::uint64_t> RingCoder::rank_of(const Guess& guess, VertexNumber vertex) const {
   std::uint64_t rank = 0;
-  for (auto recent = recent_.rbegin(); recent != recent_.rend(); ++recent) {
-    if (*recent == guess.before || *recent == guess.after || is_in_ring(*recent)) continue;
-    if (*recent == vertex) return rank;
+  for (std::size_t i = end_of_ranked(); i-- > 0;) {
+    if (recent_[i] == guess.before || recent_[i] == guess.after) continue;
+    if (recent_[i] == vertex) return rank;
     ++rank;
   }
   return std::nullopt;
 }
 
 std::optional<VertexNumber> RingCoder::of_rank(const Guess& guess, std::uint64_t rank) const {
-  for (auto recent = recent_.rbegin(); recent != recent_.rend(); ++recent) {
-    if (*recent == guess.before || *recent == guess.after || is_in_ring(*recent)) continue;
-    if (rank-- == 0) return *recent;
+  for (std::size_t i = end_of_ranked(); i-- > 0;) {
+    if (recent_[i] == guess.before || recent_[i] == guess.after) continue;
+    if (rank-- == 0) return recent_[i];
   }
   return std::nullopt;
 }
@@ -65,14 +67,14 @@ void RingCoder::end_ring() {
   if (size == 0) return;
   for (std::size_t i = 0; i < size; ++i) {
     const VertexNumber next = ring_[i + 1 == size ? 0 : i + 1];
-    after_[ring_[i]] = next;
-    before_[next] = ring_[i];
+    neighbours_[ring_[i]].after = next;
+    neighbours_[next].before = ring_[i];
   }
-  rings_.push_back(std::move(ring_));
+  rings_.add(ring_);
   ring_.clear();
 }
 
-const std::vector<std::vector<VertexNumber>>& RingCoder::finish() {
+const RingList& RingCoder::finish() {
   end_ring();
   return rings_;
 }
@@ -83,16 +85,19 @@ void RingCoder::take(VertexNumber vertex, Kind kind) {
   before_last_kind_ = last_kind_;
   last_kind_ = kind;
   ring_.push_back(vertex);
-  const auto known = std::find(recent_.rbegin(), recent_.rend(), vertex);
-  if (known != recent_.rend()) recent_.erase(std::next(known).base());
+  if (kind != Kind::fresh) {
+    const auto known = std::find(recent_.rbegin(), recent_.rend(), vertex);
+    if (known != recent_.rend()) recent_.erase(std::next(known).base());
+  }
   recent_.push_back(vertex);
   if (recent_.size() > 2 * kMostRecent) {
     recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(kMostRecent));
   }
 }
 
-VertexNumber RingCoder::code(EntropyStream& stream, ContextMixer& mixer, std::uint32_t position,
-                             VertexNumber vertex) {
+std::optional<VertexNumber> RingCoder::code(EntropyStream& stream, ContextMixer& mixer,
+                                            std::uint32_t position,
+                                            std::optional<VertexNumber> vertex) {
   if (position == 0) end_ring();
   const Guess guessed = guess(position);
   const VertexNumber fresh = largest_ + 1;
@@ -119,7 +124,7 @@ VertexNumber RingCoder::code(EntropyStream& stream, ContextMixer& mixer, std::ui
                                   {all, hash_of(where, known, last)}, vertex == *guessed.after)) {
     return finish_with(*guessed.after, Kind::after);
   }
-  const auto rank = stream.is_reading() ? std::nullopt : rank_of(guessed, vertex);
+  const auto rank = vertex ? rank_of(guessed, *vertex) : std::nullopt;
   if (mixer.flag(stream, Question::is_recent, {all, hash_of(where, last)}, rank.has_value())) {
     const std::uint64_t coded =
         mixer.number(stream, Question::recent_rank,
@@ -130,7 +135,8 @@ VertexNumber RingCoder::code(EntropyStream& stream, ContextMixer& mixer, std::ui
     if (!found) stream.fail();
     return finish_with(found.value_or(0), Kind::recent);
   }
-  const std::int64_t residual = vertex - last_found_;
+  if (!mixer.flag(stream, Question::is_vertex, {where}, vertex.has_value())) return std::nullopt;
+  const std::int64_t residual = vertex.value_or(0) - last_found_;
   const std::uint64_t size = mixer.number(stream, Question::vertex_distance,
                                           {where, hash_of(where, last)}, magnitude(residual), 3);
   const bool is_negative = size > 0 && mixer.flag(stream, Question::vertex_sign,

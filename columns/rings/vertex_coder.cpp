@@ -19,7 +19,9 @@ constexpr std::array<Question, 3> kAxes{Question::coordinate_x, Question::coordi
 void VertexCoder::restart(std::uint64_t vertices) {
   rings_ = nullptr;
   corners_.clear();
+  corners_of_.clear();
   vertices_.clear();
+  place_of_.clear();
   of_solids_.clear();
   run_.reset();
   count_ = vertices;
@@ -43,57 +45,79 @@ void VertexCoder::take_run(std::int64_t number) {
 
 bool VertexCoder::is_ready() const { return is_started_ || count_ > 0; }
 
-void VertexCoder::find_parallelogram(const std::vector<VertexNumber>& ring, Corner corner) {
+std::uint32_t VertexCoder::place_of(VertexNumber vertex) const {
+  const std::uint32_t* const place = place_of_.find(vertex);
+  return place == nullptr ? kNone : *place;
+}
+
+void VertexCoder::list_corners() {
+  for (std::uint32_t ring = 0; ring < rings_->size(); ++ring) {
+    const auto vertices = (*rings_)[ring];
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+      const auto corner = static_cast<std::uint32_t>(corners_.size());
+      CornerList& list = corners_of_[vertices[i]];
+      (list.first == kNone ? list.first : corners_[list.last].next) = corner;
+      list.last = corner;
+      corners_.push_back({ring, i});
+    }
+  }
+}
+
+void VertexCoder::find_parallelogram(std::span<const VertexNumber> ring, const Corner& corner) {
   const std::size_t size = ring.size();
   const auto at = [&](std::size_t after) { return ring[(corner.position + after) % size]; };
   if (size == 3) {
     const VertexNumber a = at(1);
     const VertexNumber b = at(2);
-    if (!is_known(a) || !is_known(b)) return;
-    const auto corners = corners_.find(a);
-    if (corners == corners_.end()) return;
-    std::size_t looked_at = 0;
-    for (const Corner& other : corners->second) {
-      if (++looked_at > kMostCorners) return;
-      const auto& across = (*rings_)[other.ring];
+    const std::uint32_t first = place_of(a);
+    const std::uint32_t second = place_of(b);
+    if (first == kNone || second == kNone) return;
+    std::uint32_t next_corner = corners_of_.find(a)->first;
+    for (std::size_t i = 0; i < kMostCorners && next_corner != kNone; ++i) {
+      const Corner& other = corners_[next_corner];
+      next_corner = other.next;
+      const auto across = (*rings_)[other.ring];
       if (across.size() != 3 || other.ring == corner.ring) continue;
       const VertexNumber next = across[(other.position + 1) % 3];
       const VertexNumber last = across[(other.position + 2) % 3];
       const VertexNumber opposite = next == b ? last : last == b ? next : -1;
-      if (opposite >= 0 && opposite != static_cast<VertexNumber>(next_) && is_known(opposite)) {
-        around_.parallelogram = {a, b, opposite};
-      }
+      if (opposite < 0 || opposite == static_cast<VertexNumber>(next_)) continue;
+      const std::uint32_t third = place_of(opposite);
+      if (third != kNone) around_.parallelogram = {first, second, third};
     }
-  } else if (size > 3 && around_.parallelogram[0] < 0) {
-    const VertexNumber last = at(size - 1);
-    const VertexNumber before = at(size - 2);
-    const VertexNumber first = at(size - 3);
-    if (is_known(last) && is_known(before) && is_known(first)) {
+  } else if (size > 3 && around_.parallelogram[0] == kNone) {
+    const std::uint32_t last = place_of(at(size - 1));
+    const std::uint32_t before = place_of(at(size - 2));
+    const std::uint32_t first = place_of(at(size - 3));
+    if (last != kNone && before != kNone && first != kNone) {
       around_.parallelogram = {last, first, before};
     }
   }
 }
 
 void VertexCoder::look_around() {
-  around_ = {};
-  const auto corners = corners_.find(static_cast<VertexNumber>(next_));
-  if (corners == corners_.end()) return;
-  std::size_t looked_at = 0;
-  for (const Corner& corner : corners->second) {
-    if (++looked_at > kMostCorners) return;
-    const auto& ring = (*rings_)[corner.ring];
+  around_.nearest = kNone;
+  around_.neighbours.clear();
+  around_.parallelogram.fill(kNone);
+  const CornerList* const corners = corners_of_.find(static_cast<VertexNumber>(next_));
+  if (corners == nullptr) return;
+  std::uint32_t next_corner = corners->first;
+  for (std::size_t i = 0; i < kMostCorners && next_corner != kNone; ++i) {
+    const Corner& corner = corners_[next_corner];
+    next_corner = corner.next;
+    const auto ring = (*rings_)[corner.ring];
     for (const std::size_t step : {ring.size() - 1, std::size_t{1}}) {
-      const VertexNumber neighbour = ring[(corner.position + step) % ring.size()];
-      if (!is_known(neighbour)) continue;
+      const std::uint32_t neighbour = place_of(ring[(corner.position + step) % ring.size()]);
+      if (neighbour == kNone) continue;
       around_.neighbours.push_back(neighbour);
-      around_.nearest = std::max(around_.nearest, neighbour);
+      if (around_.nearest == kNone || neighbour > around_.nearest) around_.nearest = neighbour;
     }
     find_parallelogram(ring, corner);
   }
 }
 
-std::int64_t VertexCoder::value(VertexNumber vertex, std::size_t axis, int decimals) const {
-  const Coordinate& known = vertices_.at(vertex)[axis];
+std::int64_t VertexCoder::value(std::uint32_t place, std::size_t axis, int decimals) const {
+  const Coordinate& known = vertices_[place][axis];
   return with_decimals(known.number, known.decimals, decimals);
 }
 
@@ -101,16 +125,17 @@ std::array<std::int64_t, VertexCoder::kPredictions> VertexCoder::predictions(std
                                                                              int decimals) const {
   const std::int64_t last =
       with_decimals(last_vertex_[axis].number, last_vertex_[axis].decimals, decimals);
-  const std::int64_t nearest = around_.nearest < 0 ? last : value(around_.nearest, axis, decimals);
+  const std::int64_t nearest =
+      around_.nearest == kNone ? last : value(around_.nearest, axis, decimals);
   std::int64_t middle = nearest;
   if (!around_.neighbours.empty()) {
     std::int64_t total = 0;
-    for (const VertexNumber neighbour : around_.neighbours) {
+    for (const std::uint32_t neighbour : around_.neighbours) {
       total = sum(total, difference(value(neighbour, axis, decimals), nearest));
     }
     middle = sum(nearest, total / static_cast<std::int64_t>(around_.neighbours.size()));
   }
-  if (around_.parallelogram[0] < 0) return {last, nearest, middle, middle, middle};
+  if (around_.parallelogram[0] == kNone) return {last, nearest, middle, middle, middle};
   const auto& [first, second, third] = around_.parallelogram;
   const std::int64_t corner =
       sum(value(first, axis, decimals),
@@ -122,9 +147,9 @@ std::optional<std::int64_t> VertexCoder::code_equal(EntropyStream& stream, Conte
                                                     std::int64_t number, int decimals) {
   if (axis_ == 0) equal_ = around_.neighbours;
   // Those that had the coordinates before come first.
-  std::vector<VertexNumber> candidates = equal_;
+  std::vector<std::uint32_t> candidates = equal_;
   const std::size_t preferred = axis_ == 0 ? 0 : candidates.size();
-  for (const VertexNumber neighbour : around_.neighbours) {
+  for (const std::uint32_t neighbour : around_.neighbours) {
     if (axis_ > 0 && std::find(equal_.begin(), equal_.end(), neighbour) == equal_.end()) {
       candidates.push_back(neighbour);
     }
@@ -140,7 +165,7 @@ std::optional<std::int64_t> VertexCoder::code_equal(EntropyStream& stream, Conte
     const auto tried = static_cast<Hash>(denied.size());
     if (mixer.flag(stream, Question::is_equal_coordinate,
                    {hash_of(before, tried, is_preferred), hash_of(axis, tried, last_equal_[axis_]),
-                    hash_of(axis, is_preferred, around_.parallelogram[0] >= 0 ? 1 : 0),
+                    hash_of(axis, is_preferred, around_.parallelogram[0] != kNone ? 1 : 0),
                     hash_of(before, static_cast<Hash>(candidates.size()))},
                    number == guess)) {
       coded = guess;
@@ -154,7 +179,7 @@ std::optional<std::int64_t> VertexCoder::code_equal(EntropyStream& stream, Conte
     return std::nullopt;
   }
   std::erase_if(
-      equal_, [&](VertexNumber neighbour) { return value(neighbour, axis_, decimals) != *coded; });
+      equal_, [&](std::uint32_t neighbour) { return value(neighbour, axis_, decimals) != *coded; });
   return coded;
 }
 
@@ -163,25 +188,23 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   if (!is_started_) {
     is_started_ = true;
     rings_ = &rings.finish();
-    for (std::uint32_t ring = 0; ring < rings_->size(); ++ring) {
-      for (std::uint32_t i = 0; i < (*rings_)[ring].size(); ++i) {
-        corners_[(*rings_)[ring][i]].push_back({ring, i});
-      }
-    }
+    list_corners();
     std::sort(of_solids_.begin(), of_solids_.end());
   }
   NumberColumn& column = forms_[axis_];
   const auto axis = static_cast<Hash>(axis_);
   const auto chosen = stream.is_reading() ? std::nullopt : choose_form(text, column.form());
-  if (!mixer.flag(stream, Question::text_kind, {axis}, chosen.has_value())) return std::nullopt;
   if (axis_ == 0) {
     while (next_run_ < of_solids_.size() && of_solids_[next_run_].first <= next_) {
       next_ = std::max(next_, of_solids_[next_run_++].second);
     }
     look_around();
   }
+  const auto coded_form = column.code_form(stream, mixer, hash_of(20, axis),
+                                           chosen ? std::optional(chosen->form) : std::nullopt);
+  if (!coded_form) return std::nullopt;
   const FormedNumber given = chosen.value_or(FormedNumber{});
-  const NumberForm form = column.code_form(stream, mixer, hash_of(20, axis), given.form);
+  const NumberForm form = *coded_form;
   if (!form.is_decimal()) {
     const std::int64_t number =
         column.code_number(stream, mixer, hash_of(21, axis), 0, std::nullopt, given.number);
@@ -192,7 +215,8 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   const auto predicted = predictions(axis_, form.decimals);
   const std::size_t best = best_of(misses_[axis_]);
   const auto which = static_cast<Hash>(best);
-  const Hash known = (around_.nearest >= 0 ? 1U : 0U) + (around_.parallelogram[0] >= 0 ? 2U : 0U);
+  const Hash known =
+      (around_.nearest != kNone ? 1U : 0U) + (around_.parallelogram[0] != kNone ? 2U : 0U);
   const Hash others = hash_of(axis_ > 0 ? last_residual_[0] : 0, axis_ > 1 ? last_residual_[1] : 0);
   const auto equal = code_equal(stream, mixer, given.number, form.decimals);
   std::int64_t number = equal.value_or(0);
@@ -214,7 +238,8 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   vertex_[axis_] = {number, form.decimals};
   if (++axis_ == 3) {
     axis_ = 0;
-    vertices_[static_cast<VertexNumber>(next_++)] = vertex_;
+    place_of_[static_cast<VertexNumber>(next_++)] = static_cast<std::uint32_t>(vertices_.size());
+    vertices_.push_back(vertex_);
     last_vertex_ = vertex_;
   }
   return print(form, number);

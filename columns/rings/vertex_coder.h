@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "columns/models/context_mixer.h"
@@ -33,9 +32,16 @@ class VertexCoder {
 
  private:
   static constexpr std::size_t kPredictions = 5;
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   struct Corner {
     std::uint32_t ring = 0;
     std::uint32_t position = 0;
+    std::uint32_t next = kNone;  // the next corner of the vertex
+  };
+  /// The first and the last corner of a vertex.
+  struct CornerList {
+    std::uint32_t first = kNone;
+    std::uint32_t last = kNone;
   };
   /// A coordinate in units of 10^-decimals, of a form that has them.
   struct Coordinate {
@@ -43,24 +49,30 @@ class VertexCoder {
     int decimals = 0;
   };
   using Vertex = std::array<Coordinate, 3>;
-  /// The neighbours of a vertex that are known.
+  /// The neighbours of a vertex that are known, by their places in `vertices_`, which are in the
+  /// order of the vertices.
   struct Surroundings {
-    VertexNumber nearest = -1;  // the neighbour with the largest number
-    std::vector<VertexNumber> neighbours;
-    std::array<VertexNumber, 3> parallelogram{-1, -1, -1};  // its place is first + second - third
+    std::uint32_t nearest = kNone;  // the neighbour with the largest number
+    std::vector<std::uint32_t> neighbours;
+    /// The place of the vertex is likely first + second - third.
+    std::array<std::uint32_t, 3> parallelogram{kNone, kNone, kNone};
   };
+  void list_corners();
   void look_around();
   /// Codes whether a coordinate is that of a neighbour; none if it is not.
   std::optional<std::int64_t> code_equal(EntropyStream& stream, ContextMixer& mixer,
                                          std::int64_t number, int decimals);
-  void find_parallelogram(const std::vector<VertexNumber>& ring, Corner corner);
-  bool is_known(VertexNumber vertex) const { return vertices_.contains(vertex); }
-  std::int64_t value(VertexNumber vertex, std::size_t axis, int decimals) const;
+  void find_parallelogram(std::span<const VertexNumber> ring, const Corner& corner);
+  /// The place of a vertex in `vertices_`, or kNone.
+  std::uint32_t place_of(VertexNumber vertex) const;
+  std::int64_t value(std::uint32_t place, std::size_t axis, int decimals) const;
   std::array<std::int64_t, kPredictions> predictions(std::size_t axis, int decimals) const;
 
-  const std::vector<std::vector<VertexNumber>>* rings_ = nullptr;
-  std::unordered_map<VertexNumber, std::vector<Corner>> corners_;
-  std::unordered_map<VertexNumber, Vertex> vertices_;
+  const RingList* rings_ = nullptr;
+  std::vector<Corner> corners_;
+  FlatMap<VertexNumber, CornerList> corners_of_;
+  std::vector<Vertex> vertices_;                                    // those that are known
+  FlatMap<VertexNumber, std::uint32_t> place_of_;                   // of vertices in `vertices_`
   std::vector<std::pair<std::uint64_t, std::uint64_t>> of_solids_;  // first and end; sorted later
   std::optional<std::int64_t> run_;                                 // the first vertex of a run
   std::uint64_t count_ = 0;
@@ -71,7 +83,7 @@ class VertexCoder {
   Vertex vertex_;
   Vertex last_vertex_;
   Surroundings around_;
-  std::vector<VertexNumber> equal_;            // the neighbours that had the coordinates so far
+  std::vector<std::uint32_t> equal_;           // the neighbours that had the coordinates so far
   std::array<std::uint32_t, 3> last_equal_{};  // for each axis the neighbour that had the last one
   std::array<std::array<std::int32_t, kPredictions>, 3> misses_{};
   std::array<std::uint32_t, 3> last_residual_{};

@@ -48,17 +48,16 @@ def psql(service, sql, file=None):
 
 
 def end(service):
-    """Kills the program and its database."""
-    pids = service.database_processes()
+    """Kills the program and its database, which may just be starting."""
     if service.process:
         service.process.kill()
         service.process.wait()
-    for pid in pids:
-        try:
-            os.kill(pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-    while service.database_processes():
+    while pids := service.database_processes():
+        for pid in pids:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
         time.sleep(0.05)
 
 

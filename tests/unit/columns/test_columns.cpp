@@ -315,6 +315,50 @@ TEST_CASE("a ring of many vertices comes back, in time that grows with its lengt
   check_round_trip({{TextKind::json, text}});
 }
 
+/// Lists of numbers that repeat at a distance: columns see no more than numbers in them.
+std::string repeated_lists() {
+  std::mt19937 random(19);
+  std::string list;
+  for (int i = 0; i < 500; ++i) list += std::to_string(random() % 10) + ",";
+  std::string text;
+  for (int i = 0; i < 60; ++i) text += "{\"a\":[" + list + "0]}\n";
+  return text;
+}
+
+TEST_CASE("texts that repeat and have no columns take what a general compressor takes") {
+  const std::string text = repeated_lists();
+  CHECK(packed_size(text, TextKind::json) < 500);
+  check_round_trip(lines_of(text, TextKind::json));
+}
+
+TEST_CASE("a plain text that is cut, longer than allowed or damaged is an error or another text") {
+  const std::string text = repeated_lists();
+  const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));
+  REQUIRE(packed[0] % 2 == 1);
+  for (std::size_t size = 0; size < packed.size(); ++size)
+    CHECK_FALSE(columns::unpack_texts(ByteView(packed).first(size), 1'000'000));
+  Bytes longer = packed;
+  longer.push_back(0);
+  CHECK_FALSE(columns::unpack_texts(longer, 1'000'000));
+  std::uint64_t bytes = 0;
+  for (const Text& line : lines_of(text, TextKind::json)) bytes += line.text.size();
+  const auto refused = columns::unpack_texts(packed, bytes - 1);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::limit_exceeded);
+  CHECK(columns::unpack_texts(packed, bytes));
+  std::mt19937 random(23);
+  for (int i = 0; i < 2000; ++i) {
+    Bytes damaged = packed;
+    std::uint8_t& byte = damaged[random() % damaged.size()];
+    byte = static_cast<std::uint8_t>(byte ^ (1U << (random() % 8)));
+    const auto unpacked = columns::unpack_texts(damaged, 100'000);
+    if (!unpacked) continue;
+    std::size_t size = 0;
+    for (const std::string& unpacked_text : *unpacked) size += unpacked_text.size();
+    CHECK(size <= 100'000);
+  }
+}
+
 TEST_CASE("damaged bytes give an error or other texts, in bounds") {
   const std::string text = features(20);
   const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));
@@ -348,6 +392,38 @@ TEST_CASE("texts beyond the limit are refused") {
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::limit_exceeded);
   CHECK(columns::unpack_texts(packed, text.size()));
+}
+
+TEST_CASE("repetitions in strings take a number, whatever their length") {
+  const std::string part = "The quick brown fox jumps over the lazy dog, and 4711 others. ";
+  for (const std::size_t size :
+       {std::size_t{4095}, std::size_t{4104}, std::size_t{4105}, std::size_t{100'000}}) {
+    CAPTURE(size);
+    std::string text;
+    while (text.size() < size) text += part;
+    text.resize(size);
+    check_round_trip({{TextKind::bytes, text}, {TextKind::bytes, text + '!'}});
+    CHECK(packed_size(text, TextKind::bytes) < 100 + size / 1000);
+  }
+  std::string zeros = part + part;
+  zeros[part.size() + 20] = '\0';
+  check_round_trip({{TextKind::bytes, zeros}, {TextKind::bytes, zeros + zeros}});
+}
+
+TEST_CASE("coordinates with an exponent are predicted as others are") {
+  std::string plain = R"({"vertices":{"count":400,"others":[)";
+  std::string scaled = plain;
+  for (int i = 0; i < 1200; ++i) {
+    const std::string number = std::to_string(28'155'563 + 10 * (i * i % 977) + 1);
+    plain += number + ',';
+    scaled += number + "e-2,";
+  }
+  plain.back() = ']';
+  scaled.back() = ']';
+  plain += "}}";
+  scaled += "}}";
+  check_round_trip({{TextKind::json, scaled}});
+  CHECK(packed_size(scaled, TextKind::json) < packed_size(plain, TextKind::json) + 50);
 }
 
 }  // namespace

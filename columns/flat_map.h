@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A map in one array: a search reads one or two neighbouring slots, a copy is one of plain bytes.
+// Internal to columns/.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace watertight::columns {
+
+/// Open addressing with linear probing. Keys are whole numbers of at most 64 bits; nothing is ever
+/// removed. Pointers and references to values are valid until a key is added.
+template <class Key, class Value>
+class FlatMap {
+ public:
+  const Value* find(Key key) const {
+    if (slots_.empty()) return nullptr;
+    const Slot& slot = slots_[slot_of(key)];
+    return slot.is_used ? &slot.value : nullptr;
+  }
+  Value& operator[](Key key) {
+    if (2 * size_ >= slots_.size()) grow();
+    Slot& slot = slots_[slot_of(key)];
+    if (!slot.is_used) {
+      slot = {key, true, Value{}};
+      ++size_;
+    }
+    return slot.value;
+  }
+  std::size_t size() const { return size_; }
+  void clear() {
+    slots_.clear();
+    size_ = 0;
+  }
+
+ private:
+  struct Slot {
+    Key key{};
+    bool is_used = false;
+    Value value{};
+  };
+  static constexpr std::size_t kFirstSlots = 16;
+
+  /// The slot of a key, or the one that it would take.
+  std::size_t slot_of(Key key) const {
+    const std::uint64_t mixed = static_cast<std::uint64_t>(key) * 0x9E37'79B9'7F4A'7C15U;
+    std::size_t at = static_cast<std::size_t>(mixed >> 32U) & (slots_.size() - 1);
+    while (slots_[at].is_used && slots_[at].key != key) at = (at + 1) & (slots_.size() - 1);
+    return at;
+  }
+  void grow() {
+    std::vector<Slot> old(slots_.empty() ? kFirstSlots : 2 * slots_.size());
+    std::swap(old, slots_);
+    for (Slot& slot : old) {
+      if (slot.is_used) slots_[slot_of(slot.key)] = std::move(slot);
+    }
+  }
+
+  std::vector<Slot> slots_;  // a power of two of them
+  std::size_t size_ = 0;
+};
+
+}  // namespace watertight::columns

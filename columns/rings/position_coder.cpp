@@ -13,6 +13,7 @@ constexpr int kIndexBits = 12;
 constexpr std::uint32_t kFewPositions = 6;
 constexpr std::size_t kMostKnown = 4096;
 constexpr std::size_t kMostSeen = 65'536;
+constexpr std::size_t kMostNeighbours = 4;
 constexpr int kMostUnits = 4;  // decimals of x and y of lines
 constexpr std::array<std::int64_t, kMostUnits + 1> kUnits{1, 10, 100, 1000, 10'000};
 
@@ -49,26 +50,32 @@ void PositionCoder::guess_again(const List& list, std::uint32_t axis, std::vecto
     if (seen != nullptr) guesses.push_back({Guess::Kind::again, seen->position[2]});
     return;
   }
-  if (axis == 1 && list.kinds[0] != Guess::Kind::again) return;
-  const Seen* last = find_seen(list, list.last[0]);
-  if (last == nullptr) return;
-  for (const auto& neighbour : last->neighbours) {
-    if (!neighbour || (list.count > 1 && *neighbour == list.last[1])) continue;
-    if (axis == 1 && (*neighbour)[0] != list.position[0]) continue;
-    guesses.push_back({Guess::Kind::again, (*neighbour)[axis]});
+  const bool is_started = axis == 0 || list.kinds[0] == Guess::Kind::again;
+  const Seen* last = is_started && list.count > 0 ? find_seen(list, list.last[0]) : nullptr;
+  for (std::size_t i = 0; last != nullptr && i < last->neighbours.size(); ++i) {
+    const Position& neighbour = last->neighbours[i];
+    if (list.count > 1 && neighbour == list.last[1]) continue;
+    if (axis == 1 && neighbour[0] != list.position[0]) continue;
+    guesses.push_back({Guess::Kind::again, neighbour[axis]});
   }
+  if (axis == 0) return;
+  const auto found = list.y_of.find(list.position[0]);
+  if (found != list.y_of.end()) guesses.push_back({Guess::Kind::again, found->second});
 }
 
 /// Takes the position, and the one before it as its neighbour.
 void PositionCoder::remember(List& list) {
-  if (list.seen.size() >= kMostSeen) return;
-  const auto add = [&](const Position& position, std::size_t side, const Position& neighbour) {
+  if (std::max(list.seen.size(), list.y_of.size()) >= kMostSeen) return;
+  const auto add = [&](const Position& position, const Position& neighbour) {
     Seen& seen = list.seen.try_emplace(place_of(position), Seen{position, {}}).first->second;
-    if (seen.position == position && !seen.neighbours[side]) seen.neighbours[side] = neighbour;
+    if (seen.position != position || seen.neighbours.size() == kMostNeighbours) return;
+    auto& known = seen.neighbours;
+    if (std::find(known.begin(), known.end(), neighbour) == known.end()) known.push_back(neighbour);
   };
+  list.y_of[list.position[0]] = list.position[1];
   if (list.count == 0) return;
-  add(list.last[0], 1, list.position);
-  add(list.position, 0, list.last[0]);
+  add(list.last[0], list.position);
+  add(list.position, list.last[0]);
 }
 
 void PositionCoder::begin(List& list, const Place& place) {
@@ -88,17 +95,21 @@ void PositionCoder::rescale(List& list, std::uint32_t axis, int decimals) {
   }
   list.known[axis] = {};
   list.seen.clear();
+  list.y_of.clear();
 }
 
 void PositionCoder::guess(const List& list, std::uint32_t axis, std::uint32_t axes,
                           std::vector<Guess>& guesses) {
   guesses.clear();
-  if (list.count == 0) return;
+  if (list.count == 0) {
+    if (axis > 0) guess_again(list, axis, guesses);
+    return;
+  }
   const bool is_first = axis > 0 && list.kinds[0] == Guess::Kind::first;
   if (list.count > 2 && (axis == 0 || is_first)) {
     guesses.push_back({Guess::Kind::first, list.first[axis]});
   }
-  if (axes == 3) guess_again(list, axis, guesses);
+  guess_again(list, axis, guesses);
   if (axes == 3 && axis == 0) list.line.add_for_x(guesses);
   if (axes == 3 && axis == 1 && !is_first && list.kinds[0] != Guess::Kind::again) {
     list.line.add_for_y(guesses, list.position[0], list.kinds[0]);
@@ -212,8 +223,8 @@ std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mix
 
 void PositionCoder::take(List& list, std::uint32_t axes) {
   if (list.count == 0) list.first = list.position;
+  remember(list);
   if (axes == 3) {
-    remember(list);
     const bool is_planar = list.decimals[0] == list.decimals[1] && list.decimals[0] <= kMostUnits;
     list.line.set_unit(is_planar ? kUnits[static_cast<std::size_t>(list.decimals[0])] : 0);
     const Guess::Kind kind = list.kinds[0] == Guess::Kind::none ? list.kinds[1] : list.kinds[0];
@@ -248,12 +259,15 @@ std::optional<std::string> PositionCoder::code(EntropyStream& stream, ContextMix
   const NumberForm form = *coded_form;
   rescale(list, axis, form.decimals);
   const std::int64_t number = code_number(stream, mixer, list, place, given.number);
+  std::string printed = print(form, number);
+  if (printed.empty()) {
+    stream.fail();
+    return printed;
+  }
   if (list.count > 0) judge(list.misses[axis], predictions(list, axis), number, kMemory);
   list.position[axis] = number;
   list.known[axis].add(number);
   if (axis + 1 == place.axes) take(list, place.axes);
-  std::string printed = print(form, number);
-  if (printed.empty()) stream.fail();
   return printed;
 }
 

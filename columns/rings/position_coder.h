@@ -37,14 +37,15 @@ class PositionCoder {
     std::uint32_t last_index = 0;
     void add(std::int64_t number);
   };
-  /// A position of three axes with those around it where it came first.
+  /// A position of three axes with those that were before or after it.
   struct Seen {
     Position position{};
-    std::array<std::optional<Position>, 2> neighbours;  // the one before and the one after
+    std::vector<Position> neighbours;  // the different ones, at most kMostNeighbours
   };
   /// The lists at a path.
   struct List {
-    std::unordered_map<Hash, Seen> seen;  // by a hash of x and y
+    std::unordered_map<Hash, Seen> seen;                  // by a hash of x and y
+    std::unordered_map<std::int64_t, std::int64_t> y_of;  // the last y after an x
     std::array<Known, kMostAxes> known;
     std::array<NumberColumn, kMostAxes> forms;
     std::array<int, kMostAxes> decimals{};

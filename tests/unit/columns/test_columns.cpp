@@ -368,8 +368,11 @@ TEST_CASE("damaged bytes give an error or other texts, in bounds") {
   }
   CHECK(refused + 5 > packed.size());  // few prefixes are packed texts too: others, which end early
   std::mt19937 random(11);
-  for (int i = 0; i < 2000; ++i) {
-    Bytes damaged = packed;
+  std::string lines = "<lines><s name=\"b\">a1 b9999</s><s name=\"b\">a1 b10000</s>";
+  for (int i = 0; i < 20; ++i) lines += terrain_line(random);
+  const Bytes packed_lines = columns::pack_texts(std::vector<Text>{{TextKind::xml, lines}});
+  for (int i = 0; i < 4000; ++i) {
+    Bytes damaged = i % 2 == 0 ? packed : packed_lines;
     for (int j = 0; j < 3; ++j) {
       std::uint8_t& byte = damaged[random() % damaged.size()];
       byte = static_cast<std::uint8_t>(byte ^ (1U << (random() % 8)));

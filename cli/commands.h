@@ -155,6 +155,7 @@ struct ExportCommand {
   std::string output;
   std::string purpose = "size";  // of a Watertight file, or "ranges"
   bool is_proven_only = false;
+  std::vector<std::string> where;  // NAME=VALUE
 };
 Exit run(const ExportCommand& command);
 
@@ -166,13 +167,15 @@ struct CompactCommand {
 Exit run(const CompactCommand& command);
 
 struct CollectionsCommand {
-  enum class Action : std::uint8_t { list, info, policy, remove, rename, recount };
+  enum class Action : std::uint8_t { list, info, policy, remove, rename, recount, attributes };
   StoreChoice store;
   Action action = Action::list;
   std::string id;
-  std::string new_id;    // of rename
-  std::string policy;    // of policy
-  bool is_json = false;  // of list, info and recount
+  std::string new_id;                       // of rename
+  std::string policy;                       // of policy
+  bool is_json = false;                     // of list, info, recount and attributes
+  std::vector<std::string> added, removed;  // of attributes
+  bool is_found = false;                    // of attributes: those that there are
 };
 Exit run(const CollectionsCommand& command);
 

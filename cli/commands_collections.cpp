@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The commands collections (lists, shows, deletes, renames and counts the collections of a store)
-// and compact.
+// The commands collections (lists, shows, deletes, renames and counts the collections of a store,
+// chooses their attributes) and compact.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +10,7 @@
 #include "cli/opened_store.h"
 #include "cli/terminal/printable.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/stored/attributes.h"
 #include "pipeline/stored/compact.h"
 
 namespace watertight::cli {
@@ -79,6 +80,85 @@ Status recount(const CollectionsCommand& command, SolidStore& store) {
   return Done{};
 }
 
+constexpr const char* kTypes[] = {"numbers", "texts", "truth values"};
+
+std::string line_of(const store::ChosenAttribute& attribute, bool is_json) {
+  const bool has[] = {attribute.has_numbers, attribute.has_texts, attribute.has_truths};
+  if (is_json) {
+    nlohmann::ordered_json json{{"name", attribute.name}, {"complete", attribute.is_complete()}};
+    json["types"] = nlohmann::ordered_json::array();
+    for (std::size_t type = 0; type < std::size(kTypes); ++type) {
+      if (has[type]) json["types"].push_back(kTypes[type]);
+    }
+    return json.dump();
+  }
+  std::string line = printable(attribute.name) + ":";
+  std::string types;
+  for (std::size_t type = 0; type < std::size(kTypes); ++type) {
+    if (has[type]) types.append(types.empty() ? " " : ", ").append(kTypes[type]);
+  }
+  line += types.empty() ? " no values" : types;
+  if (attribute.is_complete()) return line;
+  return line + ", filled to " + std::to_string(static_cast<int>(attribute.share * 100)) +
+         " % (--add goes on)";
+}
+
+std::string line_of(const std::string& name, const pipeline::AttributeCount& count, bool is_json) {
+  if (is_json) {
+    nlohmann::ordered_json json{{"name", name}};
+    for (std::size_t type = 0; type < std::size(kTypes); ++type) {
+      json[kTypes[type]] = count.by_type[type];
+    }
+    json["others"] = count.others;
+    return json.dump();
+  }
+  std::string line = printable(name) + ":";
+  std::string parts;
+  for (std::size_t type = 0; type < std::size(kTypes); ++type) {
+    if (count.by_type[type] == 0) continue;
+    parts.append(parts.empty() ? " " : ", ").append(std::to_string(count.by_type[type]));
+    parts.append(1, ' ').append(kTypes[type]);
+  }
+  if (count.others > 0) {
+    parts.append(parts.empty() ? " " : ", ").append(std::to_string(count.others));
+    parts.append(" others");
+  }
+  return line + parts;
+}
+
+Status print_found(const CollectionsCommand& command, SolidStore& store) {
+  const server::StopSignals signals;
+  const auto found =
+      pipeline::found_attributes(store, command.id, [&signals] { return signals.is_requested(); });
+  if (!found) return found.error();
+  for (const auto& [name, count] : *found) {
+    std::puts(line_of(name, count, command.is_json).c_str());
+  }
+  return Done{};
+}
+
+Status attributes(const CollectionsCommand& command, SolidStore& store) {
+  if (!command.added.empty() || !command.removed.empty()) {
+    const server::StopSignals signals;
+    int percent = 0;
+    const Status changed = store.change_attributes(
+        command.id, {command.added, command.removed}, [&signals] { return signals.is_requested(); },
+        [&percent](double share) {
+          const int now = static_cast<int>(share * 10) * 10;
+          if (now > percent) std::fprintf(stderr, "watertight: attributes: %d %%\n", now);
+          percent = now;
+        });
+    if (!changed) return changed;
+  }
+  if (command.is_found) return print_found(command, store);
+  const auto chosen = store.attributes(command.id);
+  if (!chosen) return chosen.error();
+  for (const store::ChosenAttribute& attribute : *chosen) {
+    std::puts(line_of(attribute, command.is_json).c_str());
+  }
+  return Done{};
+}
+
 Status act(const CollectionsCommand& command, SolidStore& store) {
   switch (command.action) {
     case CollectionsCommand::Action::list:
@@ -93,6 +173,8 @@ Status act(const CollectionsCommand& command, SolidStore& store) {
       return store.rename_collection(command.id, command.new_id);
     case CollectionsCommand::Action::recount:
       return recount(command, store);
+    case CollectionsCommand::Action::attributes:
+      return attributes(command, store);
   }
   return Done{};
 }

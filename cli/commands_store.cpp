@@ -16,6 +16,7 @@
 #include "cli/outputs/output_files.h"
 #include "cli/terminal/printable.h"
 #include "pipeline/export.h"
+#include "pipeline/stored/attributes.h"
 #include "server/serve.h"
 
 namespace watertight::cli {
@@ -108,6 +109,7 @@ class ExportRun {
     auto files = OutputFiles::open(command_.output, gives_up_rights);
     if (!files) return fail(name_of(command_.output), files.error());
     files_.emplace(*std::move(files));
+    if (const Status read = read_conditions(); !read) return fail("--where", read.error());
     const auto opened = open_store(command_.store);
     if (!opened) return fail("store", opened.error());
     const Exit exit =
@@ -133,11 +135,24 @@ class ExportRun {
     return Exit::error;
   }
 
+  Status read_conditions() {
+    for (const std::string& text : command_.where) {
+      const std::size_t sign = text.find('=');
+      if (sign == std::string::npos) {
+        return Error{ErrorCode::invalid_argument, "'" + text + "' is not NAME=VALUE"};
+      }
+      auto condition = pipeline::condition_of(text.substr(0, sign), text.substr(sign + 1));
+      if (!condition) return std::move(condition).error();
+      where_.push_back(*std::move(condition));
+    }
+    return Done{};
+  }
+
   Exit write_container(SolidStore& store) {
     pipeline::ContainerOptions options;
     options.purpose = *pipeline::file_purpose_named(command_.purpose);
     auto exporting = pipeline::CollectionExport::start(
-        store, command_.collection, pipeline::ExportFormat::container, options, scope_);
+        store, command_.collection, pipeline::ExportFormat::container, options, scope_, where_);
     if (!exporting) return fail(command_.collection, exporting.error());
     const Exit exit = write(*exporting, 0);
     if (exit == Exit::valid) sentences_.push_back(counts_of(*exporting) + " written");
@@ -151,8 +166,8 @@ class ExportRun {
     for (std::size_t i = 0; i < plan->sequences().size(); ++i) {
       const Status added = i == 0 ? Status(Done{}) : files_->add();
       if (!added) return fail(files_->name(i), added.error());
-      auto exporting =
-          pipeline::CollectionExport::start_sequence(store, command_.collection, plan, i, scope_);
+      auto exporting = pipeline::CollectionExport::start_sequence(store, command_.collection, plan,
+                                                                  i, scope_, where_);
       if (!exporting) return fail(command_.collection, exporting.error());
       const Exit exit = write(*exporting, i);
       if (exit != Exit::valid) return exit;
@@ -202,6 +217,7 @@ class ExportRun {
 
   const ExportCommand& command_;
   const pipeline::ExportScope scope_;
+  std::vector<store::AttributeCondition> where_;
   std::optional<OutputFiles> files_;
   std::vector<std::string> sentences_;
 };

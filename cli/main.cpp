@@ -343,6 +343,11 @@ void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
   add_purpose(*sub, command.purpose);
   sub->add_flag("--proven", command.is_proven_only,
                 "only features whose solids are all proven to be valid");
+  sub->add_option("--where", command.where,
+                  "only features with this value of an attribute that the collection has chosen "
+                  "(again: all must hold)")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
   add_store(*sub, command.store);
   sub->callback([&] {
     require_store(command.store);
@@ -371,7 +376,8 @@ CLI::App* add_action(CLI::App& collections, const std::string& name, const std::
 void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen) {
   using Action = CollectionsCommand::Action;
   CLI::App* sub = app.add_subcommand("collections",
-                                     "List, show, delete, rename or count collections of a store");
+                                     "List, show, delete, rename or count collections of a store, "
+                                     "choose their attributes");
   sub->require_subcommand(1);
   add_store(*sub, command.store);
   CLI::App* list =
@@ -391,8 +397,19 @@ void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen)
       ->check(is_collection_id);
   CLI::App* recount = add_action(*sub, "recount", "Count the features again, print the line",
                                  command, Action::recount);
-  for (CLI::App* action : {list, info, recount}) {
-    action->add_flag("--json", command.is_json, "a line of JSON for each collection");
+  CLI::App* attributes =
+      add_action(*sub, "attributes", "Choose attributes that can be queried, print the chosen ones",
+                 command, Action::attributes);
+  attributes->add_option("--add", command.added, "choose this attribute; keeps its values")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  attributes->add_option("--remove", command.removed, "do not choose it any more")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  attributes->add_flag("--found", command.is_found,
+                       "print all attributes of the features, with the number of their values");
+  for (CLI::App* action : {list, info, recount, attributes}) {
+    action->add_flag("--json", command.is_json, "a line of JSON for each collection or attribute");
   }
   sub->callback([&] {
     require_store(command.store);

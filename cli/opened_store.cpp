@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/terminal/printable.h"
+#include "pipeline/stored/attributes.h"
 
 namespace watertight::cli {
 namespace {
@@ -53,7 +54,8 @@ Result<OpenedStore> open_store(const StoreChoice& choice) {
   auto database = open_database(choice, signals);
   if (!database) return std::move(database).error();
   auto store = store::open_postgres_store(
-      database->connection, 4, [&signals] { return signals.is_requested(); }, tell);
+      database->connection, 4, [&signals] { return signals.is_requested(); }, tell,
+      pipeline::read_attributes);
   if (signals.is_requested()) return Error{ErrorCode::cancelled, "stopped before the work began"};
   if (!store) return std::move(store).error();
   return OpenedStore{std::move(database->cluster), *std::move(store)};

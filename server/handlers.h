@@ -4,6 +4,7 @@
 // server/.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,7 +42,12 @@ struct Route {
               // compressed, go to the small one
   Handler handler;
   std::vector<std::string_view> parameters;  // the query parameters that the route knows
+  bool has_attributes = false;               // others are names of attributes
 };
+
+/// The parameters of a list of items; others are names of attributes.
+inline constexpr std::string_view kItemParameters[] = {"f",    "limit",    "after",
+                                                       "bbox", "bbox-crs", "proven"};
 
 /// All routes; the OpenAPI document describes exactly these (a test compares them).
 const std::vector<Route>& routes();
@@ -59,11 +65,18 @@ Response get_items(const RoutedRequest& request);
 Response get_item(const RoutedRequest& request);
 Response post_items(const RoutedRequest& request);
 Response delete_item(const RoutedRequest& request);
+Response get_queryables(const RoutedRequest& request);
+Response get_attributes(const RoutedRequest& request);
+Response put_attributes(const RoutedRequest& request);
 Response get_export(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 
 /// The answer with a problem that has no further members.
 Response refuse(unsigned status, std::string kind, std::string detail);
+
+/// The refusal of a change of a collection whose preconditions do not hold (412), or are missing
+/// though wanted (428). They are compared before the change; what happens in between is not seen.
+std::optional<Response> unless_change_is_wanted(const RoutedRequest& request);
 
 /// The CRS URI of an EPSG code; the OGC's "unknown" for 0.
 std::string crs_uri(std::uint32_t srid);

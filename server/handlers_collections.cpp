@@ -27,6 +27,8 @@ Json collection_json(const store::StoredCollection& collection) {
   json["links"] = Json::array(
       {link(self, "self", kJson, "this collection"),
        link(self + "/items", "items", kJson, "its features"),
+       link(self + "/queryables", "http://www.opengis.net/def/rel/ogc/1.0/queryables",
+            "application/schema+json", "attributes that can be queried"),
        link(self + "/export?f=wt", "enclosure", kContainer, "all of it as a Watertight file"),
        link(self + "/export?f=cityjsonseq", "enclosure", kCityJsonSeq,
             "all of it as a CityJSONSeq, if its features share a header")});
@@ -84,8 +86,8 @@ Response upkeep(const RoutedRequest& request, Upkeep work) {
   return response;
 }
 
-/// The refusal of a change of a collection whose preconditions do not hold (412), or are missing
-/// though wanted (428). They are compared before the change; what happens in between is not seen.
+}  // namespace
+
 std::optional<Response> unless_change_is_wanted(const RoutedRequest& request) {
   if (auto missing = unless_conditional(request)) return missing;
   if (!has_precondition(request.request)) return std::nullopt;
@@ -93,8 +95,6 @@ std::optional<Response> unless_change_is_wanted(const RoutedRequest& request) {
   if (!collection) return to_response(to_problem(collection.error()));
   return unless_same_state(request.request, collection->state);
 }
-
-}  // namespace
 
 Response get_collections(const RoutedRequest& request) {
   if (auto refusal = json_only(request)) return *std::move(refusal);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "pipeline/stored/attributes.h"
 #include "server/json_answers.h"
 
 namespace watertight::server {
@@ -123,7 +124,7 @@ std::string page_path(const RoutedRequest& request, std::string_view after) {
   char separator = '?';
   for (const auto& [name, value] : request.target.parameters) {
     if (name == "after") continue;
-    path += separator + name + "=" + percent_encode(value);
+    path += separator + percent_encode(name) + "=" + percent_encode(value);
     separator = '&';
   }
   if (!after.empty()) path += separator + ("after=" + percent_encode(after));
@@ -145,6 +146,21 @@ Json feature_json(const std::string& collection, const store::FeatureSummary& fe
                                link(path + "?f=obj", "alternate", kObj, "OBJ"),
                                link(path + "?f=wt", "alternate", kContainer, "Watertight file")});
   return json;
+}
+
+/// The conditions in the parameters that are names of attributes.
+Result<std::vector<store::AttributeCondition>> conditions_of_request(const Target& target) {
+  std::vector<store::AttributeCondition> conditions;
+  for (const auto& [name, value] : target.parameters) {
+    if (std::find(std::begin(kItemParameters), std::end(kItemParameters), name) !=
+        std::end(kItemParameters)) {
+      continue;
+    }
+    auto condition = pipeline::condition_of(name, value);
+    if (!condition) return std::move(condition).error();
+    conditions.push_back(*std::move(condition));
+  }
+  return conditions;
 }
 
 /// The number of features of a collection that are proven, or are not, or of all.
@@ -232,11 +248,22 @@ Response get_items(const RoutedRequest& request) {
   if (!limit) return to_response(to_problem(limit.error()));
   const auto is_proven = proof_of_request(request.target);
   if (!is_proven) return to_response(to_problem(is_proven.error()));
+  auto where = conditions_of_request(request.target);
+  if (!where) return to_response(to_problem(where.error()));
+  const bool has_conditions = !where->empty();
   const std::string* after = request.target.parameter("after");
   const auto page = request.service.store->list(
       {collection->id, *limit, after == nullptr ? std::string() : *after, *box,
-       *box && collection->box ? share_of(*collection->box, **box) : 0, *is_proven});
-  if (!page) return to_response(to_problem(page.error()));
+       *box && collection->box ? share_of(*collection->box, **box) : 0, *is_proven,
+       *std::move(where)});
+  if (!page) {
+    Problem problem = to_problem(page.error());
+    if (has_conditions && problem.status == 400) {
+      problem.detail += "; other parameters:";
+      for (const std::string_view known : kItemParameters) problem.detail.append(" ").append(known);
+    }
+    return to_response(problem);
+  }
 
   Json json{{"type", "FeatureCollection"}};
   json["links"] = Json::array(
@@ -247,7 +274,7 @@ Response get_items(const RoutedRequest& request) {
   const bool is_whole = page->next.empty() && after == nullptr;
   if (is_whole) {
     json["numberMatched"] = page->features.size();
-  } else if (!*box) {
+  } else if (!*box && !has_conditions) {
     json["numberMatched"] = matched(*collection, *is_proven);
   }
   json["numberReturned"] = page->features.size();

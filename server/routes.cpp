@@ -57,6 +57,7 @@ std::optional<Response> refusal_of(const Target& target, const Route& route) {
     return refuse(400, "item-id", "an item id has at most 1024 bytes");
   }
   for (const auto& [name, value] : target.parameters) {
+    if (route.has_attributes) break;
     if (std::find(route.parameters.begin(), route.parameters.end(), name) !=
         route.parameters.end()) {
       continue;
@@ -96,11 +97,15 @@ const std::vector<Route>& routes() {
       {"PATCH", "/collections/{collectionId}", Lane::small, patch_collection, {}},
       {"DELETE", "/collections/{collectionId}", Lane::small, delete_collection, {}},
       {"POST", "/collections/{collectionId}/recount", Lane::small, post_recount, {}},
+      {"GET", "/collections/{collectionId}/queryables", Lane::reading, get_queryables, {"f"}},
+      {"GET", "/collections/{collectionId}/attributes", Lane::reading, get_attributes, {"f"}},
+      {"PUT", "/collections/{collectionId}/attributes", Lane::small, put_attributes, {}},
       {"GET",
        "/collections/{collectionId}/items",
        Lane::reading,
        get_items,
-       {"f", "limit", "after", "bbox", "bbox-crs", "proven"}},
+       {std::begin(kItemParameters), std::end(kItemParameters)},
+       true},
       {"POST",
        "/collections/{collectionId}/items",
        Lane::computing,
@@ -148,7 +153,7 @@ Lane lane_of(const Request& request) {
 Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
   // The service as a whole (RFC 9110, section 9.3.7).
   if (request.method == "OPTIONS" && request.target == "*") {
-    return Response{204, "", "", {{"Allow", "GET, HEAD, POST, PATCH, DELETE, OPTIONS"}}};
+    return Response{204, "", "", {{"Allow", "GET, HEAD, POST, PUT, PATCH, DELETE, OPTIONS"}}};
   }
   const auto target = parse_target(request.target);
   if (!target) return to_response(to_problem(target.error()));

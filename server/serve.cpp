@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "pipeline/stored/attributes.h"
 #include "server/budget.h"
 #include "server/export_files.h"
 #include "server/items/representation_cache.h"
@@ -163,11 +164,12 @@ int StopSignals::next(const std::stop_token& stop, std::chrono::seconds longest)
 Status serve(const ServeOptions& options, StopSignals& signals) {
   for (const int signal : {SIGPIPE, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
   const auto is_stopping = [&signals] { return signals.is_requested(); };
-  auto store =
-      store::open_postgres_store(options.connection, options.database_connections, is_stopping,
-                                 [](const std::string& sentence) {
-                                   write_unless_full("watertight: store: " + sentence + "\n");
-                                 });
+  auto store = store::open_postgres_store(
+      options.connection, options.database_connections, is_stopping,
+      [](const std::string& sentence) {
+        write_unless_full("watertight: store: " + sentence + "\n");
+      },
+      pipeline::read_attributes);
   if (is_stopping()) return Error{ErrorCode::cancelled, "stopped before the service listened"};
   if (!store) return std::move(store).error();
   delaunay::EngineWorkers workers;

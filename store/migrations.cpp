@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "store/rows/attribute_schema.h"
+
 namespace watertight::store {
 namespace {
 
@@ -456,7 +458,9 @@ constexpr Migration kMigrations[] = {
 };
 // The step after those of kMigrations: all rows are in the new tables (moved_rows.h).
 constexpr std::int64_t kMoved = std::size(kMigrations) + 1;
-constexpr std::int64_t kNewest = kMoved;
+// The step after that: chosen attributes.
+constexpr std::int64_t kAttributes = kMoved + 1;
+constexpr std::int64_t kNewest = kAttributes;
 
 // The number of the lock is "watertig" in ASCII; any number will do that no other program locks.
 // The session has it until the last step is done.
@@ -517,13 +521,28 @@ Status change_schema(DatabaseSession& connection) {
   return Done{};
 }
 
+Status add_attributes(DatabaseSession& connection) {
+  if (const Result<Rows> begun = connection.run("BEGIN"); !begun) return begun.error();
+  for (const char* statement : kAttributeSchema) {
+    if (const Result<Rows> done = connection.run(statement); !done) return done.error();
+  }
+  if (Status done = record(connection, kAttributes, "chosen attributes"); !done) return done;
+  if (const Result<Rows> done = connection.run("COMMIT"); !done) return done.error();
+  return Done{};
+}
+
 Status migrate_locked(DatabaseSession& connection, const Tell& tell) {
   if (Status changed = change_schema(connection); !changed) return changed;
   const Result<std::int64_t> found = applied(connection);
   if (!found) return found.error();
+  if (*found < kMoved) {
+    Status moved = move_rows(connection, tell, [](DatabaseSession& session) {
+      return record(session, kMoved, "rows moved");
+    });
+    if (!moved) return moved;
+  }
   if (*found == kNewest) return Done{};  // another instance was first
-  return move_rows(connection, tell,
-                   [](DatabaseSession& session) { return record(session, kMoved, "rows moved"); });
+  return add_attributes(connection);
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ Result<std::uint64_t> move_batch(DatabaseSession& connection, const std::string&
     ids.push_back(old.feature.id);
   }
   if (!features.empty()) {
-    const auto written = write_features(connection, features, {}, shared, Versions::kept);
+    const auto written = write_features(connection, features, {}, shared, {}, Versions::kept);
     if (!written) return written.error();
     connection.send("DELETE FROM watertight.old_feature WHERE collection = $1 AND id = ANY($2)",
                     Parameters().text(key).text_array(ids));

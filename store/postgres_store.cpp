@@ -14,6 +14,7 @@
 #include "store/connection.h"
 #include "store/group_commit.h"
 #include "store/migrations.h"
+#include "store/rows/attribute_rows.h"
 #include "store/rows/feature_rows.h"
 #include "store/solid_store.h"
 
@@ -88,8 +89,9 @@ Result<Token> new_token() {
 
 class PostgresStore final : public SolidStore {
  public:
-  PostgresStore(const std::string& connection, std::size_t connections)
-      : pool_(connection, connections),
+  PostgresStore(const std::string& connection, std::size_t connections, AttributeReader reader)
+      : reader_(std::move(reader)),
+        pool_(connection, connections),
         pings_(connection, 1),
         group_({[this](FeatureRefs features) { return write_group(features); },
                 [this](FeatureRefs features) { return write_all(features, {}); }}) {}
@@ -179,6 +181,43 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return store::set_policy(session, id, policy); });
   }
 
+  Result<std::vector<ChosenAttribute>> attributes(const std::string& collection) override {
+    if (!check_collection_id(collection)) return no_such_collection();
+    return read<std::vector<ChosenAttribute>>(
+        [&](DatabaseSession& session) { return read_attributes(session, collection); });
+  }
+
+  Status change_attributes(const std::string& collection, const AttributeChange& change,
+                           const CancelPoll& is_cancelled, const ShareDone& progress) override {
+    if (!check_collection_id(collection)) return no_such_collection();
+    for (const std::string& name : change.add) {
+      if (Status checked = check_attribute_name(name); !checked) return checked;
+    }
+    const auto is_over = [&] { return is_cancelled && is_cancelled(); };
+    const Error over{ErrorCode::cancelled,
+                     "the attributes are chosen, their values are not complete: the same change "
+                     "goes on"};
+    Status chosen = write<Done>(
+        [&](DatabaseSession& session) { return choose_attributes(session, collection, change); });
+    if (!chosen) return chosen;
+    for (double share = 0; share < 1;) {
+      if (is_over()) return over;
+      const Result<double> filled = write<double>([&](DatabaseSession& session) {
+        return fill_attributes(session, collection, shared_, reader_);
+      });
+      if (!filled) return filled.error();
+      share = *filled;
+      if (progress) progress(share);
+    }
+    for (bool has_more = true; has_more;) {
+      if (is_over()) return over;
+      const Result<bool> purged = write<bool>(purge_attributes);
+      if (!purged) return purged.error();
+      has_more = *purged;
+    }
+    return analyze_attributes();
+  }
+
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
                                          const WriteCondition& condition) override {
     if (features.empty()) return std::vector<std::uint64_t>{};
@@ -224,17 +263,21 @@ class PostgresStore final : public SolidStore {
       if (Status checked = check_box(*query.box); !checked) return std::move(checked).error();
     }
     if (!check_collection_id(query.collection)) return no_such_collection();
+    if (query.where.size() > kMostConditions) return too_many_conditions();
     if (!query.after.empty() && !is_possible_id(query.after)) {
       return Error{ErrorCode::invalid_argument, "a page cannot start after an impossible id"};
     }
     return read<FeaturePage>([&](DatabaseSession& session) { return read_page(session, query); });
   }
 
+  using SolidStore::walk;
   Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
-                            const std::string& after) override {
+                            const std::string& after,
+                            std::span<const AttributeCondition> where) override {
     if (!check_collection_id(collection)) return no_such_collection();
+    if (where.size() > kMostConditions) return too_many_conditions();
     return read_at_once<FeatureBatch>([&](DatabaseSession& session) {
-      return read_batch(session, collection, limit, after, shared_);
+      return read_batch(session, collection, limit, after, where, shared_);
     });
   }
 
@@ -267,7 +310,7 @@ class PostgresStore final : public SolidStore {
   Result<std::vector<std::uint64_t>> write_all(FeatureRefs features,
                                                const WriteCondition& condition) {
     return write<std::vector<std::uint64_t>>([&](DatabaseSession& session) {
-      return write_features(session, features, condition, shared_);
+      return write_features(session, features, condition, shared_, reader_);
     });
   }
 
@@ -276,7 +319,7 @@ class PostgresStore final : public SolidStore {
     bool has_collided = false;
     const Work<std::vector<std::uint64_t>> work = [&](DatabaseSession& session) {
       session.send(kImpatient);
-      auto versions = write_features(session, features, {}, shared_);
+      auto versions = write_features(session, features, {}, shared_, reader_);
       has_collided = !versions && is_collision(session.state());
       return versions;
     };
@@ -301,10 +344,26 @@ class PostgresStore final : public SolidStore {
       session.limit(limit_of(kWriting));
       std::vector<const StoredFeature*> features;
       for (const StoredFeature& feature : *batch) features.push_back(&feature);
-      const auto written = write_features(session, features, condition, shared_);
+      const auto written = write_features(session, features, condition, shared_, reader_);
       if (!written) return written.error();
       versions.insert(versions.end(), written->begin(), written->end());
     }
+  }
+
+  /// The server plans queries of attributes by what it knows of their values.
+  Status analyze_attributes() {
+    return with_session<Done>(
+        [](DatabaseSession& session) -> Status {
+          const Result<Rows> done = session.run("ANALYZE watertight.attribute_value");
+          if (!done) return done.error();
+          return Done{};
+        },
+        kWriting);
+  }
+
+  static Error too_many_conditions() {
+    return {ErrorCode::invalid_argument,
+            "a query has at most " + std::to_string(kMostConditions) + " conditions on attributes"};
   }
 
   static Error no_such_collection() {
@@ -468,6 +527,7 @@ class PostgresStore final : public SolidStore {
         with_session(work, kWriting));  // after a failure the next sweep removes the rest
   }
 
+  const AttributeReader reader_;
   ConnectionPool pool_;
   ConnectionPool pings_;  // apart, so that no other call delays a ping
   SharedRows shared_;
@@ -481,8 +541,8 @@ class PostgresStore final : public SolidStore {
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
                                                         std::size_t connections,
                                                         const CancelPoll& is_cancelled,
-                                                        const Tell& tell) {
-  auto store = std::make_unique<PostgresStore>(connection, connections);
+                                                        const Tell& tell, AttributeReader reader) {
+  auto store = std::make_unique<PostgresStore>(connection, connections, std::move(reader));
   const std::jthread watch([&is_cancelled, opening = store.get()](const std::stop_token& stop) {
     while (is_cancelled && !stop.stop_requested()) {
       if (is_cancelled()) return opening->interrupt();

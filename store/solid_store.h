@@ -20,6 +20,7 @@
 #include "base/result.h"
 #include "base/shared_text.h"
 #include "packing/text_dictionary.h"
+#include "store/attributes.h"
 
 namespace watertight::store {
 
@@ -128,6 +129,8 @@ struct FeatureQuery {
   double share = 0;
   /// Selects the features that are proven, or those that are not.
   std::optional<bool> is_proven = std::nullopt;
+  /// Conditions that must all hold, at most kMostConditions, on attributes that are complete.
+  std::vector<AttributeCondition> where = {};
 };
 
 /// The facts about a feature that lists show.
@@ -170,6 +173,9 @@ class FeatureBatches {
   virtual Result<std::span<const StoredFeature>> next() = 0;
 };
 
+/// Called with the share of the work that is done.
+using ShareDone = std::function<void(double)>;
+
 class SolidStore {
  public:
   virtual ~SolidStore() = default;
@@ -198,6 +204,16 @@ class SolidStore {
   virtual Status rename_collection(const std::string& id, const std::string& new_id) = 0;
   /// Sets the policy of a collection for later writes. Errors: not_found.
   virtual Status set_policy(const std::string& id, Policy policy) = 0;
+  /// The chosen attributes of a collection, by name. Errors: not_found.
+  virtual Result<std::vector<ChosenAttribute>> attributes(const std::string& collection) = 0;
+  /// Chooses attributes, or no longer, then fills in the values of all stored features for those
+  /// that are not complete, and deletes the values of those that were removed, some at a time:
+  /// others may read and write meanwhile. A call that was broken off is continued by the next one.
+  /// Errors: not_found (the collection, an attribute to be removed); invalid_argument (a name, more
+  /// than kMostAttributes); cancelled when not everything was done; those of the reader.
+  virtual Status change_attributes(const std::string& collection, const AttributeChange& change,
+                                   const CancelPoll& is_cancelled = {},
+                                   const ShareDone& progress = {}) = 0;
   /// Stores all features or none, durably. Creates the collection when it does not exist; replaces
   /// a feature whose id exists, under a higher version. A dictionary that the collection does not
   /// have becomes its newest. Sends the rows of a table together. Returns
@@ -222,16 +238,22 @@ class SolidStore {
   /// that changed since they were read: these stay as they are. Versions stay. Returns the number
   /// of features whose text was replaced. Errors: those of put().
   virtual Result<std::uint64_t> repack(std::span<const StoredFeature> features) = 0;
-  /// A page has at most 10,000 features. Errors: not_found when there is no such collection.
+  /// A page has at most 10,000 features. Errors: not_found when there is no such collection;
+  /// invalid_argument for a condition on an attribute that is not chosen or not complete.
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
   /// The next batch of the features of a collection, in order of their place numbers
   /// (store/rows/place.h: along a Hilbert curve through the centres of their boxes), features
   /// without a box last, ties by id, bytewise. A batch has at most `limit` (10,000) features, fewer
   /// when they are large (16 MiB). `after` is FeatureBatch::next, "" at the start. Errors:
   /// not_found when there is no such collection; invalid_argument for an `after` that no batch
-  /// returned.
+  /// returned, and as for list().
   virtual Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
-                                    const std::string& after) = 0;
+                                    const std::string& after,
+                                    std::span<const AttributeCondition> where) = 0;
+  Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
+                            const std::string& after) {
+    return walk(collection, limit, after, {});
+  }
   /// The formats and headers of the documents that the features of a collection came in, at most
   /// `limit`; empty for a collection that does not exist.
   virtual Result<std::vector<StoredHeader>> documents(const std::string& collection,
@@ -247,12 +269,14 @@ using Tell = std::function<void(const std::string&)>;
 /// A store in any PostgreSQL database (libpq connection string or URL). Applies missing migrations.
 /// Reconnects after a lost connection; an interrupted operation is tried again only when it is
 /// idempotent or known not to have been committed. `is_cancelled` ends the opening; a thread asks
-/// it. `tell` takes sentences about the progress of a migration. Errors: unavailable with the
-/// server's message.
+/// it. `tell` takes sentences about the progress of a migration. `reader` reads the values of
+/// chosen attributes; without one, collections with chosen attributes cannot be written. Errors:
+/// unavailable with the server's message.
 Result<std::unique_ptr<SolidStore>> open_postgres_store(const std::string& connection,
                                                         std::size_t connections = 4,
                                                         const CancelPoll& is_cancelled = {},
-                                                        const Tell& tell = {});
+                                                        const Tell& tell = {},
+                                                        AttributeReader reader = {});
 
 }  // namespace watertight::store
 

@@ -113,4 +113,5 @@ def main():
                       f" {before / len(ids) * 1000:.2f} ms before)")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -6,11 +6,16 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/pipeline.h"
 
 namespace watertight::pipeline {
+
+/// The skeleton of the feature's city model (formats/city_json/city_json.h), a part of its text; ""
+/// without one.
+std::string_view model_text(const EncodedFeature& feature);
 
 /// The ids by which a feature is found: its own, and those of its city objects or of the objects of
 /// its solids; each once, without "". Cost: linear in the skeleton.

@@ -196,22 +196,20 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
   return document;
 }
 
-std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feature) {
+std::string_view model_text(const EncodedFeature& feature) {
   std::string_view skeleton = feature.skeleton;
   const auto lines = take_solid_lines(skeleton, feature.solids.size());
   if (!lines || !skeleton.starts_with('{')) return {};
-  return formats::other_geometries(skeleton.substr(0, skeleton.find('\n')));
+  return skeleton.substr(0, skeleton.find('\n'));
+}
+
+std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feature) {
+  return formats::other_geometries(model_text(feature));
 }
 
 std::vector<std::string> ids_of(const EncodedFeature& feature) {
   std::vector<std::string> ids{feature.id};
-  std::string_view skeleton = feature.skeleton;
-  const auto lines = take_solid_lines(skeleton, feature.solids.size());
-  if (lines && skeleton.starts_with('{')) {
-    for (std::string& id : formats::object_ids(skeleton.substr(0, skeleton.find('\n')))) {
-      ids.push_back(std::move(id));
-    }
-  }
+  for (std::string& id : formats::object_ids(model_text(feature))) ids.push_back(std::move(id));
   for (const StoredSolid& solid : feature.solids) ids.push_back(solid.object_id);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());

@@ -73,6 +73,7 @@ Result<std::string> purge_step(DatabaseSession& connection, const std::string& k
   if (last->size() > 0) return std::string(last->text(0, 0));
   for (const char* statement :
        {"DELETE FROM watertight.collection_change WHERE collection = $1::int4",
+        "DELETE FROM watertight.attribute_name WHERE collection = $1::int4",
         "DELETE FROM watertight.kind WHERE collection = $1::int4",
         "DELETE FROM watertight.dictionary WHERE collection = $1::int4",
         "DELETE FROM watertight.collection WHERE key = $1::int4 AND name IS NULL"}) {

@@ -15,8 +15,8 @@ namespace {
 // A B-tree entry of PostgreSQL holds 2704 bytes; two ids and a collection name must fit together.
 constexpr std::size_t kLongestId = 1024;
 
-/// Well-formed UTF-8 (no overlong forms, no surrogates) without NUL, which PostgreSQL's text cannot
-/// hold.
+}  // namespace
+
 bool is_plain_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const auto byte = [&](std::size_t offset) -> unsigned {
@@ -44,6 +44,8 @@ bool is_plain_utf8(std::string_view text) {
   }
   return true;
 }
+
+namespace {
 
 Error bad(const std::string& what) { return {ErrorCode::invalid_argument, what}; }
 

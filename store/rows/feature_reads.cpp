@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "store/rows/attribute_rows.h"
 #include "store/rows/feature_rows.h"
 #include "store/rows/packed_solids.h"
 
@@ -120,11 +121,15 @@ Result<Rows> summary_rows(DatabaseSession& connection, const FeatureQuery& query
   rest += " ORDER BY hashtextextended(f.id, 0) LIMIT $";
   rest += std::to_string(query.after.empty() ? next : next + 1);
   parameters.int8(limit);
-  return connection.ask(
+  rest =
+      attribute_clauses(query.where, query.after.empty() ? next + 1 : next + 2, parameters) + rest;
+  const std::string statement =
       "SELECT f.id, k.type, f.version, f.solids::int8, f.blob_bytes::int8,"
       " min_x, min_y, min_z, max_x, max_y, max_z, f.unproven::int8, f.is_proven::int::int8" +
-          matching(query) + rest,
-      parameters);
+      matching(query) + rest;
+  // A query of attributes is planned for its values.
+  return query.where.empty() ? connection.ask(statement, parameters)
+                             : connection.run(statement, parameters);
 }
 
 FeatureSummary summary_of(const Rows& rows, int row) {
@@ -166,12 +171,19 @@ Result<WalkPlace> walk_place(const std::string& text) {
 
 /// Selects `columns` and the place numbers of the next features, in order of place number and id.
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
-                       const std::string& collection, const WalkPlace& after, std::int64_t limit) {
-  return connection.ask(columns +
-                            ", f.place FROM watertight.collection c JOIN watertight.feature_row f"
-                            " ON f.collection = c.key WHERE c.name = $1 AND f.place >= $2"
-                            " AND (f.place, f.id) > ($2, $3) ORDER BY f.place, f.id LIMIT $4",
-                        Parameters().text(collection).int8(after.place).text(after.id).int8(limit));
+                       const std::string& collection, const WalkPlace& after, std::int64_t limit,
+                       std::span<const AttributeCondition> where) {
+  Parameters parameters;
+  parameters.text(collection).int8(after.place).text(after.id).int8(limit);
+  std::string statement = columns;
+  statement.append(
+      ", f.place FROM watertight.collection c JOIN watertight.feature_row f"
+      " ON f.collection = c.key WHERE c.name = $1 AND f.place >= $2"
+      " AND (f.place, f.id) > ($2, $3)");
+  statement.append(attribute_clauses(where, 5, parameters));
+  statement.append(" ORDER BY f.place, f.id LIMIT $4");
+  return where.empty() ? connection.ask(statement, parameters)
+                       : connection.run(statement, parameters);
 }
 
 /// How many of the next features make a batch, and whether it is the last batch.
@@ -181,10 +193,11 @@ struct BatchSize {
 };
 
 Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& collection,
-                             const WalkPlace& after, std::int64_t limit) {
+                             const WalkPlace& after, std::int64_t limit,
+                             std::span<const AttributeCondition> where) {
   const Result<Rows> rows = walk_rows(
       connection, "SELECT (octet_length(packed_solids) + octet_length(packed_text))::int8",
-      collection, after, limit + 1);
+      collection, after, limit + 1, where);
   if (!rows) return rows.error();
   BatchSize size;
   for (std::int64_t bytes = 0; size.features < rows->size() && size.features < limit;) {
@@ -235,6 +248,23 @@ Result<StoredFeature> read_feature(DatabaseSession& connection, const std::strin
   return std::move(features->front());
 }
 
+Result<std::vector<StoredFeature>> lock_features(DatabaseSession& connection,
+                                                 const std::string& collection,
+                                                 std::span<const std::string> ids,
+                                                 SharedRows& shared) {
+  static const std::string statement =
+      std::string(kFeatureColumns) +
+      " FROM unnest($2::text[]) AS u (id) JOIN watertight.feature_row f"
+      " ON hashtextextended(f.id, 0) = hashtextextended(u.id, 0) AND f.id = u.id"
+      " JOIN watertight.collection c ON c.key = f.collection"
+      " WHERE c.name = $1 ORDER BY f.id FOR NO KEY UPDATE OF f";
+  const std::vector<std::string_view> wanted(ids.begin(), ids.end());
+  const Result<Rows> rows =
+      connection.ask(statement, Parameters().text(collection).text_array(wanted));
+  if (!rows) return rows.error();
+  return features_of(connection, *rows, collection, shared);
+}
+
 Result<packing::DictionaryPointer> read_dictionary(DatabaseSession& connection,
                                                    const std::string& collection,
                                                    SharedRows& shared) {
@@ -278,6 +308,9 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
     const auto exists = key_of_collection(connection, query.collection);
     if (!exists) return exists.error();
   }
+  if (Status able = check_conditions(connection, query.collection, query.where); !able) {
+    return std::move(able).error();
+  }
   const bool has_more = page.features.size() > limit;
   if (has_more) page.features.resize(limit);
   if (has_more && limit > 0) page.next = page.features.back().id;
@@ -285,19 +318,23 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
 }
 
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
-                                std::uint64_t limit, const std::string& after, SharedRows& shared) {
+                                std::uint64_t limit, const std::string& after,
+                                std::span<const AttributeCondition> where, SharedRows& shared) {
   const Result<WalkPlace> start = walk_place(after);
   if (!start) return start.error();
   const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));
   auto key = key_of_collection(connection, collection);
   if (!key) return std::move(key).error();
-  const Result<BatchSize> size = batch_size(connection, collection, *start, at_most);
+  if (Status able = check_conditions(connection, collection, where); !able) {
+    return std::move(able).error();
+  }
+  const Result<BatchSize> size = batch_size(connection, collection, *start, at_most, where);
   if (!size) return size.error();
   FeatureBatch batch;
   batch.key = *std::move(key);
   if (size->features == 0) return batch;
   const Result<Rows> rows =
-      walk_rows(connection, kFeatureColumns, collection, *start, size->features);
+      walk_rows(connection, kFeatureColumns, collection, *start, size->features, where);
   if (!rows) return rows.error();
   auto features = features_of(connection, *rows, collection, shared);
   if (!features) return std::move(features).error();

@@ -26,6 +26,9 @@ namespace watertight::store {
 /// invalid_argument, conflict.
 Status check_features(std::span<const StoredFeature> features);
 Status check_box(const StoredBox& box);
+/// Well-formed UTF-8 (no overlong forms, no surrogates) without NUL, which PostgreSQL's text cannot
+/// hold.
+bool is_plain_utf8(std::string_view text);
 /// False for an id that no stored feature can have.
 bool is_possible_id(const std::string& id);
 
@@ -34,12 +37,12 @@ using FeatureRefs = std::span<const StoredFeature* const>;
 /// Whether a feature gets a new version or that of FeatureRecord::version.
 enum class Versions : std::uint8_t { drawn, kept };
 
-/// Writes documents, collections, kinds, dictionaries and features. Returns the version of each
-/// feature. Requires check_features(). Errors: conflict when the CRS of a feature is not that of
-/// its collection.
+/// Writes documents, collections, kinds, dictionaries and features, and the values of chosen
+/// attributes unless versions are kept. Returns the version of each feature. Requires
+/// check_features(). Errors: conflict when the CRS of a feature is not that of its collection.
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, FeatureRefs features,
                                                   const WriteCondition& condition,
-                                                  SharedRows& shared,
+                                                  SharedRows& shared, const AttributeReader& reader,
                                                   Versions versions = Versions::drawn);
 /// Replaces the packed texts and solids of features whose versions are those of the rows, and
 /// returns how many that were. Requires check_features().
@@ -91,6 +94,12 @@ Result<StoredCollection> recount_collection(DatabaseSession& connection, const s
 
 Result<StoredFeature> read_feature(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id, SharedRows& shared);
+/// The features of these ids that exist, in order of their ids; `ids` are in order. No other
+/// transaction changes them before the end of this one.
+Result<std::vector<StoredFeature>> lock_features(DatabaseSession& connection,
+                                                 const std::string& collection,
+                                                 std::span<const std::string> ids,
+                                                 SharedRows& shared);
 /// The newest dictionary of a collection; null: none.
 Result<packing::DictionaryPointer> read_dictionary(DatabaseSession& connection,
                                                    const std::string& collection,
@@ -99,7 +108,8 @@ Result<std::uint64_t> read_version(DatabaseSession& connection, const std::strin
                                    const std::string& id);
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query);
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
-                                std::uint64_t limit, const std::string& after, SharedRows& shared);
+                                std::uint64_t limit, const std::string& after,
+                                std::span<const AttributeCondition> where, SharedRows& shared);
 Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit);

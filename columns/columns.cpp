@@ -170,6 +170,7 @@ class TextCoder {
     std::string out;
     while (!stream_->failed()) {
       const bool is_reading = stream_->is_reading();
+      const std::size_t size = out.size();
       const Mark mark = marks_.code(*stream_, mixer_, strings_, path.place(), last_value_,
                                     is_reading ? Mark{} : tokens.next_mark(), most_bytes());
       append(out, mark.text);
@@ -179,6 +180,8 @@ class TextCoder {
           code_value(path.place(), is_reading ? std::string_view() : tokens.next_value());
       append(out, value);
       if constexpr (std::is_same_v<Path, XmlPath>) path.follow_value(value);
+      // A mark and its value are never both empty, so time is bounded by the bytes that are made.
+      if (is_reading && out.size() == size) stream_->fail();
     }
     return out;
   }
@@ -241,7 +244,10 @@ class TextCoder {
   std::string last_text_;
 };
 
-constexpr std::uint64_t kMostTextsForAByte = 4096;
+// So many texts may be packed, and so many more for each byte: a text without bytes takes memory
+// too.
+constexpr std::uint64_t kFewTexts = std::uint64_t{1} << 18U;
+constexpr std::uint64_t kMostTextsForAByte = 16;
 
 Error over_limit(std::uint64_t most_bytes) {
   return {ErrorCode::limit_exceeded,
@@ -305,7 +311,9 @@ Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most
   ByteReader reader(bytes);
   const std::uint64_t head = reader.varint();
   const std::uint64_t count = head / 2;
-  if (reader.failed() || count > kMostTextsForAByte * bytes.size()) return reader.error("texts");
+  if (reader.failed() || count > kFewTexts + kMostTextsForAByte * bytes.size()) {
+    return reader.error("texts");
+  }
   if (head % 2 == 1) return unpack_plainly(reader.take(reader.remaining()), count, most_bytes);
   auto stream = EntropyStream::reader_without_costs(reader.take(reader.remaining()));
   TextCoder coder = TextCoder::after_examples();

@@ -385,6 +385,20 @@ TEST_CASE("damaged bytes give an error or other texts, in bounds") {
   }
 }
 
+TEST_CASE("more texts than bytes can stand for are refused") {
+  const auto count_of = [](std::uint64_t head) {
+    ByteWriter writer;
+    writer.varint(head);
+    for (int i = 0; i < 8; ++i) writer.u8(0);
+    return std::move(writer).bytes();
+  };
+  for (const std::uint64_t count : {std::uint64_t{1} << 20U, std::uint64_t{1} << 62U}) {
+    CHECK_FALSE(columns::unpack_texts(count_of(2 * count), kNoLimit));
+    CHECK_FALSE(columns::unpack_texts(count_of(2 * count + 1), kNoLimit));
+  }
+  check_round_trip(std::vector<Text>(200'000));
+}
+
 TEST_CASE("texts beyond the limit are refused") {
   const std::string text = features(50);
   const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));

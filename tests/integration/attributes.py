@@ -38,29 +38,6 @@ def feature(number, height):
     return json.dumps(whole, separators=(",", ":"))
 
 
-def psql(service, sql):
-    lines = (service.folder / "data/postgres/postmaster.pid").read_text().split("\n")
-    done = subprocess.run([*service.prefix, "psql", "-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1", "-h", lines[4],
-                           "-p", lines[3], "-d", "watertight", "-c", sql], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(f"psql: {done.stderr[-1000:]}")
-    return done.stdout.strip()
-
-
-def command(service, *words):
-    return subprocess.Popen([*service.prefix, "env", f"HOME={service.folder}", PROGRAM, *words, "--data-dir",
-                             str(service.folder / "data")], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            cwd=service.folder, text=True)
-
-
-def run(service, *words, code=0):
-    process = command(service, *words)
-    output, error = process.communicate()
-    if process.returncode != code:
-        raise SystemExit(f"{words}: exit code {process.returncode}: {error[-1000:]}")
-    return output if code == 0 else error
-
-
 class Writer(threading.Thread):
     """Changes features until it is stopped. `heights` has what was acknowledged, `unsure` the numbers of the
     features whose last change was not."""
@@ -109,13 +86,13 @@ def exported(service, *conditions):
     """The ids of the features that an export with conditions has."""
     words = [word for condition in conditions for word in ("--where", condition)]
     output = service.folder / "out.city.jsonl"
-    run(service, "export", "town", "-o", str(output), *words)
+    service.run("export", "town", "-o", str(output), *words)
     return {json.loads(line)["id"] for line in output.read_text().splitlines()[1:]}
 
 
 def check(service, heights, unsure):
     """Compares all answers with the documents of the service, and those with what was acknowledged."""
-    run(service, "export", "town", "-o", str(service.folder / "all.city.jsonl"))
+    service.run("export", "town", "-o", str(service.folder / "all.city.jsonl"))
     stored = {}
     for line in (service.folder / "all.city.jsonl").read_text().splitlines()[1:]:
         one = json.loads(line)
@@ -124,7 +101,7 @@ def check(service, heights, unsure):
         found = stored.get(f"b{number}", {}).get("height")
         if found != heights.get(number):
             raise SystemExit(f"b{number} has height {found}, acknowledged was {heights.get(number)}")
-    rows = json.loads(psql(service, """SELECT json_agg(json_build_array(feature, object, name, value))
+    rows = json.loads(service.ask("""SELECT json_agg(json_build_array(feature, object, name, value))
                                        FROM watertight.attribute WHERE collection = 'town'"""))
     by_sql = {(identity, name): value for identity, of, name, value in rows if identity == of}
     expected = {(identity, name): values["roof"]["type"] if name == "roof.type" else values[name]
@@ -132,7 +109,7 @@ def check(service, heights, unsure):
     if by_sql != expected or len(rows) != len(expected):
         wrong = [key for key in by_sql.keys() | expected.keys() if by_sql.get(key) != expected.get(key)]
         raise SystemExit(f"{len(wrong)} values of {len(expected)} differ: {wrong[:5]}; {len(rows)} rows")
-    if psql(service, "SELECT count(*) FROM watertight.attribute_value") != str(len(rows)):
+    if service.ask("SELECT count(*) FROM watertight.attribute_value") != str(len(rows)):
         raise SystemExit("there are values that belong to no feature")
     chosen = {identity for identity, values in stored.items() if values["height"] == 7 and not values["flat"]}
     for found in (ids_by_http(service, "height=7&flat=false"), exported(service, "height=7", "flat=false")):
@@ -141,7 +118,7 @@ def check(service, heights, unsure):
     quoted = {identity for identity, values in stored.items() if values[QUOTED].endswith("3")}
     if ids_by_http(service, urllib.parse.urlencode({QUOTED: QUOTED + " 3"})) != quoted:
         raise SystemExit("the quoted attribute finds others")
-    big = psql(service, "SELECT count(*) FROM watertight.attribute WHERE collection = 'town' AND name = 'big'"
+    big = service.ask("SELECT count(*) FROM watertight.attribute WHERE collection = 'town' AND name = 'big'"
                         " AND number = 9007199254740993")
     if int(big) != sum(values["big"] == 9007199254740993 for values in stored.values()):
         raise SystemExit("whole numbers were rounded")
@@ -160,13 +137,13 @@ def one_round(number):
         writer.start()
         kills = 0
         while True:
-            filling = command(service, "collections", "attributes", "town", *names)
+            filling = service.command("collections", "attributes", "town", *names)
             try:
                 filling.communicate(timeout=random.uniform(0.1, 0.5 + kills))
                 if filling.returncode == 0 and kills > 0:
                     break
                 if filling.returncode == 0:  # too early for a kill
-                    run(service, "collections", "attributes", "town",
+                    service.run("collections", "attributes", "town",
                         *[word for name in NAMES for word in ("--remove", name)])
                     continue
             except subprocess.TimeoutExpired:
@@ -188,12 +165,12 @@ def one_round(number):
                 break
             time.sleep(0.1)
         count = check(service, heights, writer.unsure)
-        found = run(service, "collections", "attributes", "town", "--found")
+        found = service.run("collections", "attributes", "town", "--found")
         if f"long: {count} texts" not in found or f"flat: {count} truth values" not in found:
             raise SystemExit(f"other attributes were found:\n{found}")
-        run(service, "collections", "attributes", "town", "--remove", "height")
-        error = run(service, "export", "town", "-o", str(folder / "none.wt"), "--where", "height=7", code=2)
-        if "'height'" not in error or psql(service, "SELECT count(*) FROM watertight.attribute_value") != str(4 * count):
+        service.run("collections", "attributes", "town", "--remove", "height")
+        error = service.run("export", "town", "-o", str(folder / "none.wt"), "--where", "height=7", code=2)
+        if "'height'" not in error or service.ask("SELECT count(*) FROM watertight.attribute_value") != str(4 * count):
             raise SystemExit(f"a removed attribute is still there: {error}")
         print(f"round {number}: {count} features, {kills} kills, {writer.writes} writes meanwhile,"
               f" {len(writer.unsure)} unanswered", flush=True)

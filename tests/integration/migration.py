@@ -37,16 +37,6 @@ INSERT INTO watertight.solid
   FROM watertight.solid, generate_series(1, {COPIES}) n;"""
 
 
-def psql(service, sql, file=None):
-    lines = (service.folder / "data/postgres/postmaster.pid").read_text().split("\n")
-    words = ["-f", str(file)] if file else ["-c", sql]
-    done = subprocess.run([*service.prefix, "psql", "-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1", "-h", lines[4],
-                           "-p", lines[3], "-d", "watertight", *words], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(f"psql: {done.stderr[-1000:]}")
-    return done.stdout.strip()
-
-
 def end(service):
     """Kills the program and its database, which may just be starting."""
     if service.process:
@@ -84,21 +74,21 @@ def check(service, versions):
         status, body = service.request("GET", path + "?f=proof")
         if status != 200 or json.loads(body) != json.loads(expected["proof"]):
             raise SystemExit(f"{name}: {status}, another proof: {body[:2000]!r} for {expected['proof'][:2000]}")
-    if psql(service, "SELECT count(*) || ' ' || sum(version) FROM watertight.feature") != versions:
+    if service.ask("SELECT count(*) || ' ' || sum(version) FROM watertight.feature") != versions:
         raise SystemExit("features or versions are missing")
     for collection in ("delft", "boxes"):
         found = json.loads(service.request("GET", f"/collections/{collection}")[1])
-        count = psql(service, f"SELECT count(*) FROM watertight.feature WHERE collection = '{collection}'")
+        count = service.ask(f"SELECT count(*) FROM watertight.feature WHERE collection = '{collection}'")
         if str(found["features"]) != count:
             raise SystemExit(f"{collection} says {found['features']} features and has {count}")
 
 
 def one_round(number):
     with temporary_folder("migration") as folder, Service(PROGRAM, folder) as service:
-        psql(service, "DROP SCHEMA watertight CASCADE")
-        psql(service, "", DATA / "store.sql")
-        psql(service, COPY)
-        versions = psql(service, "SELECT count(*) || ' ' || sum(version) FROM watertight.feature")
+        service.ask("DROP SCHEMA watertight CASCADE")
+        service.ask("", DATA / "store.sql")
+        service.ask(COPY)
+        versions = service.ask("SELECT count(*) || ' ' || sum(version) FROM watertight.feature")
         service.stop()
         runs = 1
         while not killed(service, ["collections", "list"], random.uniform(0.3, 1 + runs)) and runs < 6:
@@ -111,7 +101,7 @@ def one_round(number):
             compacts += 1
         service.start()
         check(service, versions)
-        bytes_now = psql(service, "SELECT sum(octet_length(packed_text)) / count(*) FROM watertight.feature_row")
+        bytes_now = service.ask("SELECT sum(octet_length(packed_text)) / count(*) FROM watertight.feature_row")
         print(f"round {number}: {versions.split()[0]} features moved in {runs} runs, compacted in {compacts},"
               f" {bytes_now} bytes of text a feature", flush=True)
 

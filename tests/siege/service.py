@@ -143,3 +143,28 @@ class Service:
         return subprocess.Popen(
             [*self.prefix, "psql", "-q", "-h", str(self.folder / "data" / "socket"), "-d", "watertight", "-c", statements],
             stdout=subprocess.DEVNULL, cwd=self.folder)
+
+    def ask(self, statements, file=None):
+        """What psql prints for statements, or for those of a file: a line a row, a bar between columns."""
+        words = ["-f", str(file)] if file else ["-c", statements]
+        done = subprocess.run(
+            [*self.prefix, "psql", "-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1", "-h",
+             str(self.folder / "data" / "socket"), "-d", "watertight", *words],
+            capture_output=True, text=True, check=False, cwd=self.folder)
+        if done.returncode != 0:
+            raise SystemExit(f"psql: {done.stderr[-1000:]}")
+        return done.stdout.strip()
+
+    def command(self, *words):
+        """A command of the program that is running with the service's folder."""
+        return subprocess.Popen(
+            [*self.prefix, "env", f"HOME={self.folder}", self.program, *words, "--data-dir", str(self.folder / "data")],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=self.folder, text=True)
+
+    def run(self, *words, code=0):
+        """What a command printed, or its errors if it is to fail."""
+        process = self.command(*words)
+        output, error = process.communicate()
+        if process.returncode != code:
+            raise SystemExit(f"{words}: exit code {process.returncode}: {error[-1000:]}")
+        return output if code == 0 else error

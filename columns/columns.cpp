@@ -285,7 +285,7 @@ Bytes Examples::pack(const Text& text) const {
 }
 
 Result<std::string> Examples::unpack(ByteView bytes, std::uint64_t most_bytes) const {
-  auto stream = EntropyStream::reader(bytes);
+  auto stream = EntropyStream::reader_without_costs(bytes);
   TextCoder& coder = learned_->copy();
   coder.allow(most_bytes);
   std::string text = coder.code(stream, {});

@@ -248,6 +248,7 @@ class TextCoder {
 // too.
 constexpr std::uint64_t kFewTexts = std::uint64_t{1} << 18U;
 constexpr std::uint64_t kMostTextsForAByte = 16;
+constexpr std::size_t kLongText = std::size_t{1} << 20U;
 
 Error over_limit(std::uint64_t most_bytes) {
   return {ErrorCode::limit_exceeded,
@@ -263,10 +264,14 @@ Error damaged(const EntropyStream& stream) {
 struct Examples::Learned {
   explicit Learned(TextCoder learned) : coder(std::move(learned)) {}
   TextCoder coder;
-  /// A coder to be changed, which is used again: that is cheaper than a new one.
+  /// A coder to be changed, which the thread uses again: that is cheaper than a new one.
   TextCoder& copy() const {
     thread_local TextCoder own = coder;
     return own = coder;
+  }
+  /// Gives back the memory of a long text.
+  void forget(TextCoder& copied, std::size_t bytes) const {
+    if (bytes > kLongText) copied = TextCoder(coder);
   }
 };
 
@@ -280,7 +285,9 @@ std::shared_ptr<const Examples> Examples::of(std::span<const Text> texts) {
 
 Bytes Examples::pack(const Text& text) const {
   auto stream = EntropyStream::writer();
-  learned_->copy().code(stream, text);
+  TextCoder& coder = learned_->copy();
+  coder.code(stream, text);
+  learned_->forget(coder, text.text.size());
   return std::move(stream).finish();
 }
 
@@ -289,7 +296,9 @@ Result<std::string> Examples::unpack(ByteView bytes, std::uint64_t most_bytes) c
   TextCoder& coder = learned_->copy();
   coder.allow(most_bytes);
   std::string text = coder.code(stream, {});
-  if (coder.is_over_limit()) return over_limit(most_bytes);
+  const bool is_over_limit = coder.is_over_limit();
+  learned_->forget(coder, text.size());
+  if (is_over_limit) return over_limit(most_bytes);
   if (!stream.is_finished()) return damaged(stream);
   return text;
 }

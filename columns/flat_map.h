@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "columns/keyed_hash.h"
+
 namespace watertight::columns {
 
 /// Open addressing with linear probing. Keys are whole numbers of at most 64 bits; nothing is ever
@@ -46,8 +48,7 @@ class FlatMap {
 
   /// The slot of a key, or the one that it would take.
   std::size_t slot_of(Key key) const {
-    const std::uint64_t mixed = static_cast<std::uint64_t>(key) * 0x9E37'79B9'7F4A'7C15U;
-    std::size_t at = static_cast<std::size_t>(mixed >> 32U) & (slots_.size() - 1);
+    std::size_t at = keyed_hash(static_cast<std::uint64_t>(key)) & (slots_.size() - 1);
     while (slots_[at].is_used && slots_[at].key != key) at = (at + 1) & (slots_.size() - 1);
     return at;
   }

@@ -3,15 +3,15 @@
 // The different texts of a list, numbered in order of their first appearance. Internal to columns/.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "columns/keyed_hash.h"
 
 namespace watertight::columns {
 
@@ -20,13 +20,13 @@ class ValueTable {
  public:
   std::optional<std::uint32_t> find(std::string_view text) const {
     if (slots_.empty()) return std::nullopt;
-    const std::uint32_t slot = slots_[slot_of(text, hash_of_text(text))];
+    const std::uint32_t slot = slots_[slot_of(text, static_cast<std::uint32_t>(keyed_hash(text)))];
     return slot == 0 ? std::nullopt : std::optional(slot - 1);
   }
   /// The number of a text, which is added if it is new.
   std::uint32_t add(std::string_view text) {
     if (2 * entries_.size() >= slots_.size()) grow();
-    const std::uint32_t hash = hash_of_text(text);
+    const std::uint32_t hash = static_cast<std::uint32_t>(keyed_hash(text));
     std::uint32_t& slot = slots_[slot_of(text, hash)];
     if (slot == 0) {
       entries_.push_back({characters_.size(), text.size(), hash});
@@ -50,18 +50,6 @@ class ValueTable {
   };
   static constexpr std::size_t kFirstSlots = 64;
 
-  /// Eight bytes at a time.
-  static std::uint32_t hash_of_text(std::string_view text) {
-    constexpr std::uint64_t kFactor = 0x9FB2'1C65'1E98'DF25U;
-    std::uint64_t hash = text.size() * kFactor;
-    for (std::size_t at = 0; at < text.size(); at += sizeof hash) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, text.data() + at, std::min(sizeof word, text.size() - at));
-      hash = (hash ^ word) * kFactor;
-      hash ^= hash >> 32U;
-    }
-    return static_cast<std::uint32_t>(hash);
-  }
   /// The slot of a text, or the one that it would take.
   std::size_t slot_of(std::string_view wanted, std::uint32_t hash) const {
     std::size_t at = hash & (slots_.size() - 1);

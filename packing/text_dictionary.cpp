@@ -16,7 +16,6 @@ using columns::TextKind;
 
 constexpr std::array<std::size_t, 4> kNumbers{8, 24, 64, 160};  // of examples
 constexpr std::size_t kTrials = 24;  // the samples with which dictionaries are compared
-constexpr std::uint64_t kMostExampleBytes = 256 << 10;
 constexpr double kWorthwhile = 0.96;
 constexpr double kOutgrown = 1.25;
 constexpr double kFitUnit = 4096;
@@ -34,8 +33,9 @@ std::vector<std::string> spread(std::span<const std::string> samples, std::size_
   for (std::size_t i = 0; i < number; ++i) {
     const std::string& sample =
         samples[(2 * i + (from_middle ? 1 : 0)) * samples.size() / (2 * number)];
+    if (bytes + sample.size() > kMostExampleBytes) continue;
     bytes += sample.size();
-    if (bytes <= kMostExampleBytes) chosen.push_back(sample);
+    chosen.push_back(sample);
   }
   return chosen;
 }
@@ -100,6 +100,7 @@ Result<DictionaryPointer> best_dictionary(std::span<const std::string> samples,
                                           const DictionaryPointer& current) {
   if (samples.size() < kFewestSamples) return current;
   const std::vector<std::string> trials = spread(samples, kTrials, true);
+  if (trials.empty()) return current;
   const auto now = packed_share(trials, current.get());
   if (!now) return now.error();
   double bytes = 0;

@@ -60,6 +60,9 @@ constexpr std::size_t kFewestSamples = 32;
 /// made. Cost: 24 of the samples are packed.
 Result<bool> still_fits(const TextDictionary* dictionary, std::span<const std::string> samples);
 
+/// The examples of a dictionary have so many bytes at most; a longer text is no example.
+constexpr std::uint64_t kMostExampleBytes = 256 << 10;
+
 /// The dictionary for `expected` texts like the samples: one with some of the samples as examples;
 /// or `current` (null: none) when no new one makes dictionary and texts together at least 4 %
 /// smaller, or when the samples are too few. Cost: up to 0.2 s.

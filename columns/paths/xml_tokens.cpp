@@ -70,14 +70,15 @@ std::string_view XmlTokens::next_value() {
   if (quote_ != '\0') {
     end = std::min(rest_.find(quote_), rest_.size());
   } else {
-    const std::string_view content = rest_.substr(0, rest_.find('<'));
-    if (items_ == 0) items_ = list_size(content);
+    if (items_ == 0) {
+      const std::string_view content = rest_.substr(0, rest_.find('<'));
+      items_ = list_size(content);
+      end = content.size();
+      while (end > 0 && is_blank(content[end - 1])) --end;
+    }
     if (items_ > 0) {
       --items_;
       end = value_end(rest_);
-    } else {
-      end = content.size();
-      while (end > 0 && is_blank(content[end - 1])) --end;
     }
   }
   const std::string_view value = rest_.substr(0, end);

@@ -22,6 +22,7 @@ template <class Visit>
 void visit_members(const Json& object, std::string& path, const Visit& visit) {
   for (const auto& [key, value] : object.get_ref<const Json::object_t&>()) {
     const std::size_t length = path.size();
+    if (length + key.size() > kLongestAttributePath) continue;
     path += key;
     if (value.is_object()) {
       path += '.';
@@ -42,6 +43,7 @@ void visit_attributes(std::string_view skeleton, const Visit& visit) {
   for (const auto& member : objects->get_ref<const Json::object_t&>()) {
     const Json* attributes = find_member(member.second, "attributes");
     if (attributes == nullptr || !attributes->is_object()) continue;
+    if (member.first.size() > kLongestAttributePath) continue;
     std::string path;
     visit_members(*attributes, path, [&](const std::string& name, const Json& value) {
       visit(member.first, name, value);
@@ -59,6 +61,7 @@ std::vector<ObjectAttribute> attribute_values(std::string_view skeleton,
     if (found == names.end() || *found != name) return;
     const auto index = static_cast<std::size_t>(found - names.begin());
     const auto add_scalar = [&](const Json& element) {
+      if (values.size() >= kMostAttributeValues) return;
       if (auto value = scalar_of(element)) values.push_back({object, index, *std::move(value)});
     };
     if (!json.is_array()) return add_scalar(json);

@@ -16,6 +16,10 @@
 
 namespace watertight::formats {
 
+constexpr std::size_t kMostAttributeValues = 10'000;  // of a feature; more are left out
+/// Paths and ids of objects that are longer, in bytes, are left out.
+constexpr std::size_t kLongestAttributePath = 1024;
+
 struct ObjectAttribute {
   std::string object;    // the id of the city object
   std::size_t name = 0;  // the index of the attribute's name

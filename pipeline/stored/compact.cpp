@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/stored/compact.h"
 
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -30,7 +29,8 @@ Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::
   bool is_outdated = false;
   for (const StoredFeature& feature : samples->features) {
     const auto stored = packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
-                                        std::numeric_limits<std::uint64_t>::max());
+                                        packing::kMostExampleBytes);
+    if (!stored && stored.error().code == ErrorCode::limit_exceeded) continue;  // no example
     if (!stored) return stored.error();
     const auto encoded = unpack(feature);
     if (!encoded) return encoded.error();

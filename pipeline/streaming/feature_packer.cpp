@@ -41,8 +41,9 @@ Status FeaturePacker::add(PreparedFeature feature, FeatureSpool& spool) {
 
 Status FeaturePacker::finish(FeatureSpool& spool) { return choose(waiting_.size(), spool); }
 
-/// The collection's dictionary, or a new one: when it has none or one that no longer fits, and
-/// whenever its number of features reaches a power of two, so that it gets one however it grows.
+/// The collection's dictionary, or a new one. A document of many features asks for one when there
+/// is none, when the newest no longer fits, and when the number of features passes a power of two;
+/// a document of few features when there is none and the number passes a power of two.
 Result<packing::DictionaryPointer> FeaturePacker::dictionary_for(
     const std::vector<PreparedFeature>& features, std::uint64_t expected) const {
   std::vector<std::string> texts;
@@ -50,7 +51,7 @@ Result<packing::DictionaryPointer> FeaturePacker::dictionary_for(
   const bool has_grown = std::bit_width(stored_) < std::bit_width(stored_ + texts.size()) &&
                          stored_ + texts.size() >= packing::kFewestSamples;
   if (texts.size() < packing::kFewestSamples) {
-    if (!has_grown) return dictionary_;
+    if (!has_grown || dictionary_ != nullptr) return dictionary_;
     auto samples = samples_();
     if (!samples) return std::move(samples).error();
     texts.insert(texts.end(), samples->begin(), samples->end());

@@ -23,7 +23,9 @@ Result<std::vector<std::string>> stored_texts(SolidStore& store, const std::stri
   std::vector<std::string> texts;
   for (const StoredFeature& feature : samples->features) {
     auto text = packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
-                                std::numeric_limits<std::uint64_t>::max());
+                                packing::kMostExampleBytes);
+    if (!text && text.error().code == ErrorCode::limit_exceeded)
+      continue;  // too long for an example
     if (!text) return std::move(text).error();
     texts.push_back(*std::move(text));
   }

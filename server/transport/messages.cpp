@@ -111,7 +111,7 @@ std::optional<Response> answer_to(const error_code& error, const ServerOptions& 
 
 bool takes_body(const RequestParser& parser) {
   const http::verb method = parser.get().method();
-  return method == http::verb::post || method == http::verb::patch;
+  return method == http::verb::post || method == http::verb::put || method == http::verb::patch;
 }
 
 std::optional<Response> refusal_of(const RequestParser& parser, const ServerOptions& options) {

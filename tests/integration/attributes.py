@@ -172,6 +172,10 @@ def one_round(number):
         error = service.run("export", "town", "-o", str(folder / "none.wt"), "--where", "height=7", code=2)
         if "'height'" not in error or service.ask("SELECT count(*) FROM watertight.attribute_value") != str(4 * count):
             raise SystemExit(f"a removed attribute is still there: {error}")
+        status, body = service.request("PUT", "/collections/town/attributes", b'{"attributes":["flat","roof.type"]}',
+                                       headers={"Content-Type": "application/json"})
+        if status != 200 or [one["name"] for one in json.loads(body)["attributes"]] != ["flat", "roof.type"]:
+            raise SystemExit(f"PUT of attributes: {status} {body[:500]!r}")
         print(f"round {number}: {count} features, {kills} kills, {writer.writes} writes meanwhile,"
               f" {len(writer.unsure)} unanswered", flush=True)
         service.stop()

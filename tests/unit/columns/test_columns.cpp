@@ -359,6 +359,13 @@ TEST_CASE("a plain text that is cut, longer than allowed or damaged is an error 
   }
 }
 
+TEST_CASE("a long list of numbers in XML is taken apart in time that grows with its length") {
+  std::mt19937 random(29);
+  std::string text = "<posList>";
+  for (int i = 0; i < 300'000; ++i) text += std::to_string(random() % 10) + ' ';
+  check_round_trip({{TextKind::xml, text + "</posList>"}});
+}
+
 TEST_CASE("damaged bytes give an error or other texts, in bounds") {
   const std::string text = features(20);
   const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));

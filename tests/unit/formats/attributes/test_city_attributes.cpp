@@ -80,4 +80,18 @@ TEST_CASE("ten thousand attributes are looked up in one pass") {
   CHECK(found[1234].value.text == "11234");
 }
 
+TEST_CASE("a feature has a bounded number of values, and no long path or id is copied") {
+  std::string list = "[0";
+  for (int i = 1; i < 20'000; ++i) list += ",1";
+  const std::string many = skeleton("{\"a\":" + list + "]}");
+  CHECK(formats::attribute_values(many, std::vector<std::string>{"a"}).size() ==
+        formats::kMostAttributeValues);
+  const std::string path(formats::kLongestAttributePath + 1, 'x');
+  const std::string longer = skeleton("{\"" + path + "\":1,\"y\":2}");
+  CHECK(formats::attribute_names(longer).size() == 1);
+  std::string of_long_id = skeleton("{\"y\":1}", "{\"y\":2}");
+  of_long_id.replace(of_long_id.find("\"p\""), 3, "\"" + path + "\"");
+  CHECK(values(of_long_id, {"y"}) == std::vector<std::string>{"b y 0 1"});
+}
+
 }  // namespace watertight

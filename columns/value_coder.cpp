@@ -17,7 +17,6 @@ constexpr int kListedBits = 12;
 constexpr int kDistanceBits = 4;
 constexpr std::size_t kShortNumber = 6;
 constexpr std::uint32_t kTrusts = 17;
-constexpr std::uint64_t kMostStep = 0xFFFF;  // of a counter
 
 std::uint64_t key_of(std::uint32_t column, std::uint32_t number) {
   return (std::uint64_t{column} << 32U) | number;
@@ -218,9 +217,10 @@ std::uint32_t ValueCoder::code_counter(EntropyStream& stream, ContextMixer& mixe
   column.last_step = static_cast<std::uint32_t>(std::min<std::uint64_t>(size, kMostSize)) * 2 +
                      (is_negative ? 1 : 0);
   const auto counter = find_counter(last);
-  const auto steps = static_cast<std::int64_t>(size & kMostStep);
+  const bool is_step = size <= static_cast<std::uint64_t>(kLargestStep);
+  const auto steps = is_step ? static_cast<std::int64_t>(size) : 0;
   const std::int64_t number = counter ? counter->number + (is_negative ? -steps : steps) : -1;
-  if (number < 0 || size > kMostStep) {
+  if (number < 0 || !is_step) {
     stream.fail();
     return 0;
   }

@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::string_view kDigits = "0123456789";
 constexpr std::size_t kMostDigits = 15;
-constexpr std::int64_t kLargestStep = 9999;
 
 }  // namespace
 

@@ -10,6 +10,8 @@
 
 namespace watertight::columns {
 
+constexpr std::int64_t kLargestStep = 9999;  // from one number to the next
+
 /// A text around its last whole number, which has no zeros in front.
 struct CounterText {
   std::string_view before;
@@ -21,8 +23,8 @@ struct CounterText {
 std::optional<CounterText> find_counter(std::string_view text);
 /// The text with another number.
 std::string with_number(const CounterText& text, std::int64_t number);
-/// How much the number grew since `before`, if `text` is it with another number; none for a jump of
-/// more than four digits.
+/// How much the number grew since `before`, if `text` is it with another number; none for a step
+/// beyond kLargestStep.
 std::optional<std::int64_t> counted_from(std::string_view before, std::string_view text);
 
 }  // namespace watertight::columns

@@ -56,8 +56,8 @@ std::optional<Response> refusal_of(const Target& target, const Route& route) {
   if (target.segments.size() > 3 && target.segments[3].size() > kLongestId) {
     return refuse(400, "item-id", "an item id has at most 1024 bytes");
   }
+  if (route.has_attributes) return std::nullopt;  // its other parameters are names of attributes
   for (const auto& [name, value] : target.parameters) {
-    if (route.has_attributes) break;
     if (std::find(route.parameters.begin(), route.parameters.end(), name) !=
         route.parameters.end()) {
       continue;

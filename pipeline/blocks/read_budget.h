@@ -31,6 +31,17 @@ class ReadBudget {
   }
   const Limits& limits() const { return limits_; }
 
+  /// Takes what `later`, a copy of `start`, has taken since it was copied. False, and nothing is
+  /// taken, if that is more than may still come.
+  bool take_since(const ReadBudget& start, const ReadBudget& later) {
+    ReadBudget taken = *this;
+    const bool fits = taken.take_text(later.texts_ - start.texts_) &&
+                      taken.take_vertices(later.vertices_ - start.vertices_) &&
+                      taken.take_items(later.items_ - start.items_);
+    if (fits) *this = taken;
+    return fits;
+  }
+
  private:
   static constexpr std::uint64_t kFreeItems = 65'536;
   static constexpr std::uint64_t kItemsPerByte = 4;
